@@ -161,7 +161,7 @@ def chosen(names: list[str], long: bool) -> list[StabilityCase]:
         case for case in wanted
         if case.group not in NOT_COMPARABLE and case.name not in NOT_COMPARABLE
         and not (case.name.endswith("_step") and case.name.removesuffix("_step") in CASES)
-        and (long or names or not case.long)
+        and (long or names or not case.long_s)
     ]  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import math
 import sys
+import time
 from collections.abc import Iterable, Iterator
 from typing import Never
 
@@ -19,7 +20,7 @@ from physicslab.stepping.accounting import book_account, close_account, open_acc
 from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.forces import add_up_forces
 from physicslab.stepping.plan import StepPlan, default_plan, plan_for_jumps
-from physicslab.stepping.run import strides
+from physicslab.stepping.run import run_length, strides
 from physicslab.stepping.select import Steppers, choose, remake, resume
 from physicslab.stepping.stepper import Advance, Stepper
 from physicslab.stepping.undo import Undoing
@@ -34,6 +35,9 @@ __all__ = ["World"]
 _log = logging.getLogger(__name__)
 _told: set[str] = set()
 """What was told already: a notebook may make a thousand worlds of one kind."""
+_AT_MOST = Field("at_most", "number", above=0.0, unit="s", owner="run")
+_LOOK_S, _STRIDE = 0.1, 1000
+"""So long [s], and so many steps of smooth motion, a run goes on before the clock is looked at."""
 _STEP = Field("dt", "number", minimum=MIN_TIME, maximum=MAX_TIME, unit="s", owner="step")
 
 
@@ -163,15 +167,37 @@ class World(State):
         """Return the best stepper for a coming step of ``h`` seconds."""
         return self.steppers.ready(self, h)
 
-    def run(self, *wrong: Never, seconds: float | None = None, steps: int | None = None) -> None:
+    def run(
+        self,
+        *wrong: Never,
+        seconds: float | None = None,
+        steps: int | None = None,
+        at_most: float | None = None,
+    ) -> None:
         """Advance by a time or by a number of steps.
 
         ``world.time`` grows by exactly ``seconds``: the last step is shortened where they are no multiple of
         dt. Where no system looks at each step, many are made in one compiled loop.
+
+        Raises
+        ------
+        TimeoutError
+            If it is not at its end after ``at_most`` seconds of wall clock, compiling left out. The world
+            stands where it has come to. Smooth motion is divided for it, which changes last digits.
         """
         _refuse_unnamed("run", wrong)
-        for _ in self.stepping(seconds=seconds, steps=steps, stride=sys.maxsize):
-            pass
+        if at_most is None:
+            for _ in self.stepping(seconds=seconds, steps=steps, stride=sys.maxsize):
+                pass
+            return
+        longest, length = _AT_MOST.check(at_most), run_length(self, seconds, steps)
+        began = time.perf_counter() - self.compile_s
+        for done in self.stepping(seconds=seconds, steps=steps, stride=_STRIDE, patience=_LOOK_S):
+            if done < length.steps and time.perf_counter() - self.compile_s - began >= longest:
+                raise TimeoutError(
+                    f"run: stopped after {longest:g} s of wall clock (at_most) at t = {self.time:.9g} s, "
+                    f"after {done} of {length.steps} steps"
+                )
 
     def stepping(
         self,
@@ -183,8 +209,8 @@ class World(State):
     ) -> Iterator[int]:
         """Advance like :meth:`run`, yielding the number of steps done after every ``stride`` steps.
 
-        The steps in between are one compiled loop where possible. Where they are several calls, it yields
-        also after the first that ends more than ``patience`` seconds of wall clock after the last yield.
+        The steps in between are one compiled loop where possible. With ``patience`` it yields also where
+        about so many seconds of wall clock have passed since the last yield; smooth motion is not divided.
         """
         _refuse_unnamed("stepping", wrong)
         return strides(self, seconds, steps, stride, patience)

@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 
 from physicslab.cli import main
-from physicslab.commands.step_watch import StepWatch
 from physicslab.components import Transform
+from physicslab.diagnostics.step_watch import StepWatch
+from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene
 from physicslab.history import History
@@ -44,6 +45,20 @@ def test_a_run_stops_when_its_time_is_up_and_keeps_what_it_reached(
     assert report["stopped"] == f"stopped after 1 s of wall clock (--at-most) {reached}"
     with Path("o.csv").open(newline="") as file:
         assert float(list(csv.reader(file))[-1][0]) == report["time"] > 0.0
+
+
+def test_a_run_in_python_has_a_budget_too() -> None:
+    world, other = load_scene("newtons_cradle"), load_scene("newtons_cradle")
+    world.run(steps=30, at_most=100.0)
+    other.run(steps=30)
+    places = [each.table(Transform)["position"].tobytes() for each in (world, other)]
+    assert places[0] == places[1] and world.steps == other.steps == 30
+    told = r"^run: stopped after 1e-09 s of wall clock \(at_most\) at t = .* s, after .* of 1000000000 steps$"
+    with pytest.raises(TimeoutError, match=told):
+        world.run(steps=10**9, at_most=1e-9)
+    assert 30 < world.steps < 10**6
+    with pytest.raises(InvalidValue, match=r"run.at_most = 0: must be a finite number > 0 s"):
+        world.run(steps=1, at_most=0)
 
 
 def test_a_run_within_its_budget_is_as_any_other(capsys: pytest.CaptureFixture[str]) -> None:
@@ -151,8 +166,10 @@ def test_run_says_where_it_is_slow(
     assert (
         line.startswith("physicslab: stack: slow: the step to t = 0.05 s took 1.") and line.count("\n") == 1
     )
+    assert line.endswith('simulation.contacts = "soft" would help\n')
     advice = json.loads(Path("o.json").read_text())["advice"]
-    assert [found["what"] for found in advice] == ["a step takes long: there is much to compute"]
+    why = "rigid contacts go from one event to the next"
+    assert [found["what"] for found in advice] == [f"a step takes long: {why}"]
 
 
 OVERFLOWS = [

@@ -189,7 +189,7 @@ def test_a_run_of_the_table_can_be_used_and_taken_back(tmp_path: Path) -> None:
     assert desk.world.simulation == before
 
 
-@pytest.mark.parametrize("grown, chaotic", [(0.0, False), (5e-8, False), (0.2, True)])
+@pytest.mark.parametrize("grown, chaotic", [(0.0, False), (5e-8, False), (5e-7, False), (0.2, True)])
 def test_a_chaotic_scene_is_called_so(tmp_path: Path, grown: float, chaotic: bool) -> None:
     rows = [run("rk4", "rk4", 0.1, 1e-3), run("leapfrog", "leapfrog", 10.0, 1e-7)]
     twins = {"twins": [{"name": "nudged", "spread": {"position": grown}}]}

@@ -173,6 +173,11 @@ def test_a_bar_of_what_is_negative_lies_left_of_its_zero(monkeypatch: pytest.Mon
     )
     assert left == again == zero, "one zero for all three"
     assert stored == pytest.approx(0.0) and 0.0 < total < zero < kinetic == pytest.approx(1.0)
+    world = empty_world()
+    circle(world, (0, -5))
+    recorded(world)[0].frames(2)
+    zero, stored = drawn["Potential energy"]
+    assert stored == pytest.approx(0.0) and zero == pytest.approx(0.8), "it ends before the end of the bar"
 
 
 def test_a_body_in_the_hand_and_out_of_it_leaves_the_rest_as_it_was() -> None:
@@ -394,7 +399,7 @@ def test_bodies_out_of_sight_are_pointed_at_and_counted() -> None:
         return [t["words"] for t in texts if t["style"].colour == theme.accent]
 
     assert not arrows()
-    for place in ((30, 0), (40, 3), (0, -50), (-7, 0)):
+    for place in ((30, 0), (40, 3), (0, -50), (-5.7, 0)):  # the last is behind the tools
         circle(world, place)
     frame(desk, canvas)
     assert arrows() == ["1", "2", "1"], "left, right, and below"

@@ -141,6 +141,9 @@ def test_advice_names_causes(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     path = tmp_path / "scene.json"
     assert "oscillates with omega h = 0.4" in advice(path, capsys, swing(1e4))
     assert "omega h" not in advice(path, capsys, swing(1e4), "--integrator", "dop853")
+    loose = swing(1e4)
+    loose["simulation"] |= {"integrator": "dop853", "tolerance": 1e-2}
+    assert "simulation.tolerance = 0.01 lets each step be off" in advice(path, capsys, loose)
     floor, cube = still("floor", (0.0, -0.05), (10.0, 0.1)), body("cube", (0.0, 0.05), size=(0.1, 0.1))
     assert advice(path, capsys, written([floor, cube], 1 / 60)) == ""
     long = written([floor, body("cube", (0.0, 0.06), size=(0.1, 0.1))], 1.0)

@@ -14,7 +14,7 @@ from test_fuzz_scenes import run_or_refuse
 from physicslab.cli import main
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.component import COMPONENTS, InvalidValue
-from physicslab.files.scene import SceneError, read_scene
+from physicslab.files.scene import SceneError, read_scene, scene_bytes
 from physicslab.state.masses import Diverged
 from physicslab.systems.spring import SpringSystem
 from physicslab.world import World
@@ -92,6 +92,12 @@ EXTREMES = {
 def test_an_extreme_number_is_refused_or_runs_with_finite_numbers(name: str) -> None:
     with deadline(name):
         run_or_refuse(EXTREMES[name])
+
+
+def test_what_is_absurd_is_saved_without_a_warning_of_numpy() -> None:
+    world = read_scene(scene(changed(BALL, Drag={"quadratic": 1e308}), FLOOR))
+    world.synchronise()
+    assert b"1e+308" in scene_bytes(world, "absurd")
 
 
 HEAVY = {"Mass": {"mass": 1e200}}

@@ -269,6 +269,8 @@ def test_no_word_is_cut_and_none_lies_over_another(size: tuple[int, int], scale:
     room = pygame.Rect(desk.sandbox.interface.visible)
     for number in canvas.numbers:
         assert room.contains(number), f"{number} is under a panel"
+        if number.top > room.bottom - 2 * number.height:
+            assert not any(panel.colliderect(number) for panel in canvas.panels), f"{number} is under words"
     for first, second in itertools.combinations(canvas.numbers, 2):
         assert not first.inflate(-2, -2).colliderect(second.inflate(-2, -2))
     for (a, one), (b, two) in itertools.combinations(canvas.words, 2):
@@ -276,6 +278,27 @@ def test_no_word_is_cut_and_none_lies_over_another(size: tuple[int, int], scale:
     for one, two in itertools.combinations(canvas.panels, 2):
         apart = not one.colliderect(two) or one.contains(two) or two.contains(one)
         assert apart, f"panels {one} and {two} overlap at {size}"
+
+
+def test_words_make_way_for_a_graph() -> None:
+    canvas = MeasuringCanvas((1280, 720))
+    desk = Desk(load_scene("pendulum"), canvas)
+    desk.key("space")
+    desk.frames(8)
+    canvas.words.clear()
+    desk.frames()
+    (paused,) = [rect for words, rect in canvas.words if words == "PAUSED"]
+    assert len(desk.window.dashboard.graphs) == 1
+    assert not any(paused.colliderect(rect) for rect in desk.sandbox.interface.covered)
+
+
+def test_a_step_that_takes_long_is_told_with_its_reason() -> None:
+    desk, seconds = Desk(load_scene("drop")), itertools.count(0.0, 2.0)
+    desk.sandbox._clock = lambda: next(seconds)
+    desk.frames(2)
+    assert (
+        desk.window.notice.startswith("Slow: the step to t = 0.0") and "much to compute" in desk.window.notice
+    )
 
 
 @pytest.mark.parametrize("size", [(1, 1), (60, 40), (200, 100), (320, 200)])

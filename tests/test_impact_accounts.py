@@ -233,7 +233,7 @@ def test_accounts_explain_a_random_impact(way: str, bodies: list[dict[str, Any]]
         found = measure_account(world)
         change = world.account.sums - before
         assert change[accounts.IMPACTS, 0] <= 1e-12 * found.start.energy
-        assert change[accounts.FRICTION, 0] <= 0.0
+        assert change[accounts.FRICTION, 0] <= 1e-15 * found.start.energy  # seen: 3e-20 of 5.5 J
     check_closed(found)
 
 

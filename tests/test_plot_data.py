@@ -117,6 +117,7 @@ def test_rounding_is_not_shown_as_a_change() -> None:
     low, high = range_to_show([np.array([12.0, 12.0 + 1e-13])])
     assert low < 11.0 and high > 13.0
     assert range_to_show([np.zeros(3)]) == (-1.0, 1.0) and range_to_show([]) == (0.0, 1.0)
+    assert range_to_show([np.array([0.0, 1e-23])], none=1e-13) == (1e-23 - 1.0, 1e-23 + 1.0), "a body at rest"
     low, high = range_to_show([np.array([np.nan, 2.0]), np.array([4.0])])
     assert low < 2.0 and high > 4.0
 

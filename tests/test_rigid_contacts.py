@@ -16,6 +16,7 @@ from physicslab import World, cli, load_scene
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.contacts.report import list_contacts
 from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import save_scene
 from physicslab.prefabs import box, circle
@@ -508,6 +509,9 @@ def test_a_step_that_rigid_contacts_cannot_make_is_left_to_soft_ones() -> None:
     boxes = [box(world, (0, y), width=1, height=1) for y in (0.4, 1.3)]
     world.step()
     assert rigid_of(world).left_to_soft == 1
+    told = find_warnings(world)
+    assert [one.what for one in told if one.because] == ["steps were left to soft contacts"]
+    assert 'simulation.contacts = "rigid"' not in {one.setting for one in told}, "they are"
     assert rigid_of(world).why_soft == "bodies overlap by 0.1 of their size"
     assert world.stepper is not None and world.stepper.name != "rigid"
     world.run(seconds=5.0)

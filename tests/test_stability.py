@@ -13,7 +13,7 @@ import pytest
 from physicslab import cli
 from physicslab.lab.processes import in_processes
 from physicslab.lab.stability.case import StabilityCase, Verdict, run_case
-from physicslab.lab.stability.catalogue import CASES
+from physicslab.lab.stability.catalogue import CASES, runs_of
 from physicslab.state.masses import Diverged
 
 SLOW = {
@@ -30,7 +30,7 @@ SHORT = {
 """Cases that fall short so far, and why: they stand in the table of docs/stability.md."""
 
 
-TESTED = [case for case in CASES.values() if not case.long and case.name not in SHORT]
+TESTED = [case for case in CASES.values() if not case.long_s and case.name not in SHORT]
 
 
 def parameter(case: StabilityCase) -> Any:
@@ -147,8 +147,16 @@ def test_many_cases_are_spread_over_processes_and_their_results_come_in_order(
 ) -> None:
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     names = [str(n) for n in range(16)]
-    found = list(in_processes(_square_or_end, names))
+    runs = [[name] for name in names]
+    found = list(in_processes(_square_or_end, names, [["15", "3"], *runs[:3], *runs[4:15]]))
     assert [one for one in found if isinstance(one, int)] == [n * n for n in range(16)]
     assert all(0.0 <= share <= 1.0 for share in found if isinstance(share, float))
     with pytest.raises(BrokenProcessPool):
-        list(in_processes(_square_or_end, [*names[:-1], "end"]))
+        list(in_processes(_square_or_end, [*names[:-1], "end"], [*runs[:-1], ["end"]]))
+
+
+def test_cases_that_share_a_run_are_one_job_and_the_longest_begins_first() -> None:
+    runs = runs_of(list(CASES.values()))
+    assert runs[0] == ["steps_1e6_memory", "steps_1e6_drift", "steps_1e6_pace"]
+    assert ["crowd_5000_speed", "crowd_5000_apart"] in runs
+    assert sorted(name for run in runs for name in run) == sorted(CASES)

@@ -311,6 +311,14 @@ def test_without_gravity_nothing_carries_and_the_setting_that_is_named_was_check
     assert (world.collisions, find_warnings(world)) == (804, ()), "the last of them at its time, 5.97 s"
 
 
+def test_of_a_kind_one_line_is_kept_whatever_its_cause() -> None:
+    worst = WorstWarnings()
+    for count, why in enumerate(("bodies overlap by 0.1 of their size", "bodies overlap by 0.2"), start=1):
+        worst.add([ModelWarning(None, "steps were left", float(count), "", 0.0, "", because=why)])
+    (line,) = map(str, worst.all)
+    assert line == "steps were left: 2, as bodies overlap by 0.2; no setting is known to help"
+
+
 def test_where_no_setting_is_known_the_words_are_plain() -> None:
     warning = ModelWarning("box", "sinks", 2.0, "m", 1.0, "")
     assert str(warning) == "box: sinks: 2 m, well up to 1; no setting is known to help"
@@ -448,7 +456,7 @@ def test_run_writes_advice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     document = json.loads(output.read_text())
     assert document["divided"] == 1
     found = next(advice for advice in document["advice"] if "coarsely" in advice["what"])
-    assert list(found) == ["entity", "what", "value", "unit", "limit", "setting"]
+    assert list(found) == ["entity", "what", "value", "unit", "limit", "setting", "because"]
     assert found["entity"] == "rope" and found["value"] == pytest.approx(200 / 240)
     capsys.readouterr()
     assert main(command) == 0

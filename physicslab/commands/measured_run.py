@@ -9,12 +9,12 @@ from collections.abc import Iterator
 from typing import Protocol
 
 from physicslab.commands.progress import Progress
-from physicslab.commands.step_watch import StepWatch
 from physicslab.diagnostics.account import Accounts
 from physicslab.diagnostics.audit import Audit
 from physicslab.diagnostics.ledger import LedgerWriter
 from physicslab.diagnostics.overflow import find_overflow
 from physicslab.diagnostics.run_report import RunRecord
+from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.text import printable, shortened
 from physicslab.kernels.tiers import Tiers

@@ -9,7 +9,7 @@ from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
 from physicslab.lab.processes import in_processes
 from physicslab.lab.stability.case import Outcome, StabilityCase, Verdict
-from physicslab.lab.stability.catalogue import CASES, run_named
+from physicslab.lab.stability.catalogue import CASES, run_named, runs_of
 from physicslab.lab.stability.document import document
 from physicslab.lab.stability.tables import columns, head_text, row_text, summary_text
 
@@ -30,7 +30,7 @@ def execute(arguments: Namespace) -> int:
     run, aligned = LabRun("stability", arguments), columns(cases)
     outcomes: list[Outcome] = []
     run.show(head_text(aligned))
-    found = run.shown(in_processes(run_named, [case.name for case in cases]))
+    found = run.shown(in_processes(run_named, [case.name for case in cases], runs_of(cases)))
     try:
         for case, figures in zip(cases, found, strict=True):
             outcomes.append(Outcome(case, *figures))

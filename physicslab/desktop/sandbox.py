@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from physicslab.components import Gate, Held, Transform
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.rescue import save_last_good
+from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.files.scene import SceneError
 from physicslab.history import History, RemoveComponent
 from physicslab.state.masses import Diverged
@@ -73,6 +74,7 @@ class Sandbox:
         self.window = window
         self._shown = shown
         self._clock = clock
+        self._watch: StepWatch
         self._autosave = autosave
         self._reported = False  # that the state cannot be kept
         self._rescued: tuple[World, float] | None = None
@@ -106,6 +108,7 @@ class Sandbox:
         if history is None:
             world.install(*self._systems)
         world.synchronise()  # what was done to make it is no edit
+        self._watch = StepWatch(world)
         self.history = history or History(world)
         window.follow_history(self.history)
         window.spring_tool.cancel()
@@ -216,7 +219,8 @@ class Sandbox:
         machine runs slowly, and the window stays awake.
         """
         pace, dt, microscope = self.window.pace, self.world.simulation.dt, self.window.microscope
-        deadline = self._clock() + pace.max_dt
+        began = self._clock()
+        deadline = began + pace.max_dt
         made, due = 0, pace.due(dt)
         try:
             while made < due and (made == 0 or self._clock() < deadline):
@@ -234,6 +238,8 @@ class Sandbox:
             self.window.error = f"Stopped: {error}. {self._rescue()} R clears all."
         else:
             pace.done(made, dt)
+            if made and (slow := self._watch.note(made, self._clock() - began)):
+                self.window.notify(slow[:1].upper() + slow[1:], 10.0, failed=True)
         microscope.follow(pace, self.world.time)
 
     def _step(self, dt: float) -> None:

@@ -17,7 +17,7 @@ from physicslab.ecs.text import printable, shortened
 from physicslab.files.scene import load_scene
 from physicslab.kernels import working_ns
 from physicslab.scenes import SCENES
-from physicslab.view.canvas.display import Display, ask_to_leave
+from physicslab.view.canvas.display import Display, ask_to_leave, forget_clicks
 from physicslab.view.window.recovery import Recovery
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -62,7 +62,9 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
                         sandbox = Sandbox(
                             world, window, lambda: 1e-9 * working_ns(), autosave, compiling.scenes.follow
                         )
+                        forget_clicks()
                         sandbox.frame(0.0)
+                        forget_clicks()
                     _loop(sandbox, display, compiling)
             except Left:  # the window was closed while it waited for kernels
                 pass

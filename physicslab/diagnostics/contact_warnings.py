@@ -20,6 +20,7 @@ _LATEST = 1000
 """Number of impacts that are looked at, the last ones."""
 _SAME_TIME = 1e-12
 """Share of a step within which impacts are at one moment."""
+_BETTER = "a smaller simulation.dt, or fewer bodies"
 _ALIGNED = 1e-9
 """Deviation of a cosine from 0 and from 1 that is rounding."""
 
@@ -32,9 +33,10 @@ def contact_warnings(world: World, rigid: Rigid | None) -> Iterator[ModelWarning
 
 
 def rigid_setting(world: World, touching: int) -> str:
-    """Return the setting for rigid contacts, nothing where they are not possible or too many touch."""
-    few = touching <= RIGID_LIMIT
-    return 'simulation.contacts = "rigid"' if few and why_not_rigid(world, world.schedule) is None else ""
+    """Return the setting for rigid contacts, nothing where they are chosen, not possible, or too many."""
+    if world.plan.contacts == "rigid" or touching > RIGID_LIMIT:
+        return ""
+    return 'simulation.contacts = "rigid"' if why_not_rigid(world, world.schedule) is None else ""
 
 
 def _softness(world: World, rigid: Rigid | None) -> Iterator[ModelWarning]:
@@ -51,14 +53,11 @@ def _softness(world: World, rigid: Rigid | None) -> Iterator[ModelWarning]:
     forces = np.hypot(*world.bodies.force.T) * world.bodies.inverse_mass
     h = simulation.dt / simulation.substeps
     off = max(float(forces.max(initial=0.0)) * h * h, float(graph.depth.max(initial=0.0)))
-    why = rigid.why_soft if left and rigid is not None else plan.contact_reason
-    what = (
-        f"contacts are soft, as {why}; what barely stands may fall, and what touches is off by about so much "
-        "(run --trust measures it)"
-    )
-    setting = "" if left else rigid_setting(world, len(graph.touching))
-    if off > 0.0:
-        yield ModelWarning(None, what, off, "m", 0.0, setting or "a smaller simulation.dt, or fewer bodies")
+    what = "contacts are soft; what barely stands may fall, and what touches is off by about so much"
+    setting = rigid_setting(world, len(graph.touching)) or _BETTER
+    if off > 0.0:  # why steps were left to them has a line of its own
+        why = "" if left else plan.contact_reason
+        yield ModelWarning(None, what, off, "m", 0.0, setting, because=why)
 
 
 def _undetermined(world: World) -> Iterator[ModelWarning]:

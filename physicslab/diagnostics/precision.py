@@ -12,6 +12,7 @@ from typing import Any
 from physicslab.diagnostics.audit import Audit
 from physicslab.diagnostics.step_warnings import PHASE_LIMIT, lost_phase
 from physicslab.diagnostics.warning_records import ModelWarning
+from physicslab.ecs.config import SimulationConfig
 from physicslab.world import World
 
 __all__ = ["DIGITS_LIMIT", "EXACT_PHASE", "find_imprecise", "words_of_digits"]
@@ -71,11 +72,15 @@ def _oscillation(world: World, audit: Audit) -> Iterator[ModelWarning]:
 def _passage(world: World, audit: Audit) -> Iterator[ModelWarning]:
     """Yield the error of energy of a method that follows the motion, where it shows that it did not."""
     if world.plan.smooth and world.plan.integrator.chooses_steps and audit.error > _EXACT_ENERGY:
+        usual, cause, setting = SimulationConfig().tolerance, "bodies pass closely, or forces jump", ""
+        if world.simulation.tolerance > usual:
+            cause = f"simulation.tolerance = {world.simulation.tolerance:g} lets each step be off"
+            setting = f"simulation.tolerance = {usual:g}"
         what = (
-            "of the energy exchanged is an error of the method: bodies pass closely, or forces jump, and "
-            "places are off by more (--trust)"
+            f"of the energy exchanged is an error of the method: {cause}, and places are off by more "
+            "(--trust)"
         )
-        yield ModelWarning(None, what, audit.error, "", _EXACT_ENERGY, "")
+        yield ModelWarning(None, what, audit.error, "", _EXACT_ENERGY, setting)
 
 
 _RULES: tuple[Callable[[World, Audit], Iterator[ModelWarning]], ...] = (_oscillation, _passage)

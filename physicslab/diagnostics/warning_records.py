@@ -29,6 +29,8 @@ class ModelWarning:
         A setting that helps, with its value; empty where none does.
     number : int, optional
         The entity itself.
+    because : str
+        The latest cause, which may be another at each step; it is no part of the kind.
     """
 
     entity: str | None
@@ -38,6 +40,7 @@ class ModelWarning:
     limit: float | None
     setting: str
     number: int | None = None
+    because: str = ""
 
     @classmethod
     def about(
@@ -54,11 +57,17 @@ class ModelWarning:
         value = 0.0 if self.value is None else self.value
         return value / self.limit if self.limit and self.value is not None else math.inf, value
 
-    def __str__(self) -> str:
+    @property
+    def told(self) -> str:
+        """What is wrong with which entity, and by how much."""
         words = f"{self.entity}: {self.what}" if self.entity else self.what
         if self.value is not None and self.limit is not None:
             unit = f" {self.unit}" if self.unit else ""
             words += f": {self.value:.3g}{unit}" + (f", well up to {self.limit:.3g}" if self.limit else "")
+        return words
+
+    def __str__(self) -> str:
+        words = f"{self.told}, as {self.because}" if self.because else self.told
         return (
             f"{words}; {self.setting} would help" if self.setting else f"{words}; no setting is known to help"
         )

@@ -69,11 +69,11 @@ def _finished_otherwise(world: World) -> Iterator[ModelWarning]:
     if rigid is None:
         return
     if rigid.left_to_soft:
-        what = f"steps were left to soft contacts, at last because {rigid.why_soft}"
-        yield ModelWarning(None, what, float(rigid.left_to_soft), "", 0.0, "")
+        what, count = "steps were left to soft contacts", float(rigid.left_to_soft)
+        yield ModelWarning(None, what, count, "", 0.0, "", because=rigid.why_soft)
     if rigid.by_impulses:
-        what = f"steps were made by impulses in 32 parts, an error of order one: {rigid.why_impulses}"
-        yield ModelWarning(None, what, float(rigid.by_impulses), "", 0.0, "")
+        what, count = "steps were made by impulses in 32 parts, an error of order one", rigid.by_impulses
+        yield ModelWarning(None, what, float(count), "", 0.0, "", because=rigid.why_impulses)
     if rigid.energy_added:
         what = "was added by moving bodies apart that overlapped"
         yield ModelWarning(None, what, rigid.energy_added, "J", 0.0, "")

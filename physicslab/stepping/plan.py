@@ -19,6 +19,7 @@ from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_WITH_SPLIT_FORCES
 from physicslab.integrators.rk4 import RK4
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.ode.closed_form import NoClosedForm, closed_form
+from physicslab.state.masses import quiet
 from physicslab.state.packed import spring_ends
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import why_not_exact, why_not_worthwhile
@@ -185,6 +186,7 @@ def plan_for_jumps(state: State, schedule: Schedule, plan: StepPlan) -> StepPlan
     return replace(plan, integrator=RK4, substeps=state.simulation.substeps, reason=reason)
 
 
+@quiet
 def outlived(state: State, schedule: Schedule, plan: StepPlan) -> tuple[str, str, int] | None:
     """Return ``plan.kept`` where the world would not choose so any more, in its present state of motion.
 

@@ -125,27 +125,35 @@ def strides(
 ) -> Iterator[int]:
     """Advance by a time or by a number of steps, yielding as :meth:`World.stepping` says."""
     _STRIDE.check(stride)
-    due = time.monotonic() + patience
+    due, at_once = time.monotonic() + patience, 1 if patience < math.inf else stride
     length, start, done = run_length(world, seconds, steps), world.time, 0
     if not length.steps:
         world.time += length.seconds  # which is nothing, or too short for anything to move
     while done < length.steps:
-        before = world.steps
+        before, began = world.steps, time.monotonic()
         try:
             with world.active():
-                done += _go_on(world, length, done, stride)
+                done += _go_on(world, length, done, stride, at_once)
         except Diverged:
             world.time = start + (done + world.steps - before) * length.dt
             raise
         world.time = start + length.elapsed(done)
+        taken = time.monotonic() - began
+        if taken < 0.25 * patience:
+            at_once = min(2 * at_once, stride)
+        elif taken > patience:
+            at_once = max(at_once // 2, 1)
         if done % stride == 0 or done == length.steps or time.monotonic() >= due:
             yield done
             due = time.monotonic() + patience
 
 
 @quiet
-def _go_on(world: Stepped, length: RunLength, done: int, stride: int) -> int:
-    """Go on with a run of which ``done`` steps are made, as far as one call goes; return how many it made."""
+def _go_on(world: Stepped, length: RunLength, done: int, stride: int, at_once: int) -> int:
+    """Go on with a run of which ``done`` steps are made, as far as one call goes; return how many it made.
+
+    What makes step by step makes ``at_once`` at most, which changes no bit.
+    """
     world.synchronise()
     h = length.dt if done < length.whole else length.rest
     if world.schedule.observer is not None:
@@ -154,7 +162,7 @@ def _go_on(world: Stepped, length: RunLength, done: int, stride: int) -> int:
     count = max(1, min(wanted, length.whole - done))
     best = world.stepper_for(h)
     if not best.leaps:
-        return world.advance(h, count)
+        return world.advance(h, min(count, at_once))
     if isinstance(best, Flow) and best.whole and wanted >= length.steps - done:
         return _leap(world, length.seconds - length.elapsed(done), 1, length.steps - done)
     return _leap(world, h, count, count)

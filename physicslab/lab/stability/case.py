@@ -33,8 +33,10 @@ class StabilityCase(Case):
         The largest figure that passes.
     measure : callable
         Builds a world, runs it and returns the figure.
-    long : bool
-        Whether it takes so long that only the command runs it, and no test.
+    long_s : float
+        About how long it takes [s], where only the command runs it, and no test; else 0.
+    run : str
+        The run that it shares with other cases, which look at it from another side; none if empty.
     """
 
     right: str
@@ -42,7 +44,8 @@ class StabilityCase(Case):
     limit: float
     measure: Callable[[], float]
     unit: str = ""
-    long: bool = False
+    long_s: float = 0.0
+    run: str = ""
 
 
 @dataclass(frozen=True, slots=True)

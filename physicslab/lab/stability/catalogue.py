@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from physicslab.lab.case import Catalogue
 from physicslab.lab.stability.attraction import ATTRACTION
 from physicslab.lab.stability.bounces import BOUNCES
 from physicslab.lab.stability.bullets import BULLETS
-from physicslab.lab.stability.case import run_case
+from physicslab.lab.stability.case import StabilityCase, run_case
 from physicslab.lab.stability.chains import CHAINS
 from physicslab.lab.stability.crowds import CROWDS
 from physicslab.lab.stability.extremes import EXTREMES
@@ -19,7 +21,7 @@ from physicslab.lab.stability.stacks import STACKS
 from physicslab.lab.stability.steps import STEPS
 from physicslab.lab.stability.towers import TOWERS
 
-__all__ = ["CASES", "run_named"]
+__all__ = ["CASES", "run_named", "runs_of"]
 
 CASES = Catalogue(
     (
@@ -40,6 +42,16 @@ CASES = Catalogue(
     )
 )
 """Every case by name; families are groups."""
+
+
+def runs_of(cases: Sequence[StabilityCase]) -> list[list[str]]:
+    """Return the names of cases by the run that they share, the longest run first."""
+    runs: dict[str, list[StabilityCase]] = {}
+    for case in cases:
+        runs.setdefault(case.run or case.name, []).append(case)
+    longest = max(runs.values(), key=lambda run: run[0].long_s, default=[])
+    ordered = sorted(runs.values(), key=lambda run: run is not longest)
+    return [[case.name for case in run] for run in ordered]
 
 
 def run_named(name: str) -> tuple[float | None, str, float]:

@@ -62,12 +62,14 @@ def _cases(count: int, steps: int) -> list[StabilityCase]:
         StabilityCase(
             name=f"crowd_{count}_speed", title=title, group="crowds",
             right="they come apart slowly: coming apart makes no energy to speak of", figure="fastest disc",
-            unit="m/s", limit=2.0, measure=partial(_speed, count, steps), long=count > 1_000,
+            unit="m/s", limit=2.0, measure=partial(_speed, count, steps), run=f"crowd_{count}",
+            long_s=60.0 if count > 1_000 else 0.0,
         ),
         StabilityCase(
             name=f"crowd_{count}_apart", title=f"{title}, after {steps} steps", group="crowds",
             right="they are apart, to a tenth of their size", figure="deepest overlap, of a radius",
-            limit=0.2, measure=partial(_overlap, count, steps), long=count > 1_000,
+            limit=0.2, measure=partial(_overlap, count, steps), long_s=60.0 if count > 1_000 else 0.0,
+            run=f"crowd_{count}",
         ),
     ]  # fmt: skip
 

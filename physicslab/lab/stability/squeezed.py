@@ -101,7 +101,7 @@ SQUEEZED = [
             name=f"piston_{speed:g}_{kind}_{contacts}",
             title=f"a piston of {speed:g} m/s presses 20 discs into half of their own area, {model}",
             group="pistons", right=right, figure=figure, limit=limit,
-            measure=partial(measure, contacts, speed),
+            measure=partial(measure, contacts, speed), run=f"piston_{speed:g}_{contacts}",
         )
         for speed in (0.2, 2.0, 20.0)
         for contacts, model in MODELS.items()

@@ -36,6 +36,9 @@ __all__ = ["HudSystem"]
 
 _PERIODS = {"figures": 0.2, "costs": 0.2, "advice": 0.25}
 """Time [s] between two readings: figures that change faster cannot be read."""
+_STRIP, _LEAST = 6, 14
+"""How high the strip is in which words make way for windows, and how much of its width must be left, in
+heights of the text."""
 _MESSAGE_WIDTH = 0.7
 """How wide a message beside the scale bar may be, as a share of what is left for the world."""
 
@@ -63,6 +66,7 @@ class HudSystem(System):
         self._figures: WorldFigures
         self._measures: list[Line] = []
         self._details: list[Line] = []
+        self._windows: list[Rect] = []
 
     @at(Stage.HUD)
     def draw(self, world: World, elapsed: float) -> None:
@@ -153,36 +157,61 @@ class HudSystem(System):
         window, size = self._window, self._text_size
         canvas, theme, room = window.canvas, window.theme, self._interface.visible
         left, top, width, height = room
-        middle, margin = left + width // 2, round(0.6 * size)
+        margin = round(0.6 * size)
         bar = draw_scale_bar(window.camera, left + width, top + height - margin, size, canvas, theme)
+        numbers = 0
         if window.grid:
-            draw_axis_numbers(window.camera, room, bar[0], size, canvas, theme)
-        taken = [bar, *self._draw_messages(bar)]
+            numbers = draw_axis_numbers(window.camera, room, bar[0], size, canvas, theme)
+        taken = [bar, *self._draw_messages(bar, numbers)]
         bottom = min(rect[1] for rect in taken) - margin
         banners = self._banners(world)
-        shown = draw_banners(banners, middle, top + margin, bottom, width - 2 * margin, size, canvas, theme)
+        begin, wide = self._free_span(top, top + _STRIP * size)
+        middle, across = begin + wide // 2, wide - 2 * margin
+        shown = draw_banners(banners, middle, top + margin, bottom, across, size, canvas, theme)
         below = shown[-1][1] + shown[-1][3] + margin if shown else top + margin
-        advice = self._draw_advice(world, middle, below, bottom, width - 2 * margin)
+        advice = self._draw_advice(world, middle, below, bottom, across)
         taken += [*shown, *([] if advice is None else [advice])]
         legend = legend_of(window.overlays, (width - 2 * margin, height), size, canvas, theme)
         if legend is not None:
             legend = legend.moved(left + margin, top + margin)
             legend.draw(canvas, theme)
             taken.append(legend.panel.rect)
-        draw_edge_arrows(world, window.camera, [*taken, *self._interface.layout.panels], size, canvas, theme)
+        above = left, top, width, max(height - numbers, 1)
+        draw_edge_arrows(world, window.camera, above, [*taken, *self._windows], size, canvas, theme)
         return taken
 
-    def _draw_messages(self, bar: Rect) -> list[Rect]:
-        """Draw what went wrong or was just done, beside the scale bar or above it; return where."""
+    def _free_span(self, top: int, bottom: int) -> tuple[int, int]:
+        """Return where the widest part of a strip begins that no window lies over, and how wide it is [px].
+
+        The strip is that of the world's room from ``top`` to ``bottom`` [px]. Where windows leave too little
+        of it, it is all of that.
+        """
+        left, _, width, _ = self._interface.visible
+        if not self._interface.toolkit.has_popup():  # what a menu lies over stays where it is
+            self._windows = self._interface.covered
+        at, widest = left, (left, 0)
+        over = [(x, x + wide) for x, y, wide, high in self._windows if y < bottom and y + high > top]
+        for begin, end in [*sorted(over), (left + width, 0)]:
+            widest = max(widest, (at, min(begin, left + width) - at), key=lambda span: span[1])
+            at = max(at, end)
+        return widest if widest[1] >= _LEAST * self._text_size else (left, width)
+
+    def _draw_messages(self, bar: Rect, numbers: int) -> list[Rect]:
+        """Draw what went wrong or was just done, beside the scale bar or above it; return where.
+
+        They lie above the ``numbers`` at the lower edge, which are so high [px].
+        """
         window, size = self._window, self._text_size
         canvas, theme = window.canvas, window.theme
-        left, top, width, height = self._interface.visible
+        _, top, _, height = self._interface.visible
+        left, width = self._free_span(top + height - _STRIP * size, top + height)
         words = (
             (window.error, theme.error),
             (window.notice, theme.error if window.notice_failed else theme.notice),
         )
-        middle, bottom = left + width // 2, top + height
+        middle, bottom = left + width // 2, top + height - numbers
         messages = lay_out_messages(words, size, round(_MESSAGE_WIDTH * width), canvas)
         if any(middle + message.width // 2 > bar[0] - size // 2 for message in messages):
-            messages, bottom = lay_out_messages(words, size, width - size, canvas), bar[1]
+            messages = lay_out_messages(words, size, width - size, canvas)
+            bottom = min(bottom, bar[1])
         return draw_messages(messages, middle, top + size // 2, bottom, size, canvas, theme)

@@ -21,7 +21,7 @@ from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
 
-__all__ = ["Display", "NoScreen", "ask_to_leave", "wants_to_leave"]
+__all__ = ["Display", "NoScreen", "ask_to_leave", "forget_clicks", "wants_to_leave"]
 
 _INVISIBLE = ("dummy", "offscreen")
 """Drivers of SDL without a window."""
@@ -160,6 +160,11 @@ def wants_to_leave() -> bool:
         if not leaves:
             pygame.event.post(event)
     return leaves
+
+
+def forget_clicks() -> None:
+    """Drop what was clicked while there was nothing to click on; keys are kept."""
+    pygame.event.get((pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP))
 
 
 def _limit(size: tuple[int, int]) -> None:

@@ -7,11 +7,11 @@ import math
 from physicslab.ecs.vector import Vector2
 
 __all__ = [
-    "length_of", "percentage", "power_of_ten", "quantity", "round_quantity", "vector_quantity",
+    "ROUNDING", "length_of", "percentage", "power_of_ten", "quantity", "round_quantity", "vector_quantity",
     "without_rounding",
 ]  # fmt: skip
 
-_NONE = 1e-12
+ROUNDING = 1e-12
 """Share of what a number is a part of below which it is rounding."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -52,7 +52,7 @@ def without_rounding(value: float, scale: float) -> float:
     >>> without_rounding(3e-16, 2.0), without_rounding(3e-9, 2.0)
     (0.0, 3e-09)
     """
-    return value if not abs(value) <= _NONE * scale or math.isinf(scale) else 0.0
+    return value if not abs(value) <= ROUNDING * scale or math.isinf(scale) else 0.0
 
 
 def round_quantity(value: float, unit: str) -> str:
@@ -62,15 +62,16 @@ def round_quantity(value: float, unit: str) -> str:
     '0.2 N s'
     >>> round_quantity(5e-5, "N s")
     '5·10⁻⁵ N s'
-    >>> round_quantity(0.0, "m")
-    '0 m'
+    >>> round_quantity(-9.6e-10, "J"), round_quantity(0.0, "m")
+    ('-1·10⁻⁹ J', '0 m')
     """
     if value == 0.0:
         return f"0 {unit}"
     power = math.floor(math.log10(abs(value) * (1.0 + 1e-12)))
     if -3 <= power <= 5:
         return f"{value:.{max(-power, 0)}f} {unit}"
-    return f"{value / 10.0**power:.0f}·10{str(power).translate(_RAISED)} {unit}"
+    digits, _, exponent = f"{value:.0e}".partition("e")
+    return f"{digits}·10{str(int(exponent)).translate(_RAISED)} {unit}"
 
 
 def vector_quantity(value: Vector2, unit: str) -> str:

@@ -23,21 +23,24 @@ _STEP = 4
 
 
 def draw_edge_arrows(
-    world: World, camera: Camera, taken: Sequence[Rect], size: int, canvas: Canvas, theme: Theme
+    world: World, camera: Camera, room: Rect, taken: Sequence[Rect], size: int, canvas: Canvas, theme: Theme
 ) -> None:
-    """Draw an arrow at each edge beyond which there are moving bodies, with their number.
+    """Draw an arrow at each edge of a room beyond which there are moving bodies, with their number.
 
     Parameters
     ----------
+    room : Rect
+        Where the world can be seen: no panel lies over it [px].
     taken : sequence of Rect
         What the arrows make way for [px].
     size : int
         Height of the text [px].
     """
-    places = _out_of_sight(world, camera)
-    middle = 0.5 * np.array(camera.size)
-    # The side is that on which the way from the middle of the screen to the body leaves it.
-    offset = (places - middle) / middle
+    places = _out_of_sight(world, camera, room)
+    half = 0.5 * np.array(room[2:])
+    middle = np.array(room[:2]) + half
+    # The side is that on which the way from the middle of the room to the body leaves it.
+    offset = (places - middle) / half
     level = np.abs(offset[:, 0]) >= np.abs(offset[:, 1])
     obstacles = list(taken)
     for side in _SIDES:
@@ -46,24 +49,24 @@ def draw_edge_arrows(
         if count:
             aim = middle + _mean_way(places[here] - middle)
             style = TextStyle(size, theme.accent, bold=True)
-            rect = _free_place(_at_edge(aim, f"{count}", style, canvas), side, obstacles, canvas.size)
+            rect = _free_place(_at_edge(aim, room, f"{count}", style, canvas), side, obstacles, room)
             if rect is not None:
                 obstacles.append(rect)
                 _draw_arrow(rect, aim, f"{count}", style, canvas, theme)
 
 
-def _out_of_sight(world: World, camera: Camera) -> NDArray[np.float64]:
-    """Return where on the plane of the screen moving bodies are (n, 2) [px] that are not on it at all."""
+def _out_of_sight(world: World, camera: Camera, room: Rect) -> NDArray[np.float64]:
+    """Return where on the plane of the screen moving bodies are (n, 2) [px] that no part of a room shows."""
     rows = world.batch(Transform, Velocity).rows
     place = camera.project(world.table(Transform)["position"][rows])
     across, down = place[:, 0], place[:, 1]
-    width, height = camera.size
+    low, high = np.array(room[:2]), np.array(room[:2]) + room[2:]
     # Most bodies are in sight as a rule, by their middle alone: only the others are looked at closely.
-    beyond = np.flatnonzero((across < 0.0) | (across > width) | (down < 0.0) | (down > height))
+    beyond = np.flatnonzero((across < low[0]) | (across > high[0]) | (down < low[1]) | (down > high[1]))
     rows, place, shape = rows[beyond], place[beyond], world.table(Shape)
     reach = shape["radius"][rows] + 0.5 * np.hypot(shape["width"][rows], shape["height"][rows])
     margin = (reach * camera.scale)[:, None]
-    out = ((place < -margin) | (place > np.array(camera.size) + margin)).any(axis=1)
+    out = ((place < low - margin) | (place > high + margin)).any(axis=1)
     found: NDArray[np.float64] = place[out & np.isfinite(place).all(axis=1)]
     return found
 
@@ -74,26 +77,24 @@ def _mean_way(offsets: NDArray[np.float64]) -> NDArray[np.float64]:
     return way * 1e5
 
 
-def _at_edge(aim: NDArray[np.float64], words: str, style: TextStyle, canvas: Canvas) -> Rect:
+def _at_edge(aim: NDArray[np.float64], room: Rect, words: str, style: TextStyle, canvas: Canvas) -> Rect:
     """Return the rectangle of an arrow at the edge, where the way from the middle to ``aim`` crosses it."""
-    screen_width, screen_height = canvas.size
     text_width, text_height = canvas.text_size(words, style)
     size = style.size
     width, height, margin = text_width + 3 * size, text_height + size // 2, size // 2
-    half = 0.5 * np.array(canvas.size)
-    way = aim - half
+    corner, half = np.array(room[:2]), 0.5 * np.array(room[2:])
+    way = aim - corner - half
     crossing = half + way * float(np.min(half / np.maximum(np.abs(way), 1e-9)))
-    left = min(max(round(crossing[0]) - width // 2, margin), screen_width - width - margin)
-    top = min(max(round(crossing[1]) - height // 2, margin), screen_height - height - margin)
-    return left, top, width, height
+    left = min(max(round(crossing[0]) - width // 2, margin), room[2] - width - margin)
+    top = min(max(round(crossing[1]) - height // 2, margin), room[3] - height - margin)
+    return room[0] + left, room[1] + top, width, height
 
 
-def _free_place(
-    rect: Rect, side: tuple[int, int], obstacles: Sequence[Rect], screen: tuple[int, int]
-) -> Rect | None:
+def _free_place(rect: Rect, side: tuple[int, int], obstacles: Sequence[Rect], room: Rect) -> Rect | None:
     """Move a rectangle away from the edge until nothing is in its way; ``None`` if there is no room."""
     left, top, width, height = rect
-    while left >= 0 and top >= 0 and left + width <= screen[0] and top + height <= screen[1]:
+    right, bottom = room[0] + room[2], room[1] + room[3]
+    while left >= room[0] and top >= room[1] and left + width <= right and top + height <= bottom:
         if not any(_meet((left, top, width, height), obstacle) for obstacle in obstacles):
             return left, top, width, height
         left, top = left - _STEP * side[0], top - _STEP * side[1]

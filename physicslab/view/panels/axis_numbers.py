@@ -20,12 +20,11 @@ _MAX_LINES = 400
 """Of a picture with more lines than that, which would be a speck, none has."""
 
 
-def draw_axis_numbers(
-    camera: Camera, room: Rect, right: int, size: int, canvas: Canvas, theme: Theme
-) -> None:
+def draw_axis_numbers(camera: Camera, room: Rect, right: int, size: int, canvas: Canvas, theme: Theme) -> int:
     """Write the coordinates [m] of lines of the grid at the lower and the left edge of a room [px].
 
-    Those at the lower edge end before ``right`` [px], where the scale bar begins.
+    Those at the lower edge end before ``right`` [px], where the scale bar begins. Return how high they
+    are there [px].
     """
     left, top, width, height = room
     step = _EVERY * grid_spacing(camera.scale)
@@ -41,6 +40,7 @@ def draw_axis_numbers(
         place = round(camera.to_screen(Vector2(camera.centre.x, y))[1])
         if top + 2 * text_height < place < top + height - 2 * text_height:
             canvas.text(_words(y, step), (left + 4, place - text_height - 1), style)
+    return text_height + 2
 
 
 def _multiples(low: float, high: float, step: float) -> list[float]:

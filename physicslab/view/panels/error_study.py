@@ -113,8 +113,12 @@ class ErrorStudy(LabProcess):
 
     @property
     def rounding_shows(self) -> bool:
-        """Whether one rounding at the start changes as much as the smallest error: then none means much."""
-        return self.rounding > 0.0 and any(self.rounding >= sample.error for sample in self.samples)
+        """Whether one rounding at the start changes as much as the smallest error: then none means much.
+
+        An error that is known to be at most so large does not count: it is of rounding by itself.
+        """
+        known = [sample.error for sample in self.samples if not sample.at_most]
+        return self.rounding > 0.0 and any(self.rounding >= error for error in known)
 
     @property
     def chaotic(self) -> bool:

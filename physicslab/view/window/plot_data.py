@@ -77,10 +77,10 @@ def path_to_show(
     return x[kept], y[kept]
 
 
-def range_to_show(values: Sequence[Numbers], room: float = 0.06) -> tuple[float, float]:
+def range_to_show(values: Sequence[Numbers], room: float = 0.06, none: float = 0.0) -> tuple[float, float]:
     """Return what an axis is to show such that all values can be seen, with room around them.
 
-    What varies by no more than rounding is shown as constant.
+    What varies by no more than rounding is shown as constant, and as 0 where it is no more than ``none``.
 
     Parameters
     ----------
@@ -94,8 +94,8 @@ def range_to_show(values: Sequence[Numbers], room: float = 0.06) -> tuple[float,
         return 0.0, 1.0
     low, high = float(min(end[0] for end in ends)), float(max(end[1] for end in ends))
     largest = max(abs(low), abs(high))
-    if high - low <= _ROUNDING * largest:
-        spread = 0.1 * largest or 1.0
+    if high - low <= max(_ROUNDING * largest, none):
+        spread = 0.1 * largest if largest > none else 1.0
         return low - spread, high + spread
     return low - room * (high - low), high + room * (high - low)
 

@@ -33,6 +33,8 @@ _ERROR_TIP = (
 )
 _COLOURS = {"impacts": 4, "friction": 5, "damping": 6, "contact": 2, "overlap": 3, "fields": 1}
 """Which of the colours of bodies an account has; they can be told apart by the colour-blind, too."""
+_BEYOND = 0.25
+"""Share of what is below zero that bars have room for above it."""
 _LABEL = 0.85
 """Height of the names on the bar, in heights of the text."""
 
@@ -115,6 +117,7 @@ def _build_sums(ui: Ui, figures: WorldFigures) -> None:
         rows.append(("Potential energy", energy.stored, theme.force, _ZERO_TIP))
         rows.append(("Total energy", energy.total, theme.normal_impulse, ""))
     low, high = (limit(0.0, *(value for _, value, _, _ in rows)) for limit in (min, max))
+    high = max(high, -_BEYOND * low)  # what is below zero is seen to be
     scale = max(high - low, 1e-300)
     for label, value, colour, tip in rows:
         bar(ui, label, figures.joules(value), value / scale, colour, zero=-low / scale, tip=tip)
@@ -149,7 +152,8 @@ def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
             paper.add_rect_filled(
                 ImVec2(left, corner.y), ImVec2(high, corner.y + height), packed(part.colour)
             )
-            _write_name(ui, part.name, (left, corner.y, high - left, height))
+            name = part.name if part.energy >= 0.0 else f"-{part.name}"
+            _write_name(ui, name, (left, corner.y, high - left, height))
         left += long
     zero = corner.x + sum(max(-part.energy, 0.0) for part in parts) / whole * width
     if zero > corner.x:
@@ -163,7 +167,7 @@ def _write_name(ui: Ui, name: str, rect: tuple[float, float, float, float]) -> N
     """Write a name into the middle of a part of the bar, or its first letters where there is less room."""
     left, top, width, height = rect
     imgui.push_font(None, _LABEL * ui.size)
-    for words in (name, name[:3], name[0]):
+    for words in (name, name[:3], name[:1].strip("-")):
         needed = imgui.calc_text_size(words)
         if needed.x + 2.0 <= width:
             place = ImVec2(left + 0.5 * (width - needed.x), top + 0.5 * (height - needed.y))

@@ -24,7 +24,7 @@ __all__ = ["build_error_plot"]
 _TITLE = "Error against run time"
 _FLOOR = 1e-17
 """Errors below this are drawn at it [m]: zero has no place on a logarithmic scale."""
-_TABLE = 22.0
+_TABLE = 25.0
 """Width of the table, in heights of the text."""
 _PLOT = (22.0, 60.0)
 """The least width of a plot beside it, and the largest, in heights of the text."""
@@ -119,7 +119,7 @@ def _build_plot(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, fl
     costs = np.concatenate([line[1] for line in series])
     errors = np.concatenate([line[2] for line in series])
     implot.setup_axes_limits(*_limits(costs), *_limits(errors))
-    implot.setup_legend(implot.Location_.north_east)
+    implot.setup_legend(_emptiest_corner(np.log(costs), np.log(errors)))
     for n, (name, times, distances) in enumerate(series):
         spec = implot.Spec()
         spec.marker, spec.marker_size = n % implot.Marker_.count, 5.0
@@ -205,6 +205,17 @@ def _limits(values: NDArray[np.float64]) -> tuple[float, float]:
     low, high = float(values.min()) / _ROOM, float(values.max()) * _ROOM
     missing = max(10.0 * low / high, 1.0) ** 0.5
     return low / missing, high * missing
+
+
+def _emptiest_corner(x: NDArray[np.float64], y: NDArray[np.float64]) -> int:
+    """Return the corner of a plot with the fewest marks, of equals the one at the upper right."""
+    right, top = x > 0.5 * (x.min() + x.max()), y > 0.5 * (y.min() + y.max())
+    place = implot.Location_
+    corners = {
+        place.north_east: right & top, place.north_west: ~right & top,
+        place.south_west: ~right & ~top, place.south_east: right & ~top,
+    }  # fmt: skip
+    return min(corners, key=lambda corner: int(corners[corner].sum()))
 
 
 def _opaque(colour: Colour) -> ImVec4:

@@ -10,6 +10,8 @@ from imgui_bundle import ImVec2, ImVec4, imgui, implot
 from numpy.typing import NDArray
 
 from physicslab.components.quantities import QUANTITIES
+from physicslab.diagnostics.scales import scales_of
+from physicslab.view.canvas.quantities import ROUNDING
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.canvas.units import written_unit
 from physicslab.view.controls import dashboard_actions
@@ -21,6 +23,7 @@ from physicslab.view.window.plot_data import line_to_show, path_to_show, range_t
 from physicslab.view.window.record import Key, Record
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_readings import colours_of, line_name
+from physicslab.view.workbench.quantity_menu import scale_of
 from physicslab.world import World
 
 __all__ = ["GraphPlot"]
@@ -56,7 +59,7 @@ class GraphPlot:
         implot.get_input_map().fit = -1  # a double click goes to the moment
         if not implot.begin_plot(f"##plot {graph.entity}", ImVec2(-1.0, height), flags):
             return None
-        axis_of = self._set_up_axes(ui, graph, window, height - _BELOW * ui.size, follows=follows)
+        axis_of = self._set_up_axes(ui, world, graph, window, height - _BELOW * ui.size, follows=follows)
         self._draw_lines(ui, graph, window, axis_of)
         self._draw_moments(ui, world, window, graph, axis_of)
         hovered = self._follow_mouse(window, graph)
@@ -67,25 +70,25 @@ class GraphPlot:
     # ---- axes ----------------------------------------------------------------------------------------------
 
     def _set_up_axes(
-        self, ui: Ui, graph: GraphShown, window: Window, height: float, *, follows: bool
+        self, ui: Ui, world: World, graph: GraphShown, window: Window, height: float, *, follows: bool
     ) -> dict[Key, implot.ImAxis_]:
         """Set up an axis for each unit, three at most; return which axis each line has."""
         across = "time [s]" if graph.across is None else _heading([graph.across])
         keys = [line.key for line in graph.lines]
-        self._set_up(ui, implot.ImAxis_.x1, across, graph, window, keys, follows=follows)
+        self._set_up(ui, world, implot.ImAxis_.x1, across, graph, window, keys, follows=follows)
         units = list(dict.fromkeys(QUANTITIES[key[1]].unit for key in keys))
         axis_of: dict[Key, implot.ImAxis_] = {}
         for n, axis in enumerate(_AXES[: max(len(units), 1)]):
             own = units[n:] if n == len(_AXES) - 1 else units[n : n + 1]
             mine = [key for key in keys if QUANTITIES[key[1]].unit in own]
-            self._set_up(ui, axis, _heading(mine, height), graph, window, mine, follows=follows)
+            self._set_up(ui, world, axis, _heading(mine, height), graph, window, mine, follows=follows)
             axis_of |= dict.fromkeys(mine, axis)
         implot.setup_finish()
         return axis_of
 
     def _set_up(
-        self, ui: Ui, axis: implot.ImAxis_, label: str, graph: GraphShown, window: Window, keys: list[Key],
-        *, follows: bool,
+        self, ui: Ui, world: World, axis: implot.ImAxis_, label: str, graph: GraphShown, window: Window,
+        keys: list[Key], *, follows: bool,
     ) -> None:  # fmt: skip
         """Set up one axis; while it follows what is recorded it shows all of that."""
         flags = implot.AxisFlags_.none
@@ -94,11 +97,11 @@ class GraphPlot:
         implot.setup_axis(axis, label, flags)
         ui.words.append(label)
         if follows:
-            low, high = self._range(axis, graph, window, keys)
+            low, high = self._range(world, axis, graph, window, keys)
             implot.setup_axis_limits(axis, low, high, implot.Cond_.always)
 
     def _range(
-        self, axis: implot.ImAxis_, graph: GraphShown, window: Window, keys: list[Key]
+        self, world: World, axis: implot.ImAxis_, graph: GraphShown, window: Window, keys: list[Key]
     ) -> tuple[float, float]:
         """Return what an axis is to show of this run and of the one before."""
         records = window.dashboard.record, window.dashboard.before
@@ -112,7 +115,10 @@ class GraphPlot:
             found = range_to_show([one for one in times if len(one)], room=0.0)
         else:
             shown = [graph.across] if is_across and graph.across is not None else keys
-            found = range_to_show([record.values(key) for record in records for key in shown])
+            scales = scales_of(world)
+            sizes = [scale_of(key, scales) for key in shown]
+            none = ROUNDING * max((size for size in sizes if math.isfinite(size)), default=0.0)
+            found = range_to_show([record.values(key) for record in records for key in shown], none=none)
         self._ranges[axis] = state, found
         return found
 

@@ -67,7 +67,7 @@ class StepWatch:
         why, setting, figures = self._reason(impacts, evaluations)
         self._slow = ModelWarning(None, f"a step takes long: {why}", each, "s", _SLOW_S, setting)
         line = f"slow: the step to t = {world.time:.9g} s took {each:.3g} s: {why} ({figures})"
-        return line if first else ""
+        return f"{line}; {setting} would help" if first else ""
 
     def note_impacts(self) -> str:
         """Take note of the impacts that were located in time since the last call.
@@ -109,6 +109,9 @@ class StepWatch:
             setting = "a shorter dt" if not method.chooses_steps else "a larger simulation.tolerance"
             figures = f"{evaluations:.3g} force evaluations by {method.name}"
             return "forces change so fast that it is divided into many", setting, figures
+        if world.plan.contacts == "rigid" and world.plan.collisions == "step":
+            why = "rigid contacts go from one event to the next"
+            return why, 'simulation.contacts = "soft"', f"{evaluations:.3g} force evaluations"
         bodies = len(world.entity_index) - 1
         pairs = int(world.contacts.candidate_pairs)
         figures = f"{bodies} entities, {pairs} near pairs, {world.substeps} substeps"
