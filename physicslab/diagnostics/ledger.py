@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from physicslab.ecs.text import table_cell
 from physicslab.kernels.constraint.impact_law import ENERGETIC, LOWERED, NEWTON
-from physicslab.kernels.constraint.pair import PairVelocity, along_and_across, point_velocity
+from physicslab.kernels.constraint.pair import ContactFrame, PairVelocity, point_state
 from physicslab.kernels.interpreter import twin_of
 from physicslab.kernels.records import IMPACT
 from physicslab.state.state import State
@@ -103,10 +103,10 @@ def speeds_at(records: NDArray[Any], x: Floats, y: Floats, moment: str) -> tuple
         [m/s].
     """
     columns: list[Any] = [records[f"{moment}_{part}"] for part in PairVelocity._fields]
-    arms = (at - records[f"center_{body}{axis}"] for body in "ab" for axis, at in (("x", x), ("y", y)))
-    ux, uy = twin_of(point_velocity)(PairVelocity(*columns), *arms)
-    along, across = twin_of(along_and_across)(records["normal_x"], records["normal_y"], ux, uy)
-    return along, across
+    at: list[Any] = [records["normal_x"], records["normal_y"]]
+    at += [place - records[f"center_{body}{axis}"] for body in "ab" for axis, place in (("x", x), ("y", y))]
+    state = twin_of(point_state)(ContactFrame(*at), PairVelocity(*columns))
+    return state.v, state.sliding
 
 
 def read_impacts(records: NDArray[Any], last: LastTimes | None = None) -> ImpactColumns:

@@ -98,12 +98,10 @@ def frame_of(manifold: Manifold, point: Point) -> ContactFrame[float]:
 
 
 @fused
-def point_velocity[N: (float, Wide)](
-    v: PairVelocity[N], arm_ax: N, arm_ay: N, arm_bx: N, arm_by: N
-) -> tuple[N, N]:
+def point_velocity[N: (float, Wide)](at: ContactFrame[N], v: PairVelocity[N]) -> tuple[N, N]:
     """Return the velocity of B's point against A's [m/s]."""
-    vx: N = v.bx - v.wb * arm_by - v.ax + v.wa * arm_ay
-    vy: N = v.by + v.wb * arm_bx - v.ay - v.wa * arm_ax
+    vx: N = v.bx - v.wb * at.arm_by - v.ax + v.wa * at.arm_ay
+    vy: N = v.by + v.wb * at.arm_bx - v.ay - v.wa * at.arm_ax
     return vx, vy
 
 
@@ -120,25 +118,25 @@ def impulse_at[N: (float, Wide)](nx: N, ny: N, normal: N, tangent: N) -> tuple[N
 
 
 @fused
-def moments_of[N: (float, Wide)](arm_ax: N, arm_ay: N, arm_bx: N, arm_by: N, px: N, py: N) -> tuple[N, N]:
+def moments_of[N: (float, Wide)](at: ContactFrame[N], px: N, py: N) -> tuple[N, N]:
     """Return the moments of an impulse about both centres [N m s]."""
-    return arm_ax * py - arm_ay * px, arm_bx * py - arm_by * px
+    return at.arm_ax * py - at.arm_ay * px, at.arm_bx * py - at.arm_by * px
 
 
 @fused
-def moment_arms[N: (float, Wide)](nx: N, ny: N, arm_ax: N, arm_ay: N, arm_bx: N, arm_by: N) -> MomentArms[N]:
+def moment_arms[N: (float, Wide)](at: ContactFrame[N]) -> MomentArms[N]:
     """Return the moments of unit impulses along the normal and the tangent at a point [m]."""
     return MomentArms(
-        arm_ax * ny - arm_ay * nx, arm_bx * ny - arm_by * nx,
-        arm_ax * nx + arm_ay * ny, arm_bx * nx + arm_by * ny,
+        at.arm_ax * at.ny - at.arm_ay * at.nx, at.arm_bx * at.ny - at.arm_by * at.nx,
+        at.arm_ax * at.nx + at.arm_ay * at.ny, at.arm_bx * at.nx + at.arm_by * at.ny,
     )  # fmt: skip
 
 
 @fused
 def point_state(at: ContactFrame[float], v: PairVelocity[float]) -> PointState[float]:
     """Return the moment arms of a point, and how B moves against A there."""
-    arms = moment_arms(at.nx, at.ny, at.arm_ax, at.arm_ay, at.arm_bx, at.arm_by)
-    vx, vy = point_velocity(v, at.arm_ax, at.arm_ay, at.arm_bx, at.arm_by)
+    arms = moment_arms(at)
+    vx, vy = point_velocity(at, v)
     along, across = along_and_across(at.nx, at.ny, vx, vy)
     return PointState(arms.normal_a, arms.normal_b, arms.tangent_a, arms.tangent_b, along, across)
 
@@ -173,7 +171,7 @@ def after_impulse_at[N: (float, Wide)](
 ) -> PairVelocity[N]:
     """Return the velocities after a normal and a tangential impulse at a point [N s]."""
     px, py = impulse_at(at.nx, at.ny, normal, tangent)
-    moment_a, moment_b = moments_of(at.arm_ax, at.arm_ay, at.arm_bx, at.arm_by, px, py)
+    moment_a, moment_b = moments_of(at, px, py)
     return after_impulse(v, mass, px, py, moment_a, moment_b)
 
 

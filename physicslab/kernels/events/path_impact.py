@@ -54,7 +54,7 @@ def _push_pair(
 ) -> None:  # fmt: skip
     """Apply impulses at a point to the paths of A and B, and note them and the approach ``v`` there."""
     px, py = impulse_at(at.nx, at.ny, normal, tangent)
-    moment_a, moment_b = moments_of(at.arm_ax, at.arm_ay, at.arm_bx, at.arm_by, px, py)
+    moment_a, moment_b = moments_of(at, px, py)
     push(paths, a, -mass.a, px, py)
     push(paths, b, mass.b, px, py)
     angular[a] -= mass.inertia_a * moment_a

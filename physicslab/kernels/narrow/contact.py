@@ -4,7 +4,7 @@ import math
 
 from physicslab.kernels import Rows, Vectors, always_inlined, fused, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near, Sizes
-from physicslab.kernels.constraint.pair import inverse_mass_of, moment_arms, response
+from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment_arms, response
 from physicslab.kernels.narrow.outline import Way, kept_outline
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Point, Points
@@ -53,11 +53,11 @@ def follow_pose(
 @always_inlined
 def effective_masses(manifold: Manifold, points: Points, p: int, inverse: Inverse) -> None:
     """Compute 1 / (1/m_a + 1/m_b + (r_a x n)^2 / I_a + (r_b x n)^2 / I_b), for normal and tangent."""
-    mass, nx, ny = inverse_mass_of(inverse, manifold.a, manifold.b), manifold.normal_x, manifold.normal_y
+    mass = inverse_mass_of(inverse, manifold.a, manifold.b)
     both, ia, ib = mass.a + mass.b, mass.inertia_a, mass.inertia_b
     for j in range(2 * p, 2 * p + manifold.count):
         point = points[j]
-        na, nb, ta, tb = moment_arms(nx, ny, point.arm_ax, point.arm_ay, point.arm_bx, point.arm_by)
+        na, nb, ta, tb = moment_arms(frame_of(manifold, point))
         point.normal_mass = 1.0 / response(both, ia, ib, na, nb, na, nb)
         point.tangent_mass = 1.0 / response(both, ia, ib, ta, tb, ta, tb)
 

@@ -15,7 +15,7 @@ from numba import int64
 from numpy.typing import NDArray
 
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
-from physicslab.kernels.constraint.pair import PairVelocity, along_and_across, point_velocity
+from physicslab.kernels.constraint.pair import ContactFrame, PairVelocity, along_and_across, point_velocity
 from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Pairs
 
@@ -170,7 +170,7 @@ def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: V
     out[i, TA], out[i, NA] = nx * ay - ny * ax, nx * ax + ny * ay
     out[i, TB], out[i, NB] = nx * by - ny * bx, nx * bx + ny * by
     moving = PairVelocity(one_vx, one_vy, one_spin, v[2 * other], v[2 * other + 1], spin)
-    rx, ry = point_velocity(moving, ax, ay, bx, by)
+    rx, ry = point_velocity(ContactFrame(nx, ny, ax, ay, bx, by), moving)
     out[i, VN], out[i, VT] = along_and_across(nx, ny, rx, ry)
     # The point moves with the vertex, and around it as the normal turns.
     pvx, pvy = cvx + radius * turning * ny, cvy - radius * turning * nx

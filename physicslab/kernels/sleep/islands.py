@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
-from physicslab.kernels.constraint.pair import point_velocity, velocity_of
+from physicslab.kernels.constraint.pair import frame_of, point_velocity, velocity_of
 from physicslab.kernels.records import Manifold, Manifolds, Points
 
 __all__ = ["READY", "REST", "SLOW", "count_rest", "find_held", "find_touched", "join_marked", "list_sleeping"]
@@ -107,7 +107,7 @@ def _slips(
     v, fastest, friction = velocity_of(linear, angular, a, b), 0.0, 0.0
     for j in range(2 * p, 2 * p + manifold.count):
         point = points[j]
-        vx, vy = point_velocity(v, point.arm_ax, point.arm_ay, point.arm_bx, point.arm_by)
+        vx, vy = point_velocity(frame_of(manifold, point), v)
         fastest = max(fastest, abs(manifold.normal_x * vy - manifold.normal_y * vx))
         friction += abs(point.tangent_impulse)
     if fastest <= _STILL * manifold.size:

@@ -101,8 +101,8 @@ def book_impact(
         return
     x1, y1 = impulse_at(one.nx, one.ny, normal1, tangent1)
     x2, y2 = impulse_at(two.nx, two.ny, normal2, tangent2)
-    moment_1a, moment_1b = moments_of(one.arm_ax, one.arm_ay, one.arm_bx, one.arm_by, x1, y1)
-    moment_2a, moment_2b = moments_of(two.arm_ax, two.arm_ay, two.arm_bx, two.arm_by, x2, y2)
+    moment_1a, moment_1b = moments_of(one, x1, y1)
+    moment_2a, moment_2b = moments_of(two, x2, y2)
     book_outside(
         account, row, mass, pose, mean, x1 + x2, y1 + y2, moment_1a + moment_2a, moment_1b + moment_2b
     )
