@@ -32,6 +32,7 @@ def leave_out_books() -> None:
     import physicslab.stepping.fused_contact  # noqa: F401 (so that all kernels of contacts are there)
     from physicslab import world
     from physicslab.kernels import inlined
+    from physicslab.kernels.constraint.pair import PairVelocity
     from physicslab.kernels.solver import fused_contact, impact_log, impulse, work
     from physicslab.kernels.wide import float64x8, solve
     from physicslab.state.account import Account

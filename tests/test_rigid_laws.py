@@ -13,6 +13,7 @@ from physicslab import World
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import BOX
 from physicslab.contacts.report import list_contacts
+from physicslab.diagnostics.account import measure_account
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
@@ -247,22 +248,48 @@ def test_the_short_method_has_order_five() -> None:
     assert weights @ (METHODS[1] @ nodes**3) == pytest.approx(1 / 20, rel=1e-13)
 
 
-_OVERLAPS = pytest.mark.xfail(
-    reason="seed 317: moving apart what overlaps adds 5e-6 of the energy in a step; it is booked and told"
-)
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "part",
-    [pytest.param(part, marks=[_OVERLAPS] if part == 6 else []) for part in range(8)],
-)
-def test_hundreds_of_scenes_keep_the_laws(part: int) -> None:
+@pytest.mark.parametrize("part", range(10))
+def test_a_thousand_scenes_keep_the_laws(part: int) -> None:
     """Two to twelve bodies: gaps, forces in their cones, energy; no step is left to soft contacts."""
-    worlds = [scattered(seed, largest=12) for seed in range(50 * part, 50 * part + 50)]
-    check_scenes(worlds, every=6, short=1e-7)  # seen: 4e-8 in one scene, of what is not known yet
+    worlds = [scattered(seed, largest=12) for seed in range(100 * part, 100 * part + 100)]
+    # Arms turn within a short step, and what rests there can work: 2e-9 in seed 318, 1e-9 in no other.
+    check_scenes(worlds, every=6, short=1e-8)
     for world in worlds:
         assert rigid_of(world).left_to_soft == 0, rigid_of(world).why_soft
+
+
+def test_sliding_that_no_forces_go_on_with_stops_at_once() -> None:
+    """Painleve's rod slides with so much friction that pressing draws its end down: an impulse stops that."""
+    world = laboratory()
+    box(world, (0, -0.5), width=20, height=1, static=True, friction=3.0)
+    mass, length, width, angle, speed = 2.0, 2.0, 0.02, 0.9, 0.7
+    c, s = math.cos(angle), math.sin(angle)
+    x, y = 0.5 * (width * s - length * c), -0.5 * (length * s + width * c)  # its end, from its centre
+    rod = box(world, (0, -y), width=length, height=width, angle=angle, mass=mass, friction=3.0)
+    world.component(rod, Velocity).linear = (-speed, 0)
+    inertia = mass * (length**2 + width**2) / 12
+    coupling = -x * y / inertia
+    compliance = ((1 / mass + x * x / inertia, coupling), (coupling, 1 / mass + y * y / inertia))
+    normal, tangent = np.linalg.solve(compliance, (0.0, speed))
+    assert 0.0 < tangent < 3.0 * normal
+    world.step(1e-9)
+    velocity = world.component(rod, Velocity)
+    assert rigid_of(world).by_impulses == 0
+    assert velocity.linear.x == pytest.approx(tangent / mass - speed, abs=1e-7)
+    assert velocity.linear.y == pytest.approx(normal / mass, abs=1e-7)
+    assert velocity.angular == pytest.approx((x * normal - y * tangent) / inertia, abs=1e-7)
+    account = measure_account(world).energy
+    assert account["friction"] == pytest.approx(-0.5 * tangent * speed, abs=1e-7)
+    assert abs(account["numerical"]) < 1e-12
+
+
+@pytest.mark.parametrize("seed", [60, 272])
+def test_what_is_wedged_needs_no_steps_by_impulses(seed: int) -> None:
+    """Its forces are not determined, and those of least norm leave a cone; others are found."""
+    world = scattered(seed, largest=12)
+    check_scenes([world], every=6)
+    assert rigid_of(world).by_impulses == 0
 
 
 def check_scenes(worlds: list[World], every: int, short: float = 1e-9) -> int:

@@ -166,12 +166,7 @@ class RigidMotion:
         if made.refused:
             return 0.0
         for _ in range(_MAX_EVENTS):
-            why, count = self._collide(scene, state, at + done, made)
-            rest, still = 0.0, False
-            if why == motion.DONE:
-                why, count, rest, still = motion.begin_motion(
-                    scene, self._equations, count, self._stages, changed, q, v, self._steady
-                )
+            why, count, rest, still = self._begin(scene, state, at + done, made)
             if why == motion.TOO_MANY:
                 made.refused = _WHY[why]
                 return done
@@ -198,6 +193,25 @@ class RigidMotion:
                 break
         made.by_impulses = "events follow each other almost without time between them"
         return done
+
+    def _begin(
+        self, scene: tuple[Any, ...], state: State, at: float, made: MadeStep
+    ) -> tuple[int, int, float, bool]:
+        """Let what approaches bounce, stop what cannot slide on, and begin a piece of motion.
+
+        Returns what :func:`motion.begin_motion` does.
+        """
+        for _ in range(_MAX_STALLED):
+            why, count = self._collide(scene, state, at, made)
+            if why != motion.DONE:
+                return why, made.closed, 0.0, False
+            began = motion.begin_motion(
+                scene, self._equations, count, self._stages, self._changed, self._ode.q, self._ode.v,
+                self._steady,
+            )  # fmt: skip
+            if began[0] != motion.STOPPED:
+                return began
+        return motion.NO_FORCES, 0, 0.0, False
 
     def _by_impulses(
         self, scene: tuple[Any, ...], state: State, at: float, left: float, longest: float, made: MadeStep
@@ -256,12 +270,7 @@ class RigidMotion:
 
     def _find_forces(self, scene: tuple[Any, ...], state: State, at: float, made: MadeStep) -> None:
         """Find the forces at the end of a step; where there are none, the mean ones of the last impulses."""
-        q, v, closed = self._ode.q, self._ode.v, made.closed
-        why, count = self._collide(scene, state, at, made)
-        if why == motion.DONE:
-            why, closed, _, _ = motion.begin_motion(
-                scene, self._equations, count, self._stages, self._changed, q, v, self._steady
-            )
+        why, closed, _, _ = self._begin(scene, state, at, made)
         if why == motion.DONE:
             made.points, made.measures = self._equations[0], self._equations[1]
             made.forces = self._equations[3][UNKNOWN]

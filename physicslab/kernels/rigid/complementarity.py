@@ -31,8 +31,8 @@ from physicslab.kernels.rigid.features import GIVEN, MU, STATUS
 from physicslab.kernels.rigid.lemke import find_by_pivots
 
 __all__ = [
-    "FITTING", "NOT_FOUND", "REFINEMENTS", "SETTLED", "begin_equations", "refine", "solve_complementarity",
-    "solve_equations",
+    "FITTING", "NOT_FOUND", "REFINEMENTS", "SETTLED", "begin_equations", "refine", "settle_at_an_edge",
+    "solve_complementarity", "solve_equations",
 ]  # fmt: skip
 
 _ROUNDING = 1e-4
@@ -372,6 +372,30 @@ def _largest_violation(equations: Equations, count: int, w_scale: float, z_scale
         worst = max(worst, -pressed, -opening, min(pressed, opening))
         worst = max(worst, abs(rubbed) - equations.measures[i, MU] * pressed)
     return worst
+
+
+@inlined
+def settle_at_an_edge(equations: Equations, count: int, scale: float) -> bool:
+    """Find forces that solve the equations of what the points do, after others were FITTING; return if any.
+
+    Forces are not determined then, and those of least norm leave a cone. Where one of the points that stick
+    is at an edge of its cone they can be: it slides with no speed and no acceleration.
+    """
+    points, vectors, kept = equations.points, equations.vectors, 2 * count
+    w_scale, z_scale = scale, 0.0
+    for i in range(2 * count):
+        w_scale, z_scale = max(w_scale, abs(vectors[FREE, i])), max(z_scale, abs(vectors[UNKNOWN, i]))
+    for i in range(count):
+        equations.order[0, kept + i] = points[i, STATUS]
+    for i in range(count):
+        for edge in (SLIDES_ON, SLIDES_BACK):
+            for k in range(count):
+                points[k, STATUS] = equations.order[0, kept + k]
+            if points[i, STATUS] == STICKS:
+                points[i, STATUS] = edge
+                if _settle_by_changes(equations, count, _FEW_CHANGES, w_scale, z_scale):
+                    return True
+    return False
 
 
 @inlined

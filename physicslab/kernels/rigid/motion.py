@@ -40,6 +40,7 @@ from physicslab.kernels.rigid.features import (
     named_scene,
 )
 from physicslab.kernels.rigid.impacts import approaches, resolve_simultaneous_impacts
+from physicslab.kernels.rigid.jammed import stop_sliding
 from physicslab.kernels.rigid.passing import longest_piece, share_of_ways
 from physicslab.kernels.rigid.piece_end import ALLOWED, HOLDS, PRESSES, cut_at_first_event, note_start
 from physicslab.kernels.rigid.pieces import (
@@ -64,6 +65,7 @@ from physicslab.kernels.rigid.touching import (
 __all__ = [
     "DONE",
     "NO_FORCES",
+    "STOPPED",
     "TOO_MANY",
     "UNRESOLVED",
     "advance_piece",
@@ -72,9 +74,9 @@ __all__ = [
     "touch",
 ]
 
-DONE, NO_FORCES, UNRESOLVED, TOO_MANY = 0, 1, 2, 3
+DONE, NO_FORCES, UNRESOLVED, TOO_MANY, STOPPED = 0, 1, 2, 3, 4
 """Why the motion cannot go on: it can; no contact forces keep all laws; an impact has no solution; more
-points touch than there is room for."""
+points touch than there is room for; sliding was stopped by impulses, so that all has to be found again."""
 _SAME_MOMENT = 1e-9
 """Share of its load within which a point that sticks reaches the limit of friction with another one."""
 _BALANCED, _FITTED = 1e-11, 1e-8
@@ -283,7 +285,8 @@ def begin_motion(
     if not held:
         count, solved = hold_closed(of, points, count, changed, q, v, at.acceleration, rest, least)
         if not solved:
-            return NO_FORCES, 0, rest, False
+            stopped = stop_sliding(of, points, count, changed, q, v, rest)
+            return STOPPED if stopped else NO_FORCES, 0, rest, False
         # What is light on top of what is heavy is held to more digits by its own mass.
         held = slow and _is_balanced(of, points, count, _BALANCED, at.acceleration, least, at.q)
     closed = keep_pressing(points, count, least)

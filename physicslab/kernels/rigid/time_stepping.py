@@ -1,4 +1,4 @@
-"""Short steps of fixed length with impulses, where events accumulate or no contact forces exist.
+"""Short steps of fixed length with impulses, where events accumulate or no contact forces are found.
 
 Moreau's midpoint rule: half a drift, the forces of the middle as an increment of velocity, impulses of all
 points that touch there, the other half of the drift (Moreau, Unilateral Contact and Dry Friction in Finite

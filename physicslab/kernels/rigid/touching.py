@@ -5,7 +5,13 @@ import math
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.rigid.bookings import book_speeds
-from physicslab.kernels.rigid.complementarity import SETTLED, solve_complementarity, solve_equations
+from physicslab.kernels.rigid.complementarity import (
+    FITTING,
+    SETTLED,
+    settle_at_an_edge,
+    solve_complementarity,
+    solve_equations,
+)
 from physicslab.kernels.rigid.constraints import apply, assemble, find_free_rates, measure_all
 from physicslab.kernels.rigid.detect import find_points, seen_from
 from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
@@ -281,7 +287,8 @@ def hold_closed(
         accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
         find_free_rates(scene, equations, count, acceleration)
         _note_given(equations, count, changed, rest)
-        solved = solve_complementarity(equations, count, least, True) == SETTLED
+        found = solve_complementarity(equations, count, least, True)
+        solved = found == SETTLED or (found == FITTING and settle_at_an_edge(equations, count, least))
         if not leaves:
             break
         for i in range(count):  # what has just begun to open, and goes on, keeps its speed
