@@ -201,41 +201,33 @@ def _after(pair: PairResponse, of: ImpactImpulses) -> tuple[float, float, float,
     )
 
 
-class _Friction(NamedTuple):
-    """Tangential under normal impulses: t1 = o1 + a1 n1 + b1 n2, t2 = o2 + a2 n1 + b2 n2.
-
-    Where points that stick slide alike, each holds half, until normal impulses tell how to share it.
-    """
-
-    o1: float
-    a1: float
-    b1: float
-    o2: float
-    a2: float
-    b2: float
-    alike: bool
+type _Friction = tuple[float, float, float, float, float, float, bool]
 
 
 @inlined
 def _friction(pair: PairResponse, friction: float, state1: float, state2: float) -> _Friction:
-    """Return the friction of two points, of which each sticks (0), or slides under friction of a sign."""
+    """Return the friction of two points, of which each sticks (0), or slides under friction of a sign.
+
+    Its o, a and b for each point: t = o + a n1 + b n2. Where both stick and slide alike, which comes last, each
+    holds half, until normal impulses tell how to share it.
+    """
     one, two, between = pair.first, pair.second, pair.kt_12
     m1, m2 = state1 * friction, state2 * friction
     if state1 != 0.0 and state2 != 0.0:
-        return _Friction(0.0, m1, 0.0, 0.0, 0.0, m2, False)
+        return (0.0, m1, 0.0, 0.0, 0.0, m2, False)
     if state2 != 0.0:
         first, second = -one.coupling / one.kt, -(pair.coupling_21 + between * m2) / one.kt
-        return _Friction(-one.sliding / one.kt, first, second, 0.0, 0.0, m2, False)
+        return (-one.sliding / one.kt, first, second, 0.0, 0.0, m2, False)
     if state1 != 0.0:
         first, second = -(pair.coupling_12 + between * m1) / two.kt, -two.coupling / two.kt
-        return _Friction(0.0, m1, 0.0, -two.sliding / two.kt, first, second, False)
+        return (0.0, m1, 0.0, -two.sliding / two.kt, first, second, False)
     determinant = one.kt * two.kt - between * between
     alike = determinant <= _SINGULAR * one.kt * two.kt
     if alike:
         p1 = p2 = q = -0.5 / (one.kt + two.kt)
     else:
         p1, p2, q = -two.kt / determinant, -one.kt / determinant, between / determinant
-    return _Friction(
+    return (
         p1 * one.sliding + q * two.sliding, p1 * one.coupling + q * pair.coupling_12,
         p1 * pair.coupling_21 + q * two.coupling, p2 * two.sliding + q * one.sliding,
         p2 * pair.coupling_12 + q * one.coupling, p2 * two.coupling + q * pair.coupling_21, alike,

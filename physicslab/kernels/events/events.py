@@ -33,10 +33,9 @@ from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.records import Impacts, Manifold, Manifolds, Points
 from physicslab.kernels.solver.impact_log import (
     ImpactPoints,
-    Pair,
     Pose,
     book_impact,
-    in_order,
+    pair_of,
     write_impact,
 )
 from physicslab.kernels.twins import endless
@@ -190,15 +189,14 @@ def _bounce(flight: Flight, p: int, log: Impacts, number: int, time: float, appr
     a, b = manifold.a, manifold.b
     mass, before = inverse_mass_of(flight.inverse, a, b), path_velocity(paths, angular, a, b)
     impulses, law = resolve_ballistic_impacts(manifold, one, two, paths, angular, mass)
-    points = in_order(ImpactPoints(frame_of(manifold, one), frame_of(manifold, two), impulses))
+    points = ImpactPoints(frame_of(manifold, one), frame_of(manifold, two), impulses)
     after = path_velocity(paths, angular, a, b)
     pose = Pose(paths[a, 0], paths[a, 2], angle[a], paths[b, 0], paths[b, 2], angle[b])
     book_impact(flight.account, points, pose, before, after, mass, IMPACTS)
     if approach > 0.0:
-        pair = Pair(
-            manifold.entity_a, manifold.entity_b, manifold.wall, manifold.restitution, manifold.friction
+        write_impact(
+            log, number, pair_of(manifold), time, approach, points, pose, before, after, mass, law, True
         )
-        write_impact(log, number, pair, time, approach, points, pose, before, after, mass, law, True)
 
 
 @inlined

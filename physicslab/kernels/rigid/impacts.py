@@ -50,7 +50,6 @@ from physicslab.kernels.solver.impact_log import (
     Pair,
     Pose,
     book_impact,
-    in_order,
     shares_of,
     write_impact,
 )
@@ -217,7 +216,7 @@ def _two_points(scene: Scene, impact: Equations, i: int, end: int, q: Numbers) -
         n, t = n * cosine - t * sine, n * sine + t * cosine
         normal1, tangent1 = normal1 + (1.0 - share) * n, tangent1 + (1.0 - share) * t
         normal2, tangent2 = normal2 + share * n, tangent2 + share * t
-    return in_order(ImpactPoints(one, two, ImpactImpulses(normal1, tangent1, normal2, tangent2)))
+    return ImpactPoints(one, two, ImpactImpulses(normal1, tangent1, normal2, tangent2))
 
 
 @inlined

@@ -30,10 +30,9 @@ from physicslab.kernels.constraint.pair import (
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.impact_log import (
     ImpactPoints,
-    Pair,
     Pose,
     book_impact,
-    in_order,
+    pair_of,
     write_impact,
 )
 from physicslab.kernels.solver.impact_pose import is_known, meeting_at
@@ -205,11 +204,8 @@ def _note(
     )  # fmt: skip
     book_impact(log.account, points, pose, before, after, mass, IMPACTS)
     if len(log.impacts) > 0:
-        pair = Pair(
-            manifold.entity_a, manifold.entity_b, manifold.wall, manifold.restitution, manifold.friction
-        )
         write_impact(
-            log.impacts, number, pair, log.time + t, approach, in_order(points), pose, before, after, mass,
+            log.impacts, number, pair_of(manifold), log.time + t, approach, points, pose, before, after, mass,
             law, True,
         )  # fmt: skip
 

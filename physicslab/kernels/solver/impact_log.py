@@ -19,10 +19,10 @@ from physicslab.kernels.constraint.pair import (
     moments_of,
     point_state,
 )
-from physicslab.kernels.records import Impacts
+from physicslab.kernels.records import Impacts, Manifold
 
 __all__ = [
-    "ImpactPoints", "Pair", "Pose", "book_impact", "book_outside", "in_order", "shares_of", "write_impact",
+    "ImpactPoints", "Pair", "Pose", "book_impact", "book_outside", "pair_of", "shares_of", "write_impact",
 ]  # fmt: skip
 
 
@@ -56,7 +56,13 @@ class ImpactPoints(NamedTuple):
 
 
 @inlined
-def in_order(points: ImpactPoints) -> ImpactPoints:
+def pair_of(manifold: Manifold) -> Pair:
+    """Return what an impact of a pair is recorded with."""
+    return Pair(manifold.entity_a, manifold.entity_b, manifold.wall, manifold.restitution, manifold.friction)
+
+
+@inlined
+def _in_order(points: ImpactPoints) -> ImpactPoints:
     """Return the points of an impact, that with the larger normal impulse first."""
     normal1, tangent1, normal2, tangent2 = points.impulses
     if normal2 <= normal1:
@@ -145,8 +151,8 @@ def write_impact(
     before: PairVelocity[float], after: PairVelocity[float], mass: PairInverseMass[float], law: int,
     alone: bool,
 ) -> None:  # fmt: skip
-    """Write an impact, its points :func:`in_order`, into the log as number ``k``."""
-    record, (one, two, (normal1, tangent1, normal2, tangent2)) = log[k % len(log)], points
+    """Write an impact into the log as number ``k``, the point with the larger normal impulse first."""
+    record, (one, two, (normal1, tangent1, normal2, tangent2)) = log[k % len(log)], _in_order(points)
     record.time, record.entity_a, record.entity_b, record.wall = time, pair.entity_a, pair.entity_b, pair.wall
     record.restitution, record.friction = pair.restitution, pair.friction
     record.law, record.alone, record.points = law, 1 if alone else 0, 2 if normal2 > 0.0 else 1

@@ -6,6 +6,7 @@ import numpy as np
 
 from physicslab.kernels import Flags, Rows, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.arguments import Acting, Inverse, Motion, Near
+from physicslab.kernels.constraint.pair import ContactFrame, point_velocity, velocity_of
 from physicslab.kernels.narrow.contact import AS_FOUND, follow_pose
 from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, SCALAR
 from physicslab.kernels.records import Manifolds, Points
@@ -184,18 +185,18 @@ def _approach(slots: Slots, slot: int, count: int, motion: Motion) -> float:
     data, i, j = slots.data, slots.a[slot], slots.b[slot]
     at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
     nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
-    lowest = 0.0
+    v, lowest = velocity_of(motion.linear, motion.angular, i, j), 0.0
     for k in range(count):
         base = at + (ONE if k == 0 else TWO)
         if slots.kind == DISC:
-            rax, ray = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
-            rbx, rby = -data[at + RADIUS_B] * nx, -data[at + RADIUS_B] * ny
+            ra, rb = data[at + RADIUS_A], data[at + RADIUS_B]
+            frame = ContactFrame(nx, ny, ra * nx, ra * ny, -rb * nx, -rb * ny)
         else:
-            rax, ray = data[base + ARM_AX], data[base + ARM_AY]
-            rbx, rby = data[base + ARM_BX], data[base + ARM_BY]
-        linear, angular = motion.linear, motion.angular
-        vx = linear[j, 0] - angular[j] * rby - linear[i, 0] + angular[i] * ray
-        vy = linear[j, 1] + angular[j] * rbx - linear[i, 1] - angular[i] * rax
+            ax, ay, bx, by = (
+                data[base + ARM_AX], data[base + ARM_AY], data[base + ARM_BX], data[base + ARM_BY]
+            )  # fmt: skip
+            frame = ContactFrame(nx, ny, ax, ay, bx, by)
+        vx, vy = point_velocity(frame, v)
         lowest = min(lowest, vx * nx + vy * ny)
     return lowest
 
