@@ -21,7 +21,7 @@ FRAME = 1.0 / 60.0
 BUTTONS = {"left": 1, "middle": 2, "right": 3}
 MENUS = ("File", "Scenes", "Edit", "World", "Instruments", "View", "Help")
 SETTLED = 3
-"""Frames after which panels show what an event has done, and its deed is done."""
+"""Frames after which panels show what an event has done, and what it was clicked for is done."""
 
 
 def empty_world(**physics: object) -> World:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle, TextSurface
+from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle
 from physicslab.view.canvas.theme import Colour
 
 __all__ = ["RecordingCanvas"]
@@ -76,10 +75,6 @@ class RecordingCanvas:
     def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
         """Return a guess: letters a little over half as wide as high."""
         return round(0.55 * style.size * len(words)), round(1.36 * style.size)
-
-    def layer(self, name: str, rect: Rect, version: object, draw: Callable[[TextSurface], None]) -> None:
-        """Note each thing on it."""
-        draw(self)
 
     def paint(self, painter: Painter) -> None:
         """Note that something was to be drawn."""

@@ -25,7 +25,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
     circle(world, (0, 0), radius=0.2, velocity=(1, 0))
     desk = Desk(world)
     desk.frames(60)
-    actions.seek(desk.window, 30)
+    actions.seek(desk.world, desk.window, 30)
     desk.window.edits.do(SetField(desk.world.entities()[0], "Velocity", "linear", (-1, 0)))
     desk.window.pace.paused = False
     desk.frames(60)
@@ -35,7 +35,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
 
 
 def x_at_the_end(desk: Desk) -> float:
-    actions.seek(desk.window, desk.sandbox.history.steps_range[1])
+    actions.seek(desk.world, desk.window, desk.sandbox.history.steps_range[1])
     (body,) = desk.world.entities()
     return float(desk.world.component(body, Transform).position.x)
 
@@ -52,7 +52,7 @@ def test_a_branch_is_listed_in_plain_words_and_a_click_goes_to_it_and_back(desk:
     back = next(label for label in desk.ui.places if label.startswith("1. At "))
     assert back.startswith("1. At 0.50 s: linear of")
     click(desk, back)
-    actions.seek(desk.window, desk.sandbox.history.steps_range[1])
+    actions.seek(desk.world, desk.window, desk.sandbox.history.steps_range[1])
     assert bits(desk.world) == there and desk.sandbox.history.difference is None
 
 

@@ -17,7 +17,7 @@ from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle, pendulum
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
-from physicslab.view.canvas.quantities import length_of, percentage, quantity, vector_quantity
+from physicslab.view.canvas.quantities import percentage, quantity, round_quantity, vector_quantity
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.panels.figures import EnergyWatch, measure_world
 from physicslab.view.panels.scale_bar import draw_scale_bar
@@ -428,4 +428,4 @@ def test_vectors(value: Vector2, words: str) -> None:
 def test_shares_and_lengths_that_are_out_of_the_ordinary() -> None:
     assert percentage(float("inf")) == "not finite"
     assert percentage(-1.5) == "-150 %"
-    assert length_of(2e9) == "2·10⁹ m"
+    assert round_quantity(2e9, "m") == "2·10⁹ m"

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from physicslab.components import Transform
 from physicslab.export.gif import GifWriter
 from physicslab.prefabs import circle
-from physicslab.view.controls.film_actions import begin_film, toggle_film
+from physicslab.view.controls.file_actions import begin_film, toggle_film
 from physicslab.view.window.filming import ALL, BACK, FORWARD, FROM_NOW
 
 

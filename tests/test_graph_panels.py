@@ -49,7 +49,7 @@ def test_a_full_disk_is_one_plain_sentence(desk: Desk, monkeypatch: pytest.Monke
     monkeypatch.setattr(file_actions, "create_file", full)
     ball_of(desk)
     tap(desk, "m")
-    desk.window.deeds.append(dashboard_actions.save_table(graph_of(desk)))
+    desk.window.do_next(dashboard_actions.save_table, graph_of(desk))
     desk.frames(2)
     assert desk.window.notice == "The graph could not be saved: No space left on device"
 

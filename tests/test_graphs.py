@@ -59,7 +59,7 @@ def test_a_graph_is_taken_back_and_put_back_with_its_samples(desk: Desk) -> None
 def test_closing_a_graph_is_an_edit_that_takes_its_lines_with_it(desk: Desk) -> None:
     ball_of(desk)
     tap(desk, "m")
-    desk.window.deeds.append(dashboard_actions.close_graph(graph_of(desk)))
+    desk.window.do_next(dashboard_actions.close_graph, graph_of(desk))
     desk.frames(2)
     assert not desk.world.batch(Graph).entities.size and not desk.world.batch(GraphLine).entities.size
     pause(desk)
@@ -140,7 +140,7 @@ def test_nothing_is_recorded_again_in_the_past_and_later_samples_stay_until_then
     tap(desk, "m")
     desk.frames(20)
     before = desk.window.dashboard.record.times.copy()
-    actions.seek(desk.window, desk.window.edits.history.step_count - 8)
+    actions.seek(desk.world, desk.window, desk.window.edits.history.step_count - 8)
     desk.frames(3)
     assert np.array_equal(desk.window.dashboard.record.times, before)
     desk.window.edits.do(SetField(ball, "Velocity", "linear", (1.0, 0.0)))
@@ -155,7 +155,7 @@ def test_a_graph_stays_while_the_time_before_it_is_looked_at(desk: Desk) -> None
     desk.frames(20)
     tap(desk, "m")
     desk.frames(10)
-    actions.seek(desk.window, desk.window.edits.history.step_count - 20)
+    actions.seek(desk.world, desk.window, desk.window.edits.history.step_count - 20)
     desk.frames(SETTLED)
     assert not desk.world.batch(Graph).entities.size and "Graph 1: ball" in desk.ui.words
     click(desk, "Across graph 1")
@@ -222,7 +222,7 @@ def test_a_double_click_goes_to_the_moment_and_so_does_the_button_of_a_cursor(de
     mark = desk.window.dashboard.marks[0]
     assert mark is not None and desk.world.time == pytest.approx(mark)
     assert desk.window.edits.history.step_count < desk.window.edits.history.steps_range[1]
-    actions.seek(desk.window, 10**9)
+    actions.seek(desk.world, desk.window, 10**9)
     desk.frames(SETTLED)
     assert desk.world.time > mark
     click(desk, "Go to A in graph 1")

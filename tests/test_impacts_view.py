@@ -10,9 +10,10 @@ import pytest
 from desk import FRAME, Desk, empty_world
 from recording import RecordingCanvas
 
+from physicslab.contacts.impact_reader import ImpactReader
 from physicslab.prefabs import circle
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.overlay.impacts import ImpactReader, RecentImpacts
+from physicslab.view.overlay.impacts import RecentImpacts
 from physicslab.world import World
 
 

@@ -151,10 +151,10 @@ def test_undo_redo_and_the_time_line_give_the_bits_of_the_run() -> None:
     desk.frames(20)
     assert [entry.words for entry in history.entries][1] == "made: circle" and history.step_count == 60
     for step in (7, 31, 2, 40):
-        actions.seek(desk.window, step)
+        actions.seek(desk.world, desk.window, step)
         if step < 40:
             assert state_hash(desk.world) == known[step]
-    actions.seek(desk.window, 60)
+    actions.seek(desk.world, desk.window, 60)
     end = state_hash(desk.world)
     desk.key("z", CTRL)  # the run after the click
     desk.frames(2)
@@ -172,12 +172,12 @@ def test_time_goes_on_from_the_past_as_it_was_until_something_is_changed() -> No
     desk = Desk(load_scene("sandbox"))
     desk.frames(30)
     end = bits(desk.world)
-    actions.seek(desk.window, 10)
+    actions.seek(desk.world, desk.window, 10)
     desk.key("space")
     while desk.window.edits.history.step_count < 30:
         desk.frames()
     assert bits(desk.world) == end and not desk.window.edits.history.branches
-    actions.seek(desk.window, 10)
+    actions.seek(desk.world, desk.window, 10)
     desk.key("g")
     desk.frames(2)
     assert len(desk.window.edits.history.branches) == 1
@@ -194,7 +194,7 @@ def test_a_body_that_was_in_the_hand_is_let_go_where_another_future_begins() -> 
         desk.frames()
     desk.release(0.9, 0)
     desk.frames(5)
-    actions.seek(desk.window, 6)
+    actions.seek(desk.world, desk.window, 6)
     assert world.has(ball, Held)
     desk.key("g")
     desk.frames(2)
@@ -348,7 +348,7 @@ def test_a_body_that_goes_in_the_past_is_selected_no_more(desk: Desk) -> None:
     desk.window.selection.take(body)
     tap(desk, "delete")
     desk.frames(10)
-    actions.seek(desk.window, made - 3)
+    actions.seek(desk.world, desk.window, made - 3)
     desk.window.selection.take(body)
     desk.window.pace.paused = False
     desk.frames(20)
@@ -370,7 +370,7 @@ def test_what_was_written_is_an_edit_of_the_time_at_which_it_was_written(desk: D
     left, top, _, height = desk.ui.places["Time line"]
     click_at(desk, (left + 12, top + height // 2))
     assert desk.sandbox.history.step_count < last
-    actions.seek(desk.window, last)
+    actions.seek(desk.world, desk.window, last)
     kind, name = (Mass, "mass") if field == "Mass.mass" else (Transform, "position")
     value = getattr(desk.world.component(body, kind), name)
     assert (value if kind is Mass else value.x) == 0.75

@@ -102,9 +102,8 @@ def test_the_slider_of_a_spring_is_for_its_stiffness_and_can_be_given_other_ends
     tap(desk, "m", CTRL | SHIFT)
     slider = desk.window.dashboard.sliders[0]
     assert (slider.changes, slider.low, slider.high) == ("Spring.stiffness", 0.0, 200.0)
-    desk.window.deeds.append(
-        dashboard_actions.changing(slider.entity, Slider("Spring.stiffness", ball, 10.0, 50.0))
-    )
+    made = Slider("Spring.stiffness", ball, 10.0, 50.0)
+    desk.window.do_next(dashboard_actions.change, slider.entity, made)
     desk.frames(SETTLED)
     slide(desk, "Slider 1", 1.0)
     assert desk.world.component(ball, Spring).stiffness == 50.0

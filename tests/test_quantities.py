@@ -16,7 +16,7 @@ from physicslab.diagnostics.trajectory import BODY_HEADER
 from physicslab.ecs.quantity_text import evaluate
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle, pendulum
-from physicslab.view.canvas.units import product, quotient
+from physicslab.view.canvas.quantities import product, quotient
 
 MOTION = st.floats(-50.0, 50.0)
 UNITS = sorted({quantity.unit for quantity in QUANTITIES.values()})

@@ -288,7 +288,7 @@ def test_what_never_ends_or_never_begins_is_refused_at_once(desk: Desk, tmp_path
         with deadline(path.name, seconds=10):
             post(pygame.DROPFILE, file=str(path), window=None)
             desk.frames(4)
-            file_actions.open_named(desk.window, str(path))
+            file_actions.open_named(desk.world, desk.window, str(path))
             assert "must be a plain file" in desk.window.notice and "must be" in desk.window.opening_refused
             tap(desk, "l")
             tap(desk, "l")

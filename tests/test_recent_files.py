@@ -75,7 +75,7 @@ def test_what_cannot_be_opened_is_said_at_the_field(text: str, desk: Desk) -> No
         write(desk, text)
         tap(desk, "return")
     else:
-        file_actions.open_named(desk.window, text)
+        file_actions.open_named(desk.world, desk.window, text)
     desk.frames(SETTLED)
     refused = desk.window.opening_refused
     assert refused and "\n" not in refused and desk.window.opening is not None

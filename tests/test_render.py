@@ -21,6 +21,7 @@ from physicslab.view.picture.backdrop import grid_spacing
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.springs import coil
 from physicslab.view.window.window import Window
+from physicslab.view.workbench.world_view import WorldView
 from physicslab.world import World
 
 
@@ -29,7 +30,7 @@ def drawn(world: World, scale: float = 100.0) -> RecordingCanvas:
     canvas = RecordingCanvas((1280, 720))
     window = Window(canvas)
     window.camera.scale = scale
-    world.install(RenderSystem(window))
+    world.install(RenderSystem(WorldView(window).draw))
     world.frame(Stage.RENDER, FRAME)
     return canvas
 
@@ -220,7 +221,7 @@ def test_every_built_in_scene_can_be_drawn(name: str) -> None:
     world = load_scene(name)
     canvas = PygameCanvas(pygame.Surface((640, 360), 0, 32))
     window = Window(canvas)
-    world.install(RenderSystem(window))
+    world.install(RenderSystem(WorldView(window).draw))
     window.fit(world)
     world.frame(Stage.RENDER, FRAME)
     picture = pygame.surfarray.array2d(canvas.surface)

@@ -15,6 +15,7 @@ from physicslab.systems.system import Stage
 from physicslab.systems.trail import TrailSystem
 from physicslab.view.canvas.theme import DARK, mixed
 from physicslab.view.window.window import Window
+from physicslab.view.workbench.world_view import WorldView
 from physicslab.world import World
 
 
@@ -26,7 +27,7 @@ def drawn_trails(world: World) -> dict[str, Any]:
     """Return the pieces of all trails, which are drawn at once."""
     canvas = RecordingCanvas((1280, 720))
     window = Window(canvas)
-    world.install(RenderSystem(window))
+    world.install(RenderSystem(WorldView(window).draw))
     world.frame(Stage.RENDER, FRAME)
     (trails,) = canvas.called("strokes")
     return trails
@@ -99,7 +100,7 @@ def test_trails_lie_behind_bodies() -> None:
     world = load_scene("two_planets")
     world.run(seconds=1.0)
     canvas = RecordingCanvas((1280, 720))
-    world.install(RenderSystem(Window(canvas)))
+    world.install(RenderSystem(WorldView(Window(canvas)).draw))
     world.frame(Stage.RENDER, FRAME)
     names = [name for name, _ in canvas.calls]
     assert names.count("strokes") == 1 and names[-1] == "discs"

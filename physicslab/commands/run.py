@@ -26,7 +26,6 @@ from physicslab.commands.numbers import (
 )
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
-from physicslab.desktop.rescue import save_last_good
 from physicslab.diagnostics.ledger import LedgerWriter
 from physicslab.diagnostics.precision import find_imprecise, words_of_digits
 from physicslab.diagnostics.run_report import advice_of, find_not_finite, run_report, run_summary
@@ -36,6 +35,7 @@ from physicslab.ecs.config import CONTACTS, INTEGRATORS
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
 from physicslab.files.json_text import json_bytes
+from physicslab.files.rescue import save_last_good
 from physicslab.files.scene import SceneError, load_scene
 from physicslab.kernels.tiers import Tiers
 from physicslab.scenes import SCENES

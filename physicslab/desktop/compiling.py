@@ -170,7 +170,7 @@ class Compiling:
     def time_for_steps(self, longest: float) -> float:
         """Return how long [s] the steps of the coming frame may take, at most ``longest``.
 
-        Of a frame in which a kernel will be loaded the steps take less.
+        In a frame in which a kernel will be loaded the steps take less.
         """
         return self.scenes.made_up_for(longest, self._coming is not None)
 

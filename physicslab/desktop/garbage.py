@@ -1,8 +1,8 @@
 """Python's search for garbage, kept out of the frames.
 
-What is loaded at the start, numba above all, is 170,000 objects that last as long as the program. To search
-all of them takes 76 ms, as long as five frames, and happens every few minutes of the sandbox; while they are
-made it happens several times for nothing.
+The modules loaded at the start, numba above all, are 170,000 objects that last as long as the program. To
+search all of them takes 76 ms, as long as five frames, and happens every few minutes of the sandbox; while
+they are made it happens several times for nothing.
 """
 
 from __future__ import annotations

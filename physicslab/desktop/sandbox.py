@@ -7,12 +7,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pygame
 from numpy.typing import NDArray
 
 from physicslab.components import Gate, Held, Transform
 from physicslab.desktop.autosave import Autosave
-from physicslab.desktop.rescue import save_last_good
 from physicslab.diagnostics.step_watch import StepWatch
+from physicslab.files.rescue import save_last_good
 from physicslab.files.scene import SceneError
 from physicslab.history import History, RemoveComponent
 from physicslab.state.masses import Diverged
@@ -20,11 +21,14 @@ from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
+from physicslab.view.controls.window_events import WindowEvents
 from physicslab.view.window.handles import Handles
 from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.pins import Pins
 from physicslab.view.window.window import Left, Window
+from physicslab.view.workbench.hud import Hud
 from physicslab.view.workbench.interface import Interface
+from physicslab.view.workbench.world_view import WorldView
 from physicslab.world import World
 
 __all__ = ["Sandbox"]
@@ -85,8 +89,12 @@ class Sandbox:
         self.world = world
         self.interface = Interface(window)
         window.room = self.interface.room
-        hud = HudSystem(window, self.interface)
-        self._systems = InputSystem(window, self.interface), RenderSystem(window), hud
+        hud = Hud(window, self.interface)
+        self._systems = (
+            InputSystem(pygame.event.get, WindowEvents(window, self.interface.take)),
+            RenderSystem(WorldView(window).draw),
+            HudSystem(lambda: window.now, hud.readings, hud.draw),
+        )
         self.show(world)
         if autosave is not None:
             autosave.finish(world)
@@ -199,7 +207,7 @@ class Sandbox:
             window.error_study.running
             or window.filming.running
             or window.next_world is not None
-            or bool(window.deeds)
+            or bool(window.pending)
             or window.closing
         )
         return not (busy or window.is_moving(self.world) or self.interface.toolkit.unsettled)
@@ -229,7 +237,7 @@ class Sandbox:
                 made += 1
                 if made < due and self.window.dashboard.graphs:
                     self.window.dashboard.follow(self.world, self.history)  # the last of them is the frame's
-                if microscope.struck(self.world, logged, before):
+                if microscope.sees_impact(self.world, logged, before):
                     pace.halt()
                     self.history.divide()
                     break

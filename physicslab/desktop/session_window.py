@@ -80,7 +80,7 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     if session is not None and termination.signal:
         session.release()
     elif autosave is not None and session is not None:
-        # The user closed the window. What was edited and not saved is offered at the next start, as after an
+        # Closed by the user: an edited world that was not saved is offered at the next start, as after an
         # error or a signal; the rest can be had again.
         if sandbox is not None and window.has_unsaved(sandbox.world):
             autosave.save(sandbox.world)

@@ -89,7 +89,7 @@ class Session:
     def abandoned(cls, folder: Path) -> list[Session]:
         """Return the sessions that ended without closing, the newest first; they are this process's now.
 
-        What else their writers left behind is removed.
+        Other files that their writers left behind are removed.
         """
         found: list[tuple[int, Session]] = []
         with contextlib.suppress(OSError):

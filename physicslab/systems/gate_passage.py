@@ -33,7 +33,7 @@ class Moment:
     ----------
     body, body_velocity : float64 arrays (n, 2)
     start, end, start_velocity, end_velocity : float64 arrays (g, 2)
-        Of the ends of gates.
+        Those of the ends of gates.
     distance, width : float64 arrays (g, n), (g, 1)
         How far each body is to the left of each gate's line [m], NaN of one without length; and from which
         distance on it is out of the gate [m].

@@ -129,7 +129,7 @@ class SpringSystem(ForceSystem):
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row a bound on its fastest oscillation or decay [rad/s].
 
-        Of a body's springs the stiffnesses add up, weighted with the masses at both ends; no eigenvalue of
+        The stiffnesses of a body's springs add up, weighted with the masses at both ends; no eigenvalue of
         the whole is larger than these sums (Gershgorin).
         """
         spring, bodies = state.table(Spring), state.bodies

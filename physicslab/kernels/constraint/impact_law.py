@@ -208,8 +208,8 @@ type _Friction = tuple[float, float, float, float, float, float, bool]
 def _friction(pair: PairResponse, friction: float, state1: float, state2: float) -> _Friction:
     """Return the friction of two points, of which each sticks (0), or slides under friction of a sign.
 
-    Its o, a and b for each point: t = o + a n1 + b n2. Where both stick and slide alike, which comes last, each
-    holds half, until normal impulses tell how to share it.
+    Its o, a and b for each point: t = o + a n1 + b n2. Where both stick and slide alike, which comes last,
+    each holds half, until normal impulses tell how to share it.
     """
     one, two, between = pair.first, pair.second, pair.kt_12
     m1, m2 = state1 * friction, state2 * friction

@@ -2,216 +2,47 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
 
-from physicslab.diagnostics.warnings import ModelWarning, find_warnings
+from physicslab.state.state import State
+from physicslab.systems.frame.refresh_timer import RefreshTimer
 from physicslab.systems.system import Stage, System, at
-from physicslab.view.overlay.edge_arrows import draw_edge_arrows
-from physicslab.view.overlay.selection_marks import draw_selection
-from physicslab.view.panels.axis_numbers import draw_axis_numbers
-from physicslab.view.panels.banners import DroppedTime, draw_banners, draw_messages, lay_out_messages
-from physicslab.view.panels.figures import EnergyWatch, FrameMeter, WorldFigures, measure_world
-from physicslab.view.panels.laws import has_gravity
-from physicslab.view.panels.legend import legend_of
-from physicslab.view.panels.panels import Line
-from physicslab.view.panels.readings import (
-    cost_lines,
-    impulse_lines,
-    left_out_lines,
-    measure_lines,
-    method_lines,
-)
-from physicslab.view.panels.refresh_timer import RefreshTimer
-from physicslab.view.panels.scale_bar import draw_scale_bar
-from physicslab.view.panels.warnings import draw_advice
-
-if TYPE_CHECKING:
-    from physicslab.view.canvas.canvas import Rect
-    from physicslab.view.canvas.theme import Colour
-    from physicslab.view.window.window import Window
-    from physicslab.view.workbench.interface import Interface
-    from physicslab.world import World
 
 __all__ = ["HudSystem"]
 
-_PERIODS = {"figures": 0.2, "costs": 0.2, "advice": 0.25}
-"""Time [s] between two readings: figures that change faster cannot be read."""
-_STRIP, _LEAST = 6, 14
-"""How high the strip is in which words make way for windows, and how much of its width must be left, in
-heights of the text."""
-_MESSAGE_WIDTH = 0.7
-"""How wide a message beside the scale bar may be, as a share of what is left for the world."""
 
-
-class HudSystem(System):
-    """Writes figures, costs, banners and panels over the picture; the world does not depend on it.
+class HudSystem[W: State](System):
+    """Reads figures of the world, each as often as it can be followed, and draws them over the picture.
 
     Parameters
     ----------
-    window : Window
-        The canvas, the theme, and the state of the clock.
-    interface : Interface
-        The panels around the world.
+    now : callable
+        Returns the time [s] by which readings are due.
+    readings : mapping of callable to float
+        ``read(world, elapsed)`` takes a reading; after how long [s] it is taken again, 0 for every frame. Of
+        the others at most one is taken a frame, and all of them where another world is shown.
+    *layers : callable
+        ``layer(world, elapsed)`` draws one, the lowest first.
     """
 
-    def __init__(self, window: Window, interface: Interface) -> None:
-        self._window = window
-        self._interface = interface
-        self._meter = FrameMeter()
-        self._watch = EnergyWatch()
-        self._refresh_timer = RefreshTimer(_PERIODS)
-        self._dropped = DroppedTime()
-        self._world: World | None = None
-        self._advice: tuple[ModelWarning, ...] = ()
-        self._figures: WorldFigures
-        self._measures: list[Line] = []
-        self._details: list[Line] = []
-        self._windows: list[Rect] = []
+    def __init__(
+        self,
+        now: Callable[[], float],
+        readings: Mapping[Callable[[W, float], None], float],
+        *layers: Callable[[W, float], None],
+    ) -> None:
+        self._now, self._layers = now, layers
+        self._always = [read for read, period in readings.items() if not period]
+        self._timer = RefreshTimer({read: period for read, period in readings.items() if period})
+        self._world: W | None = None
 
     @at(Stage.HUD)
-    def draw(self, world: World, elapsed: float) -> None:
-        """Draw everything that lies over the world."""
-        window, interface = self._window, self._interface
-        self._meter.note(world, elapsed)
-        self._watch.follow(world)
-        self._refresh(world)
-        window.dashboard.follow(world, window.edits.history)
-        window.dashboard.fill(window.edits.history)
-        if window.impacts.shown or window.microscope.is_open:
-            window.impacts.follow(world, window.edits.history)
-        if window.error_study.poll():
-            self._announce(window.error_study.failure)
-        window.trust.follow(world, window.now)
-        taken = self._draw_over_world(world)
-        interface.build(world, self._figures, self._details, self._measures, elapsed)
-        interface.draw(window.canvas)
-        window.overlays.covered = [*taken, *interface.covered]
-
-    @property
-    def _text_size(self) -> int:
-        return self._interface.text
-
-    # ---- what is read --------------------------------------------------------------------------------------
-
-    def _refresh(self, world: World) -> None:
-        """Read what is due; all of it where another world is shown, or this one while time stands still."""
-        window = self._window
+    def draw(self, world: W, elapsed: float) -> None:
+        """Take the readings that are due, and draw every layer."""
         if world is not self._world:
             self._world = world
-            self._refresh_timer.all_done(window.now)
-            for reading in _PERIODS:
-                self._read(reading, world)
-        elif (due := self._refresh_timer.due(window.now)) is not None:
-            self._read(due, world)
-
-    def _read(self, reading: str, world: World) -> None:
-        """Read the figures, the costs, or what is not to be trusted; what is not shown is not read."""
-        window = self._window
-        if reading == "advice":
-            self._advice = find_warnings(world)
-        elif reading == "figures":
-            self._figures = measure_world(world, self._watch, self._meter.frame_rate)
-            self._measures = measure_lines(world, self._figures) if window.level != "Explore" else []
-        elif window.level == "Engineer":
-            costs = [*cost_lines(world, self._meter), *left_out_lines(world)]
-            self._details = [*impulse_lines(self._figures), *method_lines(world), *costs]
-
-    def _announce(self, failure: str) -> None:
-        """Show how measuring the error ended."""
-        words = f"Error against run time could not be measured: {failure}" if failure else ""
-        self._window.notify(words, 6.0 if failure else 0.0, failed=bool(failure))
-
-    def _banners(self, world: World) -> list[tuple[str, Colour]]:
-        """Return what is not as usual, each in its colour."""
-        window, theme = self._window, self._window.theme
-        banners: list[tuple[str, Colour]] = []
-        if window.filming.running:
-            banners.append((window.filming.words, theme.accent))
-        if window.pace.paused:
-            banners.append(("PAUSED", theme.paused))
-        if window.pace.speed != 1.0:
-            name = "SLOW MOTION" if window.pace.speed < 1.0 else "FAST MOTION"
-            banners.append((f"{name} {window.pace.speed:g}x", theme.slow))
-        if world.physics.gravity_mode == "planet" and has_gravity(world):
-            banners.append(("PLANET MODE", theme.planet))
-        if dropped := self._dropped.recent(window.pace.dropped, window.now):
-            banners.append((f"The computer is too slow: {dropped:.1f} s were skipped", theme.slow))
-        return banners
-
-    def _draw_advice(self, world: World, middle: int, top: int, bottom: int, width: int) -> Rect | None:
-        """Write what is not to be trusted, and put a ring around each body that is spoken of."""
-        window, size = self._window, self._text_size
-        canvas, theme = window.canvas, window.theme
-        bodies = [one.number for one in self._advice if one.number is not None]
-        draw_selection(world, bodies, window.camera, theme, canvas, colour=theme.warning)
-        plainly = window.level == "Explore"
-        return draw_advice(self._advice, middle, top, bottom, width, size, canvas, theme, plainly=plainly)
-
-    # ---- drawing -------------------------------------------------------------------------------------------
-
-    def _draw_over_world(self, world: World) -> list[Rect]:
-        """Draw banners, advice, messages, scale and legend, none over another; return where they are.
-
-        Where there is no room for all of them, messages come first, then banners, then advice.
-        """
-        window, size = self._window, self._text_size
-        canvas, theme, room = window.canvas, window.theme, self._interface.visible
-        left, top, width, height = room
-        margin = round(0.6 * size)
-        bar = draw_scale_bar(window.camera, left + width, top + height - margin, size, canvas, theme)
-        numbers = 0
-        if window.grid:
-            numbers = draw_axis_numbers(window.camera, room, bar[0], size, canvas, theme)
-        taken = [bar, *self._draw_messages(bar, numbers)]
-        bottom = min(rect[1] for rect in taken) - margin
-        banners = self._banners(world)
-        begin, wide = self._free_span(top, top + _STRIP * size)
-        middle, across = begin + wide // 2, wide - 2 * margin
-        shown = draw_banners(banners, middle, top + margin, bottom, across, size, canvas, theme)
-        below = shown[-1][1] + shown[-1][3] + margin if shown else top + margin
-        advice = self._draw_advice(world, middle, below, bottom, across)
-        taken += [*shown, *([] if advice is None else [advice])]
-        legend = legend_of(window.overlays, (width - 2 * margin, height), size, canvas, theme)
-        if legend is not None:
-            legend = legend.moved(left + margin, top + margin)
-            legend.draw(canvas, theme)
-            taken.append(legend.panel.rect)
-        above = left, top, width, max(height - numbers, 1)
-        draw_edge_arrows(world, window.camera, above, [*taken, *self._windows], size, canvas, theme)
-        return taken
-
-    def _free_span(self, top: int, bottom: int) -> tuple[int, int]:
-        """Return where the widest part of a strip begins that no window lies over, and how wide it is [px].
-
-        The strip is that of the world's room from ``top`` to ``bottom`` [px]. Where windows leave too little
-        of it, it is all of that.
-        """
-        left, _, width, _ = self._interface.visible
-        if not self._interface.toolkit.has_popup():  # what a menu lies over stays where it is
-            self._windows = self._interface.covered
-        at, widest = left, (left, 0)
-        over = [(x, x + wide) for x, y, wide, high in self._windows if y < bottom and y + high > top]
-        for begin, end in [*sorted(over), (left + width, 0)]:
-            widest = max(widest, (at, min(begin, left + width) - at), key=lambda span: span[1])
-            at = max(at, end)
-        return widest if widest[1] >= _LEAST * self._text_size else (left, width)
-
-    def _draw_messages(self, bar: Rect, numbers: int) -> list[Rect]:
-        """Draw what went wrong or was just done, beside the scale bar or above it; return where.
-
-        They lie above the ``numbers`` at the lower edge, which are so high [px].
-        """
-        window, size = self._window, self._text_size
-        canvas, theme = window.canvas, window.theme
-        _, top, _, height = self._interface.visible
-        left, width = self._free_span(top + height - _STRIP * size, top + height)
-        words = (
-            (window.error, theme.error),
-            (window.notice, theme.error if window.notice_failed else theme.notice),
-        )
-        middle, bottom = left + width // 2, top + height - numbers
-        messages = lay_out_messages(words, size, round(_MESSAGE_WIDTH * width), canvas)
-        if any(middle + message.width // 2 > bar[0] - size // 2 for message in messages):
-            messages = lay_out_messages(words, size, width - size, canvas)
-            bottom = min(bottom, bar[1])
-        return draw_messages(messages, middle, top + size // 2, bottom, size, canvas, theme)
+            due = self._timer.all_due(self._now())
+        else:
+            due = self._timer.due(self._now())
+        for call in (*self._always, *due, *self._layers):
+            call(world, elapsed)

@@ -2,226 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
-import pygame
-
+from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
-from physicslab.view.controls import actions
-from physicslab.view.controls.controls import KEYS, RELEASES
-from physicslab.view.controls.file_actions import open_scene
-from physicslab.view.controls.impact_actions import clicked_impact, close_up
-from physicslab.view.controls.keyboard import open_menu
-from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
-from physicslab.view.controls.picking import body_at
-from physicslab.view.controls.snapping import follow_snapping
-from physicslab.view.controls.spawning import spawn_box
-from physicslab.view.controls.tool import Tool
-from physicslab.view.controls.tools import TOOLS
-from physicslab.view.window.changing import set_end
 
-if TYPE_CHECKING:
-    from physicslab.view.window.window import Window
-    from physicslab.view.workbench.interface import Interface
-    from physicslab.world import World
-
-__all__ = ["InputSystem"]
-
-_BY_PRINT = ("+", "-", ".", ",", "[", "]")
-"""Keys that go by what they print: on other keyboards they are elsewhere, or need AltGr."""
-_PRESSES = (pygame.KEYDOWN, pygame.MOUSEBUTTONDOWN, pygame.MOUSEWHEEL)
-_SNAPPING = pygame.KMOD_ALT | pygame.KMOD_CTRL
-"""Keys with which places snap while they are held."""
-_OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
-"""With these keys held, another key is meant for the desktop: Alt+Tab is no slow motion."""
+__all__ = ["EventHandler", "InputSystem"]
 
 
-class InputSystem(System):
-    """Turns SDL's events into actions, and moves the body that is held.
+class EventHandler[W: State, E](Protocol):
+    """Acts on events."""
 
-    It follows events alone and never reads the state of keys and buttons, so that posted events are as good
-    as real ones.
+    def begin(self, world: W, events: Sequence[E], elapsed: float) -> None:
+        """Do what comes before the events of a frame, ``elapsed`` seconds after the last."""
+
+    def handle(self, world: W, event: E) -> None:
+        """Do what an event calls for."""
+
+    def end(self, world: W) -> None:
+        """Do what comes after them."""
+
+
+class InputSystem[W: State, E](System):
+    """Hands what the user did since the last frame to what acts on it, event by event.
 
     Parameters
     ----------
-    window : Window
-        Where the cursor is, and what is held.
-    interface : Interface
-        The panels around the world; clicks on them, and keys for their fields, are their own.
+    events : callable
+        Returns the events since it was called last, such as ``pygame.event.get``.
+    handler : EventHandler
+        What acts on them.
     """
 
-    def __init__(self, window: Window, interface: Interface) -> None:
-        self._window = window
-        self._interface = interface
-        self._panning = 0  # the button that drags the picture
-        self._alt_alone = False  # whether Alt went down, and nothing else since
-        self._tool: Tool | None = None  # what the left button was pressed with
-        self._handlers: dict[int, Callable[[World, pygame.Event], None]] = {
-            pygame.KEYDOWN: self._key,
-            pygame.KEYUP: self._key_up,
-            pygame.MOUSEBUTTONDOWN: self._press,
-            pygame.MOUSEBUTTONUP: self._release,
-            pygame.MOUSEMOTION: self._motion,
-            pygame.MOUSEWHEEL: self._wheel,
-            pygame.DROPFILE: self._drop,
-            pygame.WINDOWFOCUSLOST: self._leave,
-            pygame.WINDOWMINIMIZED: self._leave,
-            pygame.WINDOWHIDDEN: self._leave,
-            pygame.QUIT: lambda world, event: actions.close(world, window),
-        }
+    def __init__(self, events: Callable[[], Sequence[E]], handler: EventHandler[W, E]) -> None:
+        self._events, self._handler = events, handler
 
     @at(Stage.INPUT)
-    def handle(self, world: World, elapsed: float) -> None:
+    def read(self, world: W, elapsed: float) -> None:
         """Do what the events since the last frame call for."""
-        window = self._window
-        window.now += elapsed
-        events = pygame.event.get()
-        window.touched = bool(events or window.deeds)
-        self._do_deeds(world)
+        events = self._events()
+        self._handler.begin(world, events, elapsed)
         for event in events:
-            taken = self._interface.take(event)
-            self._do_deeds(world)  # what was written in a field is done before the click beside it
-            self._follow_alt(world, event)
-            handler = self._handlers.get(event.type)
-            if taken:
-                window.pointer = getattr(event, "pos", window.pointer)
-            elif handler is not None:
-                handler(world, event)
-            if event.type == pygame.MOUSEMOTION:
-                window.pointer_on_panel, window.has_pointed = taken, True
-        window.follow_size(world)
-        window.trails.follow(world)
-        self._follow_snapping(world)
-        window.hand.move(window.target, window.now)
-        window.hand.lead(world, window.coming(world), window.pace.paused)
-
-    def _follow_snapping(self, world: World) -> None:
-        """Let the place of the cursor snap, where that is on or a key for it is held."""
-        self._window.snapping.held = bool(pygame.key.get_mods() & _SNAPPING)
-        follow_snapping(world, self._window)
-
-    def _do_deeds(self, world: World) -> None:
-        """Do what panels were clicked for."""
-        window = self._window
-        deeds, window.deeds = window.deeds, []
-        for deed in deeds:
-            self._do(deed, world)
-
-    def _do(self, action: Callable[[World, Window], None], world: World) -> None:
-        """Do something; what the system refuses, as in a folder that was removed, is said."""
-        try:
-            action(world, self._window)
-        except OSError as error:
-            self._window.notify(f"Not done: {error.strerror or error}", 6.0, failed=True)
-
-    def _key(self, world: World, event: pygame.Event) -> None:
-        mod = getattr(event, "mod", 0)
-        held = ("ctrl+" if mod & pygame.KMOD_CTRL else "") + ("shift+" if mod & pygame.KMOD_SHIFT else "")
-        printed = getattr(event, "unicode", "")
-        name = printed if printed in _BY_PRINT else pygame.key.name(event.key).lower()
-        action = KEYS.get(held + name) or KEYS.get(held.replace("shift+", "") + name)
-        other_use = mod & _OTHER_USE and name not in _BY_PRINT
-        if action is not None and not other_use:
-            self._do(action, world)
-
-    def _follow_alt(self, world: World, event: pygame.Event) -> None:
-        """Open the menus where Alt is pressed and let go alone: with other keys it is for the desktop."""
-        is_alt = getattr(event, "key", None) == pygame.K_LALT
-        if event.type == pygame.KEYUP and is_alt and self._alt_alone:
-            open_menu(world, self._window)
-        if event.type in (*_PRESSES, pygame.KEYUP, pygame.WINDOWFOCUSLOST):
-            self._alt_alone = is_alt and event.type == pygame.KEYDOWN
-
-    def _drop(self, world: World, event: pygame.Event) -> None:
-        """Open a scene file that was dropped on the window."""
-        open_scene(self._window, Path(event.file))
-
-    def _key_up(self, world: World, event: pygame.Event) -> None:
-        action = RELEASES.get(pygame.key.name(event.key).lower())
-        if action is not None:  # whatever else is held by now: what was begun must end
-            self._do(action, world)
-
-    def _press(self, world: World, event: pygame.Event) -> None:
-        self._window.pointer = event.pos
-        follow_pointer(world, self._window)
-        self._window.adding = bool(pygame.key.get_mods() & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL))
-        self._follow_snapping(world)
-        if event.button == pygame.BUTTON_LEFT:
-            if self._window.picking is not None:
-                picking, self._window.picking = self._window.picking, None
-                picked = body_at(world, self._window.camera, event.pos)
-                set_end(self._window, picking.entity, picking.kind, picking.field, picked)
-                return
-            if self._takes_handle(world, event.pos):
-                return
-            if (impact := clicked_impact(world, self._window, event.pos)) is not None:
-                close_up(impact)(world, self._window)
-                return
-            self._tool = TOOLS[self._window.tool]
-            self._tool.press(world, self._window)
-        elif event.button == pygame.BUTTON_RIGHT:
-            spawn_box(world, self._window)
-        by_tool = event.button == pygame.BUTTON_LEFT and self._tool is not None and self._tool.pans
-        if event.button == pygame.BUTTON_MIDDLE or by_tool:
-            self._panning = event.button
-
-    def _takes_handle(self, world: World, pixel: tuple[float, float]) -> bool:
-        """Take the handle of what is selected that lies under the cursor; return whether there is one."""
-        window = self._window
-        if take_end(world, window):
-            return True
-        return window.handled is not None and window.handles.press(
-            world, window.handled, window.camera, pixel
-        )
-
-    def _release(self, world: World, event: pygame.Event) -> None:
-        self._window.pointer = event.pos
-        self._follow_snapping(world)
-        follow_pointer(world, self._window)
-        if event.button == pygame.BUTTON_LEFT:
-            self._window.handles.release(self._window.edits)
-            let_instrument_go(world, self._window)
-        if event.button == pygame.BUTTON_LEFT and self._tool is not None:
-            self._tool.release(world, self._window)
-            self._tool = None
-        if event.button == self._panning:
-            self._panning = 0
-
-    def _motion(self, world: World, event: pygame.Event) -> None:
-        window = self._window
-        window.points_by_key = getattr(event, "by_key", False)
-        if not event.buttons[0]:  # let go where no report came from, as over another window
-            window.hand.drop(world)
-            window.handles.release(window.edits)
-            window.pins.release(window.edits)
-            let_instrument_go(world, window)
-            if self._tool is not None:
-                window.spring_tool.cancel()
-                self._tool = None
-        if self._panning and not event.buttons[self._panning - 1]:
-            self._panning = 0
-        if self._panning:
-            dx, dy = event.pos[0] - window.pointer[0], event.pos[1] - window.pointer[1]
-            window.camera.pan(dx, dy)
-        window.pointer = event.pos
-        self._follow_snapping(world)
-        if window.handles.dragged is not None and window.handled is not None:
-            rounds = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
-            snaps = rounds or (window.snapping.active and window.handles.dragged == "angle")
-            window.handles.drag(window.edits, window.handled, window.camera, window.target, snaps=snaps)
-        window.pins.drag(window.edits, window.target, paused=window.pace.paused)
-        follow_pointer(world, window)
-
-    def _wheel(self, world: World, event: pygame.Event) -> None:
-        notches = getattr(event, "precise_y", event.y)
-        actions.zoom(self._window, notches)
-
-    def _leave(self, world: World, event: pygame.Event) -> None:
-        """Let go of everything while another window has the focus."""
-        self._window.hand.drop(world)
-        self._window.pins.release(self._window.edits)
-        self._window.spring_tool.cancel()
-        let_instrument_go(world, self._window)
-        self._panning, self._tool = 0, None
+            self._handler.handle(world, event)
+        self._handler.end(world)

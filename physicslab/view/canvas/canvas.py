@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import pygame
 
 __all__ = [
-    "Align", "Canvas", "Look", "Numbers", "Painter", "Points", "Rect", "TextStyle", "TextSurface",
+    "Align", "Canvas", "Look", "Numbers", "Painter", "Points", "Rect", "TextStyle", "is_within",
 ]  # fmt: skip
 
 type Numbers = NDArray[np.float64]
@@ -24,6 +24,14 @@ type Points = NDArray[np.float64]
 """A float64 array (n, 2): right and down from the top left corner [px]."""
 type Rect = tuple[int, int, int, int]
 """Left, top, width, height [px]."""
+
+
+def is_within(place: tuple[float, float], rect: Rect) -> bool:
+    """Whether a place lies in a rectangle [px]."""
+    left, top, width, height = rect
+    return left <= place[0] < left + width and top <= place[1] < top + height
+
+
 type Painter = Callable[[pygame.Surface], None]
 """Draws on a surface."""
 type Align = Literal["left", "centre", "right"]
@@ -61,23 +69,10 @@ class TextStyle:
     bold: bool = False
 
 
-class TextSurface(Protocol):
-    """What words and panels can be put on: a canvas, or a part of it that is kept."""
-
-    def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
-        """Draw a rectangle with rounded corners and a thin outline."""
-
-    def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
-        """Write one line; ``at`` is its top left, top middle or top right."""
-
-    def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
-        """Return the width and height of one line [px]."""
-
-
-class Canvas(TextSurface, Protocol):
+class Canvas(Protocol):
     """A picture in the making. All lengths are pixels, y points down, and what comes later lies on top.
 
-    Angles are counter-clockwise as seen on the screen [rad]. What lies outside the picture is cut off, and
+    Angles are counter-clockwise as seen on the screen [rad]. Anything outside the picture is cut off, and
     nothing that is not finite may be passed.
     """
 
@@ -102,12 +97,14 @@ class Canvas(TextSurface, Protocol):
     def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
         """Draw straight lines with round ends, each of its own colour (n, 3) and width."""
 
-    def layer(self, name: str, rect: Rect, version: object, draw: Callable[[TextSurface], None]) -> None:
-        """Draw words and panels that lie within ``rect`` [px] and stay for as long as ``version`` does.
+    def panel(self, rect: Rect, colour: Colour, outline: Colour, opacity: float = 1.0) -> None:
+        """Draw a rectangle with rounded corners and a thin outline."""
 
-        What was drawn under the same ``name`` before may be put down once more in place of calling ``draw``;
-        if the version is the same, it is drawn in the same way relative to the corner of ``rect``.
-        """
+    def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
+        """Write one line; ``at`` is its top left, top middle or top right."""
+
+    def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
+        """Return the width and height of one line [px]."""
 
     def paint(self, painter: Painter) -> None:
         """Let something else draw on the picture: widgets do that by themselves."""

@@ -27,8 +27,8 @@ def shortened(words: str, letters: int) -> str:
 def drawable(words: str) -> str:
     r"""Return text without what fonts refuse: control characters and halves of surrogate pairs.
 
-    Line breaks and tabs become spaces, all else that cannot be printed a replacement character. Of marks
-    piled up on one letter those that would reach into other lines are left out.
+    Line breaks and tabs become spaces, all else that cannot be printed a replacement character. Marks
+    piled up on one letter that would reach into other lines are left out.
 
     >>> drawable("a\tb\x00c\udce9")
     'a b\ufffdc\ufffd'

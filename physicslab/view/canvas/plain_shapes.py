@@ -1,7 +1,7 @@
 """Discs, boxes and lines drawn by pygame, until the loops that paint smooth ones are compiled.
 
 Edges are rough and places rounded to pixels; what cannot move is filled with a colour of its own in place of
-a hatch. What lies far outside the picture is cut off first, or pygame would go through all of its rows.
+a hatch. Anything far outside the picture is cut off first, or pygame would go through all of its rows.
 """
 
 from __future__ import annotations

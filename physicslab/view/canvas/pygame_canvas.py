@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.cached_layer import CachedLayer, left_of
-from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle, TextSurface
+from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle
 from physicslab.view.canvas.plain_shapes import draw_boxes, draw_discs, draw_strokes
 from physicslab.view.canvas.surface_cache import SurfaceCache
 from physicslab.view.canvas.theme import Colour
@@ -40,7 +38,6 @@ class PygameCanvas:
         red, green, blue, _ = surface.get_shifts()
         self._shifts = np.array((red, green, blue), np.uint32)
         self._surfaces = SurfaceCache()
-        self._layers: dict[str, CachedLayer] = {}
         self._colours: dict[Colour, int] = {}
 
     @property
@@ -117,18 +114,12 @@ class PygameCanvas:
     def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
         """Write one line; ``at`` is its top left, top middle or top right."""
         line = self._surfaces.text(words, style)
-        self.surface.blit(line, (left_of(line, at[0], align), at[1]))
+        left = at[0] - {"left": 0, "centre": line.get_width() // 2, "right": line.get_width()}[align]
+        self.surface.blit(line, (left, at[1]))
 
     def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
         """Return the width and height of one line [px]."""
         return self._surfaces.text_size(words, style)
-
-    def layer(self, name: str, rect: Rect, version: object, draw: Callable[[TextSurface], None]) -> None:
-        """Draw words and panels that lie within ``rect`` [px] and stay for as long as ``version`` does."""
-        kept = self._layers.get(name)
-        if kept is None:
-            kept = self._layers[name] = CachedLayer(self._surfaces)
-        kept.put_on(self.surface, rect, version, draw)
 
     def paint(self, painter: Painter) -> None:
         """Let something else draw on the picture."""

@@ -1,28 +1,20 @@
-"""Numbers with units, as people read them."""
+"""Numbers with units, as people read them; units of slopes and areas."""
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 
 from physicslab.ecs.vector import Vector2
 
 __all__ = [
-    "ROUNDING", "length_of", "percentage", "power_of_ten", "quantity", "round_quantity", "vector_quantity",
-    "without_rounding",
+    "ROUNDING", "percentage", "product", "quantity", "quotient", "round_quantity", "rounded_up",
+    "vector_quantity", "without_rounding", "written_unit",
 ]  # fmt: skip
 
 ROUNDING = 1e-12
 """Share of what a number is a part of below which it is rounding."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-def power_of_ten(power: int) -> str:
-    """Return a power of ten as people write it.
-
-    >>> power_of_ten(-2), power_of_ten(-12)
-    ('0.01', '10⁻¹²')
-    """
-    return f"{10.0**power:g}" if -2 <= power <= 3 else f"10{str(power).translate(_RAISED)}"
 
 
 def quantity(value: float, unit: str) -> str:
@@ -42,8 +34,12 @@ def quantity(value: float, unit: str) -> str:
     power = math.floor(math.log10(abs(value)))
     if -3 <= power <= 5:
         return f"{value:.{min(max(3 - power, 0), 4)}f} {unit}"
-    digits, _, exponent = f"{value:.3e}".partition("e")
-    return f"{digits}·10{str(int(exponent)).translate(_RAISED)} {unit}"
+    return f"{_scientific(value, 3)} {unit}"
+
+
+def _scientific(value: float, decimals: int) -> str:
+    digits, _, exponent = f"{value:.{decimals}e}".partition("e")
+    return f"{digits}·10{str(int(exponent)).translate(_RAISED)}"
 
 
 def without_rounding(value: float, scale: float) -> float:
@@ -53,6 +49,16 @@ def without_rounding(value: float, scale: float) -> float:
     (0.0, 3e-09)
     """
     return value if not abs(value) <= ROUNDING * scale or math.isinf(scale) else 0.0
+
+
+def rounded_up(at_least: float, slack: float = 0.0) -> float:
+    """Return the smallest 1, 2 or 5 times a power of ten that is at least so large, but for a share.
+
+    >>> rounded_up(0.03), rounded_up(7.0), rounded_up(5.001, 1e-3)
+    (0.05, 10.0, 5.0)
+    """
+    power = 10.0 ** math.floor(math.log10(at_least))
+    return next(k * power for k in (1.0, 2.0, 5.0, 10.0) if k * power >= at_least * (1.0 - slack))
 
 
 def round_quantity(value: float, unit: str) -> str:
@@ -70,8 +76,7 @@ def round_quantity(value: float, unit: str) -> str:
     power = math.floor(math.log10(abs(value) * (1.0 + 1e-12)))
     if -3 <= power <= 5:
         return f"{value:.{max(-power, 0)}f} {unit}"
-    digits, _, exponent = f"{value:.0e}".partition("e")
-    return f"{digits}·10{str(int(exponent)).translate(_RAISED)} {unit}"
+    return f"{_scientific(value, 0)} {unit}"
 
 
 def vector_quantity(value: Vector2, unit: str) -> str:
@@ -109,17 +114,68 @@ def percentage(share: float) -> str:
     power = math.floor(math.log10(abs(percent)))
     if -3 <= power <= 4:
         return f"{percent:.{min(max(2 - power, 0), 5)}f} %"
-    digits, _, exponent = f"{percent:.2e}".partition("e")
-    return f"{digits}·10{str(int(exponent)).translate(_RAISED)} %"
+    return f"{_scientific(percent, 2)} %"
 
 
-def length_of(metres: float) -> str:
-    """Return a round length.
+_NAMES = {"J/s": "W", "kg m/s^2": "N", "kg m^2/s^2": "N m", "N m/s": "W", "N s/kg": "m/s", "N/kg": "m/s^2"}
+"""Shorter names."""
 
-    >>> length_of(0.5), length_of(2000.0), length_of(5e-6)
-    ('0.5 m', '2000 m', '5·10⁻⁶ m')
+
+def product(unit: str, other: str) -> str:
+    """Return the unit of the area under a line.
+
+    >>> product("m/s", "s"), product("N", "s"), product("N", "m"), product("m/s^2", "s")
+    ('m', 'N s', 'J', 'm/s')
     """
-    if 1e-3 <= metres < 1e5:
-        return f"{metres:g} m"
-    digits, _, exponent = f"{metres:.0e}".partition("e")
-    return f"{digits}·10{str(int(exponent)).translate(_RAISED)} m"
+    if {unit, other} == {"N", "m"}:
+        return "J"  # the work of a force; a torque is no area
+    return _written(unit, other, 1)
+
+
+def quotient(unit: str, other: str) -> str:
+    """Return the unit of a slope.
+
+    >>> quotient("m", "s"), quotient("m/s", "s"), quotient("J", "s"), quotient("kg m/s", "s")
+    ('m/s', 'm/s^2', 'W', 'N')
+    >>> quotient("kg m^2/s", "s"), quotient("m/s", "m"), quotient("rad", "rad/s")
+    ('N m', '1/s', 's')
+    """
+    return _written(unit, other, -1)
+
+
+def written_unit(unit: str) -> str:
+    """Return a unit as people write it.
+
+    >>> written_unit("kg m^2/s"), written_unit("1")
+    ('kg m²/s', '')
+    """
+    parts = unit.split("^")
+    raised = [part[:1].translate(_RAISED) + part[1:] for part in parts[1:]]
+    return "" if unit == "1" else "".join((parts[0], *raised))
+
+
+def _powers(unit: str) -> Counter[str]:
+    """Return the power of each part of a unit: ``"kg m^2/s"`` has kg 1, m 2, s -1."""
+    above, _, below = unit.partition("/")
+    powers: Counter[str] = Counter()
+    for words, sign in ((above, 1), (below, -1)):
+        for word in words.split():
+            name, _, power = word.partition("^")
+            if name != "1":
+                powers[name] += sign * int(power or 1)
+    return powers
+
+
+def _written(unit: str, other: str, sign: int) -> str:
+    """Return a unit times another, or over it for a ``sign`` of -1."""
+    powers = _powers(unit)
+    for name, power in _powers(other).items():
+        powers[name] += sign * power
+    above = " ".join(_raised(name, power) for name, power in powers.items() if power > 0)
+    below = " ".join(_raised(name, -power) for name, power in powers.items() if power < 0)
+    words = f"{above or '1'}/{below}" if below else above or "1"
+    return _NAMES.get(words, words)
+
+
+def _raised(name: str, power: int) -> str:
+    return name if power == 1 else f"{name}^{power}"

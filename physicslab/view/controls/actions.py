@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from typing import Any
 
 from physicslab.components import Held, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import Component
@@ -16,13 +17,14 @@ from physicslab.view.controls.measuring import nudged
 from physicslab.view.controls.tools import HAND, Tool
 from physicslab.view.overlay.instruments import instruments_of
 from physicslab.view.panels.laws import has_gravity
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
 __all__ = [
     "choose_tool",
     "clear",
     "close",
+    "copy_selected",
     "duplicate_selected",
     "enlarge",
     "faster",
@@ -33,9 +35,9 @@ __all__ = [
     "next_theme",
     "nudger",
     "paste",
-    "put_panels_back",
     "redo",
     "reduce",
+    "reset_layout",
     "seek",
     "select_all",
     "select_next",
@@ -44,17 +46,11 @@ __all__ = [
     "step",
     "step_back",
     "toggle_arrows",
-    "toggle_figures",
-    "toggle_gallery",
     "toggle_gravity",
-    "toggle_grid",
-    "toggle_help",
-    "toggle_history",
     "toggle_impulses",
     "toggle_pause",
     "toggle_planets",
     "toggle_scales",
-    "toggle_slow_motion",
     "toggle_snapping",
     "toggle_trails",
     "turner",
@@ -71,7 +67,7 @@ _TEXT_SCALES = (0.8, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0)
 _NO_GRAVITY = "This world was made without GravitySystem: no law of gravity acts in it"
 
 
-def choose_tool(window: Window, tool: Tool) -> None:
+def choose_tool(world: World, window: Window, tool: Tool) -> None:
     """Let the left mouse button do something else."""
     window.spring_tool.cancel()
     window.measuring.cancel()
@@ -85,11 +81,6 @@ def toggle_pause(world: World, window: Window) -> None:
     window.edits.history.divide()
     if not window.pace.paused:
         window.error = ""
-
-
-def toggle_slow_motion(world: World, window: Window) -> None:
-    """Let time run at a quarter of its speed, or as usual."""
-    window.pace.slow_motion = not window.pace.slow_motion
 
 
 def slower(world: World, window: Window) -> None:
@@ -215,11 +206,6 @@ def next_theme(world: World, window: Window) -> None:
     window.notify(f"Colours: {window.theme.name}")
 
 
-def toggle_figures(world: World, window: Window) -> None:
-    """Show the panel at the right, or leave its room to the world."""
-    window.figures = not window.figures
-
-
 def fit(world: World, window: Window) -> None:
     """Show all of the world."""
     window.fit(world)
@@ -230,69 +216,46 @@ def go_home(world: World, window: Window) -> None:
     window.go_home(world)
 
 
-def toggle_grid(world: World, window: Window) -> None:
-    """Show the grid, or hide it."""
-    window.grid = not window.grid
-
-
-def toggle_gallery(world: World, window: Window) -> None:
-    """Show the gallery of scenes, or no longer."""
-    window.shows_gallery = not window.shows_gallery
-
-
 def toggle_snapping(world: World, window: Window) -> None:
     """Let places, sizes and angles snap, or no longer."""
     window.snapping.on = not window.snapping.on
     window.notify("Snapping is on" if window.snapping.on else "Snapping is off")
 
 
-def toggle_history(world: World, window: Window) -> None:
-    """Show the list of edits and runs, or no longer."""
-    window.lists_history = not window.lists_history
-
-
-def put_panels_back(world: World, window: Window) -> None:
-    """Put every window back where it is at first, and undock it."""
+def reset_layout(world: World, window: Window) -> None:
+    """Put every window back in its first place, and undock it."""
     window.arrangement = ""
-    window.notify("Windows are where they were at first")
-
-
-def toggle_help(world: World, window: Window) -> None:
-    """Show all keys, or the world and its figures again."""
-    window.help = not window.help
+    window.notify("Layout reset")
 
 
 def leave(world: World, window: Window) -> None:
     """Leave the help, the plot, what is selected or the tool if there is one, else the window."""
-    if window.measuring.cancel():
+    if window.measuring.cancel() or _close_panel(window):
         return
-    if window.help:
-        window.help = False
-    elif window.shows_gallery:
-        window.shows_gallery = False
-    elif window.filming.choosing:
-        window.filming.choosing = False
-    elif window.opening is not None:
-        window.opening = None
-    elif window.naming is not None:
-        window.naming = None
-    elif window.lists_history:
-        window.lists_history = False
-    elif window.microscope.is_open:
-        window.microscope.close()
-    elif window.impacts.shown:
-        window.impacts.shown = False
-    elif window.error_study.shown:
-        window.error_study.shown = False
-    elif window.picking is not None:
+    if window.picking is not None:
         window.picking = None
         window.notify("Nothing was chosen")
     elif window.selection.entities:
         window.selection.clear()
     elif window.tool != HAND.name:
-        choose_tool(window, HAND)
+        choose_tool(world, window, HAND)
     else:
         window.ask_to_close(world)
+
+
+def _close_panel(window: Window) -> bool:
+    """Close the first panel of these that is open; return whether there is one."""
+    panels: tuple[tuple[Any, str, bool | None], ...] = (
+        (window, "help", False), (window, "shows_gallery", False), (window.filming, "choosing", False),
+        (window, "opening", None), (window, "naming", None), (window, "lists_history", False),
+        (window.microscope, "record", None), (window.impacts, "shown", False),
+        (window.error_study, "shown", False),
+    )  # fmt: skip
+    for owner, name, closed in panels:
+        if getattr(owner, name) is not closed:
+            setattr(owner, name, closed)
+            return True
+    return False
 
 
 def close(world: World, window: Window) -> None:
@@ -366,7 +329,7 @@ def select_next(world: World, window: Window) -> None:
         window.selection.take(next((entity for entity in bodies if entity > now), bodies[0]))
 
 
-def nudger(across: int, up: int) -> Callable[[World, Window], None]:
+def nudger(across: int, up: int) -> Action:
     """Return what moves all that is selected by so many pixels."""
 
     def nudge(world: World, window: Window) -> None:
@@ -383,7 +346,7 @@ def nudger(across: int, up: int) -> Callable[[World, Window], None]:
     return nudge
 
 
-def turner(sign: int) -> Callable[[World, Window], None]:
+def turner(sign: int) -> Action:
     """Return what turns each body that is selected by a degree, or by 15 where angles snap."""
 
     def turn(world: World, window: Window) -> None:
@@ -401,10 +364,8 @@ def turner(sign: int) -> Callable[[World, Window], None]:
 
 def undo(world: World, window: Window) -> None:
     """Take back the last edit or run."""
-    window.hand.drop(world)
-    window.edits.take_back_shown()
+    window.pause_for_history(world)
     words = window.edits.history.undo()
-    window.pace.paused = True
     if words is None and window.left is not None:
         window.next_world = window.left.history.world
         words = "opened another scene"
@@ -413,26 +374,22 @@ def undo(world: World, window: Window) -> None:
 
 def redo(world: World, window: Window) -> None:
     """Put back what was taken back last."""
-    window.hand.drop(world)
-    window.edits.take_back_shown()
+    window.pause_for_history(world)
     words = window.edits.history.redo()
-    window.pace.paused = True
     window.notify(f"Put back: {words}" if words else "There is nothing to put back")
 
 
-def seek(window: Window, step: int) -> None:
+def seek(world: World, window: Window, step: int) -> None:
     """Go to the place after so many steps, and pause there; beyond the ends to the nearest."""
     history = window.edits.history
-    window.hand.drop(history.world)
-    window.edits.take_back_shown()
+    window.pause_for_history(world)
     first, last = history.steps_range
-    window.pace.paused = True
     history.seek(min(max(step, first), last))
 
 
 def step_back(world: World, window: Window) -> None:
     """Pause, and go back by one step."""
-    seek(window, window.edits.history.step_count - 1)
+    seek(world, window, window.edits.history.step_count - 1)
 
 
 def _width(world: World, entity: int) -> float:

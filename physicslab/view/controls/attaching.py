@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 
 from physicslab.components import Transform
 from physicslab.diagnostics.period import gives_way
@@ -10,7 +11,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import Spawn
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.window.spring_tool import spring_between
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
 __all__ = ["attachments"]
@@ -20,10 +21,8 @@ _ABOVE = 1.5
 _WAYS = {"spring": False, "rod": True}
 """What two ends can be joined by, and whether that is stiff."""
 
-type Deed = Callable[[World, Window], None]
 
-
-def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, Deed]]:
+def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, Action]]:
     """Return how what is selected can be attached: the words on a button, its tip, and what it does."""
     if not entities or len(entities) > 2 or not all(world.has(entity, Transform) for entity in entities):
         return {}
@@ -31,31 +30,25 @@ def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, D
         return {
             f"Join by a {way}": (
                 f"A {way} between these two, as long at rest as they are apart now",
-                _joining(entities[0], entities[1], stiff),
+                partial(_join, entities[0], entities[1], stiff),
             )
             for way, stiff in _WAYS.items()
         }
     words = {"spring": "Hang on a spring", "rod": "Hang on a rod"}
     return {
-        words[way]: (f"A {way} to a point above it, which can be dragged", _hanging(entities[0], stiff))
+        words[way]: (f"A {way} to a point above it, which can be dragged", partial(_hang, entities[0], stiff))
         for way, stiff in _WAYS.items()
     }
 
 
-def _joining(one: int, other: int, stiff: bool) -> Deed:
-    def deed(world: World, window: Window) -> None:
-        places = [world.component(entity, Transform).position for entity in (one, other)]
-        _attach(world, window, one, other, (places[0], places[1]), stiff)
-
-    return deed
+def _join(one: int, other: int, stiff: bool, world: World, window: Window) -> None:
+    places = [world.component(entity, Transform).position for entity in (one, other)]
+    _attach(world, window, one, other, (places[0], places[1]), stiff)
 
 
-def _hanging(entity: int, stiff: bool) -> Deed:
-    def deed(world: World, window: Window) -> None:
-        place = world.component(entity, Transform).position
-        _attach(world, window, entity, None, (place, _within(world, place)), stiff)
-
-    return deed
+def _hang(entity: int, stiff: bool, world: World, window: Window) -> None:
+    place = world.component(entity, Transform).position
+    _attach(world, window, entity, None, (place, _within(world, place)), stiff)
 
 
 def _within(world: World, place: Vector2) -> Vector2:

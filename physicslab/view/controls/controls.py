@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from physicslab.components import Strobe, Trail
 from physicslab.view.controls import (
     actions,
     dashboard_actions,
     file_actions,
-    film_actions,
     history_actions,
     impact_actions,
     keyboard,
@@ -36,12 +36,11 @@ from physicslab.view.controls.tools import (
     remove_selected,
 )
 from physicslab.view.panels.laws import has_gravity
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
 __all__ = ["CONTROLS", "KEYS", "RELEASES", "Control"]
 
-type Action = Callable[[World, Window], None]
 type State = Callable[[World, Window], bool]
 
 _BOX, _PENDULUM = (
@@ -65,8 +64,6 @@ class Control:
         What is called when the key goes down, and when it goes up.
     also : tuple of str
         Other keys that do the same.
-    minor : bool
-        Whether it is for those who look for it.
     group, tip : str
         In the menus: what it stands together with, and the words of its tip.
     tool : Tool, optional
@@ -83,7 +80,6 @@ class Control:
     action: Action | None = None
     release: Action | None = None
     also: tuple[str, ...] = ()
-    minor: bool = False
     group: str = ""
     tip: str = ""
     tool: Tool | None = None
@@ -101,9 +97,25 @@ class Control:
 
     def pressed(self, world: World, window: Window) -> None:
         """Do what its line in a menu does."""
-        deed = self.click or self.action
-        if deed is not None:
-            deed(world, window)
+        action = self.click or self.action
+        if action is not None:
+            action(world, window)
+
+
+def _switch(label: str, does: str, key: str, flag: str, group: str, tip: str) -> Control:
+    """Return what turns a flag of the window on and off, such as ``"pace.slow_motion"``."""
+    path, _, name = flag.rpartition(".")
+
+    def owner(window: Window) -> Any:
+        return getattr(window, path) if path else window
+
+    def toggle(world: World, window: Window) -> None:
+        setattr(owner(window), name, not getattr(owner(window), name))
+
+    def is_on(world: World, window: Window) -> bool:
+        return bool(getattr(owner(window), name))
+
+    return Control(label, does, key, toggle, group=group, tip=tip, state=is_on)
 
 
 def _gravity_is(world: World, mode: str) -> bool:
@@ -119,31 +131,27 @@ CONTROLS: tuple[Control, ...] = (
             tip="Springs: drag from a body"),
     Control("Del", "remove", "delete", remove_selected, also=("backspace",), group="edit",
             tip="Remove what is selected, or the body under the cursor"),
-    Control("Ctrl+D", "duplicate", "ctrl+d", actions.duplicate_selected, minor=True, group="edit",
+    Control("Ctrl+D", "duplicate", "ctrl+d", actions.duplicate_selected, group="edit",
             tip="Another one beside each body that is selected"),
-    Control("Ctrl+Z", "undo", "ctrl+z", actions.undo, minor=True, group="edit",
-            tip="Take back the last edit or run"),
-    Control("Ctrl+Y", "redo", "ctrl+y", actions.redo, also=("ctrl+shift+z",), minor=True, group="edit",
+    Control("Ctrl+Z", "undo", "ctrl+z", actions.undo, group="edit", tip="Take back the last edit or run"),
+    Control("Ctrl+Y", "redo", "ctrl+y", actions.redo, also=("ctrl+shift+z",), group="edit",
             tip="Put back what was taken back last"),
-    Control("U", "history", "u", actions.toggle_history, minor=True, group="edit",
-            state=lambda _, window: window.lists_history, tip="The list of all edits, runs and branches"),
-    Control("Ctrl+B", "another branch", "ctrl+b", history_actions.next_branch, minor=True, group="edit",
-            tip="Go to what was done before the past was changed, and back"),
-    Control("Ctrl+C", "copy", "ctrl+c", actions.copy_selected, minor=True, group="edit",
+    _switch("U", "history", "u", "lists_history", "edit", "The list of all edits, runs and branches"),
+    Control("Ctrl+B", "another branch", "ctrl+b", history_actions.next_branch, group="edit",
+            tip="Switch to the other branch"),
+    Control("Ctrl+C", "copy", "ctrl+c", actions.copy_selected, group="edit",
             tip="Keep a copy of what is selected"),
-    Control("Ctrl+V", "paste", "ctrl+v", actions.paste, minor=True, group="edit",
+    Control("Ctrl+V", "paste", "ctrl+v", actions.paste, group="edit",
             tip="Put what was copied where the cursor is"),
-    Control("Ctrl+A", "select all", "ctrl+a", actions.select_all, minor=True, group="edit",
-            tip="Select all bodies"),
-    Control("N", "next body", "n", actions.select_next, minor=True, group="edit",
-            tip="Select the next body"),
-    Control("Arrows", "move what is selected", "left", keyboard.ARROWS["left"], minor=True, group="edit",
+    Control("Ctrl+A", "select all", "ctrl+a", actions.select_all, group="edit", tip="Select all bodies"),
+    Control("N", "next body", "n", actions.select_next, group="edit", tip="Select the next body"),
+    Control("Arrows", "move what is selected", "left", keyboard.ARROWS["left"], group="edit",
             tip="Move what is selected by a pixel; where nothing is, the cursor"),
-    Control("Enter", "edit, or click", "return", keyboard.enter, also=("enter",), minor=True, group="edit",
+    Control("Enter", "edit, or click", "return", keyboard.enter, also=("enter",), group="edit",
             tip="Edit the numbers of what is selected; where nothing is, click with the tool at the cursor"),
-    Control("Shift+Arrows", "turn what is selected", "shift+left", keyboard.ARROWS["shift+left"], minor=True,
+    Control("Shift+Arrows", "turn what is selected", "shift+left", keyboard.ARROWS["shift+left"],
             group="edit", tip="Turn what is selected by a degree; by 15 degrees where angles snap"),
-    Control("Q", "snap", "q", actions.toggle_snapping, minor=True, group="edit",
+    Control("Q", "snap", "q", actions.toggle_snapping, group="edit",
             state=lambda _, window: window.snapping.on,
             tip="Places and sizes snap to the grid and to other bodies, angles to 15 degrees; also while "
                 "Alt or Ctrl is held"),
@@ -152,15 +160,13 @@ CONTROLS: tuple[Control, ...] = (
             state=lambda _, window: window.pace.paused, tip="Pause or resume"),
     Control(".", "one step", ".", actions.step, also=(",", "[.]"), group="time",
             tip="Pause, and make one step"),
-    Control("B", "one step back", "b", actions.step_back, minor=True, group="time",
-            tip="Pause, and go back by one step"),
-    Control("Ctrl+R", "start again", "ctrl+r", file_actions.restart, minor=True, group="time",
+    Control("B", "one step back", "b", actions.step_back, group="time", tip="Pause, and go back by one step"),
+    Control("Ctrl+R", "start again", "ctrl+r", file_actions.restart, group="time",
             tip="Open this scene once more, as it was at its start"),
-    Control("Tab", "slow motion", "tab", actions.toggle_slow_motion, group="time",
-            state=lambda _, window: window.pace.slow_motion, tip="Slow motion: a quarter of the speed"),
-    Control("[", "half the speed", "[", actions.slower, also=("page down",), minor=True, group="time",
+    _switch("Tab", "slow motion", "tab", "pace.slow_motion", "time", "Slow motion: a quarter of the speed"),
+    Control("[", "half the speed", "[", actions.slower, also=("page down",), group="time",
             tip="Half the speed"),
-    Control("]", "twice the speed", "]", actions.faster, also=("page up",), minor=True, group="time",
+    Control("]", "twice the speed", "]", actions.faster, also=("page up",), group="time",
             tip="Twice the speed"),
     Control("G", "gravity", "g", actions.toggle_gravity, group="laws",
             state=lambda world, _: _gravity_is(world, "linear") and bool(world.physics.gravity),
@@ -174,92 +180,81 @@ CONTROLS: tuple[Control, ...] = (
             state=lambda world, _: bool(world.table(Trail).handles), tip="Trails behind moving bodies"),
     Control("E", "impulses", "e", actions.toggle_impulses, group="show",
             state=lambda _, window: window.overlays.impulses, tip="Impulses at contacts, with numbers"),
-    Control("D", "ruler", "d", measuring(RULER, actions.choose_tool), minor=True, group="measure", tool=RULER,
+    Control("D", "ruler", "d", measuring(RULER, actions.choose_tool), group="measure", tool=RULER,
             tip="A length: drag; or between two bodies that are selected"),
-    Control("Y", "angle", "y", measuring(PROTRACTOR, actions.choose_tool), minor=True, group="measure",
-            tool=PROTRACTOR, tip="An angle: drag one arm from the vertex, then click the end of the other"),
-    Control("J", "gate", "j", measuring(GATE, actions.choose_tool), minor=True, group="measure", tool=GATE,
+    Control("Y", "angle", "y", measuring(PROTRACTOR, actions.choose_tool), group="measure", tool=PROTRACTOR,
+            tip="An angle: drag one arm from the vertex, then click the end of the other"),
+    Control("J", "gate", "j", measuring(GATE, actions.choose_tool), group="measure", tool=GATE,
             tip="A light gate: notes when bodies cross it"),
-    Control("W", "note", "w", measuring(NOTE, actions.choose_tool), minor=True, group="measure", tool=NOTE,
+    Control("W", "note", "w", measuring(NOTE, actions.choose_tool), group="measure", tool=NOTE,
             tip="Words at a place of the world"),
-    Control("C", "stopwatch", "c", toggle_stopwatch, minor=True, group="measure",
+    Control("C", "stopwatch", "c", toggle_stopwatch, group="measure",
             state=lambda _, window: window.shows_stopwatch, tip="The times between crossings of gates"),
-    Control("X", "strobe of all that moves", "x", toggle_strobes, minor=True, group="measure",
+    Control("X", "strobe of all that moves", "x", toggle_strobes, group="measure",
             state=lambda world, _: bool(world.table(Strobe).handles),
             tip="Pictures of all that moves, ten a second"),
-    Control("Z", "impacts", "z", impact_actions.toggle_impacts, minor=True, group="measure",
-            state=lambda _, window: window.impacts.shown,
-            tip="A table of all impacts; a click on a row, or on a spark, opens the collision microscope"),
-    Control("Shift+Z", "pause at the next impact", "shift+z", impact_actions.pause_at_next, minor=True,
-            group="measure", state=lambda _, window: window.microscope.waits_for is not None,
+    _switch("Z", "impacts", "z", "impacts.shown", "measure",
+            "A table of all impacts; a click on a row, or on a spark, opens the collision microscope"),
+    Control("Shift+Z", "pause at the next impact", "shift+z", impact_actions.pause_at_next, group="measure",
+            state=lambda _, window: window.microscope.waits_for is not None,
             tip="Time stands still when what is selected strikes something, and the microscope opens"),
-    Control("Shift+Tab", "slowly through the impact", "shift+tab", impact_actions.run_slowly,
-            minor=True, group="measure", state=lambda _, window: window.microscope.slow is not None,
+    Control("Shift+Tab", "slowly through the impact", "shift+tab", impact_actions.run_slowly, group="measure",
+            state=lambda _, window: window.microscope.slow is not None,
             tip="Goes to shortly before the impact in the microscope, and lets time run slowly"),
-    Control("A", "keep scales", "a", actions.toggle_scales, minor=True, group="show",
+    Control("A", "keep scales", "a", actions.toggle_scales, group="show",
             state=lambda _, window: window.overlays.keeps_scales,
             tip="Arrows keep their scale, so that two pictures can be compared"),
-    Control("M", "graph", "m", dashboard_actions.plot_selected, minor=True, group="measure",
+    Control("M", "graph", "m", dashboard_actions.plot_selected, group="measure",
             tip="A graph against time: of what is selected, or of the energies"),
-    Control("Shift+M", "phase plot", "shift+m", dashboard_actions.plot_phase, minor=True, group="measure",
+    Control("Shift+M", "phase plot", "shift+m", dashboard_actions.plot_phase, group="measure",
             tip="The velocity of what is selected against its place"),
-    Control("Ctrl+M", "meter", "ctrl+m", dashboard_actions.add_meter, minor=True, group="measure",
+    Control("Ctrl+M", "meter", "ctrl+m", dashboard_actions.add_meter, group="measure",
             tip="A number in large figures: the speed of what is selected, or the total energy"),
-    Control("Ctrl+Shift+M", "slider", "ctrl+shift+m", dashboard_actions.add_slider, minor=True,
-            group="measure",
+    Control("Ctrl+Shift+M", "slider", "ctrl+shift+m", dashboard_actions.add_slider, group="measure",
             tip="Changes a number by sliding: of what is selected, or gravity"),
-    Control("I", "panel at the right", "i", actions.toggle_figures, minor=True, group="show",
-            state=lambda _, window: window.figures, tip="What is selected, or the world in figures"),
-    Control("H", "grid", "h", actions.toggle_grid, minor=True, group="show",
-            state=lambda _, window: window.grid, tip="The grid"),
+    _switch("I", "panel at the right", "i", "figures", "show", "What is selected, or the world in figures"),
+    _switch("H", "grid", "h", "grid", "show", "The grid"),
     Control("Middle", "pan", tool=PAN, tip="Move the view by dragging"),
     Control("Wheel", "zoom"),
-    Control("+", "zoom in", "=", actions.zoom_in, also=("+", "[+]"), minor=True, group="view",
-            click=actions.enlarge,
+    Control("+", "zoom in", "=", actions.zoom_in, also=("+", "[+]"), group="view", click=actions.enlarge,
             tip="Zoom in"),
-    Control("-", "zoom out", "-", actions.zoom_out, also=("[-]",), minor=True, group="view",
-            click=actions.reduce,
+    Control("-", "zoom out", "-", actions.zoom_out, also=("[-]",), group="view", click=actions.reduce,
             tip="Zoom out"),
     Control("F", "fit", "f", actions.fit, group="view", tip="Fit everything into the window"),
-    Control("Home", "first view", "home", actions.go_home, minor=True, group="view",
-            tip="The view at the start"),
-    Control("L", "scenes", "l", actions.toggle_gallery, minor=True, group="file",
-            state=lambda _, window: window.shows_gallery, tip="Choose a scene by its picture"),
-    Control("Ctrl+S", "save the scene", "ctrl+s", file_actions.save, minor=True, group="file",
+    Control("Home", "first view", "home", actions.go_home, group="view", tip="The view at the start"),
+    _switch("L", "scenes", "l", "shows_gallery", "file", "Choose a scene by its picture"),
+    Control("Ctrl+S", "save the scene", "ctrl+s", file_actions.save, group="file",
             tip="Save the scene to a new file"),
-    Control("Ctrl+Shift+S", "save under a name", "ctrl+shift+s", file_actions.begin_save_as, minor=True,
-            group="file", tip="Save the scene to a file that you name"),
-    Control("Ctrl+O", "open the last scene saved", "ctrl+o", file_actions.reopen, minor=True, group="file",
+    Control("Ctrl+Shift+S", "save under a name", "ctrl+shift+s", file_actions.begin_save_as, group="file",
+            tip="Save the scene to a file that you name"),
+    Control("Ctrl+O", "open the last scene saved", "ctrl+o", file_actions.reopen, group="file",
             tip="Open the scene last saved"),
-    Control("Ctrl+Shift+O", "open a file", "ctrl+shift+o", file_actions.begin_open, minor=True, group="file",
+    Control("Ctrl+Shift+O", "open a file", "ctrl+shift+o", file_actions.begin_open, group="file",
             state=lambda _, window: window.opening is not None,
             tip="Open a file by its name, or one of the last few"),
-    Control("Ctrl+Shift+R", "save what was done", "ctrl+shift+r", history_actions.save_recording, minor=True,
+    Control("Ctrl+Shift+R", "save what was done", "ctrl+shift+r", history_actions.save_recording,
             group="file", tip="Save all edits and runs to a file that physicslab replay plays"),
-    Control("F12", "screenshot", "f12", file_actions.request_screenshot, minor=True, group="file",
+    Control("F12", "screenshot", "f12", file_actions.request_screenshot, group="file",
             tip="Save a picture of the window"),
-    Control("F9", "film", "f9", film_actions.toggle_film, minor=True, group="file",
+    Control("F9", "film", "f9", file_actions.toggle_film, group="file",
             state=lambda _, window: window.filming.running,
             tip="A film of what was run, or of what comes: GIF or MP4"),
-    Control("F5", "error against run time", "f5", file_actions.study_error, minor=True, group="file",
+    Control("F5", "error against run time", "f5", file_actions.study_error, group="file",
             state=lambda _, window: window.error_study.running,
             tip="Runs this scene by every method, and plots how far each is off and what it costs"),
     Control("Ctrl++", "larger text", "ctrl+=", actions.larger_text, also=("ctrl++", "ctrl+[+]"),
-            minor=True, group="window",
-            tip="All text larger"),
-    Control("Ctrl+-", "smaller text", "ctrl+-", actions.smaller_text, also=("ctrl+[-]",), minor=True,
-            group="window",
+            group="window", tip="All text larger"),
+    Control("Ctrl+-", "smaller text", "ctrl+-", actions.smaller_text, also=("ctrl+[-]",), group="window",
             tip="All text smaller"),
-    Control("F2", "other colours", "f2", actions.next_theme, minor=True, group="window",
+    Control("F2", "other colours", "f2", actions.next_theme, group="window",
             tip="Colours: dark, high contrast, projector"),
-    Control("F6", "next panel", "f6", keyboard.walk, minor=True, group="window",
+    Control("F6", "next panel", "f6", keyboard.walk, group="window",
             tip="Go through the buttons and fields of the next panel with Tab and arrows; Esc goes back"),
-    Control("F10", "menus", "f10", keyboard.open_menu, minor=True, group="window",
+    Control("F10", "menus", "f10", keyboard.open_menu, group="window",
             tip="Open the menus: arrows, Enter, Esc. So does Alt alone"),
-    Control("F7", "panels as at first", "f7", actions.put_panels_back, minor=True, group="window",
-            tip="Put windows that were moved or docked back where they were at first"),
-    Control("F1", "all keys", "f1", actions.toggle_help, group="help",
-            state=lambda _, window: window.help, tip="All keys"),
+    Control("F7", "reset layout", "f7", actions.reset_layout, group="window",
+            tip="Put windows that were moved or docked back in their places"),
+    _switch("F1", "all keys", "f1", "help", "help", "All keys"),
     Control("Esc", "quit", "escape", actions.leave, group="quit", click=actions.close, tip="Quit"),
 )  # fmt: skip
 """Everything there is to press, in the order of the help and the menus."""

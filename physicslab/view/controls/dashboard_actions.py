@@ -2,31 +2,33 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+
+import numpy as np
 
 from physicslab.components import Graph, GraphLine, Mass, Meter, Shape, Slider, Spring, Transform, Velocity
-from physicslab.components.graph import TIME
+from physicslab.components.quantities import QUANTITIES
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import InvalidValue
+from physicslab.ecs.text import table_cell
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.view.controls import actions
 from physicslab.view.controls.file_actions import save_new
-from physicslab.view.window.dashboard import GraphShown, SliderShown
+from physicslab.view.window.dashboard import Dashboard, GraphShown, SliderShown
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.record import Key
-from physicslab.view.window.table import table_of
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "add_meter", "add_slider", "changing", "close_graph", "go_to", "plot_phase", "plot_selected",
-    "put_across", "removing", "save_picture", "save_table", "slide", "toggle_line", "usual_range",
+    "add_meter", "add_slider", "change", "close_graph", "go_to", "plot_phase", "plot_selected", "remove",
+    "save_picture", "save_table", "slide", "table_of", "toggle_line", "usual_range",
 ]  # fmt: skip
-
-type Deed = Callable[[World, Window], None]
 
 _ENERGIES = ("kinetic energy", "potential energy", "total energy")
 _LIMIT = 8
@@ -109,46 +111,32 @@ def usual_range(world: World, changes: str, entity: int | None) -> tuple[float, 
     return max(low, spec.lowest), min(high, spec.highest)
 
 
-def toggle_line(graph: GraphShown, key: Key) -> Deed:
-    """Return what draws a line in a graph, or takes it away."""
-
-    def deed(world: World, window: Window) -> None:
-        body, name = key
-        there = [Remove(line.entity) for line in graph.lines if line.key == key]
-        what = name if body is None else f"{name} of {window.dashboard.label(body)}"
-        if there:
-            _do(world, window, graph.entity, Group(f"took {what} from a graph", there))
-        else:
-            made = Spawn([GraphLine(graph.entity, name, body)])
-            _do(world, window, graph.entity, Group(f"plotted {what}", [made]))
-
-    return deed
+def toggle_line(world: World, window: Window, graph: GraphShown, key: Key) -> None:
+    """Draw a line in a graph, or take it away."""
+    body, name = key
+    there = [Remove(line.entity) for line in graph.lines if line.key == key]
+    what = name if body is None else f"{name} of {window.dashboard.label(body)}"
+    if there:
+        _do(world, window, graph.entity, Group(f"took {what} from a graph", there))
+    else:
+        made = Spawn([GraphLine(graph.entity, name, body)])
+        _do(world, window, graph.entity, Group(f"plotted {what}", [made]))
 
 
-def put_across(graph: GraphShown, key: Key | None) -> Deed:
-    """Return what puts a quantity on the horizontal axis of a graph, or the time."""
-    body, name = key or (None, TIME)
-    return changing(graph.entity, Graph(name, body, graph.side))
+def change(world: World, window: Window, entity: int, part: Component) -> None:
+    """Give an instrument other fields."""
+    _do(world, window, entity, AddComponent(entity, part))
 
 
-def changing(entity: int, part: Component) -> Deed:
-    """Return what gives an instrument other fields."""
-    return lambda world, window: _do(world, window, entity, AddComponent(entity, part))
+def remove(world: World, window: Window, entity: int) -> None:
+    """Remove a meter or a slider."""
+    _do(world, window, entity, Remove(entity))
 
 
-def removing(entity: int) -> Deed:
-    """Return what removes a meter or a slider."""
-    return lambda world, window: _do(world, window, entity, Remove(entity))
-
-
-def close_graph(graph: GraphShown) -> Deed:
-    """Return what removes a graph with its lines."""
-
-    def deed(world: World, window: Window) -> None:
-        lines = [Remove(line.entity) for line in graph.lines]
-        _do(world, window, graph.entity, Group("closed a graph", [*lines, Remove(graph.entity)]))
-
-    return deed
+def close_graph(world: World, window: Window, graph: GraphShown) -> None:
+    """Remove a graph with its lines."""
+    lines = [Remove(line.entity) for line in graph.lines]
+    _do(world, window, graph.entity, Group("closed a graph", [*lines, Remove(graph.entity)]))
 
 
 def _do(world: World, window: Window, entity: int, command: Command) -> None:
@@ -159,26 +147,22 @@ def _do(world: World, window: Window, entity: int, command: Command) -> None:
     window.edits.do(command)
 
 
-def slide(slider: SliderShown, value: float, *, held: bool) -> Deed:
-    """Return what gives the number of a slider another value.
+def slide(world: World, window: Window, slider: SliderShown, value: float, *, held: bool) -> None:
+    """Give the number of a slider another value.
 
     While the slider is ``held`` and time runs it is a part of the run, as what a hand does; once it is let go
     it is an edit.
     """
-
-    def deed(world: World, window: Window) -> None:
-        command = _sliding(world, slider, value)
-        if isinstance(command, str):
-            window.notify(command, 6.0, failed=True)
-        elif not held:
-            window.edits.do(command)
-        elif not window.pace.paused:
-            try:
-                window.edits.write(command)
-            except InvalidValue as error:
-                window.notify(str(error), 6.0, failed=True)
-
-    return deed
+    command = _sliding(world, slider, value)
+    if isinstance(command, str):
+        window.notify(command, 6.0, failed=True)
+    elif not held:
+        window.edits.do(command)
+    elif not window.pace.paused:
+        try:
+            window.edits.write(command)
+        except InvalidValue as error:
+            window.notify(str(error), 6.0, failed=True)
 
 
 def _sliding(world: World, slider: SliderShown, value: float) -> Command | str:
@@ -194,25 +178,16 @@ def _sliding(world: World, slider: SliderShown, value: float) -> Command | str:
     return refused or SetField(slider.target, kind.__name__, spec.name, value)
 
 
-def go_to(time: float) -> Deed:
-    """Return what pauses and goes to the recorded moment nearest to a time [s]."""
-
-    def deed(world: World, window: Window) -> None:
-        step = window.dashboard.step_at(time)
-        if step is not None:
-            actions.seek(window, step)
-
-    return deed
+def go_to(world: World, window: Window, time: float) -> None:
+    """Pause, and go to the recorded moment nearest to a time [s]."""
+    step = window.dashboard.step_at(time)
+    if step is not None:
+        actions.seek(world, window, step)
 
 
-def save_table(graph: GraphShown) -> Deed:
-    """Return what writes a graph to a new file where the program was started, as a table."""
-
-    def deed(world: World, window: Window) -> None:
-        content = table_of(graph, window.dashboard).encode("utf-8")
-        save_new(window, world, "graph", ".csv", content)
-
-    return deed
+def save_table(world: World, window: Window, graph: GraphShown) -> None:
+    """Write a graph to a new file where the program was started, as a table."""
+    save_new(window, world, "graph", ".csv", table_of(graph, window.dashboard).encode("utf-8"))
 
 
 def save_picture(world: World, window: Window, graph: GraphShown, content: bytes) -> None:
@@ -226,3 +201,25 @@ def _selected(world: World, window: Window) -> list[int]:
 
 def _labels(world: World, bodies: Sequence[int]) -> str:
     return world.label(bodies[0]) if len(bodies) == 1 else f"{len(bodies)} bodies" if bodies else ""
+
+
+def table_of(graph: GraphShown, dashboard: Dashboard) -> str:
+    """Return what a graph shows as CSV: the time, then a column for each quantity, in full figures.
+
+    Moments at which nothing of it was measured are left out.
+    """
+    record, keys = dashboard.record, list(dict.fromkeys(graph.keys))
+    columns = np.array([record.values(key) for key in keys]).reshape(len(keys), len(record))
+    text = io.StringIO()
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow(["time [s]", *(_heading(key, dashboard) for key in keys)])
+    for n in np.flatnonzero(~np.isnan(columns).all(axis=0)).tolist():
+        values = ("" if np.isnan(value) else repr(float(value)) for value in columns[:, n])
+        rows.writerow([repr(float(record.times[n])), *values])
+    return text.getvalue()
+
+
+def _heading(key: Key, dashboard: Dashboard) -> str:
+    body, name = key
+    heading = f"{name} [{QUANTITIES[name].unit}]"
+    return heading if body is None else table_cell(f"{dashboard.label(body)}: {heading}")

@@ -1,37 +1,24 @@
-"""What the user can do with scene files, and what is written of the window."""
+"""What the user can do with scene files and films, and what is written of the window."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable
+from physicslab.export.film import ENDINGS
 from physicslab.files.new_scene import file_stem, save_new_scene
 from physicslab.files.replace import create_file
 from physicslab.files.scene import SceneError, load_scene, save_scene
 from physicslab.view.controls.scene_files import is_recording, new_paths, new_scene_paths, newest_scene
+from physicslab.view.window.filming import FROM_NOW
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
 __all__ = [
-    "Deed",
-    "begin_open",
-    "begin_save_as",
-    "open_named",
-    "open_scene",
-    "opening",
-    "reopen",
-    "request_screenshot",
-    "restart",
-    "save",
-    "save_new",
-    "save_under",
-    "study_error",
-]
-
-type Deed = Callable[[World, Window], None]
-"""What a click is to do."""
+    "begin_film", "begin_open", "begin_save_as", "open_from_list", "open_named", "open_scene", "reopen",
+    "request_screenshot", "restart", "save", "save_new", "save_under", "study_error", "toggle_film",
+]  # fmt: skip
 
 
 def save(world: World, window: Window) -> None:
@@ -97,7 +84,7 @@ def begin_open(world: World, window: Window) -> None:
     window.opening = "" if window.opening is None else None
 
 
-def open_named(window: Window, text: str) -> None:
+def open_named(world: World, window: Window, text: str) -> None:
     """Open the file of a name, or of the number of a line of the last few files."""
     recent, text = window.recent.there, text.strip()
     if not text:
@@ -133,14 +120,10 @@ def open_scene(window: Window, source: str | Path) -> str:
     return ""
 
 
-def opening(source: str | Path) -> Deed:
-    """Return what opens a scene, and closes the gallery."""
-
-    def deed(world: World, window: Window) -> None:
-        window.shows_gallery = False
-        open_scene(window, source)
-
-    return deed
+def open_from_list(world: World, window: Window, source: str | Path) -> None:
+    """Open a scene, and close the gallery."""
+    window.shows_gallery = False
+    open_scene(window, source)
 
 
 def restart(world: World, window: Window) -> None:
@@ -182,3 +165,38 @@ def study_error(world: World, window: Window) -> None:
         window.error_study.start(world)
     except (OSError, SceneError) as error:
         window.notify(f"Error against run time could not be measured: {error}", failed=True)
+
+
+def toggle_film(world: World, window: Window) -> None:
+    """Let the user choose a film, or no longer; end the one that is being made."""
+    filming = window.filming
+    if filming.running:
+        filming.end()
+        return
+    filming.choosing, filming.refused = not filming.choosing, ""
+    if filming.choosing:
+        paths = new_paths(Path.cwd(), file_stem(world.name), Path(filming.name).suffix or ENDINGS[0])
+        filming.name = next(path.name for path in paths if not path.exists())
+
+
+def begin_film(world: World, window: Window) -> None:
+    """Begin the film that was chosen; where it cannot be made, say why."""
+    filming, name = window.filming, window.filming.name.strip()
+    window.hand.drop(world)
+    window.edits.take_back_shown()
+    try:
+        path = Path.cwd() / Path(name).expanduser()
+        if not name or path.is_dir():
+            raise ValueError("A name is needed")
+        if path.exists():
+            raise ValueError(f"There is a file {path.name} already")
+        filming.begin(path, filming.what, window.edits.history, window.room(), window.pace.speed)
+    except (OSError, ValueError, RuntimeError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        filming.refused = reason[:1].upper() + reason[1:]
+        return
+    filming.choosing = False
+    if filming.what == FROM_NOW:
+        window.notify("Filming: F9 ends it" + (", Space lets time run" if window.pace.paused else ""))
+    else:
+        window.pace.paused = True

@@ -1,4 +1,4 @@
-"""What the user can do with what was done: go to other branches, keep all of it in a file."""
+"""What the user can do with the history: switch branches, save all of it in a file."""
 
 from __future__ import annotations
 
@@ -28,14 +28,12 @@ def branch_words(branch: Branch, start: float) -> str:
     return f"At {start + branch.seconds:.2f} s: {shown}"
 
 
-def switch(window: Window, branch: Branch) -> None:
+def switch(world: World, window: Window, branch: Branch) -> None:
     """Go on along a branch, where it leaves the line that was gone along: that is a branch from now on."""
     history = window.edits.history
     if branch not in history.branches:  # clicked before the line changed
         return
-    window.hand.drop(history.world)
-    window.edits.take_back_shown()
-    window.pace.paused = True
+    window.pause_for_history(world)
     history.switch(branch)
     window.notify("Another branch: Space plays it, Ctrl+B goes back", 5.0)
 
@@ -44,9 +42,9 @@ def next_branch(world: World, window: Window) -> None:
     """Go on along the branch that was left first; one after the other, all come round."""
     branches = window.edits.history.branches
     if branches:
-        switch(window, branches[0])
+        switch(world, window, branches[0])
     else:
-        window.notify("There is no other branch: one begins where something is changed in the past")
+        window.notify("There is no other branch: a change in the past begins one")
 
 
 def save_recording(world: World, window: Window) -> None:

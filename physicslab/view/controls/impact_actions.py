@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from physicslab.components import Velocity
@@ -13,17 +12,7 @@ from physicslab.view.controls.picking import body_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = [
-    "clicked_impact",
-    "close_up",
-    "go_beside",
-    "pause_at_next",
-    "run_slowly",
-    "save_table",
-    "toggle_impacts",
-]
-
-type Deed = Callable[[World, Window], None]
+__all__ = ["clicked_impact", "close_up", "go_beside", "pause_at_next", "run_slowly", "save_table"]
 
 _REACH = 14.0
 """How near to the mark of an impact a click need be [px]."""
@@ -33,38 +22,25 @@ _AROUND = 0.12
 """How long before and after the impact that is [s]."""
 
 
-def toggle_impacts(world: World, window: Window) -> None:
-    """Show the table of impacts, or no longer; impacts are listed from when it is shown first."""
-    window.impacts.shown = not window.impacts.shown
+def close_up(world: World, window: Window, record: Any) -> None:
+    """Open the microscope at an impact, and go to the moment after it where that is kept."""
+    window.microscope.show(record)
+    history = window.edits.history
+    step = history.step_at(float(record["time"]))
+    if step != history.step_count:
+        actions.seek(world, window, step)
+    window.pace.paused = True
 
 
-def close_up(record: Any) -> Deed:
-    """Return what opens the microscope at an impact, and goes to the moment after it where that is kept."""
-
-    def deed(world: World, window: Window) -> None:
-        window.microscope.show(record)
-        history = window.edits.history
-        step = history.step_at(float(record["time"]))
-        if step != history.step_count:
-            actions.seek(window, step)
-        window.pace.paused = True
-
-    return deed
-
-
-def go_beside(by: int) -> Deed:
-    """Return what goes from the impact that is shown to the next one, or with -1 to the one before."""
-
-    def deed(world: World, window: Window) -> None:
-        microscope = window.microscope
-        time = microscope.collision.time if microscope.is_open else world.time
-        record = window.impacts.beside(time, by, window.selection.entities)
-        if record is None:
-            window.notify("No later impact is listed" if by > 0 else "No earlier impact is listed")
-        else:
-            close_up(record)(world, window)
-
-    return deed
+def go_beside(world: World, window: Window, by: int) -> None:
+    """Go from the impact that is shown to the next one, or with -1 to the one before."""
+    microscope = window.microscope
+    time = microscope.collision.time if microscope.is_open else world.time
+    record = window.impacts.beside(time, by, window.selection.entities)
+    if record is None:
+        window.notify("No later impact is listed" if by > 0 else "No earlier impact is listed")
+    else:
+        close_up(world, window, record)
 
 
 def pause_at_next(world: World, window: Window) -> None:
@@ -92,7 +68,7 @@ def run_slowly(world: World, window: Window) -> None:
     time = microscope.collision.time
     start, end = time - _AROUND, max(time + _AROUND, world.simulation.dt)
     was_paused = window.pace.paused
-    actions.seek(window, history.step_at(start))
+    actions.seek(world, window, history.step_at(start))
     window.pace.paused = was_paused
     microscope.run_slowly(window.pace, _SLOWLY, end)
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import pygame
 
+from physicslab.view.canvas.canvas import is_within
 from physicslab.view.controls.actions import nudger, turner
 from physicslab.view.controls.tools import TOOLS
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
 __all__ = ["ARROWS", "enter", "open_menu", "walk"]
@@ -46,10 +46,8 @@ def enter(world: World, window: Window) -> None:
 
 def _cursor(window: Window) -> tuple[int, int]:
     """Return where the cursor is [px]; where it was not in the world yet, that is the middle of it."""
-    left, top, width, height = window.room()
-    x, y = window.pointer
-    inside = left <= x < left + width and top <= y < top + height
-    x, y = window.pointer if inside and window.has_pointed else window.middle
+    inside = window.has_pointed and is_within(window.pointer, window.room())
+    x, y = window.pointer if inside else window.middle
     return round(x), round(y)
 
 
@@ -58,7 +56,7 @@ def _post(kind: int, place: tuple[int, int], **more: Any) -> None:
     pygame.event.post(pygame.Event(kind, pos=place, touch=False, by_key=True, **more))
 
 
-def _arrow(across: int, down: int, step: int) -> Callable[[World, Window], None]:
+def _arrow(across: int, down: int, step: int) -> Action:
     """Return what moves all that is selected by a pixel; where nothing is, the cursor by a step.
 
     With Shift held, an arrow to the side turns what is selected.

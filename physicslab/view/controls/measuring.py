@@ -16,7 +16,7 @@ from physicslab.view.controls.picking import centre_near, directions_near, instr
 from physicslab.view.controls.tool import Tool
 from physicslab.view.overlay.instruments import instrument_of
 from physicslab.view.window.measuring import Spot, Writing, made
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
 __all__ = [
@@ -93,7 +93,7 @@ def spot_of(world: World, window: Window) -> Spot:
 # ---- placing -----------------------------------------------------------------------------------------------
 
 
-def _placing(kind: type[Any]) -> Callable[[World, Window], None]:
+def _placing(kind: type[Any]) -> Action:
     def press(world: World, window: Window) -> None:
         """Put down a point."""
         if window.measuring.place(kind, spot_of(world, window)):
@@ -172,7 +172,7 @@ MEASURING_TOOLS = (RULER, PROTRACTOR, GATE, NOTE)
 _KINDS: dict[str, Any] = {RULER.name: Ruler, PROTRACTOR.name: Protractor, GATE.name: Gate, NOTE.name: Note}
 
 
-def measuring(tool: Tool, choose: Callable[[Window, Tool], None]) -> Callable[[World, Window], None]:
+def measuring(tool: Tool, choose: Callable[[World, Window, Tool], None]) -> Action:
     """Return what the key of a tool does.
 
     Where as many bodies are selected as it has points, it measures between them; else it is taken in hand.
@@ -180,19 +180,19 @@ def measuring(tool: Tool, choose: Callable[[Window, Tool], None]) -> Callable[[W
     """
     kind = _KINDS[tool.name]
 
-    def deed(world: World, window: Window) -> None:
+    def measure(world: World, window: Window) -> None:
         bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
         places = [Spot(world.component(body, Transform).position, body) for body in bodies]
         if kind is not Note and len(bodies) == len(kind.POINTS):
             _select(window, window.edits.do(made(world, kind, places)))
         elif window.tool != tool.name:
-            choose(window, tool)
+            choose(world, window, tool)
         elif kind is Note:
             window.measuring.writing = Writing(Spot(window.camera.to_world(window.middle)))
         else:
             _select(window, window.edits.do(made(world, kind, _in_the_middle(window, kind))))
 
-    return deed
+    return measure
 
 
 def _in_the_middle(window: Window, kind: type[Any]) -> list[Spot]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from physicslab.components import Note, Shape, Spring, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.canvas import Rect, is_within
 from physicslab.view.overlay.instruments import Instrument, instruments_of
 from physicslab.view.picture.bodies import POINT_RADIUS, body_rows
 from physicslab.view.picture.springs import ends_of
@@ -97,16 +97,10 @@ def instrument_at(
     """
     found = 0
     for one in instruments_of(world):
-        if _is_within(pixel, rects.get(one.entity)) or _line_gap(one, camera, pixel) <= _ON_LINE:
+        words = rects.get(one.entity)
+        if (words and is_within(pixel, words)) or _line_gap(one, camera, pixel) <= _ON_LINE:
             found = max(found, one.entity)
     return found or None
-
-
-def _is_within(pixel: tuple[float, float], rect: Rect | None) -> bool:
-    if rect is None:
-        return False
-    left, top, width, height = rect
-    return left <= pixel[0] < left + width and top <= pixel[1] < top + height
 
 
 def point_at(one: Instrument, camera: Camera, pixel: tuple[float, float]) -> str | None:

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from physicslab.view.controls.spawning import Spawnable
-from physicslab.view.window.window import Window
-from physicslab.world import World
+from physicslab.view.window.window import Action
 
-__all__ = ["Deed", "Tool"]
-
-type Deed = Callable[[World, Window], None]
+__all__ = ["Tool"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +33,8 @@ class Tool:
     name: str
     title: str
     usage: str
-    press: Deed
-    release: Deed
+    press: Action
+    release: Action
     pans: bool = False
     drags: bool = False
     spawn: Spawnable | None = None

@@ -156,23 +156,12 @@ SPRING = Tool(
 REMOVE = Tool(
     "remove", "Erase", "Erase: click a body, whose springs go with it, or a spring.", remove, _nothing
 )
-SELECT = Tool(
-    "select",
-    "Select",
-    "Select: click a body to see its numbers; drag to move or throw it.",
-    select,
-    end_select,
-)
+_USAGE = "Select: click a body to see its numbers; drag to move or throw it."
+SELECT = Tool("select", "Select", _USAGE, select, end_select)
 PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True, drags=True)
 _IN_PALETTE = ("circle", "box", "block", "pendulum", "chain")
-PALETTE = (
-    SELECT,
-    *(tool for tool in SPAWN_TOOLS if tool.name in _IN_PALETTE),
-    SPRING,
-    *MEASURING_TOOLS,
-    REMOVE,
-    PAN,
-)
+_SPAWNING = (tool for tool in SPAWN_TOOLS if tool.name in _IN_PALETTE)
+PALETTE = (SELECT, *_SPAWNING, SPRING, *MEASURING_TOOLS, REMOVE, PAN)
 """The tools that are in sight, in their order."""
 MORE_TOOLS = tuple(tool for tool in SPAWN_TOOLS if tool.name not in _IN_PALETTE)
 """Those behind one more button."""

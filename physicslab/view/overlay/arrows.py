@@ -12,17 +12,8 @@ from physicslab.view.canvas.canvas import Canvas, Numbers, Points
 from physicslab.view.canvas.theme import Colour, Theme
 
 __all__ = [
-    "CONTACT_NORMAL",
-    "FORCE",
-    "FRICTION_IMPULSE",
-    "MIN_LENGTH",
-    "NORMAL_IMPULSE",
-    "VELOCITY",
-    "ArrowKind",
-    "Head",
-    "dashes",
-    "draw_arrows",
-    "max_length",
+    "CONTACT_NORMAL", "FORCE", "FRICTION_IMPULSE", "MIN_LENGTH", "NORMAL_IMPULSE", "VELOCITY", "ArrowKind",
+    "Head", "dashes", "draw_arrows", "even_dashes", "max_length",
 ]  # fmt: skip
 
 MIN_LENGTH = 3.0
@@ -31,6 +22,7 @@ _MAX_LENGTH = 0.3
 """Arrows are cut at this share of the smaller side of the picture."""
 _HEAD = 10.0
 """Length of a head [px]; at most half of the arrow."""
+_MAX_DASHES = 600
 _DASH, _GAP = 5.0, 4.0
 """The strokes of a broken shaft, and the spaces between them [px]."""
 _BOLD_LIMIT = 256
@@ -116,7 +108,7 @@ def draw_arrows(
     """Draw arrows of one kind from ``start``, each ``span`` long.
 
     Shafts are one call of :meth:`Canvas.lines`, heads a second one; arrows that are cut have two strokes
-    across the middle. What is shorter than ``MIN_LENGTH``, not finite, or out of the picture is left out.
+    across the middle. Arrows shorter than ``MIN_LENGTH``, not finite, or out of the picture are left out.
     Each arrow may have an opacity of its own.
     """
     limit = max_length(canvas)
@@ -175,3 +167,11 @@ def dashes(start: Points, end: Points) -> tuple[Points, Points, NDArray[np.int64
     low = np.maximum(high - _DASH, 0.0)
     start, unit = start[line], unit[line]
     return start + low[:, None] * unit, start + high[:, None] * unit, line
+
+
+def even_dashes(start: NDArray[np.float64], end: NDArray[np.float64], dash: float) -> tuple[Points, Points]:
+    """Return the strokes of a broken line between ends (2,); dashes and gaps are about ``dash`` long [px]."""
+    count = min(max(round(0.5 * float(np.hypot(*(end - start))) / dash), 1), _MAX_DASHES)
+    share = np.arange(2 * count, dtype=np.float64)[:, None] / max(2 * count - 1, 1)
+    corners = start + share * (end - start)
+    return corners[0::2], corners[1::2]

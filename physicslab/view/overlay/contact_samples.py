@@ -13,7 +13,7 @@ from physicslab.world import World
 __all__ = ["SAMPLE", "ContactSamples", "resting_of", "samples_of", "sliding"]
 
 _STILL = 1e-6
-"""Speed along a surface [m/s] that is none."""
+"""Speed along a surface [m/s] below which nothing slides."""
 
 type ContactSamples = NDArray[Any]
 """An array of SAMPLE (n,)."""

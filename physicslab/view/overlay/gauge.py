@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.quantities import round_quantity
+from physicslab.view.canvas.quantities import round_quantity, rounded_up
 
 __all__ = ["Gauge"]
 
@@ -59,8 +59,7 @@ class Gauge:
         self._peak, self._time = max(strongest, faded), time
         wanted = self._peak / reach
         if wanted > 1e-12 and not _MIN_LENGTH * self.per_metre <= wanted <= _MAX_LENGTH * self.per_metre:
-            power = 10.0 ** math.floor(math.log10(wanted))
-            self.per_metre = next(k * power for k in (1.0, 2.0, 5.0, 10.0) if k * power >= wanted * 0.999)
+            self.per_metre = rounded_up(wanted, 1e-3)
 
     @property
     def words(self) -> str:

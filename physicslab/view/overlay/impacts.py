@@ -1,4 +1,4 @@
-"""Impacts: read from the world's log once a frame, and kept for long enough to be seen."""
+"""Impacts, kept for long enough to be seen."""
 
 from __future__ import annotations
 
@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.state.state import State
 from physicslab.view.overlay.contact_samples import SAMPLE, ContactSamples, samples_of
 from physicslab.world import World
 
-__all__ = ["SHOWN", "ImpactReader", "RecentImpacts"]
+__all__ = ["SHOWN", "RecentImpacts"]
 
 SHOWN = 1.0
 """How long an impact is shown [s]; it is the world's time, which stands still while paused."""
@@ -19,36 +18,6 @@ _MAX_KEPT = 256
 """The weakest impacts beyond that number are left out."""
 _SAME_PLACE = 0.15
 """Impacts of a pair nearer than that look like one; in lengths of the longest arrow."""
-
-
-class ImpactReader:
-    """Reads each impact of a world once.
-
-    The log of a world (``Contacts.log``) holds the last impacts, and ``Contacts.logged`` is how many there
-    were: what has a higher number than at the last call is new, however many steps were made meanwhile.
-    """
-
-    def __init__(self) -> None:
-        self._state: State | None = None
-        self._read = 0
-
-    def follow(self, state: State) -> None:
-        """Begin with the next impact of ``state``, unless it is the world that is read already."""
-        if state is not self._state:
-            self._state, self._read = state, state.contacts.logged
-            state.contacts.read = True
-
-    def new(self, state: State) -> NDArray[Any]:
-        """Return the impacts since the last call, oldest first: an array of IMPACT (n,).
-
-        Of more than the log holds, the oldest are missing.
-        """
-        self.follow(state)
-        contacts = state.contacts
-        first = max(min(self._read, contacts.logged), contacts.logged - len(contacts.log))
-        self._read = contacts.logged
-        new: NDArray[Any] = contacts.log[np.arange(first, contacts.logged) % len(contacts.log)]
-        return new
 
 
 class RecentImpacts:

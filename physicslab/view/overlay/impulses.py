@@ -25,7 +25,7 @@ __all__ = ["CROWD", "IMPACT_WIDTH", "LABELLED", "LABELLED_IN_CROWD", "REST_WIDTH
 LABELLED = 12
 """How many contacts have their numbers written beside them: the strongest."""
 CROWD, LABELLED_IN_CROWD = 30, 4
-"""Of more impacts than this at a time, only so many have theirs: more would hide what they belong to."""
+"""Where there are more impacts than this at a time, only so many have theirs: more would hide the bodies."""
 IMPACT_WIDTH, REST_WIDTH = 3.0, 1.6
 """How thick arrows are drawn [px]: an impact's, and those of resting contact."""
 _KEEP_RATIO = 1.5
@@ -41,7 +41,7 @@ def draw_impulses(
 ) -> None:  # fmt: skip
     """Draw the impulses of the impacts of the last second, and of what rests, with cones and numbers.
 
-    Of what rests only contacts of the bodies in ``written`` have their numbers beside them, the points of a
+    Resting contacts have their numbers beside them only for the bodies in ``written``, the points of a
     pair added up: a heap would be hidden under them.
     """
     impacts = overlays.impacts.recent(world.time)

@@ -14,7 +14,9 @@ from physicslab.systems.gate import GateSystem
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look, Rect, TextStyle
 from physicslab.view.canvas.drawable_text import drawable
+from physicslab.view.canvas.quantities import rounded_up
 from physicslab.view.canvas.theme import Colour, Theme
+from physicslab.view.overlay.arrows import even_dashes
 from physicslab.view.overlay.instruments import Instrument, angle_between, reading_of
 from physicslab.view.overlay.labels import Label, Labels
 from physicslab.world import World
@@ -37,6 +39,8 @@ _LETTERS = 44
 _PAD = 6
 _CLEAR = 14
 """Distance of the boxes along a line that labels keep clear of [px]."""
+_BEAM_DASH = 6.0
+"""Length of the dashes of a gate's beam [px]."""
 _FLASH = 0.12
 """How long a gate that was crossed is drawn brighter [s]."""
 
@@ -109,7 +113,7 @@ def _draw_ruler(
     if length > 0.0:
         along = (end - start) / length
         aside = np.array((along[1], -along[0]))
-        step = _round_step(_APART / camera.scale) * camera.scale
+        step = rounded_up(_APART / camera.scale) * camera.scale
         turns = np.arange(1, min(math.ceil(length / step), _MAX_TICKS))
         reach = np.where(turns % 10 == 0, 2.0, np.where(turns % 5 == 0, 1.5, 1.0)) * _TICK
         foot = start + (turns * step)[:, None] * along
@@ -152,10 +156,8 @@ def _draw_gate(
     start, end = pixels["start"], pixels["end"]
     crossed = world.time - last.get(one.entity, -math.inf) < _FLASH
     colour = theme.accent if chosen else theme.force if crossed else theme.notice
-    count = max(round(0.5 * float(np.hypot(*(end - start))) / 6.0), 1)
-    share = np.arange(2 * min(count, 600), dtype=np.float64)[:, None] / max(2 * min(count, 600) - 1, 1)
-    corners = start + share * (end - start)
-    canvas.lines(corners[0::2], corners[1::2], colour, _CHOSEN_WIDTH if chosen or crossed else _WIDTH)
+    beam = even_dashes(start, end, _BEAM_DASH)
+    canvas.lines(*beam, colour, _CHOSEN_WIDTH if chosen or crossed else _WIDTH)
     ends = np.stack((start, end))
     canvas.discs(ends, np.full(2, _POST), np.zeros(2), Look.plain(colour, colour, 2))
     words = world.label(one.entity) if one.entity else "gate"
@@ -232,13 +234,3 @@ def _last_crossings(world: World) -> dict[int, float]:
     """Return when each gate was crossed last [s]."""
     system = world.schedule.find(GateSystem)
     return {one.gate: one.time for one in system.crossings} if system is not None else {}
-
-
-def _round_step(at_least: float) -> float:
-    """Return the smallest 1, 2 or 5 times a power of ten that is at least so large.
-
-    >>> _round_step(0.03), _round_step(7.0)
-    (0.05, 10.0)
-    """
-    power = 10.0 ** math.floor(math.log10(at_least))
-    return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= at_least)

@@ -63,7 +63,7 @@ def instruments_of(world: World, overrides: Overrides | None = None) -> Iterator
 
 
 def angle_between(points: Points) -> float:
-    """Return the angle between the arms of a protractor, from 0 to 180 degrees; 0 where an arm is none.
+    """Return the angle between the arms of a protractor, from 0 to 180 degrees; 0 where an arm has no length.
 
     >>> angle_between({"vertex": Vector2(), "first": Vector2(2, 0), "second": Vector2(0, 1)})
     90.0

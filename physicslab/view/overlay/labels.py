@@ -84,7 +84,7 @@ class Labels:
     ) -> dict[Key, Rect]:
         """Draw labels, those of the last frame and the first ones first; return where they are [px].
 
-        What finds no room is left out; or, ``always``, lies over something.
+        A label that finds no room is left out; or, ``always``, lies over something.
         """
         points = [
             (round(x) - _POINT, round(y) - _POINT, 2 * _POINT, 2 * _POINT)

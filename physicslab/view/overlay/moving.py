@@ -13,7 +13,7 @@ from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.overlay.instrument_marks import draw_instruments
 from physicslab.view.overlay.instruments import instruments_of
 from physicslab.view.overlay.labels import Labels
-from physicslab.view.picture.painting import draw_world
+from physicslab.view.picture.picture import draw_world
 from physicslab.world import World
 
 __all__ = ["MovingPicture", "part_of", "pixels_of"]

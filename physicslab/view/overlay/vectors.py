@@ -17,7 +17,7 @@ from physicslab.world import World
 __all__ = ["NORMAL_LENGTH", "draw_vectors"]
 
 NORMAL_LENGTH = 26.0
-"""Of the arrows of contact normals, which are directions only [px]; shorter in a crowd."""
+"""Length of the arrows of contact normals, which are directions only [px]; shorter in a crowd."""
 
 
 def draw_vectors(world: World, overlays: Overlays, camera: Camera, theme: Theme, canvas: Canvas) -> None:

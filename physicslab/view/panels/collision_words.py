@@ -73,7 +73,7 @@ def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[
     told += list(_law(collision, result))
     if not collision.alone:
         told.append(
-            "Other bodies struck one of these two at the same moment. What is worked out here is this pair "
+            "Other bodies hit one of these two at the same moment. The working here is of this pair "
             "by itself; the motions after are those of all impacts together, and may differ from it."
         )
     return told
@@ -125,7 +125,7 @@ def _law(collision: Collision, result: Result) -> Iterator[str]:
     """Yield which law holds where it is not Newton's with the e of the materials."""
     if collision.law == ENERGETIC:
         yield (
-            "Newton's law would make energy here, since friction turns the sliding round within the impact. "
+            "Newton's law would make energy here, since friction reverses the sliding during the impact. "
             "Stronge's law holds: the normal force gives back e² of the work that it took."
         )
     elif collision.law == LOWERED:
@@ -166,15 +166,21 @@ def _masses(collision: Collision) -> Iterator[Step]:
     a, b, state, response = collision.a, collision.b, collision.states[0], collision.responses[0]
     reach = max(arm.magnitude for spot in collision.spots for arm in (spot.arm_a, spot.arm_b))
     both = f"{_one_over(a.inverse_mass)} + {_one_over(b.inverse_mass)}"
+
+    def terms(*arms: float) -> str:
+        """Return the part of both bodies that turn, with their arms."""
+        parts = zip(arms, (a, b), strict=True)
+        return " + ".join(
+            f"{_number(without_rounding(arm, reach))}²·{_one_over(body.inverse_inertia)}"
+            for arm, body in parts
+        )
+
     yield Step(
         "Mass that the impulse meets if neither body could turn", "1/m = 1/m_A + 1/m_B", both,
         f"m = {quantity(1.0 / (a.inverse_mass + b.inverse_mass), 'kg')}",
     )  # fmt: skip
     for k, (at, one) in enumerate(zip(collision.states, collision.responses, strict=True)):
-        turned = " + ".join(
-            f"{_number(without_rounding(arm, reach))}²·{_one_over(body.inverse_inertia)}"
-            for arm, body in ((at.normal_a, a), (at.normal_b, b))
-        )
+        turned = terms(at.normal_a, at.normal_b)
         of = f" at point {k + 1}" if len(collision.responses) == 2 else ""
         yield Step(
             f"Mass along the normal, with rotation{of}",
@@ -182,10 +188,7 @@ def _masses(collision: Collision) -> Iterator[Step]:
             f"m_n = {quantity(1.0 / one.kn, 'kg')}",
         )  # fmt: skip
     if collision.friction > 0.0:
-        turned = " + ".join(
-            f"{_number(without_rounding(arm, reach))}²·{_one_over(body.inverse_inertia)}"
-            for arm, body in ((state.tangent_a, a), (state.tangent_b, b))
-        )
+        turned = terms(state.tangent_a, state.tangent_b)
         yield Step(
             "Mass along the surface, with rotation",
             "1/m_t = 1/m_A + 1/m_B + (r_A×t)²/I_A + (r_B×t)²/I_B", f"{both} + {turned}",
@@ -324,5 +327,5 @@ def _torque(body: Body, collision: Collision) -> float:
 
 
 def _vector(value: Vector2, scale: float, unit: str) -> str:
-    """Return a vector whose components are none where they are rounding beside ``scale``."""
+    """Return a vector; components that are rounding beside ``scale`` are treated as zero."""
     return vector_quantity(Vector2(*(without_rounding(part, scale) for part in value)), unit)

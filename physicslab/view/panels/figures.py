@@ -90,7 +90,7 @@ def _are_driven(world: World) -> bool:
 class EnergyWatch:
     """Watches the accounts of a world, and its motion from one edit to the next where that is known exactly.
 
-    What a user changes is booked as an edit and is no error of the simulation; the exact solution begins
+    A change by the user is booked as an edit and is no error of the simulation; the exact solution begins
     again with it.
 
     Attributes

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from physicslab.view.canvas.canvas import Canvas, TextStyle
+from physicslab.view.canvas.canvas import Align, Canvas, Rect, TextStyle
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.overlay.arrows import (
     CONTACT_NORMAL,
@@ -21,14 +20,14 @@ from physicslab.view.overlay.arrows import (
 )
 from physicslab.view.overlay.impulses import IMPACT_WIDTH, REST_WIDTH
 from physicslab.view.overlay.overlays import Overlays
-from physicslab.view.panels.panels import Line, Panel, lay_out
+from physicslab.view.panels.panels import broken
 
 __all__ = ["Legend", "legend_of"]
 
 _WIDTH = 19.5
-"""Of the legend, in heights of the text."""
+"""Width of the legend, in heights of the text."""
 _MAX_SHARE = 0.3
-"""Of the world's room that it may take with all its words."""
+"""Share of the world's room that it may take with all its words."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,40 +41,36 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Legend:
-    """The legend, laid out and ready to be drawn.
+    """The legend, laid out with its corner at the origin and ready to be drawn.
 
     Attributes
     ----------
-    panel : Panel
-        The words.
+    size : tuple of two ints
+        Its width and height [px].
+    texts : tuple
+        Words, place of their top left or top right [px], style, and on which side that is.
     samples : tuple
-        What is drawn before them: a sample, the middle of its left end, and its length [px].
+        The samples before them, each with the middle of its left end, and its length [px].
     """
 
-    panel: Panel
+    size: tuple[int, int]
+    texts: tuple[tuple[str, tuple[int, int], TextStyle, Align], ...]
     samples: tuple[tuple[Sample, tuple[float, float], float], ...]
 
-    def moved(self, left: int, top: int) -> Legend:
-        """Return it with its corner at another place [px]."""
-        dx, dy = left - self.panel.rect[0], top - self.panel.rect[1]
-        texts = tuple(
-            (words, (x + dx, y + dy), style, side) for words, (x, y), style, side in self.panel.texts
-        )
-        samples = tuple((sample, (x + dx, y + dy), length) for sample, (x, y), length in self.samples)
-        return Legend(Panel((left, top, *self.panel.rect[2:]), texts), samples)
-
-    def draw(self, canvas: Canvas, theme: Theme) -> None:
-        """Draw it."""
-        self.panel.show("legend", canvas, theme)
-        for sample, place, length in self.samples:
-            start, span = np.array([place]), np.array([(length, 0.0)])
+    def draw(self, left: int, top: int, canvas: Canvas, theme: Theme) -> Rect:
+        """Draw it with its corner at a place, and return where it is [px]."""
+        rect = (left, top, *self.size)
+        canvas.panel(rect, theme.panel, theme.outline, theme.panel_opacity)
+        for words, (x, y), style, side in self.texts:
+            canvas.text(words, (left + x, top + y), style, side)
+        for sample, (across, down), length in self.samples:
+            start, span = np.array([(left + across, top + down)]), np.array([(length, 0.0)])
             if sample.kind is not None:
                 draw_arrows(start, span, sample.kind, canvas, theme, width=sample.width)
-            elif sample.dashed:
-                froms, tos, _ = dashes(start, start + span)
-                canvas.lines(froms, tos, theme.friction_cone, 1.2)
             else:
-                canvas.lines(start, start + span, theme.friction_cone, 1.2)
+                line = dashes(start, start + span)[:2] if sample.dashed else (start, start + span)
+                canvas.lines(line[0], line[1], theme.friction_cone, 1.2)
+        return rect
 
 
 type Row = tuple[Sample, str, str]
@@ -119,39 +114,40 @@ def legend_of(
         return None
     width = round(_WIDTH * size)
     legend = _laid_out(overlays, width, size, canvas, theme)
-    if width <= room[0] and width * legend.panel.rect[3] <= _MAX_SHARE * room[0] * room[1]:
+    if width <= room[0] and width * legend.size[1] <= _MAX_SHARE * room[0] * room[1]:
         return legend
     brief = _laid_out(overlays, 0, size, canvas, theme)
-    if brief.panel.rect[2] <= room[0]:
+    if brief.size[0] <= room[0]:
         return brief
-    return _laid_out(overlays, 0, max(size * room[0] // brief.panel.rect[2], 8), canvas, theme)
+    return _laid_out(overlays, 0, max(size * room[0] // brief.size[0], 8), canvas, theme)
 
 
 def _laid_out(overlays: Overlays, width: int, size: int, canvas: Canvas, theme: Theme) -> Legend:
     """Return the legend, so wide [px]; with names alone where that is 0."""
     rows, remarks = _rows(overlays)
     pad, sample_length = round(0.7 * size), 2.4 * size
-    kept = "scale, kept" if overlays.keeps_scales else "scale"
     label, value = TextStyle(size - 1, theme.text), TextStyle(size - 1, theme.faint)
-    row_height = canvas.text_size("Ag", label)[1]
-    inset, is_brief = round(pad + sample_length + 0.6 * size), not width
-    if is_brief:
-        rows = list({name: (sample, name, "") for sample, name, _ in rows}.values())
+    title, small = TextStyle(size, theme.heading, bold=True), TextStyle(max(size - 2, 10), theme.faint)
+    heights = {style: canvas.text_size("Ag", style)[1] for style in (label, title, small)}
+    inset, y = round(pad + sample_length + 0.6 * size), pad
+    texts: list[tuple[str, tuple[int, int], TextStyle, Align]] = []
+    if width:
+        kept = "scale, kept" if overlays.keeps_scales else "scale"
+        texts.append((kept, (width - pad, y + heights[title] - heights[small]), small, "right"))
+        texts.append(("Arrows", (pad, y), title, "left"))
+        y += heights[title]
+    else:
+        rows, remarks = list({name: (sample, name, "") for sample, name, _ in rows}.values()), []
         width = inset + max(canvas.text_size(name, label)[0] for _, name, _ in rows) + pad
-    lines = [] if is_brief else [Line("Arrows", kept, "heading")]
-    heading = lay_out(lines, 0, 0, width, size, canvas, theme)
-    texts, samples, y = list(heading.texts), [], heading.rect[3] - pad
+    samples = []
     for sample, name, scale in rows:
         texts.append((name, (inset, y), label, "left"))
         if scale:
             texts.append((scale, (width - pad, y), value, "right"))
-        samples.append((sample, (float(pad), y + 0.5 * row_height), sample_length))
-        y += row_height
-    remarked = lay_out([] if is_brief else _remarks(remarks), 0, y - pad // 2, width, size, canvas, theme)
-    texts += remarked.texts
-    height = y + pad if is_brief else y - pad // 2 + remarked.rect[3]
-    return Legend(Panel((0, 0, width, height), tuple(texts)), tuple(samples))
-
-
-def _remarks(words: Sequence[str]) -> list[Line]:
-    return [Line(remark, kind="remark") for remark in words]
+        samples.append((sample, (float(pad), y + 0.5 * heights[label]), sample_length))
+        y += heights[label]
+    y += pad - pad // 2 if remarks else 0
+    for line in (line for remark in remarks for line in broken(remark, width - 2 * pad, canvas, small)):
+        texts.append((line, (pad, y), small, "left"))
+        y += heights[small]
+    return Legend((width, y + pad), tuple(texts), tuple(samples))

@@ -8,6 +8,7 @@ import numpy as np
 
 from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
+from physicslab.view.canvas.quantities import rounded_up
 from physicslab.view.canvas.theme import Theme
 
 __all__ = ["draw_bounds", "draw_grid", "grid_spacing"]
@@ -22,9 +23,7 @@ def grid_spacing(scale: float) -> float:
     >>> grid_spacing(100.0)
     0.5
     """
-    min_step = _MIN_SPACING / scale
-    power = 10.0 ** math.floor(math.log10(min_step))
-    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= min_step * (1.0 - 1e-9))
+    return rounded_up(_MIN_SPACING / scale, 1e-9)
 
 
 def _lines(camera: Camera, xs: Numbers, ys: Numbers) -> tuple[Points, Points]:

@@ -22,7 +22,7 @@ _SURROUNDINGS = 4.0
 def extent_of(world: World) -> Extent | None:
     """Return the extent of all bodies, springs and bounds, or ``None`` where there are none.
 
-    What is static counts only as far as it is near the rest: a floor of a kilometre makes no speck of a ball.
+    A static body counts only as far as it is near the rest: a floor of a kilometre makes no speck of a ball.
     """
     world.synchronise()
     rows = body_rows(world)

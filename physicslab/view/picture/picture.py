@@ -1,4 +1,4 @@
-"""A world as a picture file, without a window or a display."""
+"""The whole picture of a world, and a file of it, without a window or a display."""
 
 from __future__ import annotations
 
@@ -9,13 +9,18 @@ import pygame
 
 from physicslab.ecs.config import WindowConfig
 from physicslab.view.canvas.camera import Camera, Extent
+from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
+from physicslab.view.picture.backdrop import draw_bounds, draw_grid
+from physicslab.view.picture.bodies import draw_bodies
 from physicslab.view.picture.extent import extent_of
-from physicslab.view.picture.painting import draw_world
+from physicslab.view.picture.springs import draw_springs
+from physicslab.view.picture.strobe import draw_strobes
+from physicslab.view.picture.trails import draw_trails
 from physicslab.world import World
 
-__all__ = ["picture_of", "save_png"]
+__all__ = ["draw_world", "picture_of", "save_png"]
 
 _WINDOW = WindowConfig()
 
@@ -55,7 +60,7 @@ def save_png(
     world : World
         It is not changed.
     path_or_stream : path or binary stream
-        Where to write. What is at that path already is replaced.
+        Where to write. A file at that path is replaced.
     size : tuple of two ints
         Width and height [px].
     theme : Theme
@@ -72,3 +77,16 @@ def save_png(
             pygame.image.save(surface, stream, "picture.png")
     else:
         pygame.image.save(surface, path_or_stream, "picture.png")
+
+
+def draw_world(world: World, camera: Camera, theme: Theme, canvas: Canvas, *, grid: bool = True) -> None:
+    """Draw a world as it is now, with or without the grid. Nothing of the world is changed."""
+    world.synchronise()
+    canvas.clear(theme.background)
+    if grid:
+        draw_grid(camera, theme, canvas)
+    draw_bounds(world.physics.bounds, camera, theme, canvas)
+    draw_strobes(world, camera, theme, canvas)
+    draw_trails(world, camera, theme, canvas)
+    draw_bodies(world, camera, theme, canvas)
+    draw_springs(world, camera, theme, canvas)

@@ -70,17 +70,17 @@ class Sparks:
         """
         elapsed = np.full(len(self), max(time - self._time, 0.0))
         self._time = time
-        struck, of_impact, strength = _struck(impacts, scale)
-        direction, speed, life = _chances(struck, of_impact)
-        normal = np.stack((struck["normal_x"], struck["normal_y"]), axis=1)
+        impact, of_impact, strength = _sources(impacts, scale)
+        direction, speed, life = _chances(impact, of_impact)
+        normal = np.stack((impact["normal_x"], impact["normal_y"]), axis=1)
         pace = (_WEAK_SPEED + (_STRONG_SPEED - _WEAK_SPEED) * strength) * speed / scale
-        place = np.stack((struck["x"], struck["y"]), axis=1)
+        place = np.stack((impact["x"], impact["y"]), axis=1)
         self.place = np.concatenate((self.place, place))
         self.velocity = np.concatenate((self.velocity, pace[:, None] * _turned(normal, direction)))
-        self.age = np.concatenate((self.age, np.zeros(len(struck))))
+        self.age = np.concatenate((self.age, np.zeros(len(impact))))
         self.life = np.concatenate((self.life, _MAX_LIFE * life))
         self.strength = np.concatenate((self.strength, strength))
-        self._fly(np.concatenate((elapsed, np.maximum(time - struck["time"], 0.0))))
+        self._fly(np.concatenate((elapsed, np.maximum(time - impact["time"], 0.0))))
 
     def _fly(self, elapsed: Numbers) -> None:
         """Let each fly for a time [s], slowed down; what is older than it may be is gone."""
@@ -107,7 +107,7 @@ class Sparks:
                 canvas.lines(start[part], end[part], theme.spark, width, fresh[part])
 
 
-def _struck(impacts: NDArray[Any], scale: float) -> tuple[NDArray[Any], NDArray[np.int64], Numbers]:
+def _sources(impacts: NDArray[Any], scale: float) -> tuple[NDArray[Any], NDArray[np.int64], Numbers]:
     """Return for each new spark its impact, its number among those of that impact, and its strength.
 
     Where there are more impacts than there is room for sparks, the strongest make some.

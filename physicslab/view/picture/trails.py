@@ -32,7 +32,7 @@ _MAX_PIECES = 12_000
 _MAX_READ = 24_000
 """About how many places are looked at, of all trails together: where trails are many, each is coarser."""
 _COARSENESS = (1, 2, 4, 8, 16)
-"""Of how many places one is looked at."""
+"""One place in so many is looked at."""
 _MAX_OFFSET = 1e6
 """Places farther away than this are not drawn [px]."""
 

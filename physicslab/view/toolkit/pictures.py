@@ -67,7 +67,7 @@ class Pictures:
     def take(self, data: imgui.ImDrawData, pointer: tuple[float, float], *, at_once: bool) -> None:
         """Note what there is to see; to be called after each ``imgui.render``.
 
-        What is new, lies elsewhere than before or under the pointer is painted now, or all of it at once.
+        A list that is new, elsewhere than before or under the pointer is painted now, or all of them at once.
         """
         self._follow_textures(data)
         lists = [one for one in data.cmd_lists if one.idx_buffer.size()]

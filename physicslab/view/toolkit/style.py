@@ -6,11 +6,11 @@ import importlib.util
 from dataclasses import dataclass
 from pathlib import Path
 
-from imgui_bundle import ImVec2, imgui, implot
+from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from physicslab.view.canvas.theme import Colour, Theme, mixed
 
-__all__ = ["Fonts", "add_fonts", "apply_theme", "bar_height", "packed"]
+__all__ = ["Fonts", "add_fonts", "apply_theme", "as_vector", "bar_height", "packed"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +47,11 @@ def packed(colour: Colour, opacity: float = 1.0) -> int:
     """Return a colour as draw lists take it."""
     red, green, blue = colour
     return red | green << 8 | blue << 16 | round(255 * opacity) << 24
+
+
+def as_vector(colour: Colour, opacity: float = 1.0) -> ImVec4:
+    """Return a colour as styles and plots take it."""
+    return imgui.color_convert_u32_to_float4(packed(colour, opacity))
 
 
 def bar_height(text: int) -> int:
@@ -98,7 +103,7 @@ def apply_theme(theme: Theme, size: float) -> None:
         (kinds.table_row_bg_alt, theme.key, 0.35), (kinds.nav_cursor, theme.accent, 1.0),
         (kinds.resize_grip, theme.key, 0.0), (kinds.modal_window_dim_bg, theme.background, 0.6),
     ):  # fmt: skip
-        style.set_color_(kind, imgui.color_convert_u32_to_float4(packed(colour, opacity)))
+        style.set_color_(kind, as_vector(colour, opacity))
     plot, colours = implot.get_style(), implot.Col_
     plot.fit_padding = ImVec2(0.0, 0.08)  # or a line that stays at its largest lies under the frame
     for name, colour, opacity in (
@@ -108,4 +113,4 @@ def apply_theme(theme: Theme, size: float) -> None:
         (colours.axis_text, theme.faint, 1.0), (colours.axis_grid, theme.axis, 1.0),
         (colours.inlay_text, theme.text, 1.0), (colours.title_text, theme.text, 1.0),
     ):  # fmt: skip
-        plot.set_color_(name, imgui.color_convert_u32_to_float4(packed(colour, opacity)))
+        plot.set_color_(name, as_vector(colour, opacity))

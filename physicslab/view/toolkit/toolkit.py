@@ -1,4 +1,4 @@
-"""Dear ImGui in the window: its context, what it is told of the mouse, and what it draws."""
+"""Dear ImGui in the window: its context, what it is told of mouse and keys, and what it draws."""
 
 from __future__ import annotations
 
@@ -8,14 +8,28 @@ from collections.abc import Callable
 import pygame
 from imgui_bundle import ImVec2, imgui, implot
 
-from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.canvas import Rect, is_within
 from physicslab.view.canvas.theme import Theme
-from physicslab.view.toolkit.events import AWAY, feed
 from physicslab.view.toolkit.pictures import Pictures
 from physicslab.view.toolkit.style import Fonts, add_fonts, apply_theme
 
 __all__ = ["Toolkit"]
 
+_BUTTONS = {pygame.BUTTON_LEFT: 0, pygame.BUTTON_RIGHT: 1, pygame.BUTTON_MIDDLE: 2}
+_KEYS = {
+    pygame.K_TAB: imgui.Key.tab, pygame.K_LEFT: imgui.Key.left_arrow, pygame.K_RIGHT: imgui.Key.right_arrow,
+    pygame.K_UP: imgui.Key.up_arrow, pygame.K_DOWN: imgui.Key.down_arrow,
+    pygame.K_PAGEUP: imgui.Key.page_up, pygame.K_PAGEDOWN: imgui.Key.page_down,
+    pygame.K_HOME: imgui.Key.home, pygame.K_END: imgui.Key.end, pygame.K_DELETE: imgui.Key.delete,
+    pygame.K_BACKSPACE: imgui.Key.backspace, pygame.K_SPACE: imgui.Key.space,
+    pygame.K_RETURN: imgui.Key.enter, pygame.K_KP_ENTER: imgui.Key.enter, pygame.K_ESCAPE: imgui.Key.escape,
+    pygame.K_a: imgui.Key.a, pygame.K_c: imgui.Key.c, pygame.K_v: imgui.Key.v, pygame.K_x: imgui.Key.x,
+    pygame.K_y: imgui.Key.y, pygame.K_z: imgui.Key.z,
+}  # fmt: skip
+"""The keys that matter to text and menus."""
+_HELD = {getattr(pygame, f"KMOD_{key}"): imgui.Key[f"mod_{key.lower()}"] for key in ("CTRL", "SHIFT", "ALT")}
+_AWAY = (pygame.WINDOWFOCUSLOST, pygame.WINDOWMINIMIZED, pygame.WINDOWHIDDEN)
+"""Events after which no button counts as held."""
 _SETTLING = 3
 """Frames that Dear ImGui takes to follow an event: sizes and hovering are those of the frame before."""
 _ONLY_WHERE_TAKEN = (
@@ -92,8 +106,7 @@ class Toolkit:
 
     def covers(self, place: tuple[float, float]) -> bool:
         """Whether a panel lies at a place of the screen [px]."""
-        x, y = place
-        return any(left <= x < left + w and top <= y < top + h for left, top, w, h in self.covered)
+        return any(is_within(place, rect) for rect in self.covered)
 
     def take(self, event: pygame.Event) -> bool:
         """Let panels have an event first; return whether the world is not to see it.
@@ -109,7 +122,7 @@ class Toolkit:
         if taken and event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE and self.has_popup():
             imgui.internal.close_popup_to_level(0, True)
         elif taken or event.type not in _ONLY_WHERE_TAKEN:
-            feed(io, event)
+            _feed(io, event)
         elif event.type == pygame.MOUSEBUTTONDOWN:
             imgui.set_window_focus()  # what was written in a field is taken over
             io.add_mouse_pos_event(_NOWHERE, _NOWHERE)
@@ -135,7 +148,7 @@ class Toolkit:
                 return False
             case pygame.KEYDOWN | pygame.KEYUP | pygame.TEXTINPUT:
                 return self.has_keys
-            case _ if event.type in AWAY:
+            case _ if event.type in _AWAY:
                 self._pressed_on.clear()
         return False
 
@@ -264,3 +277,26 @@ def _end(context: imgui.internal.Context, plots: implot.internal.Context, pictur
         imgui.set_current_context(before)
     if plots_before is not None and plots_before is not plots:
         implot.set_current_context(plots_before)
+
+
+def _feed(io: imgui.IO, event: pygame.Event) -> None:
+    """Hand an event to Dear ImGui; those that it has no use for are left out."""
+    match event.type:
+        case pygame.MOUSEMOTION:
+            io.add_mouse_pos_event(*map(float, event.pos))
+        case pygame.MOUSEBUTTONDOWN | pygame.MOUSEBUTTONUP if event.button in _BUTTONS:
+            io.add_mouse_pos_event(*map(float, event.pos))
+            io.add_mouse_button_event(_BUTTONS[event.button], event.type == pygame.MOUSEBUTTONDOWN)
+        case pygame.MOUSEWHEEL:
+            across = float(getattr(event, "precise_x", getattr(event, "x", 0.0)))
+            io.add_mouse_wheel_event(-across, float(getattr(event, "precise_y", event.y)))
+        case pygame.KEYDOWN | pygame.KEYUP:
+            mod = getattr(event, "mod", 0)
+            for mask, key in _HELD.items():
+                io.add_key_event(key, bool(mod & mask))
+            if event.key in _KEYS:
+                io.add_key_event(_KEYS[event.key], event.type == pygame.KEYDOWN)
+        case pygame.TEXTINPUT:
+            io.add_input_characters_utf8(event.text)
+        case _ if event.type in _AWAY:
+            io.add_focus_event(False)

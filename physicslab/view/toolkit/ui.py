@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
 import pygame
@@ -34,7 +34,7 @@ _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_di
 
 
 class Ui:
-    """The widgets of one frame. What is drawn is noted: where it is, by its words, and all that is written.
+    """The widgets of one frame. Each is noted: where it is, by its words, and all that is written.
 
     Parameters
     ----------
@@ -197,14 +197,8 @@ class Ui:
 
     def heading(self, words: str) -> None:
         """Write a title."""
-        words = drawable(words)
-        self.words.append(words)
         imgui.push_font(self.fonts.bold, self.size * 1.06)
-        imgui.push_style_color(imgui.Col_.text, packed(self.theme.heading))
-        imgui.push_text_wrap_pos(0.0)
-        imgui.text_unformatted(words)
-        imgui.pop_text_wrap_pos()
-        imgui.pop_style_color()
+        self.text(words, self.theme.heading, wrapped=True)
         imgui.pop_font()
 
     def gap(self, share: float = 0.4) -> None:
@@ -316,23 +310,45 @@ class Ui:
                 imgui.end_menu()
 
     @contextmanager
-    def list(self, label: str, tip: str = "") -> Iterator[bool]:
-        """Draw a button that opens a list of lines; what is yielded says whether it is open."""
-        if self.button(label, tip):
+    def list(
+        self, label: str, tip: str = "", *, shown: str | None = None, on: bool = False,
+        size: tuple[float, float] = (0.0, 0.0),
+    ) -> Iterator[bool]:  # fmt: skip
+        """Draw a button that opens a list of lines; the yielded value says whether it is open."""
+        if self.button(label, tip, shown=shown, on=on, size=size):
             imgui.open_popup(label)
-        shown = bool(imgui.begin_popup(label))
+        is_open = bool(imgui.begin_popup(label))
         try:
-            yield shown
+            yield is_open
         finally:
-            if shown:
+            if is_open:
                 imgui.end_popup()
 
-    def same_line_if_room(self, label: str) -> None:
-        """Go on in the same line where there is room for a button with such words."""
+    def same_line_if_room(self, label: str, end: float | None = None) -> None:
+        """Go on in the same line where there is room for a button with such words, up to an ``end`` [px]."""
         imgui.same_line()
         needed = imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x
-        if imgui.get_content_region_avail().x < needed:
+        room = imgui.get_content_region_avail().x if end is None else end - imgui.get_cursor_pos_x()
+        if room < needed:
             imgui.new_line()
+
+    def table(self, name: str, columns: Sequence[tuple[str, float]], rows: Iterable[Sequence[str]]) -> None:
+        """Draw a table of words; ``columns`` are their heads, and their widths in heights of the text."""
+        flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_fixed_fit
+        if not imgui.begin_table(name, len(columns), flags):
+            return
+        for head, width in columns:
+            imgui.table_setup_column(head, imgui.TableColumnFlags_.width_fixed, width * self.size)
+        imgui.table_next_row()
+        for head, _ in columns:
+            imgui.table_next_column()
+            self.faint(head, wrapped=False)
+        for row in rows:
+            imgui.table_next_row()
+            for words in row:
+                imgui.table_next_column()
+                self.text(words)
+        imgui.end_table()
 
     def checkbox(self, label: str, on: bool, tip: str = "") -> bool:
         """Draw a box to tick, and return whether it was clicked."""

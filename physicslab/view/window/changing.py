@@ -42,9 +42,8 @@ _BY_TOOLS: tuple[type[Component], ...] = (Held,)
 """Components that are added and removed by tools alone."""
 
 
-def change_fields(window: Window, changes: Sequence[SetField]) -> None:
+def change_fields(world: World, window: Window, changes: Sequence[SetField]) -> None:
     """Make one edit of a change to each of what is selected, or say why it is refused."""
-    world = window.edits.world
     for change in changes:
         refused = _refused_place(world, change)
         if refused:
@@ -71,8 +70,8 @@ def _do(window: Window, commands: Sequence[Command]) -> None:
 def addable(world: World, entities: Sequence[int]) -> dict[str, tuple[str, Callable[[int], Component]]]:
     """Return what can be added to some bodies: by its plain name its meaning, and what makes it for a body.
 
-    These are all components that one of them has not. What is made with values of its own, or names other
-    entities and takes no part in the motion, as graphs do, is made by tools; it is not among them.
+    These are all components that one of them has not, but for those that are made by tools: with values of
+    their own, or naming other entities without a part in the motion, as graphs do.
     """
     if not all(world.has(entity, Transform) for entity in entities):
         return {}
@@ -96,16 +95,14 @@ def removable(world: World, entities: Sequence[int]) -> dict[str, tuple[str, typ
     return {plain_kind(kind): (_meaning(kind), kind) for kind in common}
 
 
-def give(window: Window, entities: Sequence[int], make: Callable[[int], Component]) -> None:
+def give(world: World, window: Window, entities: Sequence[int], make: Callable[[int], Component]) -> None:
     """Add a component to each of some entities that has none of its kind."""
-    world = window.edits.world
     made = [(entity, make(entity)) for entity in entities]
     _do(window, [AddComponent(entity, part) for entity, part in made if not world.has(entity, type(part))])
 
 
-def take(window: Window, entities: Sequence[int], kind: type[Component]) -> None:
+def take(world: World, window: Window, entities: Sequence[int], kind: type[Component]) -> None:
     """Take a component from each of some entities that has it, or say why that cannot be."""
-    world = window.edits.world
     if kind is Transform:
         window.notify("A body has a place as long as it is there: delete the body instead", 6.0, failed=True)
         return
@@ -128,7 +125,7 @@ def _meaning(kind: type[Component]) -> str:
 
 
 def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable[[int], Component]]]:
-    """Yield by what words a component is made for an entity; of one that cannot be made nothing."""
+    """Yield (label, factory) pairs of a component; none if it cannot be created."""
     if kind is Shape:
         yield "Shape: circle", lambda entity: Shape.circle(_SIZE)
         yield "Shape: box", lambda entity: Shape.box(2.0 * _SIZE, 2.0 * _SIZE)
@@ -178,18 +175,18 @@ _MEANINGS: dict[type[Component], str] = {
 # ---- names, and ends of springs ------------------------------------------------------------------------
 
 
-def name_entity(window: Window, entity: int, name: str) -> None:
+def name_entity(world: World, window: Window, entity: int, name: str) -> None:
     """Give an entity a name; without one it is called by what it is."""
-    world = window.edits.world
     if name:
         window.edits.do(AddComponent(entity, Name(name)))
     elif world.has(entity, Name):
         window.edits.do(RemoveComponent(entity, Name.__name__))
 
 
-def set_end(window: Window, entity: int, kind: type[Component], field: str, end: int | None) -> None:
+def set_end(
+    world: World, window: Window, entity: int, kind: type[Component], field: str, end: int | None
+) -> None:
     """Let a field name another entity; the point there of a spring or an instrument stays where it is."""
-    world = window.edits.world
     if not world.has(entity, kind):
         window.notify(f"The {plain_kind(kind).lower()} is gone", 6.0, failed=True)
         return

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.contacts.impact_reader import ImpactReader
 from physicslab.diagnostics.ledger import NO_IMPACTS, read_impacts
 from physicslab.history import History
-from physicslab.view.overlay.impacts import ImpactReader
 from physicslab.world import World
 
 __all__ = ["COLUMNS", "LIMIT", "ImpactList"]

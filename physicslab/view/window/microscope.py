@@ -134,7 +134,7 @@ class Microscope:
 
     # ---- time that stands still, or runs slowly ------------------------------------------------------------
 
-    def struck(self, world: World, logged: int, before: float) -> bool:
+    def sees_impact(self, world: World, logged: int, before: float) -> bool:
         """Whether the step since the time ``before`` [s] has an impact that is waited for; it is then shown.
 
         ``logged`` is how many impacts there had been.

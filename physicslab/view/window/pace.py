@@ -17,7 +17,7 @@ class Pace:
     Parameters
     ----------
     max_dt : float
-        The longest time [s] that one frame makes up for. What lies beyond is dropped: after a hitch the world
+        The longest time [s] that one frame makes up for. Time beyond that is dropped: after a hitch the world
         goes on where it was, and a world too heavy for the machine runs slower instead of ever more behind.
 
     Attributes

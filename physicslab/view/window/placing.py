@@ -45,7 +45,7 @@ def refused_place(world: World, wanted: Outlines) -> str:
 def refused_change(world: World, entity: int, kind: type[Component], name: str, value: object) -> str:
     """Return why a body cannot be given another place or size: it would overlap, or lie beyond the walls.
 
-    What overlaps already may be changed as long as it does not overlap more.
+    A body that overlaps already may be changed as long as it does not overlap more.
     """
     if not (world.has(entity, Transform) and world.has(entity, Shape)):
         return ""

@@ -27,7 +27,7 @@ def line_to_show(x: Numbers, y: Numbers, low: float, high: float, width: int) ->
     x, y : float64 arrays (n,)
         The line; ``x`` rises.
     low, high : float
-        What the plot shows of ``x``; of what is outside the nearest point at each side stays.
+        The range of ``x`` that the plot shows; the nearest point outside it stays at each side.
     width : int
         Of the plot [px].
     """
@@ -56,7 +56,7 @@ def path_to_show(
 ) -> tuple[Numbers, Numbers]:
     """Return the points of a path that can be seen.
 
-    Of those that follow each other within one pixel the first and the last stay.
+    The first and the last of those that follow each other within one pixel stay.
 
     Parameters
     ----------
@@ -80,7 +80,8 @@ def path_to_show(
 def range_to_show(values: Sequence[Numbers], room: float = 0.06, none: float = 0.0) -> tuple[float, float]:
     """Return what an axis is to show such that all values can be seen, with room around them.
 
-    What varies by no more than rounding is shown as constant, and as 0 where it is no more than ``none``.
+    Values that vary by no more than rounding are shown as constant, and as 0 where they are no more than
+    ``none``.
 
     Parameters
     ----------

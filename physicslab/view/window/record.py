@@ -19,7 +19,7 @@ _FIRST = 256
 
 
 class Record:
-    """Samples at times that rise. What was not measured, or was not defined, is NaN.
+    """Samples at times that rise. A value that was not measured, or not defined, is NaN.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Record:
     def add(self, time: float, step: int, values: Mapping[Key, float]) -> None:
         """Take in a moment; what was recorded of this time and of later ones is forgotten.
 
-        What is not finite is recorded as not defined.
+        A value that is not finite is recorded as not defined.
         """
         self._count = int(np.searchsorted(self.times, time))
         if self._count == CAPACITY:

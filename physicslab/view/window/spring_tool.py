@@ -11,6 +11,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look
 from physicslab.view.canvas.theme import Theme
+from physicslab.view.overlay.arrows import even_dashes
 from physicslab.view.window.points import local_point, point_of
 from physicslab.world import World
 
@@ -74,11 +75,7 @@ class SpringTool:
         ends = np.array([camera.to_screen(start), pointer])
         if not (np.abs(ends) < 1e6).all():
             return
-        length = float(np.hypot(*(ends[1] - ends[0])))
-        count = max(round(0.5 * length / _DASH), 1)
-        share = np.arange(2 * count, dtype=np.float64)[:, None] / max(2 * count - 1, 1)
-        corners = ends[0] + share * (ends[1] - ends[0])
-        canvas.lines(corners[0::2], corners[1::2], theme.accent, 2.0)
+        canvas.lines(*even_dashes(ends[0], ends[1], _DASH), theme.accent, 2.0)
         canvas.discs(ends, np.full(2, _END), np.zeros(2), Look.plain(theme.accent, theme.accent, 2))
 
     def _start(self, world: World) -> Vector2 | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Concatenate
 
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
@@ -38,7 +39,10 @@ from physicslab.view.window.snapping import Snapping
 from physicslab.view.window.spring_tool import SpringTool
 from physicslab.world import World
 
-__all__ = ["LEVELS", "Left", "Picking", "Window"]
+__all__ = ["LEVELS", "Action", "Left", "Picking", "Window"]
+
+type Action = Callable[[World, Window], object]
+"""What a click or a key does."""
 
 _PATIENCE = 3.0
 """How long [s] after Esc a second one closes the window though there are unsaved edits."""
@@ -132,7 +136,7 @@ class Window:
     text_scale : float
         How much larger than usual text is.
     arrangement : str
-        Where windows lie and are docked, in words of the toolkit; empty where all are as at first.
+        Where windows lie and are docked, in words of the toolkit; empty for the layout of the start.
     keys_go_to : str
         Where keys are to go from the next frame on: ``"menu"``, ``"fields"``, ``"panel"`` (the next one) or
         nowhere else.
@@ -182,8 +186,8 @@ class Window:
         Where the rectangle begins that is being drawn around bodies [m].
     dashboard : Dashboard
         The graphs, meters and sliders that are shown, and what is recorded for them.
-    deeds : list of callables
-        What panels were clicked for; it is done when the next frame begins.
+    pending : list of Action
+        What panels were clicked for: it is done when the next frame begins.
     source : str or path, optional
         The built-in scene or the file that is shown; restarting opens it again.
     room : callable
@@ -254,7 +258,7 @@ class Window:
         self.copied: list[list[Component]] = []
         self.band: Vector2 | None = None
         self.dashboard = Dashboard()
-        self.deeds: list[Callable[[World, Window], None]] = []
+        self.pending: list[Action] = []
         self.source: str | Path | None = None
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
         self.error_study = ErrorStudy()
@@ -301,10 +305,28 @@ class Window:
         self.notice_failed = failed
         self._notice, self._notice_until = words, self.now + seconds
 
+    def do_next[**P](
+        self, action: Callable[Concatenate[World, Window, P], object], *args: P.args, **kwargs: P.kwargs
+    ) -> None:
+        """Have ``action(world, window, ...)`` done when the next frame begins."""
+        self.pending.append(lambda world, window: action(world, window, *args, **kwargs))
+
+    def do_first[**P](
+        self, action: Callable[Concatenate[World, Window, P], object], *args: P.args, **kwargs: P.kwargs
+    ) -> None:
+        """Have it done before what is pending already: what was written, before the click that ended that."""
+        self.pending.insert(0, lambda world, window: action(world, window, *args, **kwargs))
+
     def follow_history(self, history: History) -> None:
         """Let edits, and what the hand does, go to the history of the world that is shown."""
         self.edits = Edits(history, lambda words: self.notify(words, 6.0, failed=True))
         self.hand.write = lambda world, command: self.edits.write(command)
+
+    def pause_for_history(self, world: World) -> None:
+        """Pause, with nothing in the hand and no edit half done, to go to another place of the history."""
+        self.hand.drop(world)
+        self.edits.take_back_shown()
+        self.pace.paused = True
 
     @property
     def handled(self) -> int | None:
@@ -348,7 +370,7 @@ class Window:
     def go_home(self, world: World) -> None:
         """Show the world as at the start: what its scene says is to be seen, or else all of it.
 
-        Of a scene that does not say it is shown at the usual scale where it fits, else smaller.
+        A scene that does not say is shown at the usual scale where it fits, else smaller.
         """
         self._show(world, float("inf") if world.view else self.config.pixels_per_metre, world.view)
 

@@ -253,10 +253,10 @@ def draw_energies(ui: Ui, seen: Collision, width: float) -> None:
                 ("B moves|B", b_along, b_colour, False), ("B turns|B ω", b_turn, theme.fill(b_colour), False),
             ]
         )  # fmt: skip
-    bounced, rubbed = seen.lost
+    bounced, friction = seen.lost
     parts[1] += [
         ("lost in the bounce|lost", bounced, theme.error, True),
-        ("rubbed off|rubbed", rubbed, theme.paused, True),
+        ("lost to friction|friction", friction, theme.paused, True),
     ]
     full = max(sum(max(part[1], 0.0) for part in bar) for bar in parts) or 1.0
     totals = [sum(part[1] for part in bar[:4]) for bar in parts]
@@ -297,10 +297,10 @@ def _label_bar(
 
 
 def _write_losses(ui: Ui, seen: Collision, full: float) -> None:
-    """Write what was lost and to what; what is rounding beside the ``full`` energy [J] is none."""
-    bounced, rubbed = (without_rounding(part, full) for part in seen.lost)
+    """Write what was lost and to what; rounding beside the ``full`` energy [J] is treated as zero."""
+    bounced, friction = (without_rounding(part, full) for part in seen.lost)
     ui.row("Lost in the bounce", quantity(bounced, "J"), "Taken by the normal impulse: restitution")
-    ui.row("Rubbed off", quantity(rubbed, "J"), "Taken by the friction impulse")
+    ui.row("Lost to friction", quantity(friction, "J"), "Taken by the friction impulse")
     driven = without_rounding(seen.driven, full)
     if driven:
         tip = "A body that nothing moves, but that moves as this observer sees it, does work on the other"

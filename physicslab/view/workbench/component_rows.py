@@ -134,7 +134,7 @@ class ComponentRows:
             window.picking = Picking(entity, kind, spec.name)
             window.notify("Click the body; empty space for none", 6.0)
         if picked != end:
-            window.deeds.insert(0, lambda _, window: set_end(window, entity, kind, spec.name, picked))
+            window.do_first(set_end, entity, kind, spec.name, picked)
 
 
 def _ends(world: World, entity: int, none: str) -> dict[int | None, str]:
@@ -164,7 +164,7 @@ def _set_part(window: Window, kind: Kind, spec: Field, axis: int, new: float) ->
 
 def _do_first(window: Window, change: Callable[[int], SetField]) -> None:
     chosen = window.selection.entities
-    window.deeds.insert(0, lambda _, window: change_fields(window, [change(entity) for entity in chosen]))
+    window.do_first(lambda world, window: change_fields(world, window, [change(entity) for entity in chosen]))
 
 
 def _is_shown(spec: Field, held: Component) -> bool:

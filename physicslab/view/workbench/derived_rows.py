@@ -19,7 +19,7 @@ from physicslab.world import World
 __all__ = ["build_derived", "build_forces", "build_pairs"]
 
 _ROUNDING = 1e-9
-"""A sum of forces below this share of the largest is none."""
+"""A sum of forces below this share of the largest is treated as zero."""
 
 
 def build_derived(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
@@ -103,22 +103,10 @@ def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
     if step is None:
         return
     largest = max(largest, step.inertia.magnitude)
-    _vector_row(
-        ui,
-        "m a",
-        step.inertia,
-        largest,
-        "N",
-        "Mass times mean acceleration in the last step, without impacts",
-    )
-    _vector_row(
-        ui,
-        "Difference",
-        total - step.inertia,
-        largest,
-        "N",
-        "The sum is of now, the acceleration of the last step",
-    )
+    tip = "Mass times mean acceleration in the last step, without impacts"
+    _vector_row(ui, "m a", step.inertia, largest, "N", tip)
+    tip = "The sum is of now, the acceleration of the last step"
+    _vector_row(ui, "Difference", total - step.inertia, largest, "N", tip)
     if not is_brief:
         _build_impulses(ui, step)
 
@@ -148,7 +136,7 @@ def _build_impulses(ui: Ui, step: LastStep) -> None:
 
 
 def _vector_row(ui: Ui, label: str, value: Vector2, largest: float, unit: str, tip: str) -> None:
-    """Write how large a vector is; beside the ``largest`` it is none where it is rounding."""
+    """Write how large a vector is; rounding beside the ``largest`` is treated as zero."""
     shown = value.magnitude if value.magnitude > _ROUNDING * largest else 0.0
     words = f"{tip}: {vector_quantity(value, unit)}" if tip else vector_quantity(value, unit)
     ui.row(label, quantity(shown, unit), words)

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
-from imgui_bundle import ImVec2, ImVec4, imgui, implot
+from imgui_bundle import ImVec2, imgui, implot
 from numpy.typing import NDArray
 
 from physicslab.history import SetSimulation
 from physicslab.view.canvas.quantities import round_quantity
-from physicslab.view.canvas.theme import Colour
 from physicslab.view.controls import file_actions
 from physicslab.view.panels.error_study import ErrorStudy, Sample
 from physicslab.view.toolkit.bars import bar
+from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -54,7 +53,7 @@ def _build_progress(ui: Ui, window: Window) -> None:
         bar(ui, "Measuring this scene with every method", f"{study.share:.0%}", study.share, ui.theme.accent)
         stopped = ui.button("Stop", "Give up measuring (F5)")
     if stopped or not stays[0]:
-        window.deeds.append(file_actions.study_error)
+        window.do_next(file_actions.study_error)
 
 
 def _build_result(ui: Ui, window: Window) -> None:
@@ -83,7 +82,7 @@ def _build_result(ui: Ui, window: Window) -> None:
             study.shown = False
         imgui.same_line()
         if ui.button("CSV of all runs", "Write the table to a file", shown="CSV"):
-            window.deeds.append(_save)
+            window.do_next(_save)
     if not stays[0]:
         study.shown = False
 
@@ -123,14 +122,14 @@ def _build_plot(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, fl
     for n, (name, times, distances) in enumerate(series):
         spec = implot.Spec()
         spec.marker, spec.marker_size = n % implot.Marker_.count, 5.0
-        spec.line_color = spec.marker_fill_color = spec.marker_line_color = _opaque(
+        spec.line_color = spec.marker_fill_color = spec.marker_line_color = as_vector(
             ui.theme.bodies[n % len(ui.theme.bodies)]
         )
         implot.plot_line(name, times, distances, spec)
         ui.words.append(name)
     if study.rounding > 0.0:
         spec = implot.Spec()
-        spec.flags, spec.line_color = implot.InfLinesFlags_.horizontal, _opaque(ui.theme.faint)
+        spec.flags, spec.line_color = implot.InfLinesFlags_.horizontal, as_vector(ui.theme.faint)
         implot.plot_inf_lines("one rounding at the start", np.array([study.rounding]), spec)
     _build_marks(ui, study, window)
     implot.end_plot()
@@ -154,7 +153,7 @@ def _build_marks(ui: Ui, study: ErrorStudy, window: Window) -> None:
     ui.words.append(words)
     imgui.set_tooltip(words)
     if imgui.is_mouse_clicked(imgui.MouseButton_.left):
-        window.deeds.append(_using(nearest))
+        window.do_next(_use, nearest)
 
 
 def _build_table(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, float]) -> None:
@@ -172,7 +171,7 @@ def _build_table(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, f
         imgui.table_next_row()
         imgui.table_next_column()
         if ui.button(f"Use run {n + 1}", "Run this scene by it from here on", shown=run.name):
-            window.deeds.append(_using(run))
+            window.do_next(_use, run)
         for words in (run.step, f"{run.cpu_ms:.3g} ms", run.words):
             imgui.table_next_column()
             ui.text(words)
@@ -185,15 +184,11 @@ def _save(world: World, window: Window) -> None:
     file_actions.save_new(window, world, "errors", ".csv", content)
 
 
-def _using(run: Sample) -> Callable[[World, Window], None]:
-    """Return what chooses the settings of a run."""
-
-    def deed(world: World, window: Window) -> None:
-        window.edits.do(SetSimulation(run.settings))
-        step = f", {run.step}" if run.step else ""
-        window.notify(f"This scene goes by {run.name}{step} from here on")
-
-    return deed
+def _use(world: World, window: Window, run: Sample) -> None:
+    """Choose the settings of a run."""
+    window.edits.do(SetSimulation(run.settings))
+    step = f", {run.step}" if run.step else ""
+    window.notify(f"This scene is run by {run.name}{step} from here on")
 
 
 def _limits(values: NDArray[np.float64]) -> tuple[float, float]:
@@ -216,11 +211,6 @@ def _emptiest_corner(x: NDArray[np.float64], y: NDArray[np.float64]) -> int:
         place.south_west: ~right & ~top, place.south_east: right & ~top,
     }  # fmt: skip
     return min(corners, key=lambda corner: int(corners[corner].sum()))
-
-
-def _opaque(colour: Colour) -> ImVec4:
-    red, green, blue = colour
-    return ImVec4(red / 255, green / 255, blue / 255, 1.0)
 
 
 def _series(study: ErrorStudy) -> list[tuple[str, NDArray[np.float64], NDArray[np.float64]]]:

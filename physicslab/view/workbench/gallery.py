@@ -12,7 +12,7 @@ from physicslab.ecs.text import printable
 from physicslab.files.scene import SceneError, load_scene
 from physicslab.scenes import SCENES
 from physicslab.view.canvas.theme import Theme
-from physicslab.view.controls.file_actions import opening
+from physicslab.view.controls.file_actions import open_from_list
 from physicslab.view.controls.scene_files import scene_files
 from physicslab.view.picture.picture import picture_of
 from physicslab.view.toolkit.labels import widget_label
@@ -87,7 +87,7 @@ class Gallery:
         clicked = imgui.selectable(widget_label("", f"card {card.source}"), False, 0, extent)[0]
         ui.note(f"Scene: {card.title}")
         if clicked:
-            window.deeds.append(opening(card.source))
+            window.do_next(open_from_list, card.source)
         imgui.set_cursor_screen_pos(ImVec2(corner.x + 0.5 * size, corner.y + 0.5 * size))
         box = pygame.Rect(
             round(corner.x + 0.5 * size), round(corner.y + 0.5 * size),

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Graph
+from physicslab.components.graph import TIME
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.controls import dashboard_actions
@@ -16,7 +15,7 @@ from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_plot import GraphPlot
-from physicslab.view.workbench.graph_readings import ButtonRow, build_cursors, build_moment, build_readings
+from physicslab.view.workbench.graph_readings import build_cursors, build_moment, build_readings
 from physicslab.view.workbench.panel_places import is_bar
 from physicslab.view.workbench.quantity_menu import build_quantities, named_key
 from physicslab.world import World
@@ -105,7 +104,7 @@ class GraphPanels:
             hovered = plot.build(ui, world, window, graph, height)
         imgui.end()
         if not stays:
-            window.deeds.append(dashboard_actions.close_graph(graph))
+            window.do_next(dashboard_actions.close_graph, graph)
         return hovered
 
     def _follow_hand(self, entity: int) -> None:
@@ -122,32 +121,30 @@ class GraphPanels:
     def _build_head(self, ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         """Build the choice of lines, and what can be done with them."""
         number, dashboard = graph.number, window.dashboard
-        row = ButtonRow()
-        row.next("Lines")
-        if ui.button(f"Lines of graph {number}", "What is plotted", shown="Lines"):
-            imgui.open_popup("lines")
-        across = "time" if graph.across is None else graph.across[1]
-        row.next(f"Across: {across}")
-        tip = "What stands on the horizontal axis: the time, or another quantity"
-        if ui.button(f"Across graph {number}", tip, shown=f"Across: {across}"):
-            imgui.open_popup("across")
-        row.next("Follow")
+        with ui.list(f"Lines of graph {number}", "The plotted quantities", shown="Lines") as is_open:
+            if is_open:
+                self._build_lines(ui, world, window, graph)
+        across = f"Across: {'time' if graph.across is None else graph.across[1]}"
+        ui.same_line_if_room(across)
+        tip = "The quantity on the horizontal axis: the time, or another one"
+        with ui.list(f"Across graph {number}", tip, shown=across) as is_open:
+            if is_open:
+                self._build_across(ui, world, window, graph)
+        ui.same_line_if_room("Follow")
         follows = graph.entity not in dashboard.free_axes
         tip = "Let the axes follow what is recorded; scroll or drag in the plot to look closer"
         if ui.button(f"Follow graph {number}", tip, shown="Follow", on=follows):
             dashboard.free_axes ^= {graph.entity}
-        row.next("More")
-        if ui.button(f"More of graph {number}", "Cursors, files, place", shown="More"):
-            imgui.open_popup("more")
-        build_moment(ui, world, window, row.used)
-        _popup("lines", lambda: self._build_lines(ui, world, window, graph))
-        _popup("across", lambda: self._build_across(ui, world, window, graph))
-        _popup("more", lambda: self._build_more(ui, world, window, graph))
+        ui.same_line_if_room("More")
+        with ui.list(f"More of graph {number}", "Cursors, files, place", shown="More") as is_open:
+            if is_open:
+                self._build_more(ui, world, window, graph)
+        build_moment(ui, world, window)
 
     @staticmethod
     def _build_lines(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         def choose(key: Key) -> None:
-            window.deeds.append(dashboard_actions.toggle_line(graph, key))
+            window.do_next(dashboard_actions.toggle_line, graph, key)
 
         gone = [line.key for line in graph.lines if line.key[0] not in (None, *world.entity_index.row_of)]
         for key in gone:
@@ -159,7 +156,8 @@ class GraphPanels:
     def _build_across(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
         def choose(key: Key | None) -> None:
             window.dashboard.free_axes.discard(graph.entity)
-            window.deeds.append(dashboard_actions.put_across(graph, key))
+            body, name = key or (None, TIME)
+            window.do_next(dashboard_actions.change, graph.entity, Graph(name, body, graph.side))
 
         if ui.item("Time [s]", on=graph.across is None):
             choose(None)
@@ -175,14 +173,14 @@ class GraphPanels:
             dashboard.marks[:] = [None, None]
         ui.rule()
         if ui.item("Save as a table (CSV)"):
-            window.deeds.append(dashboard_actions.save_table(graph))
+            window.do_next(dashboard_actions.save_table, graph)
         if ui.item("Save as a picture (PNG)"):
             dashboard.picture_of = graph.entity
         ui.rule()
         other = "left" if graph.side == "right" else "right"
         if ui.item(f"Put it at the {other}"):
-            body, name = graph.across or (None, "time")
-            window.deeds.append(dashboard_actions.changing(graph.entity, Graph(name, body, other)))
+            body, name = graph.across or (None, TIME)
+            window.do_next(dashboard_actions.change, graph.entity, Graph(name, body, other))
 
 
 def _build_bar(ui: Ui, window: Window, bar: Rect, places: dict[int, Rect]) -> None:
@@ -202,12 +200,6 @@ def _build_bar(ui: Ui, window: Window, bar: Rect, places: dict[int, Rect]) -> No
                 f"Open graph {graph.number}", tip, shown=f"{graph.number}", on=is_open, size=(0, height)
             ):
                 window.dashboard.active = graph.entity
-
-
-def _popup(name: str, build: Callable[[], None]) -> None:
-    if imgui.begin_popup(name):
-        build()
-        imgui.end_popup()
 
 
 def _title(graph: GraphShown, window: Window) -> str:

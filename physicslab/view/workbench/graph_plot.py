@@ -6,17 +6,16 @@ import math
 
 import numpy as np
 import pygame
-from imgui_bundle import ImVec2, ImVec4, imgui, implot
+from imgui_bundle import ImVec2, imgui, implot
 from numpy.typing import NDArray
 
 from physicslab.components.quantities import QUANTITIES
 from physicslab.diagnostics.scales import scales_of
-from physicslab.view.canvas.quantities import ROUNDING
+from physicslab.view.canvas.quantities import ROUNDING, written_unit
 from physicslab.view.canvas.theme import Colour
-from physicslab.view.canvas.units import written_unit
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.labels import widget_label
-from physicslab.view.toolkit.style import packed
+from physicslab.view.toolkit.style import as_vector, packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.plot_data import line_to_show, path_to_show, range_to_show, unbroken
@@ -202,7 +201,7 @@ class GraphPlot:
         if imgui.is_mouse_clicked(0):
             self._pressed = place
         if imgui.is_mouse_double_clicked(0):
-            window.deeds.append(dashboard_actions.go_to(time))
+            window.do_next(dashboard_actions.go_to, time)
             self._pressed = None
         if imgui.is_mouse_released(0) and self._pressed is not None:
             if math.dist(place, self._pressed) <= _CLICK:
@@ -280,13 +279,8 @@ def _heading(keys: list[Key], room: float = math.inf) -> str:
 
 def _look(colour: Colour, opacity: float, weight: float) -> implot.Spec:
     spec = implot.Spec()
-    spec.line_color, spec.line_weight = _opaque(colour, opacity), weight
+    spec.line_color, spec.line_weight = as_vector(colour, opacity), weight
     return spec
-
-
-def _opaque(colour: Colour, opacity: float = 1.0) -> ImVec4:
-    red, green, blue = colour
-    return ImVec4(red / 255, green / 255, blue / 255, opacity)
 
 
 def _plot_rect() -> tuple[int, int, int, int]:

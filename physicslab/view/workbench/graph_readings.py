@@ -8,9 +8,8 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.components.quantities import QUANTITIES
 from physicslab.diagnostics.quantities import why_undefined
 from physicslab.diagnostics.scales import scales_of
-from physicslab.view.canvas.quantities import quantity, without_rounding
+from physicslab.view.canvas.quantities import product, quantity, quotient, without_rounding, written_unit
 from physicslab.view.canvas.theme import Colour, Theme, mixed
-from physicslab.view.canvas.units import product, quotient, written_unit
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
@@ -21,7 +20,7 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench.quantity_menu import named_key, scale_of, unit_of
 from physicslab.world import World
 
-__all__ = ["ButtonRow", "build_cursors", "build_moment", "build_readings", "colours_of", "line_name"]
+__all__ = ["build_cursors", "build_moment", "build_readings", "colours_of", "line_name"]
 
 _VALUE = "-0.0000"
 """As wide as most values are: what follows stays in its place while they change."""
@@ -29,30 +28,6 @@ _TINT = 0.6
 """Share of a colour in its tint: what a body's next line has."""
 _MARK = 1.1
 """Length of the mark in a line's colour, in heights of the text."""
-
-
-class ButtonRow:
-    """Puts buttons beside each other, and in a new row where they would be cut.
-
-    Attributes
-    ----------
-    used : float
-        How much of the width is used up in the present row [px].
-    """
-
-    def __init__(self) -> None:
-        self._room = imgui.get_content_region_avail().x
-        self.used = 0.0
-
-    def next(self, words: str) -> None:
-        """Go on to where a button with these words has room."""
-        style = imgui.get_style()
-        width = imgui.calc_text_size(words).x + 2.0 * style.frame_padding.x
-        if self.used and self.used + style.item_spacing.x + width <= self._room:
-            imgui.same_line()
-            self.used += style.item_spacing.x + width
-        else:
-            self.used = width
 
 
 def colours_of(theme: Theme, graph: GraphShown) -> list[Colour]:
@@ -103,21 +78,21 @@ def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> N
         _entry(ui, colour, name, value)
 
 
-def build_moment(ui: Ui, world: World, window: Window, used: float) -> None:
-    """Write of which moment the values are, at the right of a row of which so much is used [px]."""
+def build_moment(ui: Ui, world: World, window: Window) -> None:
+    """Write of which moment the values are, at the right of the row that was begun, or below it."""
     record, pointed = window.dashboard.record, window.dashboard.pointed
     row = record.nearest(world.time if pointed is None else pointed)
     if row is None:
         return
     past = window.dashboard.past
     words = f"t {record.times[row]:.3f} s" if past is None else f"the past: {past.share:.0%}"
-    style, room = imgui.get_style(), imgui.get_content_region_avail().x
-    width = imgui.calc_text_size(words).x
-    if used + style.item_spacing.x + width > room:
-        ui.text(words)
-        return
-    imgui.same_line(room - width + style.window_padding.x)
-    imgui.align_text_to_frame_padding()
+    imgui.same_line()
+    room = imgui.get_content_region_avail().x - imgui.calc_text_size(words).x
+    if room < 0.0:
+        imgui.new_line()
+    else:
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + room)
+        imgui.align_text_to_frame_padding()
     ui.text(words)
 
 
@@ -159,25 +134,22 @@ def build_cursors(ui: Ui, window: Window, graph: GraphShown) -> None:
     marks = window.dashboard.marks
     if marks == [None, None]:
         return
-    row = ButtonRow()
     for name, time in zip("AB", marks, strict=True):
+        words = ("Shift-click: B" if name == "B" else "Click: A") if time is None else f"{name} {time:.3f} s"
+        if name == "B":
+            ui.same_line_if_room(words)
         if time is None:
-            words = "Shift-click: B" if name == "B" else "Click: A"
-            row.next(words)
             imgui.align_text_to_frame_padding()
             ui.faint(words, wrapped=False)
-            continue
-        words = f"{name} {time:.3f} s"
-        row.next(words)
-        if ui.button(f"Go to {name} in graph {graph.number}", "Pause, and go to this moment", shown=words):
-            window.deeds.append(dashboard_actions.go_to(time))
-    row.next("Clear")
+        elif ui.button(f"Go to {name} in graph {graph.number}", "Pause, and go to this moment", shown=words):
+            window.do_next(dashboard_actions.go_to, time)
+    ui.same_line_if_room("Clear")
     if ui.button(f"Clear cursors in graph {graph.number}", "Take the cursors A and B away", shown="Clear"):
         marks[:] = [None, None]
     a, b = marks
     if a is not None and b is not None:
         words = f"B - A {b - a:.3f} s"
-        row.next(words)
+        ui.same_line_if_room(words)
         imgui.align_text_to_frame_padding()
         ui.text(words)
 

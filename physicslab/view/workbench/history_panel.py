@@ -1,12 +1,9 @@
-"""What was done: every edit and run, the last one last, and other branches; a click goes there."""
+"""The history: every edit and run, the last one last, and other branches; a click goes there."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from imgui_bundle import ImVec2, imgui
 
-from physicslab.history import Branch
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import actions
 from physicslab.view.controls.history_actions import branch_words, switch
@@ -17,7 +14,7 @@ from physicslab.world import World
 __all__ = ["build_history"]
 
 _WIDTH, _HEIGHT, _LINE = 17.0, 20.0, 1.5
-"""Of the lists, and of a line of the lower one, in heights of the text."""
+"""Size of the lists, and height of a line of the lower one, in heights of the text."""
 _LETTERS = 34
 """How much of a branch is written in its line; the rest is in its tip."""
 
@@ -31,18 +28,18 @@ def build_history(ui: Ui, window: Window) -> None:
     place = left + 0.5 * width + ui.size, top + 0.5 * height + 4.0 * ui.size
     with ui.floating("History", place, docks=True) as stays:
         if ui.button("Undo", "Take back the last edit or run (Ctrl+Z)", enabled=done > 0):
-            window.deeds.append(actions.undo)
+            window.do_next(actions.undo)
         imgui.same_line()
         if ui.button("Redo", "Put back what was taken back (Ctrl+Y)", enabled=done < len(entries)):
-            window.deeds.append(actions.redo)
+            window.do_next(actions.redo)
         below = _LINE * (len(history.branches) + 2) * ui.size if history.branches else 0.0
         room = ui.extent(width, height)
         if imgui.begin_child("entries", ImVec2(room.x, max(room.y - below, 3.0 * ui.size))):
             if ui.selectable("As it was opened", on=done == 0, faint=False):
-                window.deeds.append(_going(0))
+                window.do_next(_go_to, 0)
             for n, entry in enumerate(entries, start=1):
                 if ui.selectable(f"{n}. {entry.words}", on=n == done, faint=not entry.done):
-                    window.deeds.append(_going(n))
+                    window.do_next(_go_to, n)
         imgui.end_child()
         _build_branches(ui, window)
     if not stays[0]:
@@ -56,28 +53,19 @@ def _build_branches(ui: Ui, window: Window) -> None:
         return
     ui.rule()
     ui.heading("Other branches")
-    ui.tip("What was done before the past was changed; Ctrl+B goes from one to the next")
+    ui.tip("Edits and runs from before the past was changed; Ctrl+B switches from one to the next")
     for n, branch in enumerate(history.branches, start=1):
         words = branch_words(branch, history.start)
         if ui.selectable(f"{n}. {shortened(words, _LETTERS)}"):
-            window.deeds.append(_switching(branch))
+            window.do_next(switch, branch)
         ui.tip(words)
 
 
-def _switching(branch: Branch) -> Callable[[World, Window], None]:
-    return lambda world, window: switch(window, branch)
-
-
-def _going(entry: int) -> Callable[[World, Window], None]:
-    """Return what takes back or puts back edits and runs until so many are done."""
-
-    def deed(world: World, window: Window) -> None:
-        history = window.edits.history
-        window.hand.drop(world)
-        window.pace.paused = True
-        while history.position > entry and history.undo() is not None:
-            pass
-        while history.position < entry and history.redo() is not None:
-            pass
-
-    return deed
+def _go_to(world: World, window: Window, entry: int) -> None:
+    """Take back or put back edits and runs until so many are done."""
+    history = window.edits.history
+    window.pause_for_history(world)
+    while history.position > entry and history.undo() is not None:
+        pass
+    while history.position < entry and history.redo() is not None:
+        pass

@@ -29,7 +29,7 @@ _TIPS = (
     "Speed along the normal after the impact, as a share of the approach", "Kinetic energy that it took",
 )  # fmt: skip
 _HEIGHT = 11.0
-"""Of the table, in heights of the text."""
+"""Height of the table, in heights of the text."""
 _SLACK = 1.5
 
 
@@ -74,10 +74,10 @@ def _build_head(ui: Ui, world: World, window: Window) -> None:
         "Let time run until what is selected (or anything) strikes something, and stand still there (Shift+Z)"
     )
     if ui.button("Pause at the next", tip, on=waits):
-        window.deeds.append(impact_actions.pause_at_next)
+        window.do_next(impact_actions.pause_at_next)
     ui.same_line_if_room("CSV")
     if ui.button("CSV of impacts", "Write all of them to a file", shown="CSV", enabled=count > 0):
-        window.deeds.append(impact_actions.save_table)
+        window.do_next(impact_actions.save_table)
     ui.same_line_if_room(f"{count} impacts")
     ui.faint(f"{count} impacts", wrapped=False)
 
@@ -156,4 +156,4 @@ def _build_row(ui: Ui, world: World, window: Window, n: int, record: Any) -> Non
         imgui.table_next_column()
         ui.text(words)
     if clicked:
-        window.deeds.append(impact_actions.close_up(record.copy()))
+        window.do_next(impact_actions.close_up, record.copy())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
 
 from imgui_bundle import imgui
 
@@ -39,8 +39,6 @@ _SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
     (Strobe, "Strobe pictures", "Its outline stays where it was every 0.1 s"),
 )
 """Components that are one click away; all others are in a list."""
-
-type Deed = Callable[[World, Window], None]
 
 
 class Inspector:
@@ -85,7 +83,7 @@ class Inspector:
     def finish(self, window: Window) -> str:
         """Take over what is half written in a field, and return why it is refused; empty where it is not.
 
-        What was written of bodies that are shown no more is dropped.
+        Text for bodies that are shown no more is dropped.
         """
         if self._shown != (window.edits.world, window.selection.entities):
             self._numbers.clear()
@@ -97,7 +95,7 @@ class Inspector:
         def commit(name: str) -> None:
             if name:
                 _check_name(world, entity, name)
-            window.deeds.insert(0, lambda _, window: changing.name_entity(window, entity, name))
+            window.do_first(changing.name_entity, entity, name)
 
         held = world.component(entity, Name).id if world.has(entity, Name) else ""
         self._numbers.row(ui, "Name", "Name", _NAME, held, commit)
@@ -117,49 +115,44 @@ class Inspector:
                 imgui.same_line(_SECOND_COLUMN * width + imgui.get_style().window_padding.x)
             on = all(world.has(entity, kind) for entity in chosen)
             if ui.checkbox(words, on, tip):
-                window.deeds.append(_switching(chosen, kind, on=on))
+                if on:
+                    window.do_next(changing.take, chosen, kind)
+                else:
+                    window.do_next(changing.give, chosen, partial(_made, kind))
         with ui.list("Add ...", "Properties that it may have and has not") as shown:
             for words, (meaning, make) in (changing.addable(world, chosen) if shown else {}).items():
                 if ui.item(f"add {words}", tip=meaning, shown=f"{words}: {meaning}"):
-                    window.deeds.append(_giving(chosen, make))
+                    window.do_next(changing.give, chosen, make)
         imgui.same_line()
         with ui.list("Take away ...", "Properties that it has") as shown:
             for words, (meaning, kind) in (changing.removable(world, chosen) if shown else {}).items():
                 if ui.item(f"no {words}", tip=meaning, shown=f"{words}: {meaning}"):
-                    window.deeds.append(_taking(chosen, kind))
+                    window.do_next(changing.take, chosen, kind)
         ui.same_line_if_room("Plot")
         if ui.button("Plot", "Its speed and place against time"):
-            window.deeds.append(plot_selected)
+            window.do_next(plot_selected)
 
     @staticmethod
     def _build_buttons(ui: Ui, world: World, window: Window) -> None:
         ui.gap(0.2)
         attached = attachments(world, window.selection.entities)
-        for n, (words, (tip, deed)) in enumerate(attached.items()):
+        for n, (words, (tip, action)) in enumerate(attached.items()):
             if n:
                 ui.same_line_if_room(words)
             if ui.button(words, tip):
-                window.deeds.append(deed)
+                window.do_next(action)
         if ui.button("Duplicate", "Another one beside it (Ctrl+D)"):
-            window.deeds.append(duplicate_selected)
+            window.do_next(duplicate_selected)
         imgui.same_line()
         if ui.button("Delete", "Remove what is selected (Del)"):
-            window.deeds.append(remove_selected)
+            window.do_next(remove_selected)
         ui.same_line_if_room("Done")
         if ui.button("Done", "Select nothing (Esc)"):
-            window.deeds.append(lambda _, window: window.selection.clear())
+            window.do_next(lambda _, window: window.selection.clear())
 
 
-def _switching(chosen: tuple[int, ...], kind: type[Component], *, on: bool) -> Deed:
-    return _taking(chosen, kind) if on else _giving(chosen, lambda _: kind())
-
-
-def _giving(chosen: tuple[int, ...], make: Callable[[int], Component]) -> Deed:
-    return lambda _, window: changing.give(window, chosen, make)
-
-
-def _taking(chosen: tuple[int, ...], kind: type[Component]) -> Deed:
-    return lambda _, window: changing.take(window, chosen, kind)
+def _made(kind: type[Component], entity: int) -> Component:
+    return kind()
 
 
 def _check_name(world: World, entity: int, name: str) -> None:

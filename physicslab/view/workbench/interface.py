@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from operator import attrgetter
 
 import pygame
 
@@ -13,7 +14,7 @@ from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
-from physicslab.view.workbench.film_panel import build_film
+from physicslab.view.workbench.file_panels import build_film, build_open, build_save
 from physicslab.view.workbench.gallery import Gallery
 from physicslab.view.workbench.help_panel import build_help
 from physicslab.view.workbench.history_panel import build_history
@@ -23,13 +24,10 @@ from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menu_bar import build_menu_bar
 from physicslab.view.workbench.microscope_panel import build_microscope
 from physicslab.view.workbench.note_panel import NotePanel
-from physicslab.view.workbench.open_panel import build_open
 from physicslab.view.workbench.palette import build_palette
-from physicslab.view.workbench.recipe_panel import RecipePanel
 from physicslab.view.workbench.recovery_panel import build_recovery
-from physicslab.view.workbench.save_panel import build_save
 from physicslab.view.workbench.scene_panels import ScenePanels
-from physicslab.view.workbench.settings_panel import SettingsPanel
+from physicslab.view.workbench.settings_panel import RecipePanel, SettingsPanel
 from physicslab.view.workbench.stopwatch_panel import build_stopwatch
 from physicslab.view.workbench.transport import build_transport
 from physicslab.view.workbench.walk import Walk
@@ -42,11 +40,18 @@ _PERIOD = 0.2
 """Time [s] after which panels are built again where nothing was done: faster digits cannot be read."""
 _RECIPES = {"circle": "Circle", "box": "Box"}
 """The tools that make bodies to a recipe."""
+_WATCHED = attrgetter(
+    "canvas.size", "dashboard.state", "edits.history.branches", "error_study.shown", "figures",
+    "filming.choosing", "filming.refused", "help", "impacts.shown", "level", "lists_history",
+    "measured.number", "microscope.state", "naming_refused", "opening_refused", "pace.paused", "pace.speed",
+    "recovery.offered", "selection.entities", "shows_gallery", "shows_stopwatch", "tool", "trust.state",
+)  # fmt: skip
+"""The state of a window that panels show beside figures."""
 _BUTTONS = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 
 
 class Interface:
-    """The panels of a window. They change nothing: what a click is to do is put on ``Window.deeds``.
+    """The panels of a window. They change nothing: what a click is to do is put on ``Window.pending``.
 
     Parameters
     ----------
@@ -183,42 +188,13 @@ class Interface:
 
     def _state(self, world: World) -> tuple[object, ...]:
         """Return what panels show beside figures."""
-        window, pace = self._window, self._window.pace
-        shown = (
-            window.help,
-            window.error_study.shown,
-            window.error_study.share if window.error_study.running else None,
-            window.trust.state,
-            window.lists_history,
-            window.shows_gallery,
-            window.naming is None,
-            window.naming_refused,
-            window.filming.choosing,
-            window.filming.refused,
-            window.opening is None,
-            window.opening_refused,
-            window.edits.history.branches,
-            window.recovery.offered,
-            window.figures,
-            window.level,
-            window.dashboard.state,
-            window.shows_stopwatch,
-            window.impacts.shown,
-            window.microscope.state,
-            window.measuring.writing is None,
-        )
-        time = pace.paused, pace.speed, world.time if pace.paused else None
+        window = self._window
         return (
-            world,
-            window.tool,
-            window.selection.entities,
-            world.motion_edits,
-            world.revision,
-            window.measured.number,
-            window.canvas.size,
-            shown,
-            time,
-        )
+            world, world.motion_edits, world.revision, world.time if window.pace.paused else None,
+            window.error_study.share if window.error_study.running else None,
+            window.naming is None, window.opening is None, window.measuring.writing is None,
+            *_WATCHED(window),
+        )  # fmt: skip
 
     def _build(
         self, world: World, figures: WorldFigures, details: Sequence[Line], measures: Sequence[Line]

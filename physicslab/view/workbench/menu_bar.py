@@ -15,7 +15,7 @@ from physicslab.view.controls.scene_files import scene_files
 from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
-from physicslab.view.workbench.open_panel import recent_label
+from physicslab.view.workbench.file_panels import recent_label
 from physicslab.view.workbench.trust_badge import badge_width, build_badge
 from physicslab.world import World
 
@@ -74,7 +74,7 @@ def _build_controls(ui: Ui, groups: tuple[str, ...], world: World, window: Windo
             if control.group == group and ui.item(
                 control.title, control.label, on=control.on(world, window), tip=control.tip
             ):
-                window.deeds.append(control.pressed)
+                window.do_next(control.pressed)
         if group == "file":
             with ui.menu("Recent files") as shown:
                 if shown:
@@ -88,14 +88,14 @@ def _build_recent(ui: Ui, window: Window) -> None:
         ui.faint("None was opened or saved yet", wrapped=False)
     for number, path in enumerate(there, start=1):
         if ui.item(recent_label(number, path), tip=printable(str(path))):
-            window.deeds.append(file_actions.opening(path))
+            window.do_next(file_actions.open_from_list, path)
 
 
 def _build_scenes(ui: Ui, world: World, window: Window) -> None:
     """Build a line for each scene, built-in or in the working directory."""
     for name, scene in SCENES.items():
         if ui.item(scene.title, identity=name, on=world.title == scene.title, tip=scene.description):
-            window.deeds.append(file_actions.opening(name))
+            window.do_next(file_actions.open_from_list, name)
     try:
         files = scene_files(Path.cwd())
     except OSError as error:
@@ -106,4 +106,4 @@ def _build_scenes(ui: Ui, world: World, window: Window) -> None:
         ui.faint("Files in the working directory")
     for path in files:
         if ui.item(printable(path.name), identity=str(path)):
-            window.deeds.append(file_actions.opening(path))
+            window.do_next(file_actions.open_from_list, path)

@@ -58,11 +58,9 @@ class MeterPanels:
         reading, scales = Reading(world), scales_of(world)
         for meter in window.dashboard.meters:
             with ui.panel(f"meter {meter.entity}", places[meter.entity], rounded=True):
-                if build_title(ui, named_key(meter.key, window), f"Meter {meter.number}"):
-                    imgui.open_popup("meter")
-                if imgui.begin_popup("meter"):
-                    _build_menu(ui, world, window, meter)
-                    imgui.end_popup()
+                with build_title(ui, named_key(meter.key, window), f"Meter {meter.number}") as is_open:
+                    if is_open:
+                        _build_menu(ui, world, window, meter)
                 why = why_undefined(world, meter.key[1], meter.key[0])
                 if why:
                     ui.faint(f"The body is {why}" if why == "gone" else f"It {why}")
@@ -90,13 +88,13 @@ def _build_number(ui: Ui, words: str, unit: str) -> None:
 def _build_menu(ui: Ui, world: World, window: Window, meter: MeterShown) -> None:
     def choose(key: Key) -> None:
         made = Meter(key[1], key[0], meter.corner)
-        window.deeds.append(dashboard_actions.changing(meter.entity, made))
+        window.do_next(dashboard_actions.change, meter.entity, made)
 
     build_quantities(ui, world, window, [meter.key], choose)
     ui.rule()
     corner = build_corners(ui, meter.corner, CORNERS)
     if corner is not None:
         made = Meter(meter.key[1], meter.key[0], corner)
-        window.deeds.append(dashboard_actions.changing(meter.entity, made))
+        window.do_next(dashboard_actions.change, meter.entity, made)
     if ui.item("Remove the meter"):
-        window.deeds.append(dashboard_actions.removing(meter.entity))
+        window.do_next(dashboard_actions.remove, meter.entity)

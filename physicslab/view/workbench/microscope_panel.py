@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
 
 from imgui_bundle import ImVec2, imgui
 
@@ -13,7 +13,7 @@ from physicslab.view.controls import impact_actions
 from physicslab.view.panels.collision_words import AGREES, Step, body_name, law_steps, story
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.microscope import FRAMES
-from physicslab.view.window.window import Window
+from physicslab.view.window.window import Action, Window
 from physicslab.view.workbench.collision_drawing import draw_bodies, draw_contact, draw_energies, draw_momenta
 from physicslab.world import World
 
@@ -79,22 +79,25 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
     ui.text(f"At {collision.time:.6f} s   ·   A: {a}   ·   B: {b}   ·   {pair}")
     imgui.pop_text_wrap_pos()
     end = imgui.get_cursor_pos_x() + wide
-    buttons: tuple[tuple[str, str, Callable[[World, Window], None], bool], ...] = (
-        ("Earlier", "The impact before this one; time goes back to it", impact_actions.go_beside(-1), False),
-        ("Later", "The impact after this one", impact_actions.go_beside(1), False),
+    buttons: tuple[tuple[str, str, Action, bool], ...] = (
+        ("Earlier", "The impact before this one; time goes back to it",
+         partial(impact_actions.go_beside, by=-1), False),
+        ("Later", "The impact after this one", partial(impact_actions.go_beside, by=1), False),
         ("Slowly through it", "Go to shortly before it, and let time run slowly (Shift+Tab)",
          impact_actions.run_slowly, microscope.slow is not None),
         ("Pause at the next impact", "Let time run until what is selected (or anything) strikes something "
          "(Shift+Z)", impact_actions.pause_at_next, microscope.waits_for is not None),
-        ("All impacts", "The table of impacts (Z)", impact_actions.toggle_impacts, window.impacts.shown),
+        ("All impacts", "The table of impacts (Z)", _toggle_table, window.impacts.shown),
     )  # fmt: skip
-    for n, (label, tip, deed, on) in enumerate(buttons):
-        _go_on(label, end, is_first=n == 0)
+    for n, (label, tip, action, on) in enumerate(buttons):
+        if n:
+            ui.same_line_if_room(label, end)
         if ui.button(label, tip, on=on):
-            window.deeds.append(deed)
+            window.do_next(action)
     for n, (frame, tip) in enumerate(FRAMES.items()):
         label = f"Seen by: {frame}"
-        _go_on(frame, end, is_first=n == 0)
+        if n:
+            ui.same_line_if_room(frame, end)
         if ui.button(label, f"Velocities, momenta and energies as an observer finds them. {tip}",
                      shown=frame, on=microscope.frame == frame):  # fmt: skip
             microscope.frame = frame
@@ -102,16 +105,8 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
     ui.faint("observer", wrapped=False)
 
 
-def _go_on(words: str, end: float, *, is_first: bool) -> None:
-    """Go on in the same line where a button with such words still ends within the window."""
-    if is_first:
-        return
-    imgui.same_line()
-    if (
-        imgui.get_cursor_pos_x() + imgui.calc_text_size(words).x + 2.0 * imgui.get_style().frame_padding.x
-        > end
-    ):
-        imgui.new_line()
+def _toggle_table(world: World, window: Window) -> None:
+    window.impacts.shown = not window.impacts.shown
 
 
 def _build_drawings(ui: Ui, world: World, window: Window, wide: float) -> None:
@@ -164,29 +159,18 @@ def _build_words(ui: Ui, world: World, window: Window) -> None:
 
 def _build_velocities(ui: Ui, seen: Collision) -> None:
     """Build a table of the velocities of both, split along n and t."""
-    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_fixed_fit
-    if not imgui.begin_table("velocities", 4, flags):
-        return
-    for words, width in (("", 5.0), ("along n", 6.6), ("along t", 6.6), ("turning", 7.4)):
-        imgui.table_setup_column(words, imgui.TableColumnFlags_.width_fixed, width * ui.size)
-    imgui.table_next_row()
-    for words in ("", "along n", "along t", "turning"):
-        imgui.table_next_column()
-        ui.faint(words, wrapped=False)
     speed, turning = seen.speed_scale, seen.turning_scale
-    for name, body in (("A", seen.a), ("B", seen.b)):
-        for when, motion in (("before", body.before), ("after", body.after)):
-            imgui.table_next_row()
-            along, across = motion.linear.dot(seen.normal), motion.linear.dot(seen.tangent)
-            cells = (
-                f"{name} {when}", quantity(without_rounding(along, speed), "m/s"),
-                quantity(without_rounding(across, speed), "m/s"),
-                quantity(without_rounding(motion.angular, turning), "rad/s"),
-            )  # fmt: skip
-            for words in cells:
-                imgui.table_next_column()
-                ui.text(words)
-    imgui.end_table()
+    rows = [
+        (
+            f"{name} {when}",
+            quantity(without_rounding(motion.linear.dot(seen.normal), speed), "m/s"),
+            quantity(without_rounding(motion.linear.dot(seen.tangent), speed), "m/s"),
+            quantity(without_rounding(motion.angular, turning), "rad/s"),
+        )
+        for name, body in (("A", seen.a), ("B", seen.b))
+        for when, motion in (("before", body.before), ("after", body.after))
+    ]
+    ui.table("velocities", (("", 5.0), ("along n", 6.6), ("along t", 6.6), ("turning", 7.4)), rows)
 
 
 def _build_momentum(ui: Ui, seen: Collision) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Note
@@ -17,7 +15,7 @@ from physicslab.world import World
 __all__ = ["NotePanel"]
 
 _WIDTH, _LINES = 17.0, 3
-"""Of the field, in heights of the text and in lines."""
+"""Size of the field, in heights of the text and in lines."""
 _FLAGS = (
     imgui.WindowFlags_.no_title_bar | imgui.WindowFlags_.no_resize | imgui.WindowFlags_.no_saved_settings
     | imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_nav | imgui.WindowFlags_.no_move
@@ -77,16 +75,13 @@ class NotePanel:
             writing.refusal = f"must be {error.allowed}"
             self._writing = None  # so that it is written on
             return writing.refusal
-        window.deeds.insert(0, _keeping(writing.text))
+        window.do_first(_finish, writing.text)
         return ""
 
 
-def _keeping(text: str) -> Callable[[World, Window], None]:
-    def deed(world: World, window: Window) -> None:
-        command = keep_note(world, window, text)
-        window.measuring.writing = None
-        if command is not None:
-            made = window.edits.do(command)
-            window.selection.entities = made or window.selection.entities
-
-    return deed
+def _finish(world: World, window: Window, text: str) -> None:
+    command = keep_note(world, window, text)
+    window.measuring.writing = None
+    if command is not None:
+        made = window.edits.do(command)
+        window.selection.entities = made or window.selection.entities

@@ -28,7 +28,7 @@ _FIGURES = 6
 _PART = 6
 """Characters that the field of a part of a vector has room for."""
 _SMALL = 1e-3
-"""Of numbers smaller than this one figure may be enough."""
+"""One figure may be enough for smaller numbers than this."""
 _VARIOUS = "various"
 """What a field shows of several bodies whose numbers differ."""
 _LARGEST_ANGLE = 1e5
@@ -259,7 +259,7 @@ def _as_field(text: str, spec: Field) -> float | str:
 def _unit_shown(spec: Field, value: float | None) -> str:
     """Return what stands beside a field: its unit; after an angle, what it is in degrees, to a hundredth.
 
-    Of more than half a turn it is the direction that is written so.
+    For more than half a turn it is the direction that is written so.
 
     >>> spec = Field("angle", "number", unit="rad")
     >>> [_unit_shown(spec, math.radians(degrees)) for degrees in (-30.0, 1e-6, 900.5)]

@@ -10,7 +10,6 @@ from physicslab.view.controls.icons import ICONS
 from physicslab.view.controls.tools import MORE_TOOLS, PALETTE, Tool
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
-from physicslab.world import World
 
 __all__ = ["build_palette"]
 
@@ -34,18 +33,14 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
             if ui.button(
                 tool.title, tool.usage, shown=_words(tool), on=window.tool == tool.name, size=(width, height)
             ):
-                _take_up(tool, window)
+                window.do_next(actions.choose_tool, tool)
         hidden = next((tool for tool in behind if tool.name == window.tool), None)
         words = f"{ICONS['more']}  More" if hidden is None else _words(hidden)
-        if ui.button(
-            "More", "More to put into the world", shown=words, on=hidden is not None, size=(width, height)
-        ):
-            imgui.open_popup("more tools")
-        if imgui.begin_popup("more tools"):
-            for tool in behind:
+        tip, is_hidden, size = "More to put into the world", hidden is not None, (width, height)
+        with ui.list("More", tip, shown=words, on=is_hidden, size=size) as is_open:
+            for tool in behind if is_open else ():
                 if ui.item(tool.title, on=window.tool == tool.name, tip=tool.usage):
-                    _take_up(tool, window)
-            imgui.end_popup()
+                    window.do_next(actions.choose_tool, tool)
         imgui.pop_style_var()
 
 
@@ -57,10 +52,3 @@ def _shown(room: int) -> list[Tool]:
 
 def _words(tool: Tool) -> str:
     return f"{ICONS[tool.name]}  {tool.title}"
-
-
-def _take_up(tool: Tool, window: Window) -> None:
-    def deed(world: World, window: Window) -> None:
-        actions.choose_tool(window, tool)
-
-    window.deeds.append(deed)

@@ -7,7 +7,7 @@ from contextlib import nullcontext
 
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import BODY_QUANTITIES, QUANTITIES, WORLD_QUANTITIES
-from physicslab.view.canvas.units import written_unit
+from physicslab.view.canvas.quantities import written_unit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window

@@ -4,12 +4,31 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
+from physicslab.ecs.fields import InvalidValue
+from physicslab.files.scene import SceneError
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.controls.recovery_actions import discard_session, restore_session
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
+from physicslab.world import World
 
 __all__ = ["build_recovery"]
+
+
+def restore_session(world: World, window: Window) -> None:
+    """Open what the session on offer has left; where that fails, all stays as it is."""
+    try:
+        window.next_world = window.recovery.restore()
+    except (SceneError, InvalidValue, OSError) as error:
+        window.notify(f"Not restored: {error}", 8.0, failed=True)
+    else:
+        window.pace.paused = True
+        window.notify("Restored, and paused: Space goes on")
+
+
+def discard_session(world: World, window: Window) -> None:
+    """Remove what the session on offer has left."""
+    window.recovery.discard()
+
 
 _OFFERS = {"Restore it": restore_session, "Discard": discard_session}
 _PAD = 6
@@ -37,9 +56,9 @@ def build_recovery(ui: Ui, window: Window, free: Rect) -> int:
         if in_line:
             imgui.align_text_to_frame_padding()
         ui.text(words, ui.theme.notice, wrapped=not in_line)
-        for n, (label, deed) in enumerate(_OFFERS.items()):
+        for n, (label, action) in enumerate(_OFFERS.items()):
             if in_line or (beside and n):
                 imgui.same_line()
             if ui.button(label):
-                window.deeds.append(deed)
+                window.do_next(action)
     return round(height) + 2 * _PAD

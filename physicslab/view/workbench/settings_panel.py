@@ -1,19 +1,19 @@
-"""How the world is stepped, to be changed in the window: each choice with what ``auto`` took and why."""
+"""How the world is stepped, and what the next body is like: each choice with what ``auto`` took and why."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from physicslab.ecs.config import COLLISIONS, CONTACTS, INTEGRATORS, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.history import SetPhysics, SetSimulation
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
 
-__all__ = ["SettingsPanel"]
+__all__ = ["RecipePanel", "SettingsPanel"]
 
 _SLEEPING = {"auto": "auto", "yes": True, "no": False}
 _NUMBERS: tuple[tuple[str, str, str], ...] = (
@@ -59,7 +59,7 @@ class SettingsPanel:
 
         def commit(new: float) -> None:
             spec.check(new)
-            window.deeds.append(_changing(config, name, new))
+            window.do_next(_change, config, name, new)
 
         self._numbers.row(ui, name, words, spec, value, commit, drags=False)
 
@@ -70,15 +70,46 @@ class SettingsPanel:
         chosen = ui.choice(words, now, choices)
         if chosen != now:
             value: object = _SLEEPING[chosen] if name == "sleeping" else chosen
-            window.deeds.append(_changing(SimulationConfig, name, value))
+            window.do_next(_change, SimulationConfig, name, value)
 
 
-def _changing(config: type[Config], name: str, value: object) -> Callable[[World, Window], None]:
-    """Return what changes one setting; where it is refused, nothing is changed, and the reason is shown."""
+def _change(world: World, window: Window, config: type[Config], name: str, value: object) -> None:
+    """Change one setting; where it is refused, nothing is changed, and the reason is shown."""
+    window.edits.do(SetPhysics({name: value}) if config is PhysicsConfig else SetSimulation({name: value}))
 
-    def deed(world: World, window: Window) -> None:
-        window.edits.do(
-            SetPhysics({name: value}) if config is PhysicsConfig else SetSimulation({name: value})
-        )
 
-    return deed
+_ZERO = {"size": "in turn"}
+"""Words for a 0 that is no number: sizes that differ from one body to the next."""
+
+
+class RecipePanel:
+    """A row for each property of what is made next."""
+
+    def __init__(self) -> None:
+        self._numbers = NumberFields()
+
+    def finish(self) -> str:
+        """Take over what is half written in a field, and return why it is refused; empty where it is not."""
+        return self._numbers.finish()
+
+    def build(self, ui: Ui, title: str, window: Window) -> None:
+        """Build them under a title."""
+        ui.gap(0.2)
+        ui.rule()
+        ui.heading(f"Next {title.lower()}")
+        for spec in Recipe.FIELDS:
+            self._build_row(ui, spec, window)
+
+    def _build_row(self, ui: Ui, spec: Field, window: Window) -> None:
+        def commit(new: float) -> None:
+            spec.check(new)
+            window.do_next(_change_recipe, spec.name, new)
+
+        value = getattr(window.recipe, spec.name)
+        zero = _ZERO.get(spec.name, "")
+        self._numbers.row(ui, f"new {spec.name}", spec.name.capitalize(), spec, value, commit, zero=zero)
+
+
+def _change_recipe(world: World, window: Window, name: str, value: float) -> None:
+    change = {name: value}
+    window.recipe = replace(window.recipe, **change)

@@ -11,8 +11,7 @@ from physicslab.components.meter import CORNERS
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
 from physicslab.ecs.fields import Field
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.canvas.quantities import quantity
-from physicslab.view.canvas.units import written_unit
+from physicslab.view.canvas.quantities import quantity, written_unit
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import SliderShown
@@ -54,11 +53,9 @@ class SliderPanels:
                       if one.entity in self._held}  # fmt: skip
         for slider in window.dashboard.sliders:
             with ui.panel(f"slider {slider.entity}", places[slider.entity], rounded=True):
-                if build_title(ui, _title(slider, window), f"Slider {slider.number}"):
-                    imgui.open_popup("slider")
-                if imgui.begin_popup("slider"):
-                    self._build_menu(ui, world, window, slider)
-                    imgui.end_popup()
+                with build_title(ui, _title(slider, window), f"Slider {slider.number}") as is_open:
+                    if is_open:
+                        self._build_menu(ui, world, window, slider)
                 self._build_slider(ui, world, window, slider)
 
     def _build_slider(self, ui: Ui, world: World, window: Window, slider: SliderShown) -> None:
@@ -78,10 +75,10 @@ class SliderPanels:
             moved = _rounded(moved, slider)
             self._held[slider.entity] = moved
             if moved != value:
-                window.deeds.append(dashboard_actions.slide(slider, moved, held=True))
+                window.do_next(dashboard_actions.slide, slider, moved, held=True)
         if not held and slider.entity in self._held:
             last = self._held.pop(slider.entity)
-            window.deeds.append(dashboard_actions.slide(slider, last, held=False))
+            window.do_next(dashboard_actions.slide, slider, last, held=False)
 
     def _build_menu(self, ui: Ui, world: World, window: Window, slider: SliderShown) -> None:
         given: dict[str, Any] = {
@@ -91,7 +88,7 @@ class SliderPanels:
 
         def change(**changes: Any) -> None:
             made = Slider(**(given | changes))  # raises where they are refused
-            window.deeds.append(dashboard_actions.changing(slider.entity, made))
+            window.do_next(dashboard_actions.change, slider.entity, made)
 
         for name, words in _ENDS:
             spec = next(spec for spec in Slider.FIELDS if spec.name == name)
@@ -107,7 +104,7 @@ class SliderPanels:
         if corner is not None:
             change(corner=corner)
         if ui.item("Remove the slider"):
-            window.deeds.append(dashboard_actions.removing(slider.entity))
+            window.do_next(dashboard_actions.remove, slider.entity)
 
     def _build_end(self, ui: Ui, slider: SliderShown, spec: Field, value: float, change: Any) -> str:
         key = f"{spec.name} of slider {slider.number}"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 from imgui_bundle import imgui
 
@@ -25,14 +26,17 @@ def size_of(ui: Ui, title: str, width: float, height: float) -> tuple[int, int]:
     return round(inside + 2.0 * style.window_padding.x), round(high + 2.0 * style.window_padding.y)
 
 
-def build_title(ui: Ui, title: str, label: str) -> bool:
-    """Write the title, with a button at the right; return whether that was clicked."""
+@contextmanager
+def build_title(ui: Ui, title: str, label: str) -> Iterator[bool]:
+    """Write the title, with a button of a menu at the right; the yielded value says whether it is open."""
     style = imgui.get_style()
     width = imgui.calc_text_size(_MENU).x + 2.0 * style.frame_padding.x
     imgui.align_text_to_frame_padding()
     ui.faint(_words(title), wrapped=False)
     imgui.same_line(imgui.get_window_width() - width - style.window_padding.x)
-    return ui.button(f"Menu of {label.lower()}", f"{label}: what it shows, and where", shown=_MENU)
+    tip = f"{label}: what it shows, and where"
+    with ui.list(f"Menu of {label.lower()}", tip, shown=_MENU) as is_open:
+        yield is_open
 
 
 def build_corners(ui: Ui, now: str, corners: Sequence[str]) -> str | None:

@@ -53,7 +53,7 @@ def build_stopwatch(ui: Ui, world: World, window: Window, room: Rect) -> None:
         _build_times(ui, world, every, gates)
         _build_table(ui, world, every[-(_ROWS if columns is _COLUMNS else _FEWER_ROWS) :], columns)
         if ui.button("CSV of crossings", "Write all of them to a file", shown="CSV", enabled=bool(every)):
-            window.deeds.append(_save)
+            window.do_next(_save)
     if not stays[0]:
         window.shows_stopwatch = False
 
@@ -96,26 +96,14 @@ def _width(columns: Sequence[tuple[str, float]]) -> float:
 
 
 def _build_table(ui: Ui, world: World, rows: Sequence[Lap], columns: Sequence[tuple[str, float]]) -> None:
-    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_fixed_fit
-    if not imgui.begin_table(f"{len(columns)} columns", len(columns), flags):
-        return
-    for words, width in columns:
-        imgui.table_setup_column(words, imgui.TableColumnFlags_.width_fixed, width * ui.size)
-    imgui.table_next_row()
-    for words, _ in columns:
-        imgui.table_next_column()
-        ui.faint(words, wrapped=False)
-    for lap in reversed(rows):
-        one, seconds = lap.crossing, lap.seconds
-        cells = (
+    cells = (
+        (
             _named(world, one.gate), _named(world, one.body), arrow_of(world, one.gate, one.direction),
-            quantity(one.time, "s"), "" if seconds is None else quantity(seconds, "s"),
-        )  # fmt: skip
-        imgui.table_next_row()
-        for words in cells[-len(columns) :]:
-            imgui.table_next_column()
-            ui.text(words)
-    imgui.end_table()
+            quantity(one.time, "s"), "" if lap.seconds is None else quantity(lap.seconds, "s"),
+        )[-len(columns) :]
+        for lap in reversed(rows) for one in (lap.crossing,)
+    )  # fmt: skip
+    ui.table(f"{len(columns)} columns", columns, cells)
     imgui.dummy(ImVec2(1.0, 0.2 * ui.size))
 
 

@@ -36,20 +36,20 @@ def build_transport(ui: Ui, rect: Rect, world: World, window: Window) -> None:
         if ui.button(
             "Restart", "Start this scene again (Ctrl+R)", shown=icons["restart"], size=(narrow, height)
         ):
-            window.deeds.append(file_actions.restart)
+            window.do_next(file_actions.restart)
         imgui.same_line()
         if ui.button(
             "Step back", "Pause, and go back by one step (B)", shown=icons["back"], size=(narrow, height)
         ):
-            window.deeds.append(actions.step_back)
+            window.do_next(actions.step_back)
         imgui.same_line()
         label, icon = ("Play", "play") if pace.paused else ("Pause", "pause")
         words = f"{icons[icon]}  {label}"
         if ui.button(label, f"{label} (Space)", shown=words, on=True, size=(_WIDE * size, height)):
-            window.deeds.append(actions.toggle_pause)
+            window.do_next(actions.toggle_pause)
         imgui.same_line()
         if ui.button("Step", "Pause, and make one step (.)", shown=icons["step"], size=(narrow, height)):
-            window.deeds.append(actions.step)
+            window.do_next(actions.step)
         imgui.same_line()
         imgui.push_style_var_y(imgui.StyleVar_.frame_padding, 0.5 * (height - imgui.get_font_size()))
         _build_speed(ui, pace, window)
@@ -63,12 +63,11 @@ def _build_speed(ui: Ui, pace: Pace, window: Window) -> None:
     tip = "How fast time runs (Tab: a quarter; [ and ]: half and twice)"
     chosen = ui.choice("Speed", now, list(_SPEEDS), tip, width=4.6 * ui.size)
     if chosen != now:
-        speed = _SPEEDS[chosen]
+        window.do_next(_choose_speed, _SPEEDS[chosen])
 
-        def deed(world: World, window: Window) -> None:
-            window.pace.choose(speed / window.pace.speed)
 
-        window.deeds.append(deed)
+def _choose_speed(world: World, window: Window, speed: float) -> None:
+    window.pace.choose(speed / window.pace.speed)
 
 
 def _mark_branches(ui: Ui, steps: Sequence[int], first: int, last: int) -> None:
@@ -103,8 +102,7 @@ def _build_line(ui: Ui, world: World, window: Window) -> None:
     _mark_branches(ui, [branch.step for branch in history.branches], first, max(last, first + 1))
     _mark_moments(ui, window, first, max(last, first + 1))
     if place is not None:
-        step = round(place)
-        window.deeds.append(lambda world, window: actions.seek(window, step))
+        window.do_next(actions.seek, round(place))
     if is_hinted:
         imgui.same_line()
         ui.faint(_HINT, wrapped=False)

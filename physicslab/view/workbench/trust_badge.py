@@ -186,9 +186,4 @@ def _build_details(ui: Ui, world: World, window: Window) -> None:
         ui.faint(f"It computes the scene about {RUNS} times over, beside the window: frames go first.")
     ui.rule()
     if ui.item("Check digits", on=trust.wanted, tip="In a process of its own, again as time goes on"):
-        window.deeds.append(_toggle)
-
-
-def _toggle(world: World, window: Window) -> None:
-    """Have digits checked, or no longer."""
-    window.trust.toggle()
+        window.do_next(lambda _, window: window.trust.toggle())

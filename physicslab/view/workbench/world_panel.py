@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from imgui_bundle import imgui
 
@@ -35,7 +35,7 @@ def build_levels(ui: Ui, window: Window) -> None:
 
 
 def build_world(ui: Ui, world: World, figures: WorldFigures, window: Window) -> None:
-    """Build what anybody wants to see: what this is, its energies, its gravity."""
+    """Build the part for everyone: what this is, its energies, its gravity."""
     ui.heading(world.title or world.name or "A scene")
     if world.description:
         ui.faint(world.description)
@@ -65,21 +65,19 @@ def _build_gravity(ui: Ui, world: World, window: Window) -> None:
     chosen = ui.choice("Gravity", now, [*_PLANETS, "between bodies"], "What pulls: choose a planet")
     ui.rows["Gravity"] = gravity_in_words(world)
     if chosen != now:
-        window.deeds.append(_pulling(chosen))
+        window.do_next(_pull, chosen)
     ui.faint(gravity_in_words(world))
 
 
-def _pulling(name: str) -> Callable[[World, Window], None]:
-    def deed(world: World, window: Window) -> None:
-        if name == "between bodies":
-            window.edits.do(SetPhysics({"gravity_mode": "planet"}))
-        elif name == "none":
-            window.edits.do(SetPhysics({"gravity_mode": "none"}))
-        else:
-            gravity = Vector2(0.0, -_PLANETS[name])
-            window.edits.do(SetPhysics({"gravity_mode": "linear", "gravity": gravity}))
-
-    return deed
+def _pull(world: World, window: Window, name: str) -> None:
+    """Choose what pulls, by its name in the list."""
+    if name == "between bodies":
+        window.edits.do(SetPhysics({"gravity_mode": "planet"}))
+    elif name == "none":
+        window.edits.do(SetPhysics({"gravity_mode": "none"}))
+    else:
+        gravity = Vector2(0.0, -_PLANETS[name])
+        window.edits.do(SetPhysics({"gravity_mode": "linear", "gravity": gravity}))
 
 
 def build_figures(ui: Ui, lines: Sequence[Line]) -> None:

@@ -1,0 +1,177 @@
+"""Marks of what is selected and of tools: outlines, handles, the cursor, what would be made, snapping."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from physicslab.components import Shape, Transform
+from physicslab.diagnostics.period import spring_state
+from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.canvas import Canvas, Look, Numbers, Points, Rect, TextStyle
+from physicslab.view.canvas.theme import Colour, Theme
+from physicslab.view.overlay.arrows import VELOCITY, draw_arrows
+from physicslab.view.picture.bodies import POINT_RADIUS
+from physicslab.world import World
+
+__all__ = [
+    "draw_band", "draw_cursor", "draw_ghost", "draw_handles", "draw_reading", "draw_selection",
+    "draw_snap_marks",
+]  # fmt: skip
+
+_RADIUS = 5.0
+"""Radius of a handle [px]."""
+
+_SQUARE = np.array(((-1, -1), (1, -1), (1, 1), (-1, 1)), np.float64)
+
+type Pixel = tuple[float, float]
+
+
+def draw_handles(middle: Pixel, places: Sequence[tuple[str, Pixel]], theme: Theme, canvas: Canvas) -> None:
+    """Draw handles at their places [px], each with the line that joins it to the middle of the body."""
+    for kind, place in places:
+        start, span = np.array([middle]), np.array([place]) - np.array([middle])
+        if kind == "velocity":
+            draw_arrows(start, span, VELOCITY, canvas, theme)
+        elif kind == "angle":
+            canvas.lines(start, start + span, theme.accent, 1.0, 0.6)
+    spots = np.array([place for _, place in places])
+    if len(spots):
+        look = Look.plain(theme.background, theme.accent, len(spots))
+        canvas.discs(spots, np.full(len(spots), _RADIUS), np.zeros(len(spots)), look)
+
+
+def draw_reading(
+    words: str, pointer: Pixel, size: int, theme: Theme, canvas: Canvas, room: Rect | None = None
+) -> None:
+    """Write words beside the cursor, within the room that is given or the picture [px]."""
+    low, top_edge, across, _ = room or (0, 0, *canvas.size)
+    style = TextStyle(size, theme.text, bold=True)
+    width, height = canvas.text_size(words, style)
+    left = max(min(round(pointer[0]) + size, low + across - width - size), low + size)
+    top = max(round(pointer[1]) - 2 * size, top_edge + size)
+    rect: Rect = (left - size // 2, top - size // 4, width + size, height + size // 2)
+    canvas.panel(rect, theme.panel, theme.outline, 0.95)
+    canvas.text(words, (left, top), style)
+
+
+_GAP = 4.0
+"""Between a body and the line around it [px]."""
+_CORNERS = 48
+"""Straight lines that a circle is drawn as."""
+_WIDTH = 2.0
+_SPRING_WIDTH = 9.0
+"""Width of the band along a spring [px]."""
+_FAR = 1e6
+"""What is farther out of the picture than this is not drawn [px]."""
+
+
+def draw_selection(
+    world: World,
+    entities: Sequence[int],
+    camera: Camera,
+    theme: Theme,
+    canvas: Canvas,
+    colour: Colour | None = None,
+) -> None:
+    """Draw a line around each body, or along a spring; in a colour, or that of what is selected."""
+    for entity in entities:
+        if world.has(entity, Transform):
+            corners = camera.project(_outline(world, entity, _GAP / camera.scale))
+            canvas.lines(corners, np.roll(corners, -1, axis=0), colour or theme.accent, _WIDTH)
+        elif (spring := spring_state(world, entity)) is not None:
+            ends = camera.project(np.array([tuple(spring.start), tuple(spring.end)]))
+            if (np.abs(ends) < _FAR).all():
+                canvas.lines(ends[:1], ends[1:], colour or theme.accent, _SPRING_WIDTH, 0.5)
+
+
+def draw_band(
+    corner: tuple[float, float], pointer: tuple[float, float], theme: Theme, canvas: Canvas
+) -> None:
+    """Draw the rectangle that is being drawn around bodies, from its corner to the cursor [px]."""
+    (x0, y0), (x1, y1) = corner, pointer
+    corners = np.array(((x0, y0), (x1, y0), (x1, y1), (x0, y1)), np.float64)
+    canvas.lines(corners, np.roll(corners, -1, axis=0), theme.accent, 1.0, 0.8)
+
+
+def _outline(world: World, entity: int, gap: float) -> Points:
+    """Return the corners of the line around a body (n, 2) [m]."""
+    transform = world.component(entity, Transform)
+    shape = world.component(entity, Shape) if world.has(entity, Shape) else None
+    if shape is not None and shape.kind == "box":
+        half = np.array((0.5 * shape.width + gap, 0.5 * shape.height + gap))
+        corners = half * _SQUARE
+    else:
+        radius = (POINT_RADIUS / 100.0 if shape is None else shape.radius) + gap
+        corners = radius * _ring(_CORNERS)
+    return _placed(corners, transform.angle, np.array((transform.position.x, transform.position.y)))
+
+
+def _ring(corners: int) -> Points:
+    """Return the corners of a polygon (n, 2) that looks like a circle of radius 1."""
+    angles = np.arange(corners) * (2.0 * math.pi / corners)
+    return np.stack((np.cos(angles), np.sin(angles)), axis=1)
+
+
+def _placed(corners: Points, angle: float, place: Numbers) -> Points:
+    """Return corners (n, 2), turned by an angle [rad] and moved to a place (2,)."""
+    c, s = math.cos(angle), math.sin(angle)
+    placed: Points = corners @ np.array(((c, s), (-s, c))) + place
+    return placed
+
+
+_GHOST_CORNERS = 40
+"""Straight lines that a circle is drawn as."""
+_GHOST_OPACITY = 0.65
+_ARM = 9.0
+"""Length of the arms of the cross that shows the cursor [px]."""
+
+
+def draw_cursor(pixel: tuple[float, float], colour: Colour, canvas: Canvas) -> None:
+    """Draw a cross where the cursor is that keys move."""
+    arms = np.array(((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)))
+    canvas.lines(pixel + 0.3 * _ARM * arms, pixel + _ARM * arms, colour, 1.6)
+
+
+def draw_ghost(
+    place: Points,
+    half: Points,
+    radius: Numbers,
+    angle: Numbers,
+    colour: Colour,
+    camera: Camera,
+    canvas: Canvas,
+) -> None:
+    """Draw the outlines of discs (with a radius) and boxes (with half extents), a row each [m]."""
+    ring = _ring(_GHOST_CORNERS)
+    for n in range(len(place)):
+        own = radius[n] * ring if radius[n] > 0.0 else half[n] * _SQUARE
+        corners = camera.project(_placed(own, float(angle[n]), place[n]))
+        canvas.lines(corners, np.roll(corners, -1, axis=0), colour, 1.4, _GHOST_OPACITY)
+
+
+_SNAP_OPACITY = 0.75
+_DOT = 3.5
+"""Radius of the disc at the middle of what has snapped [px]."""
+
+
+def draw_snap_marks(
+    marks: Sequence[tuple[int, float]], middle: Vector2, camera: Camera, theme: Theme, canvas: Canvas
+) -> None:
+    """Draw a line across the picture for each mark, and a disc at the middle of what has snapped [m].
+
+    A mark is an axis (0 for x, 1 for y) and the coordinate along it [m].
+    """
+    width, height = camera.size
+    x, y = camera.to_screen(middle)
+    for axis, at in marks:
+        across, down = camera.to_screen(Vector2(at, at))
+        start, end = ((across, 0), (across, height)) if axis == 0 else ((0, down), (width, down))
+        canvas.lines(
+            np.array([start], np.float64), np.array([end], np.float64), theme.accent, 1.0, _SNAP_OPACITY
+        )
+    look = Look.plain(theme.accent, theme.accent, 1)
+    canvas.discs(np.array([(x, y)]), np.full(1, _DOT), np.zeros(1), look)
