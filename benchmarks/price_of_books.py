@@ -56,7 +56,9 @@ def leave_out_books() -> None:
         return along
 
     @inlined
-    def follow(contacts: Any, near: Any, now: Any, inverse: Any, h: float) -> tuple[float, float]:
+    def follow(
+        contacts: Any, near: Any, now: Any, inverse: Any, acting: Any, h: float
+    ) -> tuple[float, float]:
         impulse.follow_drift(contacts, now, h)
         return 0.0, 0.0
 

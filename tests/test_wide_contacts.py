@@ -120,7 +120,7 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         near = (counts, near[1], points, near[3], touching, discs, boxes, *near[7:])
         motion = Motion(*motion_of(world))._replace(linear=linear, angular=angular)
         inverse = (bodies.inverse_mass, bodies.inverse_inertia)
-        acting = (bodies.force, bodies.torque, True, bodies.unkicked)
+        acting = (bodies.force, bodies.torque, True, bodies.unkicked, True)
         entries.solve_stage(
             near, cast(MotionTuple, tuple(motion)), inverse, acting,
             (0.17, 7.0, 1.5), h, h, 1,

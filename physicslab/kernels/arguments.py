@@ -51,12 +51,16 @@ class Inverse(NamedTuple):
 
 
 class Acting(NamedTuple):
-    """Forces (rows, 2) [N] and torques [N m], whether there are any, and the rows that they do not kick."""
+    """Forces (rows, 2) [N] and torques [N m], whether there are any, and the rows that they do not kick.
+
+    Then whether they are uniform: they accelerate all that can be moved alike, and turn nothing.
+    """
 
     force: Vectors
     torque: Numbers
     any: bool
     unkicked: Flags
+    uniform: bool
 
 
 class Bounds(NamedTuple):
@@ -173,7 +177,7 @@ MotionTuple = tuple[Vectors, Numbers, Vectors, Numbers]
 SizesTuple = tuple[Rows, Numbers, Numbers, Numbers]
 MaterialsTuple = tuple[Numbers, Numbers]
 InverseTuple = tuple[Numbers, Numbers]
-ActingTuple = tuple[Vectors, Numbers, bool, Flags]
+ActingTuple = tuple[Vectors, Numbers, bool, Flags, bool]
 BoundsTuple = tuple[Numbers, float, float]
 NearTuple = tuple[
     Rows,

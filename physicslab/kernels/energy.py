@@ -35,10 +35,20 @@ def motion_totals(
 @inlined
 def moments_of_mass(position: Vectors, mass: Numbers, inverse_mass: Numbers) -> tuple[float, float, float]:
     """Return the mass of all that can be moved [kg], and its first moment (x, y) [kg m]."""
-    total, mx, my = 0.0, 0.0, 0.0
-    for i in range(len(mass)):
-        if inverse_mass[i] > 0.0:
-            total += mass[i]
-            mx += mass[i] * position[i, 0]
-            my += mass[i] * position[i, 1]
-    return total, mx, my
+    total, mx, my, half = 0.0, 0.0, 0.0, len(mass) // 2
+    other_total, other_mx, other_my = 0.0, 0.0, 0.0  # two sums: each waits for its own last addition alone
+    for i in range(half):
+        m = mass[i] if inverse_mass[i] > 0.0 else 0.0
+        other = mass[half + i] if inverse_mass[half + i] > 0.0 else 0.0
+        total += m
+        mx += m * position[i, 0]
+        my += m * position[i, 1]
+        other_total += other
+        other_mx += other * position[half + i, 0]
+        other_my += other * position[half + i, 1]
+    for i in range(2 * half, len(mass)):
+        m = mass[i] if inverse_mass[i] > 0.0 else 0.0
+        total += m
+        mx += m * position[i, 0]
+        my += m * position[i, 1]
+    return total + other_total, mx + other_mx, my + other_my

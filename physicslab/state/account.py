@@ -60,7 +60,11 @@ class Account:
 
     def __init__(self) -> None:
         self.table: NDArray[np.float64] = np.zeros((BOOK, 4))
-        self.sums, self._now, self._before = self.table[:CAUSES], self.table[:BEFORE], self.table[BEFORE:]
+        self.sums, self._now = self.table[:CAUSES], self.table[:BEFORE]
+        # Numpy takes three times as long to copy so few numbers, or to return one.
+        numbers = memoryview(self.table.reshape(-1))
+        self._last = numbers[4 * BALANCE : 4 * BALANCE + 4]
+        self._kept, self._before = numbers[: 4 * BEFORE], numbers[4 * BEFORE :]
         self.is_open = False
         self.since = 0.0
         self.held: tuple[int, ...] = ()
@@ -72,11 +76,16 @@ class Account:
     @property
     def last(self) -> Balance:
         """What there was after the last step."""
-        return Balance(*self.table[BALANCE].tolist())
+        return Balance(*self._last.tolist())
 
     @last.setter
     def last(self, balance: Balance) -> None:
         self.table[BALANCE] = balance
+
+    @property
+    def is_known(self) -> bool:
+        """Whether a step was made, after which the energy was finite."""
+        return self.start is not None and math.isfinite(self._last[0])
 
     def restart(self) -> None:
         """Begin again with the next step."""
@@ -97,18 +106,18 @@ class Account:
 
     def begin_step(self) -> None:
         """Keep what there is, for :meth:`go_back`."""
-        self._before[...] = self._now
+        self._before[:] = self._kept
         self._begun, self.is_open = (self.since, self.start, self.held), False
 
     def go_back(self) -> None:
         """Return to what there was before a step that has failed."""
-        self._now[...] = self._before
+        self._kept[:] = self._before
         self.since, self.start, self.held = self._begun
         self.seen = None
 
     def open(self, now: Balance, held: tuple[int, ...], time: float) -> None:
         """Begin a step at a balance; what has changed since the last one is booked."""
-        if self.start is None or not math.isfinite(self.last.energy):
+        if not self.is_known:
             self.sums[:] = 0.0  # of what has passed through infinity no sum is left
             self.start, self.since, self.held, self.last = now, time, held, now
         else:

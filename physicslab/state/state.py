@@ -59,8 +59,9 @@ class State:
         How often forces were evaluated, and how many impacts there were.
     brought_back : int
         How often a body beyond the bounds was put elsewhere, as something fixed held it there.
-    has_forces : bool
-        Whether a force system runs.
+    has_forces, uniform_forces : bool
+        Whether a force system runs; whether those that do, and all else that acts within a step, accelerate
+        all bodies alike and turn none.
     event_driven, rigid_contacts : bool
         Whether collisions are located in time, instead of found within steps; whether contacts are rigid.
     window : tuple of two floats
@@ -104,7 +105,8 @@ class State:
         "brought_back", "checkpoint", "collisions", "contacts", "context", "description", "entity_index",
         "event_driven", "fastest_rates", "force_evaluations", "generation", "has_forces", "in_step",
         "kick_before_contacts", "moment", "motion_edits", "name", "remainders", "revision", "rigid_contacts",
-        "sleep", "stale", "step_divisions", "steps", "substeps", "time", "title", "view", "window",
+        "sleep", "stale", "step_divisions", "steps", "substeps", "time", "title", "uniform_forces", "view",
+        "window",
     )  # fmt: skip
 
     def __init__(
@@ -121,7 +123,7 @@ class State:
         self.force_evaluations = self.collisions = self.brought_back = 0
         self._waited_before = seconds_waited()
         self.generation = 0
-        self.has_forces = self.event_driven = self.rigid_contacts = False
+        self.has_forces = self.uniform_forces = self.event_driven = self.rigid_contacts = False
         self.window, self.kick_before_contacts, self.moment = (-0.5, 0.5), 0.5, 0.0
         self.entity_index = EntityIndex()
         self.bodies, self.contacts, self.sleep = Bodies(), Contacts(), Sleep()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from math import isfinite
 from typing import Any, ClassVar
 
 import numpy as np
@@ -171,8 +170,7 @@ class FusedContact:
     def _open(self, state: State) -> int:
         """Return by which cause anything was changed since the last step, or -1 where that is booked."""
         account = state.account
-        known = account.start is not None and isfinite(account.last.energy)
-        if not (account.is_open or (known and self._measures)):
+        if not (account.is_open or (account.is_known and self._measures)):
             open_account(state, self._schedule.forces)
         if account.is_open:
             return -1

@@ -63,6 +63,8 @@ def select_steppers(state: State, schedule: Schedule, plan: StepPlan) -> Stepper
     state.kick_before_contacts = plan.kick_before_contacts
     others = [system for system in schedule.running if not system.is_engine]
     state.sleep.acted_upon = any(system.acts_within_step() for system in others)
+    uniform = [force.is_engine and force.uniform_acceleration(state) is not None for force in schedule.forces]
+    state.uniform_forces = bool(uniform) and all(uniform) and not state.sleep.acted_upon
     state.sleep.has_external_writers = any(
         system.acts_within_step() or system.observes() for system in others
     )

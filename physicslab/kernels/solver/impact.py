@@ -36,7 +36,7 @@ from physicslab.kernels.solver.impact_log import (
     write_impact,
 )
 from physicslab.kernels.solver.impact_pose import is_known, meeting_at
-from physicslab.kernels.solver.impulse import follow_drift, relative_velocity
+from physicslab.kernels.solver.impulse import follow_drift
 
 __all__ = ["resolve_impacts"]
 
@@ -284,15 +284,14 @@ def _resolve_once(
             continue
         elastic = elastic or manifold.restitution > 0.0
         # Most pairs rest: these are handled here without a call.
-        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+        a, b = manifold.a, manifold.b
         one, two = contacts.points[2 * p], contacts.points[2 * p + 1]
         one.ahead = two.ahead = 0
-        vx, vy = relative_velocity(one, a, b, motion)
-        v1, v2 = vx * nx + vy * ny, 0.0
+        v = velocity_of(motion.linear, motion.angular, a, b)
+        v1, v2 = point_state(frame_of(manifold, one), v).v, 0.0
         overlap, loaded = one.separation < 0.0, one.normal_impulse > 0.0
         if manifold.count == 2:
-            vx, vy = relative_velocity(two, a, b, motion)
-            v2 = vx * nx + vy * ny
+            v2 = point_state(frame_of(manifold, two), v).v
             overlap, loaded = overlap or two.separation < 0.0, loaded or two.normal_impulse > 0.0
         if v1 >= 0.0 and v2 >= 0.0:
             left += 1 if acting.any or overlap or loaded else 0

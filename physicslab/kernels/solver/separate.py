@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import Numbers, Vectors, allocating, fused, inlined
+from physicslab.kernels import Numbers, Vectors, allocating, always_inlined, fused, inlined
 from physicslab.kernels.accounts import ENERGY, OVERLAP, SPIN
 from physicslab.kernels.arguments import Acting, Contacts, Motion, Near
 from physicslab.kernels.near_counts import DISC_BLOCKS, OUTSIDE
@@ -21,7 +21,7 @@ from physicslab.kernels.wide.layout import (
     rows_of,
 )
 
-__all__ = ["BEYOND", "separate"]
+__all__ = ["BEYOND", "any_deep", "separate"]
 
 _DEEP = 0.1
 """Share beyond which overlap is resolved by moving bodies."""
@@ -49,8 +49,8 @@ def _deep_slots(slots: Slots, k: int) -> int:
     return mask_bits(lowest < -_DEEP * take(slots.data, at + SIZE))
 
 
-@inlined
-def _any_deep(contacts: Contacts, near: Near) -> bool:
+@always_inlined
+def any_deep(contacts: Contacts, near: Near) -> bool:
     """Whether any contact overlaps deeply; whether a body is beyond the bounds is noted in the counts."""
     any_deep = False
     for k in range(contacts.number):
@@ -168,15 +168,13 @@ def _book(near: Near, motion: Motion, before: Vectors, inverse_mass: Numbers, ac
 def separate(
     contacts: Contacts, near: Near, motion: Motion, inverse_mass: Numbers, acting: Acting, farthest: float
 ) -> None:
-    """Move bodies that overlap deeply apart, six tenths of the way and by at most ``farthest`` [m].
+    """Move bodies apart where :func:`any_deep`, six tenths of the way and by at most ``farthest`` [m].
 
     Only positions change: however many bodies are on one spot, separating them gives them no speed. A body
     beyond the world's bounds, or within a fixed body, is put back at once, so that the heaviest body cannot
     press another one through a floor. What is beyond the bounds is noted in the counts: where both hold of a
     body, neither may have an end (:mod:`physicslab.stepping.bounds`).
     """
-    if not _any_deep(contacts, near):
-        return
     position = motion.position
     before = position.copy()
     _move_scalar(contacts, position, before, inverse_mass, False)

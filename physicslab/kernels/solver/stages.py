@@ -33,7 +33,7 @@ from physicslab.kernels.near_counts import (
 from physicslab.kernels.solver import impulse
 from physicslab.kernels.solver.impact import resolve_impacts
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
-from physicslab.kernels.solver.separate import separate
+from physicslab.kernels.solver.separate import any_deep, separate
 from physicslab.kernels.solver.work import book_slots, note_velocities
 from physicslab.kernels.wide.refresh import refresh
 from physicslab.kernels.wide.slots import wake
@@ -134,7 +134,7 @@ def press(
     note_velocities(contacts, near, motion, inverse, acting, h)
     impulse.solve(contacts, near, motion, inverse, acting, softness, h, scale, sweeps)
     if near.counts[WIDE_COUNT] > 0:
-        book_slots(near, motion, inverse, True)
+        book_slots(near, motion, inverse, acting, h, True)
     return h
 
 
@@ -152,7 +152,8 @@ def relax(
     if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
         return
     contacts = _contacts(near)
-    impulse.relax(contacts, near, motion, inverse, h, impulse.sweeps_of(near, iterations))
+    impulse.relax(contacts, near, motion, inverse, acting, h, impulse.sweeps_of(near, iterations))
     if near.counts[WIDE_COUNT] > 0:
-        book_slots(near, motion, inverse, False)
-    separate(contacts, near, motion, inverse.mass, acting, softness.max_push * h)
+        book_slots(near, motion, inverse, acting, h, False)
+    if any_deep(contacts, near):  # to count references to all these arrays takes as long as ten contacts
+        separate(contacts, near, motion, inverse.mass, acting, softness.max_push * h)

@@ -6,31 +6,38 @@ yet, or not any more: with a the acceleration of the point by forces, the mean v
 (v + v' - a h) / 2. A body at rest then does no work: its velocity is a h before, and 0 after.
 """
 
+from typing import Any, NamedTuple
+
+import numpy as np
+
 from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, inlined, kernel
-from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, GRAVITY, HAND, PX, PY, SPIN
+from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, PX, PY, SPIN
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
-from physicslab.kernels.constraint.pair import PairInverseMass, PairVelocity
+from physicslab.kernels.constraint.pair import (
+    along_and_across,
+    frame_of,
+    impulse_at,
+    inverse_mass_of,
+    moments_of,
+    point_state,
+    velocity_of,
+)
 from physicslab.kernels.motion import damped
 from physicslab.kernels.near_counts import DISC_BLOCKS, WIDE_COUNT
-from physicslab.kernels.records import Point
 from physicslab.kernels.solver.impact_log import Pose, book_outside
 from physicslab.kernels.wide.layout import (
-    ARM_AX,
-    ARM_AY,
-    ARM_BX,
-    ARM_BY,
-    DISC,
+    BOX,
     IMPULSE,
     NORMAL_X,
     NORMAL_Y,
     ONE,
-    RADIUS_A,
-    RADIUS_B,
     TANGENT_IMPULSE,
     TWO,
     WIDE,
+    Slots,
     rows_of,
 )
+from physicslab.kernels.wide.solve import slot_frame
 
 __all__ = [
     "book_damping", "book_gravity", "book_kick", "book_relaxed", "book_slots", "book_solved",
@@ -38,11 +45,15 @@ __all__ = [
 ]  # fmt: skip
 
 
-@inlined
+_unsigned: Any = np.uint64
+"""Makes an index of which no loop tests whether it counts from the end: that takes as long as the work."""
+
+
+@always_inlined
 def _note(near: Near, row: int, motion: Motion, inverse: Inverse, acting: Acting, h: float) -> None:
-    """Note the velocity of a body, without what ``h`` seconds of forces have given to it."""
+    """Note the velocity of a body; without what ``h`` seconds of forces have given to it unless all alike."""
     x, y, spin = motion.linear[row, 0], motion.linear[row, 1], motion.angular[row]
-    if acting.any and not acting.unkicked[row]:
+    if acting.any and not acting.uniform and not acting.unkicked[row]:
         share = h * inverse.mass[row]
         x -= share * acting.force[row, 0]
         y -= share * acting.force[row, 1]
@@ -51,39 +62,26 @@ def _note(near: Near, row: int, motion: Motion, inverse: Inverse, acting: Acting
     near.angular_before[row] = spin
 
 
-@inlined
-def _note_all(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float) -> None:
-    """Note all velocities, in loops that are vectorised."""
-    size = motion.linear.size
-    before, now, force = (
-        near.linear_before.reshape(size),
-        motion.linear.reshape(size),
-        acting.force.reshape(size),
-    )
-    for i in range(size):
-        before[i] = now[i]
-    for row in range(len(motion.angular)):
-        near.angular_before[row] = motion.angular[row]
-    if acting.any:
-        for row in range(len(motion.angular)):
-            span = 0.0 if acting.unkicked[row] else h
-            before[2 * row] -= span * inverse.mass[row] * force[2 * row]
-            before[2 * row + 1] -= span * inverse.mass[row] * force[2 * row + 1]
-            near.angular_before[row] -= span * inverse.inertia[row] * acting.torque[row]
-
-
 @always_inlined
 def note_velocities(
     contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float
 ) -> None:
     """Note the velocities of bodies in contact before the impulses of a substep of ``h`` seconds."""
-    if near.counts[WIDE_COUNT] > 0:
-        _note_all(near, motion, inverse, acting, h)
-        return
-    for k in range(contacts.number):
-        manifold = contacts.manifolds[contacts.touching[k]]
-        _note(near, manifold.a, motion, inverse, acting, h)
-        _note(near, manifold.b, motion, inverse, acting, h)
+    rows = len(motion.angular)
+    if near.counts[WIDE_COUNT] == 0 and 2 * contacts.number < rows:
+        for k in range(contacts.number):
+            manifold = contacts.manifolds[contacts.touching[k]]
+            for row in (manifold.a, manifold.b):
+                _note(near, row, motion, inverse, acting, h)
+    elif acting.any and not acting.uniform:
+        for row in range(rows):
+            _note(near, row, motion, inverse, acting, h)
+    else:  # in loops that are vectorised
+        for row in range(rows):
+            near.linear_before[row, 0] = motion.linear[row, 0]
+            near.linear_before[row, 1] = motion.linear[row, 1]
+        for row in range(rows):
+            near.angular_before[row] = motion.angular[row]
 
 
 @inlined
@@ -97,80 +95,112 @@ def take_means(near: Near, motion: Motion) -> None:
         near.angular_before[row] = 0.5 * (near.angular_before[row] + motion.angular[row])
 
 
-@inlined
-def _relative(point: Point, a: int, b: int, linear: Vectors, angular: Numbers) -> tuple[float, float]:
-    """Return the velocity of B's point against A's [m/s]."""
-    vx = linear[b, 0] - angular[b] * point.arm_by - linear[a, 0] + angular[a] * point.arm_ay
-    vy = linear[b, 1] + angular[b] * point.arm_bx - linear[a, 1] - angular[a] * point.arm_ax
-    return vx, vy
+@always_inlined
+def _pull(a: int, b: int, inverse: Inverse, acting: Acting) -> tuple[float, float]:
+    """Return how uniform forces accelerate B against A [m/s^2]: not at all where both can be moved."""
+    force, ma, mb = acting.force, inverse.mass[a], inverse.mass[b]
+    return mb * force[b, 0] - ma * force[a, 0], mb * force[b, 1] - ma * force[a, 1]
 
 
-@inlined
+@always_inlined
+def _is_driven(motion: Motion, row: int) -> bool:
+    """Whether a body moves that no impulse moves."""
+    return bool(motion.linear[row, 0] != 0.0 or motion.linear[row, 1] != 0.0 or motion.angular[row] != 0.0)
+
+
+@always_inlined
 def _book_moved(
     near: Near, motion: Motion, inverse: Inverse, a: int, b: int, x: float, y: float, px: float, py: float
 ) -> None:
     """Book that an impulse from outside acted where B was against A before it moved by (x, y) [m]."""
-    still = a if inverse.mass[a] == 0.0 else b
-    linear = motion.linear
-    driven = linear[still, 0] != 0.0 or linear[still, 1] != 0.0 or motion.angular[still] != 0.0
+    driven = _is_driven(motion, a if inverse.mass[a] == 0.0 else b)
     near.account[HAND if driven else CONTACT, SPIN] -= x * py - y * px
 
 
 @always_inlined
 def book_solved(
-    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, h: float
+    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float
 ) -> tuple[float, float]:
     """Return the work of normal and tangential impulses of scalar contacts [J] since velocities were noted.
 
-    Bodies have moved for ``h`` seconds since, which separations follow. What comes from outside is booked by
-    :func:`book_relaxed`, at the places that bodies have now; that these impulses acted before is booked here.
+    Bodies have moved for ``h`` seconds since, half of the substep, which separations follow. What comes from
+    outside is booked by :func:`book_relaxed`, at the places that bodies have now; that these impulses acted
+    before is booked here.
     """
     pressed, rubbed = 0.0, 0.0
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
-        a, b, nx, ny, px, py = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y, 0.0, 0.0
-        for j in range(2 * p, 2 * p + manifold.count):
-            point = contacts.points[j]
-            vx, vy = _relative(point, a, b, motion.linear, motion.angular)
-            push, rub, along, across = (
-                point.normal_impulse,
-                point.tangent_impulse,
-                nx * vx + ny * vy,
-                nx * vy - ny * vx,
-            )
+        a, b, px, py = _unsigned(manifold.a), _unsigned(manifold.b), 0.0, 0.0
+        nx, ny, v = manifold.normal_x, manifold.normal_y, velocity_of(motion.linear, motion.angular, a, b)
+        for number in range(2 * p, 2 * p + manifold.count):
+            j = _unsigned(number)
+            point, noted = contacts.points[j], near.noted
+            frame, push, rub = frame_of(manifold, point), point.normal_impulse, point.tangent_impulse
+            at = point_state(frame, v)
             if push != 0.0 or rub != 0.0:  # most that do not touch yet have none
-                ux, uy = _relative(point, a, b, near.linear_before, near.angular_before)
-                pressed += 0.5 * push * (nx * ux + ny * uy + along)
-                rubbed += 0.5 * rub * (nx * uy - ny * ux + across)
-            point.separation += h * along
-            near.noted[j, 0], near.noted[j, 1], near.noted[j, 2], near.noted[j, 3] = push, rub, along, across
-            px += push * nx - rub * ny
-            py += push * ny + rub * nx
+                before = point_state(frame, velocity_of(near.linear_before, near.angular_before, a, b))
+                pressed += 0.5 * push * (before.v + at.v)
+                rubbed += 0.5 * rub * (before.sliding + at.sliding)
+            point.separation += h * at.v
+            noted[j, 0], noted[j, 1], noted[j, 2], noted[j, 3] = push, rub, at.v, at.sliding
+            x, y = impulse_at(nx, ny, push, rub)
+            px, py = px + x, py + y
         if inverse.mass[a] == 0.0 or inverse.mass[b] == 0.0:
             still, sign = (a, 1.0) if inverse.mass[a] == 0.0 else (b, -1.0)
             position, linear = motion.position, motion.linear
             x = position[b, 0] - position[a, 0] - manifold.offset_x + sign * h * linear[still, 0]
             y = position[b, 1] - position[a, 1] - manifold.offset_y + sign * h * linear[still, 1]
+            if acting.uniform:
+                ax, ay = _pull(a, b, inverse, acting)
+                pull, across = along_and_across(nx, ny, ax, ay)
+                push, rub = along_and_across(nx, ny, px, py)
+                pressed -= h * push * pull
+                rubbed -= h * rub * across
             _book_moved(near, motion, inverse, a, b, x, y, px, py)
     return pressed, rubbed
 
 
-@inlined
-def _masses(a: int, b: int, inverse: Inverse) -> PairInverseMass[float]:
-    return PairInverseMass(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
+class Given(NamedTuple):
+    """Momentum (x, y) [N s] and angular momentum about the origin [N m s] that fixed bodies give."""
+
+    px: float
+    py: float
+    spin: float
 
 
-@inlined
-def _pose(a: int, b: int, motion: Motion) -> Pose:
+@always_inlined
+def _given(
+    given: Given, near: Near, motion: Motion, inverse: Inverse, a: int, b: int, px: float, py: float,
+    turn_a: float, turn_b: float,
+) -> Given:  # fmt: skip
+    """Return what is given so far and by the impulse (px, py) on B, and its opposite on A.
+
+    ``turn_a`` and ``turn_b`` are its moments about both centres. What a driven body gives, or what keeps a
+    body from turning, is booked by itself: there is little of that.
+    """
     position, angle = motion.position, motion.angle
-    return Pose(position[a, 0], position[a, 1], angle[a], position[b, 0], position[b, 1], angle[b])
+    free = inverse.mass[a] > 0.0 and inverse.mass[b] > 0.0
+    if free or _is_driven(motion, a if inverse.mass[a] == 0.0 else b):
+        book_outside(
+            near.account, CONTACT,
+            inverse_mass_of(inverse, a, b),
+            Pose(position[a, 0], position[a, 1], angle[a], position[b, 0], position[b, 1], angle[b]),
+            velocity_of(motion.linear, motion.angular, a, b), px, py, turn_a, turn_b,
+        )  # fmt: skip
+        return given
+    moved, sign, turn = (b, 1.0, turn_b) if inverse.mass[b] > 0.0 else (a, -1.0, turn_a)
+    spin = position[moved, 0] * py - position[moved, 1] * px
+    spin += turn if inverse.inertia[moved] > 0.0 else 0.0
+    return Given(given.px + sign * px, given.py + sign * py, given.spin + sign * spin)
 
 
 @inlined
-def _speeds(a: int, b: int, motion: Motion) -> PairVelocity[float]:
-    linear, angular = motion.linear, motion.angular
-    return PairVelocity(linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
+def _book_given(near: Near, given: Given) -> None:
+    """Book what fixed bodies give."""
+    near.account[CONTACT, PX] += given.px
+    near.account[CONTACT, PY] += given.py
+    near.account[CONTACT, SPIN] += given.spin
 
 
 @always_inlined
@@ -180,73 +210,81 @@ def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
     Book what comes from outside by the whole of them: momentum, and the work of drivers. Outside is what no
     impulse moves: fixed, held and driven bodies, and what keeps a body from turning.
     """
-    pressed, rubbed = 0.0, 0.0
+    pressed, rubbed, given = 0.0, 0.0, Given(0.0, 0.0, 0.0)
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
-        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
-        px, py, turn_a, turn_b = 0.0, 0.0, 0.0, 0.0
-        for j in range(2 * p, 2 * p + manifold.count):
+        a, b = _unsigned(manifold.a), _unsigned(manifold.b)
+        v, px, py, turn_a, turn_b = velocity_of(motion.linear, motion.angular, a, b), 0.0, 0.0, 0.0, 0.0
+        for number in range(2 * p, 2 * p + manifold.count):
+            j = _unsigned(number)
             point, noted = contacts.points[j], near.noted
-            push, rub = point.normal_impulse, point.tangent_impulse
+            frame, push, rub = frame_of(manifold, point), point.normal_impulse, point.tangent_impulse
             more, also = push - noted[j, 0], rub - noted[j, 1]
             if more != 0.0 or also != 0.0:
-                vx, vy = _relative(point, a, b, motion.linear, motion.angular)
-                pressed += 0.5 * more * (noted[j, 2] + nx * vx + ny * vy)
-                rubbed += 0.5 * also * (noted[j, 3] + nx * vy - ny * vx)
-            x, y = push * nx - rub * ny, push * ny + rub * nx
-            px, py = px + x, py + y
-            turn_a += point.arm_ax * y - point.arm_ay * x
-            turn_b += point.arm_bx * y - point.arm_by * x
+                at = point_state(frame, v)
+                pressed += 0.5 * more * (noted[j, 2] + at.v)
+                rubbed += 0.5 * also * (noted[j, 3] + at.sliding)
+            x, y = impulse_at(frame.nx, frame.ny, push, rub)
+            moment_a, moment_b = moments_of(frame, x, y)
+            px, py, turn_a, turn_b = px + x, py + y, turn_a + moment_a, turn_b + moment_b
         if inverse.inertia[a] == 0.0 or inverse.inertia[b] == 0.0:
-            book_outside(
-                near.account, CONTACT, _masses(a, b, inverse), _pose(a, b, motion), _speeds(a, b, motion),
-                px, py, turn_a, turn_b,
-            )  # fmt: skip
+            given = _given(given, near, motion, inverse, a, b, px, py, turn_a, turn_b)
+    _book_given(near, given)
     return pressed, rubbed
 
 
 @inlined
-def book_slots(near: Near, motion: Motion, inverse: Inverse, solved: bool) -> None:
+def _slot_impulse(slots: Slots, at: int, point: int) -> tuple[float, float, float, float]:
+    """Return the impulse at a point of a slot [N s], and its moments about both centres [N m s]."""
+    frame, impulses = slot_frame(slots, at, point), at + point
+    normal, tangent = slots.data[impulses + IMPULSE], slots.data[impulses + TANGENT_IMPULSE]
+    px, py = impulse_at(frame.nx, frame.ny, normal, tangent)
+    moment_a, moment_b = moments_of(frame, px, py)
+    return px, py, moment_a, moment_b
+
+
+@inlined
+def book_slots(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float, solved: bool) -> None:
     """Book what comes from outside by wide contacts in a substep; where it is just ``solved``, note it.
 
+    Uniform forces, which have acted for ``h`` seconds, accelerate no more than these bodies against others.
     What is noted are the impulses that then act, and the place of the body that they move: their moment is
     that about where it was, and that of what they change by later about where it is then.
     """
+    given = Given(0.0, 0.0, 0.0)
     for slots in (near.discs, near.boxes):
-        data, rows = slots.data, rows_of(slots.kind)
+        rows = rows_of(slots.kind)
         for k in range(near.counts[DISC_BLOCKS + slots.kind]):
             if not slots.outside[k]:
                 continue
             for slot in range(k * WIDE, (k + 1) * WIDE):
-                a, b, at = slots.a[slot], slots.b[slot], k * rows + slot - k * WIDE
+                a, b, at = _unsigned(slots.a[slot]), _unsigned(slots.b[slot]), k * rows + slot - k * WIDE
                 if slots.pair[slot] < 0 or (inverse.inertia[a] > 0.0 and inverse.inertia[b] > 0.0):
                     continue
-                nx, ny, noted, j = data[at + NORMAL_X], data[at + NORMAL_Y], near.noted, 2 * slots.pair[slot]
-                push, rub = data[at + ONE + IMPULSE], data[at + ONE + TANGENT_IMPULSE]
-                px, py = push * nx - rub * ny, push * ny + rub * nx
-                if slots.kind == DISC:
-                    turn_a, turn_b = data[at + RADIUS_A] * rub, -data[at + RADIUS_B] * rub
-                else:
-                    turn_a = data[at + ONE + ARM_AX] * py - data[at + ONE + ARM_AY] * px
-                    turn_b = data[at + ONE + ARM_BX] * py - data[at + ONE + ARM_BY] * px
-                    push, rub = data[at + TWO + IMPULSE], data[at + TWO + TANGENT_IMPULSE]
-                    x, y = push * nx - rub * ny, push * ny + rub * nx
-                    px, py = px + x, py + y
-                    turn_a += data[at + TWO + ARM_AX] * y - data[at + TWO + ARM_AY] * x
-                    turn_b += data[at + TWO + ARM_BX] * y - data[at + TWO + ARM_BY] * x
+                noted, j = near.noted, 2 * slots.pair[slot]
+                px, py, turn_a, turn_b = _slot_impulse(slots, at, ONE)
+                if slots.kind == BOX:
+                    x, y, moment_a, moment_b = _slot_impulse(slots, at, TWO)
+                    px, py, turn_a, turn_b = px + x, py + y, turn_a + moment_a, turn_b + moment_b
                 moved, sign = (b, 1.0) if inverse.mass[a] == 0.0 else (a, -1.0)
                 here_x, here_y = sign * motion.position[moved, 0], sign * motion.position[moved, 1]
                 if solved:
+                    if acting.uniform:
+                        nx, ny = slots.data[at + NORMAL_X], slots.data[at + NORMAL_Y]
+                        ax, ay = _pull(a, b, inverse, acting)
+                        pull, across = along_and_across(nx, ny, ax, ay)
+                        push, rub = along_and_across(nx, ny, px, py)
+                        near.account[CONTACT, ENERGY] -= 0.5 * h * push * pull
+                        near.account[FRICTION, ENERGY] -= 0.5 * h * rub * across
                     noted[j, 0], noted[j, 1], noted[j, 2], noted[j, 3] = px, py, here_x, here_y
                     continue
-                book_outside(
-                    near.account, CONTACT, _masses(a, b, inverse), _pose(a, b, motion), _speeds(a, b, motion),
-                    px, py, turn_a, turn_b,
-                )  # fmt: skip
+                given = _given(given, near, motion, inverse, a, b, px, py, turn_a, turn_b)
                 if inverse.mass[a] == 0.0 or inverse.mass[b] == 0.0:
                     x, y = here_x - noted[j, 2], here_y - noted[j, 3]
                     _book_moved(near, motion, inverse, a, b, x, y, noted[j, 0], noted[j, 1])
+    if not solved:
+        _book_given(near, given)
 
 
 @inlined

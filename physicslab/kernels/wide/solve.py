@@ -36,6 +36,7 @@ from physicslab.kernels.wide.layout import (
     ARM_BX,
     ARM_BY,
     BOX_ROWS,
+    DISC,
     DISC_ROWS,
     FRICTION,
     IMPULSE,
@@ -59,8 +60,9 @@ from physicslab.kernels.wide.layout import (
 )  # fmt: skip
 
 __all__ = [
-    "DEEPER", "SOFT", "SoftConstraint", "free_change", "held_by_friction", "mean_velocities", "one_normal",
-    "sweep_wide", "two_frictions", "two_normals", "warm_start_wide", "work_of",
+    "DEEPER", "SOFT", "SoftConstraint", "free_change", "held_by_friction", "mean_velocities",
+    "one_normal", "slot_frame", "sweep_wide", "two_frictions", "two_normals", "warm_start_wide",
+    "work_of",
 ]  # fmt: skip
 
 SOFT = 0.02
@@ -274,6 +276,18 @@ def _frame(data: Numbers, point: int, nx: Wide, ny: Wide) -> ContactFrame[Wide]:
     """Return normals, and the arms of points."""
     ax, ay = take(data, point + ARM_AX), take(data, point + ARM_AY)
     return ContactFrame(nx, ny, ax, ay, take(data, point + ARM_BX), take(data, point + ARM_BY))
+
+
+@inlined
+def slot_frame(slots: Slots, at: int, point: int) -> ContactFrame[float]:
+    """Return the normal and the arms of a point, ``ONE`` or ``TWO``, of a single slot that is at ``at``."""
+    data, base = slots.data, at + point
+    nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
+    if slots.kind == DISC:
+        ra, rb = data[at + RADIUS_A], data[at + RADIUS_B]
+        return ContactFrame(nx, ny, ra * nx, ra * ny, -rb * nx, -rb * ny)
+    ax, ay, bx, by = data[base + ARM_AX], data[base + ARM_AY], data[base + ARM_BX], data[base + ARM_BY]
+    return ContactFrame(nx, ny, ax, ay, bx, by)
 
 
 @fused
