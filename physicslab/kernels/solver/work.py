@@ -234,7 +234,7 @@ def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
     return pressed, rubbed
 
 
-@inlined
+@always_inlined
 def _slot_impulse(slots: Slots, at: int, point: int) -> tuple[float, float, float, float]:
     """Return the impulse at a point of a slot [N s], and its moments about both centres [N m s]."""
     frame, impulses = slot_frame(slots, at, point), at + point

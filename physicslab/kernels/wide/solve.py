@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Vectors, fused, inlined
+from physicslab.kernels import Numbers, Vectors, always_inlined, fused, inlined
 from physicslab.kernels.arguments import Motion, Near
 from physicslab.kernels.constraint.pair import (
     ContactFrame,
@@ -278,7 +278,7 @@ def _frame(data: Numbers, point: int, nx: Wide, ny: Wide) -> ContactFrame[Wide]:
     return ContactFrame(nx, ny, ax, ay, take(data, point + ARM_BX), take(data, point + ARM_BY))
 
 
-@inlined
+@always_inlined
 def slot_frame(slots: Slots, at: int, point: int) -> ContactFrame[float]:
     """Return the normal and the arms of a point, ``ONE`` or ``TWO``, of a single slot that is at ``at``."""
     data, base = slots.data, at + point
