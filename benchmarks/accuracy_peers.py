@@ -22,7 +22,6 @@ from scipy.integrate import solve_ivp
 
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.lab.accuracy.catalogue import PROBLEMS
-from physicslab.lab.accuracy.measure import finish
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
 from physicslab.world import World
@@ -54,7 +53,7 @@ def ours(integrator: str) -> Run:
         world = problem.build(setting.simulation(problem))
         world.synchronise()
         start = time.process_time()
-        error = finish(problem, world)
+        error = problem.finish((world,))
         return time.process_time() - start, error
 
     return run

@@ -26,9 +26,8 @@ import pymunk
 
 from physicslab import World
 from physicslab.components import Transform
-from physicslab.lab.peers.box2d_mirror import Box2DMirror
+from physicslab.lab.peers.mirrors import Box2DMirror, PymunkMirror
 from physicslab.lab.peers.peer import CannotBuild, Peer, find_contacts
-from physicslab.lab.peers.pymunk_mirror import PymunkMirror
 from physicslab.lab.stability.case import StabilityCase, run_case
 from physicslab.lab.stability.catalogue import CASES
 

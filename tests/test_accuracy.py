@@ -13,14 +13,16 @@ import pytest
 from physicslab.cli import main
 from physicslab.integrators import INTEGRATORS
 from physicslab.lab.accuracy.catalogue import LEFT_OUT, PROBLEMS
-from physicslab.lab.accuracy.chaos import crowd
 from physicslab.lab.accuracy.document import document
 from physicslab.lab.accuracy.figures import digits, number, record
-from physicslab.lab.accuracy.measure import measure
+from physicslab.lab.accuracy.measure import measure, rounding_floor
+from physicslab.lab.accuracy.planets import crowd
 from physicslab.lab.accuracy.plot import method_styles
 from physicslab.lab.accuracy.settings import Setting, ladder, refusal
-from physicslab.lab.accuracy.study import Study, rounding_floor, study
-from physicslab.lab.accuracy.verdict import Verdict, measured_order, verdict
+from physicslab.lab.accuracy.study import Study, study
+from physicslab.lab.accuracy.verdict import measured_order, verdict
+from physicslab.lab.case import Verdict
+from physicslab.lab.jobs import result_of
 
 type Figures = dict[tuple[str, ...], mpmath.mpf]
 """Figures by the keys under which they are on record."""
@@ -31,9 +33,7 @@ FIXED = [method for method in INTEGRATORS.values() if method.evaluations and not
 @cache
 def studied(name: str) -> Study:
     """Return the whole study of a problem."""
-    *_, found = study(PROBLEMS[name])
-    assert isinstance(found, Study)
-    return found
+    return result_of(study(PROBLEMS[name]))
 
 
 # ---- references --------------------------------------------------------------------------------------------
@@ -298,7 +298,7 @@ def auto_verdict(name: str) -> Verdict:
     """Return what ``auto`` is worth on a problem."""
     problem = PROBLEMS[name]
     found = measure(problem, Setting("auto"))
-    if found.watched.collisions:
+    if found.collision_count_error:
         return Verdict.SHORT
     floor = rounding_floor(problem)
     return verdict(found.error, problem.good, problem.excellent, floor=floor, chaotic=problem.chaotic)
@@ -353,14 +353,14 @@ def test_a_run_that_diverges_is_a_row_without_an_error() -> None:
 def test_energy_is_compared_with_the_exact_one_where_some_is_lost() -> None:
     for name in ("drag_linear", "drag_quadratic", "damped_under", "damped_critical", "damped_over"):
         found = measure(PROBLEMS[name], Setting("auto"))
-        assert found.watched.energy is not None and found.watched.energy < 1e-12
+        assert found.energy_drift is not None and found.energy_drift < 1e-12
     found = measure(PROBLEMS["stiff_damper_z1"], Setting("auto"))
-    assert found.watched.energy is not None and found.watched.energy < 1e-12
+    assert found.energy_drift is not None and found.energy_drift < 1e-12
 
 
 def test_collisions_that_are_missing_are_counted() -> None:
     found = measure(PROBLEMS["galperin_n3"], Setting("leapfrog", steps=1125))
-    assert found.watched.collisions is not None and found.watched.collisions < -1000
+    assert found.collision_count_error is not None and found.collision_count_error < -1000
 
 
 def test_verdicts() -> None:

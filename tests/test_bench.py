@@ -12,18 +12,16 @@ import pytest
 from physicslab import cli
 from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
 from physicslab.lab.bench.clock import TURN, take_turns
+from physicslab.lab.bench.costs import UNUSED, measure_memory, measure_unused
 from physicslab.lab.bench.engine import OurEngine, missing_peers
-from physicslab.lab.bench.growth import exponent, growths
 from physicslab.lab.bench.measure import measure_scene
-from physicslab.lab.bench.memory import measure_memory
-from physicslab.lab.bench.quality import Quality
-from physicslab.lab.bench.result import SceneResult
-from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.bench.result import SceneResult, exponent, growths
+from physicslab.lab.bench.scene import BenchScene, Quality
 from physicslab.lab.bench.targets import Check
-from physicslab.lab.bench.unused import UNUSED, Unused, measure_unused
 from physicslab.lab.case import Catalogue
 from physicslab.lab.document import machine_text
-from physicslab.lab.peers.pymunk_mirror import PymunkMirror
+from physicslab.lab.jobs import result_of
+from physicslab.lab.peers.mirrors import PymunkMirror
 from physicslab.state.masses import Diverged
 from physicslab.world import World
 
@@ -33,9 +31,9 @@ def tiny(scene: BenchScene, **changes: Any) -> BenchScene:
 
 
 def measured(scene: BenchScene) -> SceneResult:
-    *shares, result = measure_scene(scene)
-    assert isinstance(result, SceneResult)
-    assert all(isinstance(share, float) and 0.0 < share <= 1.0 for share in shares)
+    shares: list[float] = []
+    result = result_of(measure_scene(scene), shares.append)
+    assert shares and all(0.0 < share <= 1.0 for share in shares)
     return result
 
 
@@ -64,9 +62,9 @@ def test_growth_is_drawn_from_three_sizes_and_more() -> None:
 def test_a_scene_is_timed_and_looked_at() -> None:
     result = measured(tiny(gas_scene(20)))
     ours = result.ours
-    assert ours.step and ours.with_read and ours.begin and not ours.failure
-    assert 0.0 < ours.step.median_ms <= ours.step.p90_ms
-    assert (ours.ratio, ours.ratio_with_read) == (1.0, 1.0)
+    assert ours.step_ms and ours.step_and_read_ms and ours.first_seconds_ms and not ours.failure
+    assert 0.0 < ours.step_ms.median <= ours.step_ms.p90
+    assert (ours.times_ours, ours.times_ours_with_read) == (1.0, 1.0)
     assert ours.quality["energy change"] == pytest.approx(0.0, abs=1e-9)
     assert result.right
     assert {"IntegrateSystem", "BroadPhaseSystem", "ContactSystem", "ResolveSystem"} <= set(result.systems)
@@ -107,8 +105,7 @@ def test_every_engine_takes_every_place_in_the_order_and_as_many_steps() -> None
 
 
 def test_what_a_scene_does_not_use_changes_no_bit() -> None:
-    *_, found = measure_unused(dataclasses.replace(UNUSED[0], steps=10))
-    assert isinstance(found, Unused)
+    found = result_of(measure_unused("ten", UNUSED["circles_10"][0], 10))
     assert found.same_bits
     assert set(found.left_out) >= {"SpringSystem", "DragSystem", "TrailSystem"}
 

@@ -18,13 +18,12 @@ from physicslab.ecs.vector import Vector2
 from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
 from physicslab.lab.bench.clock import Spread
 from physicslab.lab.bench.engine import OurEngine
-from physicslab.lab.bench.judge import Judge
-from physicslab.lab.bench.measure import measure_scene
+from physicslab.lab.bench.measure import Judge, measure_scene
 from physicslab.lab.bench.moving import _in_funnel, funnel
-from physicslab.lab.bench.quality import at_rest, largest_overlap, lost, within
 from physicslab.lab.bench.result import EngineResult, SceneResult
-from physicslab.lab.bench.scene import BenchScene
+from physicslab.lab.bench.scene import BenchScene, at_rest, largest_overlap, lost, within
 from physicslab.lab.bench.targets import checks
+from physicslab.lab.jobs import result_of
 from physicslab.lab.peers.box2d3_built import BuildError, built_box2d
 from physicslab.lab.worlds import open_space, place
 from physicslab.prefabs import box, circle
@@ -37,7 +36,7 @@ SMALL = BenchScene(
 
 
 def judged(scene: BenchScene) -> tuple[Judge, OurEngine, dict[str, float | None]]:
-    result = SceneResult(scene, scene.steps)
+    result = SceneResult(scene)
     result.engines["PhysicsLab"] = EngineResult("PhysicsLab")
     return Judge(result), OurEngine(scene.build()), result.ours.quality
 
@@ -111,19 +110,19 @@ def test_bodies_beyond_the_walls_of_a_scene_are_lost(name: str) -> None:
     assert found["lost bodies"] == expected and expected > quality.limit
 
 
-def result_of(name: str, ours_ms: float, others_ms: dict[str, float]) -> SceneResult:
+def timed(name: str, ours_ms: float, others_ms: dict[str, float]) -> SceneResult:
     """Return the results of a scene whose steps all take the same in an engine."""
-    result = SceneResult(dataclasses.replace(SCENES[name], quality=()), 10)
+    result = SceneResult(dataclasses.replace(SCENES[name], quality=()))
     for engine, ms in {"PhysicsLab": ours_ms, **others_ms}.items():
-        spread = Spread(np.full(10, ms))
+        spread, ratio = Spread.of(np.full(10, ms)), ms / ours_ms
         result.engines[engine] = EngineResult(
-            engine, step=spread, begin=spread, ratio=ms / ours_ms, begin_ratio=ms / ours_ms
+            engine, spread, first_seconds_ms=spread, times_ours=ratio, times_ours_first_seconds=ratio
         )
     return result
 
 
 def test_scenes_of_many_bodies_are_held_against_pymunk_and_box2d_in_c() -> None:
-    found = checks([result_of("funnel", 2.0, {"pymunk": 3.2, "Box2D 3 C AVX2": 1.5, "Box2D 3": 9.0})], [], [])
+    found = checks([timed("funnel", 2.0, {"pymunk": 3.2, "Box2D 3 C AVX2": 1.5, "Box2D 3": 9.0})], [], [])
     figures = {check.what: check.figure for check in found}
     assert len(figures) == 6
     for when in ("first 2 s", "then"):
@@ -137,17 +136,16 @@ def test_scenes_of_many_bodies_are_held_against_pymunk_and_box2d_in_c() -> None:
 
 def test_single_steps_of_ten_discs_have_a_limit_in_microseconds() -> None:
     for name in ("circles_10_stepped", "circles_10_window"):
-        (slow,), (fast,) = (checks([result_of(name, ms, {})], [], []) for ms in (0.0201, 0.0199))
+        (slow,), (fast,) = (checks([timed(name, ms, {})], [], []) for ms in (0.0201, 0.0199))
         assert (slow.met, fast.met) == (False, True)
-    (run,) = checks([result_of("circles_10", 0.01, {"pymunk": 0.008})], [], [])
+    (run,) = checks([timed("circles_10", 0.01, {"pymunk": 0.008})], [], [])
     assert run.figure == pytest.approx(1.25) and not run.met
 
 
 def test_what_a_peer_failed_in_is_no_ratio() -> None:
     scene = dataclasses.replace(gas_scene(10), seconds=0.1, steps=3)
-    *_, result = measure_scene(scene)
-    assert isinstance(result, SceneResult)
-    assert (result.ours.begin_ratio, result.ours.ratio) == (1.0, 1.0)
+    result = result_of(measure_scene(scene))
+    assert (result.ours.times_ours_first_seconds, result.ours.times_ours) == (1.0, 1.0)
     assert checks([result], [], []) == []
 
 
@@ -216,10 +214,8 @@ def test_box2d_in_c_has_what_the_world_has(box2d: Any) -> None:
 @pytest.mark.peers
 def test_box2d_in_c_is_timed_beside_others(box2d: Any) -> None:
     scene = dataclasses.replace(pile_scene(20), seconds=2.0, steps=12)
-    *_, result = measure_scene(scene, (box2d,))
-    assert isinstance(result, SceneResult)
-    other = result.engines[box2d.title]
-    assert other.step is not None and other.ratio is not None and not other.failure
+    other = result_of(measure_scene(scene, (box2d,))).engines[box2d.title]
+    assert other.step_ms is not None and other.times_ours is not None and not other.failure
     assert other.quality["deepest overlap"] == pytest.approx(0.0, abs=0.02)
     assert other.quality["lost bodies"] == 0.0
 

@@ -15,8 +15,6 @@ from physicslab.components import Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS, CONVERGENCE
 from physicslab.lab.accuracy.contacts.engines import ENGINES, OWN
-from physicslab.lab.accuracy.contacts.sliding import stopped_by_friction
-from physicslab.lab.accuracy.contacts.striking import corner_impact
 from physicslab.lab.accuracy.contacts.study import (
     HALVINGS,
     ROUNDING,
@@ -27,10 +25,12 @@ from physicslab.lab.accuracy.contacts.study import (
     measure_row,
     study_case,
 )  # fmt: skip
-from physicslab.lab.accuracy.contacts.tables import contact_summary, contact_text, order_text
 from physicslab.lab.accuracy.figures import digits
-from physicslab.lab.accuracy.verdict import Verdict
-from physicslab.lab.peers.box2d3_mirror import Box2D3Mirror
+from physicslab.lab.accuracy.tables import contact_summary, contact_text, order_text
+from physicslab.lab.case import Verdict
+from physicslab.lab.closed_forms import corner_impact, rolled, slid, stopped_by_friction
+from physicslab.lab.jobs import result_of
+from physicslab.lab.peers.mirrors import Box2D3Mirror
 from physicslab.lab.peers.peer import CannotBuild
 from physicslab.lab.worlds import empty_world, place
 from physicslab.prefabs import box
@@ -97,6 +97,26 @@ def test_a_block_on_a_spring_goes_as_its_equation_of_motion_has_it() -> None:
     assert abs(x) <= held
 
 
+@pytest.mark.parametrize("pull", [0.0, 1.5, 9.0])
+def test_a_wheel_slips_and_rolls_as_its_equation_of_motion_has_it(pull: float) -> None:
+    """Pulled by 9 m/s^2 it slips for ever: friction of 2 m/s^2 cannot turn it as fast."""
+    friction, share, h = 2.0, 0.5, 1e-4
+    way, speed, rim, turning = 0.0, 3.0, 0.0, 0.0
+    for i in range(1, 10_001):
+        slips = speed - turning > 1e-9
+        rate = pull - friction if slips else pull / (1.0 + share)
+        speed, turning = speed + h * rate, turning + h * (friction / share if slips else rate)
+        turning = min(turning, speed)
+        way, rim = way + h * speed, rim + h * turning
+        if i % 2_500 == 0:
+            assert rolled(3.0, friction, i * h, pull=pull, share=share) == pytest.approx(
+                (way, speed, rim, turning), abs=2e-3
+            )
+    assert slid(3.0, friction - pull, 1.0) == pytest.approx(
+        (3.0 + 0.5 * (pull - friction), 3.0 + pull - friction)
+    )
+
+
 def test_impacts_on_corners_keep_the_laws_of_newton_and_coulomb() -> None:
     random = np.random.default_rng(4)
     slid = 0
@@ -154,13 +174,12 @@ def test_an_error_that_is_put_in_is_found() -> None:
     for case in CONTACTS.values():
         if case.group == "symmetry" or case.name == "free_boxes":
             continue
-        worlds = case.build(ENGINE["rigid"].simulation(1.0 / 60.0))
-        for world in worlds:
-            world.run(seconds=case.times[0])
-            before = case.error(worlds, 0)
-            moving = world.batch(Transform, Velocity).rows
-            world.table(Transform)["position"][moving[-1]] += (0.0, 0.125)
-        assert case.error(worlds, 0) == pytest.approx(0.125, abs=1e-6), case.name
+        world = case.build(ENGINE["rigid"].simulation(1.0 / 60.0))
+        world.run(seconds=case.times[0])
+        before = case.error(world, 0)
+        moving = world.batch(Transform, Velocity).rows
+        world.table(Transform)["position"][moving[-1]] += (0.0, 0.125)
+        assert case.error(world, 0) == pytest.approx(0.125, abs=1e-6), case.name
         assert before < 1e-6
 
 
@@ -192,9 +211,7 @@ def test_what_is_no_order_is_said() -> None:
 
 @cache
 def studied(name: str) -> ContactStudy:
-    *_, found = study_case(CONTACTS[name], sparse=True)
-    assert isinstance(found, ContactStudy)
-    return found
+    return result_of(study_case(CONTACTS[name], sparse=True))
 
 
 def test_sparsely_only_ours_are_run() -> None:
@@ -236,7 +253,7 @@ def test_a_family_of_cases_is_named_like_one_of_problems(capsys: pytest.CaptureF
 
 @pytest.mark.plot
 def test_pictures_of_cases(tmp_path: Path) -> None:
-    from physicslab.lab.accuracy.contacts.plot import overview
+    from physicslab.lab.accuracy.plot import overview
 
     assert main(["accuracy", "rest_1", "--plot", str(tmp_path)]) == 0
     assert (tmp_path / "rest_1.png").read_bytes().startswith(b"\x89PNG")

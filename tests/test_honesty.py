@@ -18,15 +18,16 @@ from physicslab.lab.accuracy.honesty.study import FAMILIES, HonestRow, assess_kn
 from physicslab.lab.accuracy.tables import honest_text
 from physicslab.lab.accuracy.trust import Trust, assess
 from physicslab.lab.accuracy.twins import TWINS, Document
+from physicslab.lab.jobs import result_of
 from physicslab.world import World
 
 
 def trusted(document: Document, seconds: float) -> tuple[Trust, World]:
     """Return what is claimed of a scene, and the scene at its end."""
-    *_, found = assess(lambda: read_scene(document), seconds)
+    found = result_of(assess(lambda: read_scene(document), seconds))
     world = read_scene(document)
     world.run(seconds=seconds)
-    assert isinstance(found, Trust) and not found.failure
+    assert not found.failure
     return found, world
 
 
@@ -35,8 +36,8 @@ def place(world: World, name: str) -> np.ndarray:
 
 
 def drawn(family: str, seed: int) -> HonestRow:
-    *_, row = assess_known(family, seed)
-    assert isinstance(row, HonestRow) and not row.failure
+    row = result_of(assess_known(family, seed))
+    assert not row.failure
     return row
 
 
@@ -116,8 +117,8 @@ def test_another_method_agrees_with_the_closed_form() -> None:
 
 def test_ways_that_take_too_long_are_left_out_and_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(estimate, "_RUNS_AT_LEAST", 0.0)
-    *_, found = assess(lambda: read_scene(swing(100.0)), 1.0, budget_s=0.0)
-    assert isinstance(found, Trust) and "ends in time" in found.failure
+    found = result_of(assess(lambda: read_scene(swing(100.0)), 1.0, budget_s=0.0))
+    assert "ends in time" in found.failure
     assert any(words.startswith("half step: given up after 0 s, at t = ") for words in found.left_out)
     assert any(words.startswith("6 of 6 starts moved") for words in found.left_out)
 

@@ -3,7 +3,7 @@
 import dataclasses
 import json
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -17,10 +17,10 @@ from physicslab.lab.bench.catalogue import SCENES, by_default, discs
 from physicslab.lab.bench.engine import OurEngine, prepared
 from physicslab.lab.bench.measure import measure_scene
 from physicslab.lab.bench.moving import FUNNELS, MOVING, chains, funnel, heap, tumbler
-from physicslab.lab.bench.result import SceneResult
 from physicslab.lab.bench.scene import BenchScene
-from physicslab.lab.case import Case, Catalogue, attempt, run_jobs
+from physicslab.lab.case import Case, Catalogue, attempt
 from physicslab.lab.document import lab_document, machine
+from physicslab.lab.jobs import Job, result_of, run_jobs
 from physicslab.lab.peers.peer import find_contacts
 from physicslab.lab.stability.catalogue import CASES
 from physicslab.lab.table import Columns, table
@@ -31,11 +31,11 @@ from physicslab.world import World
 def test_jobs_run_one_after_the_other_and_count_by_their_weight() -> None:
     events: list[str] = []
 
-    def job(name: str) -> Iterator[float | str]:
+    def job(name: str) -> Job[str]:
         events.append(f"begin {name}")
         yield 0.5
         events.append(f"end {name}")
-        yield name
+        return name
 
     found = list(run_jobs([(1.0, job("small")), (3.0, job("large"))]))
     assert found == [0.0, 0.125, "small", 0.25, 0.625, "large"]
@@ -136,10 +136,8 @@ def small_of_each_kind() -> list[BenchScene]:
 
 @pytest.mark.parametrize("scene", small_of_each_kind(), ids=lambda scene: scene.name)
 def test_scenes_that_move_are_timed(scene: BenchScene) -> None:
-    *_, result = measure_scene(scene)
-    assert isinstance(result, SceneResult)
-    found = result.ours
-    assert found.step is not None and found.begin is not None and not found.failure
+    found = result_of(measure_scene(scene)).ours
+    assert found.step_ms is not None and found.first_seconds_ms is not None and not found.failure
     assert set(found.quality) == {quality.name for quality in scene.quality}
     for quality in scene.quality:
         if quality.name not in ("kinetic energy at rest", "drift at rest"):  # they still fall
@@ -176,8 +174,7 @@ def test_a_scene_is_stepped_in_a_window() -> None:
         engines.append(InWindow(world))
         return engines[-1]
 
-    *_, result = measure_scene(scene, make=in_window)
-    assert isinstance(result, SceneResult) and result.ours.step is not None
+    assert result_of(measure_scene(scene, make=in_window)).ours.step_ms is not None
     (engine,) = engines
     assert engine.world.schedule.timings["RenderSystem"].calls > 0, "frames are drawn between turns"
 
@@ -185,7 +182,7 @@ def test_a_scene_is_stepped_in_a_window() -> None:
 def test_gravity_turns_with_the_time_of_the_steps() -> None:
     engine = prepared(OurEngine(SCENES["circles_10"].build()), SCENES["tumbler"])
     for _ in range(31):
-        engine.step()
+        engine.advance()
     gravity = engine.look().physics.gravity
     angle = math.radians(-90.0 + 15.0)  # half a second after the first step
     assert tuple(gravity) == pytest.approx((9.81 * math.cos(angle), 9.81 * math.sin(angle)))

@@ -11,8 +11,9 @@ from typing import Any
 import pytest
 
 from physicslab import cli
-from physicslab.lab.processes import in_processes
-from physicslab.lab.stability.case import StabilityCase, Verdict, run_case
+from physicslab.lab.case import Verdict
+from physicslab.lab.jobs import in_processes
+from physicslab.lab.stability.case import StabilityCase, run_case
 from physicslab.lab.stability.catalogue import CASES, runs_of
 from physicslab.state.masses import Diverged
 

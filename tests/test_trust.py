@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -18,33 +18,26 @@ from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene, write_scene
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
-from physicslab.lab.accuracy.contacts.engines import OWN, Engine
-from physicslab.lab.accuracy.estimate import Estimate, estimate_error
+from physicslab.lab.accuracy.contacts.engines import OWN, ContactEngine
+from physicslab.lab.accuracy.estimate import estimate_error
 from physicslab.lab.accuracy.horizon import find_horizon
-from physicslab.lab.accuracy.nudges import nudged
 from physicslab.lab.accuracy.trust import Trust, assess, moments_of
 from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem, summarise
-from physicslab.lab.accuracy.twins import with_ids
-from physicslab.lab.case import Job
+from physicslab.lab.accuracy.twins import nudged, with_ids
+from physicslab.lab.jobs import result_of
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 
 
 def trust(load: Callable[[], World], seconds: float) -> Trust:
-    *shares, found = assess(load, seconds)
-    assert all(0.0 <= share <= 1.0 for share in shares if isinstance(share, float))
-    assert isinstance(found, Trust)
-    return found
-
-
-def result(job: Job[TrustRow]) -> TrustRow:
-    *_, found = job
-    assert isinstance(found, TrustRow)
+    shares: list[float] = []
+    found = result_of(assess(load, seconds), shares.append)
+    assert all(0.0 <= share <= 1.0 for share in shares)
     return found
 
 
 def row(name: str) -> TrustRow:
-    return result(assess_problem(PROBLEMS[name]))
+    return result_of(assess_problem(PROBLEMS[name]))
 
 
 def test_free_flight_is_right_to_rounding() -> None:
@@ -106,8 +99,7 @@ def test_a_scene_with_a_body_that_keeps_its_angle_has_an_estimate() -> None:
         world.component(ball, Mass).fixed_rotation = True
         return world
 
-    *_, found = estimate_error(load, 0.5)
-    assert isinstance(found, Estimate) and "nudged" in found.paths
+    assert "nudged" in result_of(estimate_error(load, 0.5)).paths
 
 
 def test_zeros_are_not_nudged_and_all_else_is_by_one_rounding() -> None:
@@ -124,22 +116,22 @@ def test_zeros_are_not_nudged_and_all_else_is_by_one_rounding() -> None:
 
 @pytest.mark.parametrize("name", ["free_fall", "kepler_e0.5", "figure_eight", "bounce", "friction_slide"])
 def test_the_true_error_is_within_a_factor_of_ten_of_the_estimate(name: str) -> None:
-    assert row(name).is_near
+    assert row(name).near
 
 
 @pytest.mark.parametrize("contacts", OWN, ids=lambda engine: engine.name)
 @pytest.mark.parametrize("name", ["slide_spring", "roll_hill", "seam_box", "corner_roll"])
 def test_the_true_error_of_contacts_is_within_a_factor_of_ten_of_the_estimate(
-    name: str, contacts: Engine
+    name: str, contacts: ContactEngine
 ) -> None:
     """The error of ``slide_spring`` does not fall with the tolerance, as that of a method of order 8 does."""
-    assert result(assess_contacts(CONTACTS[name], contacts)).is_near
+    assert result_of(assess_contacts(CONTACTS[name], contacts)).near
 
 
 @pytest.mark.slow
 def test_estimates_of_all_that_is_known_are_as_good_as_they_are_said_to_be() -> None:
     rows = [row(name) for name, problem in PROBLEMS.items() if problem.search is None]
-    rows += [result(assess_contacts(case, engine)) for case in CONTACTS.values() for engine in OWN]
+    rows += [result_of(assess_contacts(case, engine)) for case in CONTACTS.values() for engine in OWN]
     found = summarise(rows)
     assert found.known == len(rows) > 100 and found.holds
     assert found.near >= 0.95 * found.known and found.largest <= 100.0
@@ -174,8 +166,7 @@ def test_energy_that_friction_has_taken_is_a_share_of_what_there_was() -> None:
     """A disc that has come to rest has no energy left; what error is left is that of what it had."""
 
     def load() -> World:
-        (world,) = CONTACTS["roll_groove"].build(SimulationConfig(contacts="soft"))
-        return world
+        return CONTACTS["roll_groove"].build(SimulationConfig(contacts="soft"))
 
     assert trust(load, 2.0).energy > 4.0
 
@@ -198,8 +189,7 @@ def test_digits_until_earlier_moments_are_more_and_the_last_are_those_of_the_end
     load = partial(load_scene, "pendulum")
     moments = moments_of(4.0, load().simulation.dt, 8)
     assert moments == pytest.approx([0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5], abs=0.01)
-    *_, found = assess(load, 4.0, moments)
-    assert isinstance(found, Trust)
+    found = result_of(assess(load, 4.0, moments))
     assert [look.seconds for look in found.looks] == [*moments, 4.0]
     digits = [look.digits for look in found.looks]
     assert digits == sorted(digits, reverse=True) and digits[-1] <= found.digits
@@ -219,12 +209,9 @@ def double_pendulum() -> World:
 def test_the_horizon_is_when_one_rounding_has_grown_to_another_future() -> None:
     document = with_ids(write_scene(double_pendulum()))
     bodies = [entity["id"] for entity in document["entities"] if "Velocity" in entity]
-    found: list[float | None] = []
-
-    def kept() -> Iterator[float]:
-        found.append((yield from find_horizon(document, bodies, 60.0)))
-
-    assert all(0.0 <= share <= 1.0 for share in kept())
+    shares: list[float] = []
+    found = result_of(find_horizon(document, bodies, 60.0), shares.append)
+    assert all(0.0 <= share <= 1.0 for share in shares)
     world, twin = double_pendulum(), double_pendulum()
     for one in (world, twin):
         one.synchronise()
@@ -235,7 +222,7 @@ def test_the_horizon_is_when_one_rounding_has_grown_to_another_future() -> None:
         next(beside, None)
         if np.abs(places[0] - places[1]).max() > 0.1 * 0.1:
             break
-    assert found == [pytest.approx(world.time, rel=0.3)]
+    assert found == pytest.approx(world.time, rel=0.3)
 
 
 def test_run_writes_what_can_be_relied_on(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

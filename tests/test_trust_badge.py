@@ -13,7 +13,8 @@ from desk import SETTLED, Desk, choose, click, empty_world, sized, tap
 from physicslab.components import Transform, Velocity
 from physicslab.files.scene import load_scene
 from physicslab.history import SetField
-from physicslab.lab.accuracy.trust import Trust, assess, moments_of
+from physicslab.lab.accuracy.trust import assess, moments_of
+from physicslab.lab.jobs import result_of
 from physicslab.prefabs import circle, pendulum
 from physicslab.view.panels import trust_watch
 from physicslab.view.panels.trust_watch import BODIES_LIMIT, TrustWatch
@@ -290,7 +291,6 @@ def test_the_real_laboratory_finds_the_digits_that_a_run_has() -> None:
     assert watch.failure == "" and watch.since == 0.0
     seconds = watch._findings[-1].until
     dt = desk.world.simulation.dt
-    *_, found = assess(lambda: load_scene("two_planets"), seconds, moments_of(seconds, dt, 24))
-    assert isinstance(found, Trust)
+    found = result_of(assess(lambda: load_scene("two_planets"), seconds, moments_of(seconds, dt, 24)))
     assert [one.until for one in watch._findings] == [look.seconds for look in found.looks]
     assert watch._findings[-1].bodies == tuple(found.looks[-1].bodies)

@@ -18,8 +18,9 @@ from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene, read_scene, write_scene
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error, find_order
-from physicslab.lab.accuracy.scene_study import SceneStudy, study_scene
+from physicslab.lab.accuracy.scene_study import study_scene
 from physicslab.lab.accuracy.twins import TWINS, Document, with_ids
+from physicslab.lab.jobs import result_of
 from physicslab.prefabs import pendulum
 from physicslab.world import World
 
@@ -89,8 +90,8 @@ CASES: dict[str, tuple[Document, Place]] = {
 
 
 def estimate(load: Callable[[], World], seconds: float = 5.0) -> Estimate:
-    *_, found = estimate_error(load, seconds)
-    assert isinstance(found, Estimate) and found.failure == ""
+    found = result_of(estimate_error(load, seconds))
+    assert found.failure == ""
     return found
 
 
@@ -125,12 +126,11 @@ def test_the_estimate_of_every_contact_case_is_within_a_factor_of_ten(name: str,
     last = len(case.times) - 1
 
     def load() -> World:
-        (world,) = case.build(SimulationConfig(contacts=contacts))
-        return world
+        return case.build(SimulationConfig(contacts=contacts))
 
     found, world = estimate(load, case.seconds), load()
     world.run(seconds=case.seconds)
-    true = case.error((world,), last)
+    true = case.error(world, last)
     assert found.error is not None
     estimated = max(found.error.position, found.error.angle)
     print(f"| {name} | {contacts} | {true:.1e} | {estimated:.1e} | {estimated / true if true else 1:.2g} "
@@ -142,19 +142,18 @@ def test_the_rigid_twin_of_soft_contacts_is_as_far_off_as_the_truth() -> None:
     case = CONTACTS["corner_rod"]
 
     def load() -> World:
-        (world,) = case.build(SimulationConfig(contacts="soft"))
-        return world
+        return case.build(SimulationConfig(contacts="soft"))
 
     found, world = estimate(load, case.seconds), load()
     world.run(seconds=case.seconds)
     (rigid,) = [twin.spread for twin in found.twins if twin.name == "rigid"]
     assert rigid is not None and found.reference is not None
-    assert max(rigid.position, rigid.angle) == pytest.approx(case.error((world,), 0), rel=0.1)
+    assert max(rigid.position, rigid.angle) == pytest.approx(case.error(world, 0), rel=0.1)
 
 
 def test_rigid_contacts_have_no_stiffer_twin_and_no_rigid_one() -> None:
-    (world,) = CONTACTS["slide_stop"].build(SimulationConfig(contacts="rigid"))
-    found = estimate(lambda: CONTACTS["slide_stop"].build(SimulationConfig(contacts="rigid"))[0], 0.5)
+    load = partial(CONTACTS["slide_stop"].build, SimulationConfig(contacts="rigid"))
+    world, found = load(), estimate(load, 0.5)
     names = {twin.name for twin in found.twins}
     assert names >= {"eighth of the step", "mirrored", "permuted", "nudged"} and names.isdisjoint(
         {"stiffer", "rigid"}
@@ -167,8 +166,7 @@ def test_rigid_contacts_have_no_stiffer_twin_and_no_rigid_one() -> None:
 
 def test_a_twin_that_takes_too_long_is_given_up() -> None:
     patient = [replace(twin, budget_s=-1.0) if twin.name == "rigid" else twin for twin in TWINS]
-    *_, found = estimate_error(lambda: read_scene(CASES["one box"][0]), 0.1, twins=patient)
-    assert isinstance(found, Estimate)
+    found = result_of(estimate_error(lambda: read_scene(CASES["one box"][0]), 0.1, twins=patient))
     (rigid,) = [twin for twin in found.twins if twin.name == "rigid"]
     assert rigid.spread is None and rigid.failure.startswith("given up after -1 s, at t = ")
     assert found.error is not None and found.reference is None
@@ -176,8 +174,8 @@ def test_a_twin_that_takes_too_long_is_given_up() -> None:
 
 def test_methods_are_compared_with_rigid_contacts_where_these_can_be_had() -> None:
     """Leapfrog with a quarter of the step sinks as deep: it is no reference."""
-    *_, study = study_scene("ten", lambda: read_scene(CASES["ten boxes"][0]), 1.0)
-    assert isinstance(study, SceneStudy) and study.reference.startswith("rigid contacts, which is")
+    study = result_of(study_scene("ten", lambda: read_scene(CASES["ten boxes"][0]), 1.0))
+    assert study.reference.startswith("rigid contacts, which is")
     auto = study.rows[0]
     world = read_scene(CASES["ten boxes"][0])
     world.simulation = replace(world.simulation, sleeping=False)
@@ -322,8 +320,7 @@ def test_methods_are_compared_with_the_finest_of_all_and_the_better_one_is_not_b
     """Rigid contacts of ``auto`` are right to rounding; leapfrog in a quarter of the step is not."""
     document = sliding(0.6, 0.3)
     document["simulation"] = {}
-    *_, study = study_scene("slides", lambda: read_scene(document), 0.3)
-    assert isinstance(study, SceneStudy)
+    study = result_of(study_scene("slides", lambda: read_scene(document), 0.3))
     auto, *others = study.rows
     assert "auto: dop853" in study.reference and "known to" in study.reference
     assert auto.at_most and auto.error is not None and auto.error < 1e-12

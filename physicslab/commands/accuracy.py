@@ -17,13 +17,15 @@ from physicslab.lab.accuracy.contacts.case import ContactCase
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS, CONVERGENCE
 from physicslab.lab.accuracy.contacts.engines import OWN
 from physicslab.lab.accuracy.contacts.study import ContactStudy, study_case
-from physicslab.lab.accuracy.contacts.tables import contact_summary, contact_text
 from physicslab.lab.accuracy.document import document, trust_document
 from physicslab.lab.accuracy.honesty.study import FAMILIES, HonestRow, assess_known
+from physicslab.lab.accuracy.plot import case_plot, overview, work_precision
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import DEFAULT_S, SceneStudy, study_scene
 from physicslab.lab.accuracy.study import Study, study
 from physicslab.lab.accuracy.tables import (
+    contact_summary,
+    contact_text,
     honest_text,
     left_out_text,
     scene_text,
@@ -34,7 +36,7 @@ from physicslab.lab.accuracy.tables import (
 )
 from physicslab.lab.accuracy.trust import Trust, assess, moments_of
 from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem
-from physicslab.lab.case import Job
+from physicslab.lab.jobs import Job
 from physicslab.scenes import SCENES
 
 __all__ = ["add_arguments", "execute"]
@@ -101,11 +103,11 @@ def execute(arguments: Namespace) -> int:
             case Study():
                 studies.append(result)
                 run.show(study_text(result, whole=len(problems) == 1))
-                run.draw(result.problem.name, partial(_plot, result))
+                run.draw(result.problem.name, partial(work_precision, result))
             case ContactStudy():
                 contact_studies.append(result)
                 run.show(contact_text(result))
-                run.draw(result.case.name, partial(_contact_plot, result))
+                run.draw(result.case.name, partial(case_plot, result))
             case SceneStudy():
                 scene_studies.append(result)
                 run.show(scene_text(result))
@@ -165,27 +167,9 @@ def _other(scenes: dict[str, None], contacts: dict[str, ContactCase], name: str)
     return None
 
 
-def _plot(found: Study) -> bytes:
-    from physicslab.lab.accuracy.plot import work_precision  # matplotlib takes a while, and may not be there
-
-    return work_precision(found)
-
-
-def _contact_plot(found: ContactStudy) -> bytes:
-    from physicslab.lab.accuracy.contacts.plot import case_plot
-
-    return case_plot(found)
-
-
 def _draw_overviews(run: LabRun, found: list[ContactStudy]) -> None:
     """Draw the cases whose order is looked at in one picture, where all of them were studied."""
     shown = [study for study in found if study.case.name in CONVERGENCE]
     if len(shown) == len(CONVERGENCE):
         for by in ("step", "cost"):
-            run.draw(f"contacts_{by}", partial(_overview, shown, by))
-
-
-def _overview(found: list[ContactStudy], by: str) -> bytes:
-    from physicslab.lab.accuracy.contacts.plot import overview
-
-    return overview(found, by)
+            run.draw(f"contacts_{by}", partial(overview, shown, by))

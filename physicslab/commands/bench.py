@@ -16,18 +16,17 @@ from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
 from physicslab.ecs.text import printable
 from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT, SCENES, by_default, opened
-from physicslab.lab.bench.document import document
+from physicslab.lab.bench.costs import UNUSED, Unused, measure_memory, measure_unused
 from physicslab.lab.bench.engine import PEERS, OurEngine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
-from physicslab.lab.bench.memory import measure_memory
+from physicslab.lab.bench.plot import bench_picture
 from physicslab.lab.bench.report import BenchReport
 from physicslab.lab.bench.result import SceneResult
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.bench.tables import report_text, scene_text
-from physicslab.lab.bench.unused import UNUSED, Unused, measure_unused
-from physicslab.lab.case import Job
+from physicslab.lab.jobs import Job
 from physicslab.lab.peers.box2d3_built import BuildError, built_box2d
-from physicslab.lab.peers.box2d_mirror import Box2DMirror
+from physicslab.lab.peers.mirrors import Box2DMirror
 from physicslab.lab.peers.peer import Peer
 from physicslab.scenes import SCENES as BUILT_IN
 from physicslab.world import World
@@ -92,8 +91,8 @@ def execute(arguments: Namespace) -> int:
         report.memory = measure_memory()
     _note(run, "")
     run.show(report_text(report))
-    run.write(document(report))
-    run.draw("bench", partial(_plot, report))
+    run.write(report.document)
+    run.draw("bench", partial(bench_picture, report))
     for result in report.scenes:
         if result.ours.failure:
             raise CommandError(f"{result.scene.name}: {result.ours.failure}", FAILED)
@@ -150,7 +149,7 @@ def _jobs(
         make = _in_window if scene.in_window else OurEngine
         jobs.append((float(scene.size), measure_scene(scene, beside, make)))
     if _UNUSED in extras:
-        jobs += [(float(_UNUSED_SIZE), measure_unused(case)) for case in UNUSED]
+        jobs += [(float(_UNUSED_SIZE), measure_unused(name, *given)) for name, given in UNUSED.items()]
     return jobs
 
 
@@ -166,9 +165,3 @@ def _note(run: LabRun, text: str) -> None:
     """Print to stderr what is no part of the report."""
     if sys.stderr is not None:  # a program may be started without it
         run.show(text, sys.stderr)
-
-
-def _plot(report: BenchReport) -> bytes:
-    from physicslab.lab.bench.plot import bench_picture  # matplotlib takes a while, and may not be there
-
-    return bench_picture(report)

@@ -14,7 +14,8 @@ from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable, suggestion
 from physicslab.files.checks import shown
 from physicslab.files.json_text import json_bytes
-from physicslab.lab.case import Case, Catalogue, Job, run_jobs
+from physicslab.lab.case import Case, Catalogue
+from physicslab.lab.jobs import Job, run_jobs
 from physicslab.lab.table import table
 
 __all__ = ["LabRun", "add_lab_arguments", "chosen_cases", "list_cases", "unknown_name"]

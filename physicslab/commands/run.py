@@ -133,7 +133,8 @@ def _stream(outputs: Mapping[str, Output], kind: str) -> AbstractContextManager[
 
 def _trust(arguments: Namespace, label: str, seconds: float) -> dict[str, object]:
     """Compute the run in other ways, and return what can be relied on."""
-    from physicslab.lab.accuracy.trust import Trust, assess, trust_report  # the lab is needed here alone
+    from physicslab.lab.accuracy.trust import assess, trust_report  # the lab is needed here alone
+    from physicslab.lab.jobs import result_of
 
     def load() -> World:
         world = load_scene(arguments.scene)
@@ -143,13 +144,9 @@ def _trust(arguments: Namespace, label: str, seconds: float) -> dict[str, object
 
     progress = Progress(f"{label}, computed in other ways", sys.stderr)
     try:
-        for found in assess(load, seconds):
-            if isinstance(found, Trust):
-                return trust_report(found)
-            progress.show(found)
+        return trust_report(result_of(assess(load, seconds), progress.show))
     finally:
         progress.clear()
-    raise AssertionError("a job ends with its result")
 
 
 def _rescue(world: World, name: str, outputs: Mapping[str, Output]) -> str:

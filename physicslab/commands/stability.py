@@ -7,11 +7,17 @@ from concurrent.futures.process import BrokenProcessPool
 
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
-from physicslab.lab.processes import in_processes
-from physicslab.lab.stability.case import Outcome, StabilityCase, Verdict
+from physicslab.lab.jobs import in_processes
+from physicslab.lab.stability.case import Outcome, StabilityCase
 from physicslab.lab.stability.catalogue import CASES, run_named, runs_of
-from physicslab.lab.stability.document import document
-from physicslab.lab.stability.tables import columns, head_text, row_text, summary_text
+from physicslab.lab.stability.report import (
+    columns,
+    document,
+    head_text,
+    row_text,
+    short_names,
+    summary_text,
+)
 
 __all__ = ["add_arguments", "execute"]
 
@@ -40,8 +46,7 @@ def execute(arguments: Namespace) -> int:
         raise CommandError(f"{cases[len(outcomes)].name}: {reason}", FAILED) from None
     run.show(summary_text(outcomes))
     run.write(document(outcomes))
-    short = [outcome.case.name for outcome in outcomes if outcome.verdict is Verdict.SHORT]
-    if short:
+    if short := short_names(outcomes):
         raise CommandError(f"{len(short)} of {len(outcomes)} cases fall short: {', '.join(short)}", FAILED)
     return 0
 

@@ -1,21 +1,18 @@
-"""What the labs have in common: cases in a catalogue, and how they are run one after the other."""
+"""What the labs have in common: cases in a catalogue, and what is measured of them."""
 
 from __future__ import annotations
 
-import gc
 import math
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
 from physicslab.state.masses import Diverged
 
-__all__ = ["Case", "Catalogue", "Job", "attempt", "cpu_time", "run_jobs"]
-
-type Job[Result] = Iterator[float | Result]
-"""Work that yields the share of it that is done (0 to 1) now and then, and at last the result."""
+__all__ = ["Case", "Catalogue", "Verdict", "attempt", "cpu_time"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,6 +33,18 @@ class Case:
     def family(self) -> str:
         """The name for it and others together on the command line."""
         return self.group
+
+
+class Verdict(StrEnum):
+    """How good a figure is: whether it is within a limit, or how near an error is to what can be."""
+
+    PASSED = "passed"
+    EXCELLENT = "excellent"
+    GOOD = "good"
+    SHORT = "falls short"
+    ROUNDING = "rounding floor"
+    CHAOS = "chaos limit"
+    FAILED = "failed"
 
 
 class Catalogue[AnyCase: Case](dict[str, AnyCase]):
@@ -94,23 +103,3 @@ def cpu_time[Found](call: Callable[[], Found]) -> tuple[float, Found]:
     start = time.process_time()
     found = call()
     return time.process_time() - start, found
-
-
-def run_jobs[Result](jobs: Iterable[tuple[float, Job[Result]]]) -> Iterator[float | Result]:
-    """Run jobs one after the other; yield the share of the whole that is done, and each result.
-
-    Each begins with the garbage of the one before collected: worlds hold cycles.
-
-    Parameters
-    ----------
-    jobs : iterable of pairs
-        How much of the whole each is, in any unit, and the job.
-    """
-    listed = list(jobs)
-    whole, done = sum(weight for weight, _ in listed) or 1.0, 0.0  # a scene may have no bodies: a weight of 0
-    for weight, job in listed:
-        gc.collect()
-        yield done / whole
-        for found in job:
-            yield (done + found * weight) / whole if isinstance(found, float) else found
-        done += weight

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import os
 import platform
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-__all__ = ["finite", "lab_document", "machine", "machine_text"]
+__all__ = ["lab_document", "machine", "machine_text", "pick", "plain"]
 
 _PACKAGES = ("physicslab", "numpy", "numba", "esper")
 _PEERS = ("pymunk", "box2d", "pyb2d3")
@@ -17,12 +19,33 @@ _PEERS = ("pymunk", "box2d", "pyb2d3")
 
 def lab_document(lab: str, *, peers: bool = False, **parts: object) -> dict[str, Any]:
     """Return the document of a lab, with the versions of other engines where ``peers`` took part."""
-    return {"format": f"physicslab-{lab}/1", "machine": machine(peers=peers), **parts}
+    return {"format": f"physicslab-{lab}/1", "machine": machine(peers=peers), **plain(parts)}
 
 
-def finite(number: float | None) -> float | None:
-    """Return a number, or ``None`` where it is not finite: JSON has no such numbers."""
-    return number if number is not None and math.isfinite(number) else None
+def plain(value: object) -> Any:
+    """Return a value as JSON has it: a record as an object, a number that is not finite as null.
+
+    >>> plain({"figures": (1.0, math.inf)})
+    {'figures': [1.0, None]}
+    """
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    if isinstance(value, str):
+        return str(value)
+    if is_dataclass(value):
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+    if isinstance(value, Mapping):
+        return {key: plain(part) for key, part in value.items()}
+    return [plain(part) for part in value] if isinstance(value, Iterable) else value
+
+
+def pick(record: object, *names: str) -> dict[str, Any]:
+    """Return some attributes of a record by their names.
+
+    >>> pick(1.5, "real", "imag")
+    {'real': 1.5, 'imag': 0.0}
+    """
+    return {name: getattr(record, name) for name in names}
 
 
 def machine(*, peers: bool = False) -> dict[str, str | int]:

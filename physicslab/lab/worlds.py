@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from typing import TypedDict
 
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.diagnostics.audit import Audit
@@ -11,14 +13,16 @@ from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.prefabs import box
+from physicslab.prefabs import box, circle
+from physicslab.prefabs.body import Pair
 from physicslab.stepping.rigid import Rigid
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
 __all__ = [
-    "GRAVITY", "PLANETS", "empty_world", "energy_change", "energy_growth", "floor", "largest",
-    "open_space", "place", "spawn_point", "steps_not_rigid", "velocity",
+    "GRAVITY", "PLANETS", "Surface", "displacements", "empty_world", "energy_change", "energy_growth",
+    "floor", "largest", "open_space", "place", "soft_space", "spawn_bob", "spawn_point", "steps_not_rigid",
+    "velocity",
 ]  # fmt: skip
 
 GRAVITY = 9.81
@@ -27,11 +31,15 @@ PLANETS = PhysicsConfig(gravity_mode="planet", softening_law="plummer")
 """Bodies attract each other with G = 1."""
 
 
+class Surface(TypedDict):
+    """Friction and restitution that several bodies have."""
+
+    friction: float
+    restitution: float
+
+
 def empty_world(
-    simulation: SimulationConfig,
-    physics: PhysicsConfig | None = None,
-    *,
-    gravity: float | None = GRAVITY,
+    simulation: SimulationConfig, physics: PhysicsConfig | None = None, *, gravity: float | None = GRAVITY
 ) -> World:
     """Return a world with every physics system and nothing in it.
 
@@ -49,10 +57,7 @@ def empty_world(
 
 
 def open_space(
-    *,
-    gravity: float | None = GRAVITY,
-    physics: PhysicsConfig | None = None,
-    **simulation: float | str | bool,
+    *, gravity: float | None = GRAVITY, physics: PhysicsConfig | None = None, **simulation: float | str | bool
 ) -> World:
     """Return an empty world in which nothing sleeps unless ``sleeping`` is given, so that creep is seen.
 
@@ -67,30 +72,39 @@ def open_space(
     return empty_world(config, physics, gravity=gravity)
 
 
+soft_space = partial(open_space, collisions="step", contacts="soft")
+"""Returns such a world with soft contacts, found within steps."""
+
+
 def floor(
-    world: World,
-    at: Vector2 = Vector2(),
-    *,
-    width: float = 100.0,
-    friction: float = 0.6,
+    world: World, at: Vector2 = Vector2(), *, width: float = 100.0, friction: float = 0.6,
     restitution: float = 0.0,
-) -> int:
+) -> int:  # fmt: skip
     """Spawn a static floor, the middle of its upper side at a point [m]; return its entity."""
-    middle = at + Vector2(0.0, -0.5)
-    return box(
-        world, middle, width=width, height=1.0, static=True, friction=friction, restitution=restitution
-    )
+    surface = Surface(friction=friction, restitution=restitution)
+    return box(world, at + Vector2(0.0, -0.5), width=width, height=1.0, static=True, **surface)
 
 
 def spawn_point(
-    world: World,
-    position: Vector2 | tuple[float, float],
-    velocity: Vector2 | tuple[float, float] = (0.0, 0.0),
-    *more: Component,
-    mass: float = 1.0,
-) -> int:
+    world: World, position: Pair, velocity: Pair = (0.0, 0.0), *more: Component, mass: float = 1.0,
+    name: str | None = None,
+) -> int:  # fmt: skip
     """Spawn a body without extent [m], [m/s], [kg]; return its entity."""
-    return world.spawn(Transform(position), Velocity(velocity), Mass(mass), *more)
+    return world.spawn(Transform(position), Velocity(velocity), Mass(mass), *more, name=name)
+
+
+def spawn_bob(world: World, at: Pair, velocity: Pair = (0.0, 0.0), *, touches: bool, part: Component) -> int:
+    """Spawn a body of 1 kg that a component acts on [m], [m/s]; return its entity.
+
+    It is a point; where ``touches``, a disc in a world with a floor that it is never near.
+    """
+    if touches:
+        floor(world, Vector2(0.0, -20.0))
+        bob = circle(world, at, radius=0.1, velocity=velocity)
+    else:
+        bob = spawn_point(world, at, velocity)
+    world.add(bob, part)
+    return bob
 
 
 def place(world: World, body: int | str) -> Vector2:
@@ -122,6 +136,13 @@ def largest(world: World, steps: int, look: Callable[[], float], every: int = 1)
     return found
 
 
+def displacements(world: World, bodies: Sequence[int], advance: Callable[[], object]) -> list[Vector2]:
+    """Return how far each body is displaced [m] while the world is advanced."""
+    starts = [place(world, body) for body in bodies]
+    advance()
+    return [place(world, body) - start for body, start in zip(bodies, starts, strict=True)]
+
+
 def energy_growth(world: World, steps: int, scale: float | None = None, every: int = 1) -> float:
     """Return the largest rise of the energy above that at the start; 0 where it only fell.
 
@@ -132,9 +153,12 @@ def energy_growth(world: World, steps: int, scale: float | None = None, every: i
     return max(0.0, largest(world, steps, lambda: (measure_energy(world).total - start) / share, every))
 
 
-def energy_change(world: World, steps: int, every: int = 1) -> float:
-    """Return the largest change of the energy since the start, whatever caused it, as a share of it."""
+def energy_change(world: World, moves: Iterable[object]) -> float:
+    """Return the largest change of the energy, whatever caused it, as a share of what is exchanged.
+
+    It is looked at whenever ``moves``, which advances the world, yields.
+    """
     audit = Audit(world)
-    for _ in world.stepping(steps=steps, stride=every):
+    for _ in moves:
         audit.sample(world)
     return audit.change

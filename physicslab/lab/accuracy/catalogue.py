@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from physicslab.lab.accuracy.ballistic import BALLISTIC
-from physicslab.lab.accuracy.chaos import CHAOS
 from physicslab.lab.accuracy.friction import FRICTION
 from physicslab.lab.accuracy.impacts import IMPACTS
-from physicslab.lab.accuracy.orbits import ORBITS
-from physicslab.lab.accuracy.oscillators import OSCILLATORS
+from physicslab.lab.accuracy.planets import ATTRACTED
+from physicslab.lab.accuracy.points import POINTS
 from physicslab.lab.accuracy.problem import LeftOut
-from physicslab.lab.accuracy.slopes import SLOPES
-from physicslab.lab.accuracy.stiff import STIFF
 from physicslab.lab.case import Catalogue
 
 __all__ = ["LEFT_OUT", "PROBLEMS"]
 
-PROBLEMS = Catalogue((*BALLISTIC, *OSCILLATORS, *STIFF, *ORBITS, *CHAOS, *IMPACTS, *FRICTION, *SLOPES))
+PROBLEMS = Catalogue((*POINTS, *ATTRACTED, *IMPACTS, *FRICTION))
 """Every problem by name, from the simplest on; families are those of one source."""
 
 _NO_RODS = "the engine has no rigid rods: a pendulum in it swings on a spring (see elastic_pendulum)"

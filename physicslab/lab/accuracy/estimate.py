@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.files.writer import write_scene
-from physicslab.lab.accuracy.paths import Path, run_path
+from physicslab.lab.accuracy.paths import Path, differences, run_path
 from physicslab.lab.accuracy.twins import TWINS, Document, Twin, refined, with_ids
 from physicslab.lab.case import attempt
+from physicslab.lab.jobs import Job
 from physicslab.lab.worlds import steps_not_rigid
 from physicslab.world import World
 
-__all__ = ["Estimate", "Spread", "TwinResult", "estimate_error", "find_order"]
+__all__ = ["Departure", "Estimate", "TwinResult", "estimate_error", "find_order"]
 
 _LIMITED_BY_STEP = 0.25
 """Share of the estimate that halving the step must explain for the step to be what limits the results."""
@@ -31,7 +32,7 @@ _ROUNDINGS = 1e3
 
 
 @dataclass(frozen=True, slots=True)
-class Spread:
+class Departure:
     """The largest difference of any body between two runs.
 
     Attributes
@@ -54,7 +55,7 @@ class TwinResult:
     ----------
     name, what : str
         The twin.
-    spread : Spread, optional
+    spread : Departure, optional
         ``None`` where it failed.
     failure : str
         Why.
@@ -62,7 +63,7 @@ class TwinResult:
 
     name: str
     what: str
-    spread: Spread | None
+    spread: Departure | None
     failure: str = ""
 
 
@@ -72,7 +73,7 @@ class Estimate:
 
     Attributes
     ----------
-    error : Spread, optional
+    error : Departure, optional
         The largest spread of any twin; ``None`` where the scene or all of its twins fail.
     worst : str
         The twin that is furthest off in place.
@@ -98,7 +99,7 @@ class Estimate:
         How long the scene itself took, and how much is left for what else is compared [s].
     """
 
-    error: Spread | None = None
+    error: Departure | None = None
     worst: str = ""
     order: float | None = None
     order_reason: str = ""
@@ -112,7 +113,7 @@ class Estimate:
     own_s: float = 0.0
     left_s: float = math.inf
 
-    def spread_of(self, name: str) -> Spread | None:
+    def spread_of(self, name: str) -> Departure | None:
         """Return how far a twin is off, where there is one that did not fail."""
         return next((twin.spread for twin in self.twins if twin.name == name), None)
 
@@ -120,8 +121,8 @@ class Estimate:
 def estimate_error(
     load: Callable[[], World], seconds: float, moments: Sequence[float] = (), budget_s: float = math.inf,
     twins: Sequence[Twin] = TWINS,
-) -> Iterator[float | Estimate]:  # fmt: skip
-    """Run a scene and its twins; yield the share of the work that is done, then the estimate.
+) -> Job[Estimate]:  # fmt: skip
+    """Run a scene and its twins; yield the share of the work that is done.
 
     Parameters
     ----------
@@ -149,8 +150,7 @@ def estimate_error(
     found.path, found.failure = attempt(partial(run, world))
     found.own_s = time.perf_counter() - began - world.compile_s
     if found.path is None:
-        yield found
-        return
+        return found
     left = max(budget_s, _RUNS_AT_LEAST * found.own_s)
     soft = not scene.event_driven or _something_rests(load(), seconds)
     for i, twin in enumerate(twins):
@@ -164,7 +164,7 @@ def estimate_error(
         yield (i + 1) / (len(twins) + 1)
     found.left_s = left
     _summarise(found)
-    yield found
+    return found
 
 
 def find_order(found: Estimate, load: Callable[[], World], seconds: float) -> None:
@@ -196,10 +196,9 @@ def _compared(twin: Twin, world: World, run: Callable[[World], Path], found: Est
     return TwinResult(twin.name, what, _spread(found.path.end, path.end))
 
 
-def _spread(own: NDArray[np.float64], other: NDArray[np.float64]) -> Spread:
-    apart = np.abs(own - other)
-    places, speeds = np.hypot(apart[:, 0], apart[:, 1]), np.hypot(apart[:, 3], apart[:, 4])
-    return Spread(*(float(column.max(initial=0.0)) for column in (places, apart[:, 2], speeds, apart[:, 5])))
+def _spread(own: NDArray[np.float64], other: NDArray[np.float64]) -> Departure:
+    position, velocity, angle, spin = (float(apart.max(initial=0.0)) for apart in differences(own, other))
+    return Departure(position, angle, velocity, spin)
 
 
 def _summarise(found: Estimate) -> None:
@@ -208,7 +207,7 @@ def _summarise(found: Estimate) -> None:
         return
     found.worst = max(spreads, key=lambda name: spreads[name].position)
     names = ("position", "angle", "velocity", "spin")
-    found.error = Spread(*(max(getattr(spread, name) for spread in spreads.values()) for name in names))
+    found.error = Departure(*(max(getattr(spread, name) for spread in spreads.values()) for name in names))
 
 
 def _order(found: Estimate, scene: World, quarter: Callable[[], Path]) -> tuple[float | None, str]:

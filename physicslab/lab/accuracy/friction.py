@@ -1,15 +1,18 @@
-"""Bodies that slide, roll, and come to rest."""
+"""Bodies that slide, roll, rest on each other and come to rest, on level ground and on inclined planes."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.contacts.report import list_contacts
 from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.lab.accuracy.figures import number
 from physicslab.lab.accuracy.problem import Ladder, Problem
+from physicslab.lab.closed_forms import rolled, slid
 from physicslab.lab.worlds import GRAVITY, empty_world, place, velocity
 from physicslab.prefabs import box
 from physicslab.world import World
@@ -17,33 +20,45 @@ from physicslab.world import World
 __all__ = ["FRICTION"]
 
 _problem = partial(Problem, group="contact", touches=True)
-_MU, _SPEED = 0.3, 5.0
 _NONE: frozenset[str] = frozenset()
+_MU, _SPEED, _THETA = 0.3, 5.0, math.pi / 6.0
 
 
-def _floor(world: World, friction: float) -> None:
-    box(world, (10, -0.5), width=60, height=1, static=True, friction=friction)
+def _spawn_wheel(
+    world: World, at: Vector2, speed: tuple[float, float], friction: float, share: float
+) -> None:
+    """Spawn a wheel of 1 kg and 1 m across whose moment of inertia is ``share`` m r^2."""
+    shape, material = Shape.circle(0.5), Material(0, friction)
+    world.spawn(Transform(at), Velocity(speed), shape, material, Mass(1, inertia=share * 0.25), name="body")
+
+
+# ---- on level ground ---------------------------------------------------------------------------------------
+
+
+def _floor(simulation: SimulationConfig) -> World:
+    world = empty_world(simulation)
+    box(world, (10, -0.5), width=60, height=1, static=True, friction=_MU)
+    return world
 
 
 def _slide(simulation: SimulationConfig) -> World:
-    world = empty_world(simulation)
-    _floor(world, _MU)
+    world = _floor(simulation)
     box(
         world, (0, 0.25), width=1, height=0.5, friction=_MU, velocity=(_SPEED, 0), fixed_rotation=True,
-        name="block",
+        name="body",
     )  # fmt: skip
     return world
 
 
 def _slide_error(world: World, i: int) -> float:
-    slowing = _MU * GRAVITY
-    distance, speed = ((_SPEED - 0.5 * slowing, _SPEED - slowing), (number("friction_slide", "d"), 0.0))[i]
-    return max(abs(place(world, "block").x - distance), abs(velocity(world, "block").x - speed))
+    way, speed = slid(_SPEED, _MU * GRAVITY, (1.0, 3.0)[i])
+    if i == 1:
+        way = number("friction_slide", "d")
+    return max(abs(place(world, "body").x - way), abs(velocity(world, "body").x - speed))
 
 
 def _slide_energy(t: float) -> float:
-    speed = max(0.0, _SPEED - _MU * GRAVITY * t)
-    return 0.5 * speed * speed + GRAVITY * 0.25
+    return 0.5 * slid(_SPEED, _MU * GRAVITY, t)[1] ** 2 + GRAVITY * 0.25
 
 
 def _roll(kind: str, share: float, *, way: bool = False) -> Problem:
@@ -54,39 +69,29 @@ def _roll(kind: str, share: float, *, way: bool = False) -> Problem:
     start, stop = number("slip_to_roll", kind, "t"), 1.0
 
     def build(simulation: SimulationConfig) -> World:
-        world = empty_world(simulation)
-        _floor(world, _MU)
-        shape: tuple[Any, ...] = (Shape.circle(0.5), Material(0, _MU), Mass(1, inertia=share * 0.25))
-        world.spawn(Transform((0, 0.5)), Velocity((_SPEED, 0)), *shape, name="wheel")
+        world = _floor(simulation)
+        _spawn_wheel(world, Vector2(0.0, 0.5), (_SPEED, 0), _MU, share)
         return world
 
     def error(world: World, i: int) -> float:
-        speed, slid = number("slip_to_roll", kind, "v"), number("slip_to_roll", kind, "d")
+        speed, gone = number("slip_to_roll", kind, "v"), number("slip_to_roll", kind, "d")
         if way:
-            return abs(place(world, "wheel").x - slid - speed * (stop - start))
-        spin = world.component(world.entity("wheel"), Velocity).angular
-        return max(abs(velocity(world, "wheel").x - speed), abs(-0.5 * spin - speed))
+            return abs(place(world, "body").x - gone - speed * (stop - start))
+        spin = world.component(world.entity("body"), Velocity).angular
+        return max(abs(velocity(world, "body").x - speed), abs(-0.5 * spin - speed))
 
     def energy(t: float) -> float:
-        slipping = min(t, start)
-        speed, rim = _SPEED - _MU * GRAVITY * slipping, _MU * GRAVITY * slipping / share
+        _, speed, _, rim = rolled(_SPEED, _MU * GRAVITY, t, share=share)
         return 0.5 * (speed * speed + share * rim * rim) + GRAVITY * 0.5
 
     return _problem(
-        name=f"slip_to_roll_{kind}" + ("_way" if way else ""),
-        title=f"A {kind} thrown without spin that comes to roll",
-        source="slip_to_roll",
+        name=f"slip_to_roll_{kind}" + ("_way" if way else ""), source="slip_to_roll", build=build,
+        title=f"A {kind} thrown without spin that comes to roll", times=(stop,), error=error,
         compared="how far it has come after 1 s" if way else "speed and spin after 1 s, when it rolls",
         measure="error [m]" if way else "largest error of the speed, and of the rim's [m/s]",
-        build=build,
-        times=(stop,),
-        error=error,
-        good=1e-2 if way else 1e-3,
-        excellent=1e-6 if way else 1e-9,
-        ladder=Ladder(240, 4, by_step=True),
-        exact_energy=energy,
-        keeps=_NONE,
-    )
+        good=1e-2 if way else 1e-3, excellent=1e-6 if way else 1e-9, ladder=Ladder(240, 4, by_step=True),
+        exact_energy=energy, keeps=_NONE,
+    )  # fmt: skip
 
 
 def _stack(simulation: SimulationConfig) -> World:
@@ -108,54 +113,152 @@ def _forces_error(world: World, i: int) -> float:
     return max(abs(felt[n] - true[n]) / true[n] for n in range(10))
 
 
-def _stack_problem(
-    name: str, compared: str, measure: str, error: Any, good: float, excellent: float
-) -> Problem:
-    return _problem(
-        name=f"stack10_{name}",
-        title="Ten boxes on each other, at rest for 10 s",
-        source="stack10",
-        compared=compared,
-        measure=measure,
-        build=_stack,
-        times=(10.0,),
-        error=error,
-        good=good,
-        excellent=excellent,
-        ladder=Ladder(2400, 2, by_step=True),
-    )
+_stacked = partial(
+    _problem, title="Ten boxes on each other, at rest for 10 s", source="stack10", build=_stack,
+    times=(10.0,), ladder=Ladder(2400, 2, by_step=True),
+)  # fmt: skip
 
-
-FRICTION = (
+_LEVEL = (
     _problem(
-        name="friction_slide",
-        title="A block that slides to a stop",
+        name="friction_slide", title="A block that slides to a stop", build=_slide, times=(1.0, 3.0),
         compared="place and speed after 1 s, and after 3 s, when it has stopped",
-        measure="largest error [m], [m/s]",
-        build=_slide,
-        times=(1.0, 3.0),
-        error=_slide_error,
-        good=1e-2,
-        excellent=1e-6,
-        ladder=Ladder(720, 4, by_step=True),
-        exact_energy=_slide_energy,
-        keeps=_NONE,
+        measure="largest error [m], [m/s]", error=_slide_error, good=1e-2, excellent=1e-6,
+        ladder=Ladder(720, 4, by_step=True), exact_energy=_slide_energy, keeps=_NONE,
     ),
     _roll("disc", 0.5),
     _roll("disc", 0.5, way=True),
     _roll("sphere", 0.4),
     _roll("hoop", 1.0),
-    _stack_problem(
-        "forces", "the force at each of ten interfaces after 10 s", "largest relative error", _forces_error,
-        1e-2, 1e-9,
+    _stacked(
+        name="stack10_forces", compared="the force at each of ten interfaces after 10 s",
+        measure="largest relative error", error=_forces_error, good=1e-2, excellent=1e-9,
     ),
-    _stack_problem(
-        "height", "how high the top box is after 10 s", "error [m]",
-        lambda world, i: abs(place(world, "box 9").y - number("stack10", "top_centre_y")), 0.05, 0.005,
+    _stacked(
+        name="stack10_height", compared="how high the top box is after 10 s", measure="error [m]",
+        error=lambda world, i: abs(place(world, "box 9").y - number("stack10", "top_centre_y")), good=0.05,
+        excellent=0.005,
     ),
-    _stack_problem(
-        "drift", "how far boxes have crept sideways after 10 s", "largest way [m]",
-        lambda world, i: max(abs(place(world, f"box {n}").x) for n in range(10)), 1e-3, 1e-6,
+    _stacked(
+        name="stack10_drift", compared="how far boxes have crept sideways after 10 s",
+        measure="largest way [m]", good=1e-3, excellent=1e-6,
+        error=lambda world, i: max(abs(place(world, f"box {n}").x) for n in range(10)),
     ),
 )  # fmt: skip
+
+
+# ---- on inclined planes ------------------------------------------------------------------------------------
+
+
+def _plane(simulation: SimulationConfig, angle: float, friction: float) -> tuple[World, Vector2]:
+    """Return a world with a plane through the origin that rises to the right, and its unit normal."""
+    world = empty_world(simulation)
+    normal = Vector2.from_angle(angle).perpendicular
+    box(world, normal * -0.5, width=60, height=1, angle=angle, static=True, friction=friction)
+    return world, normal
+
+
+def _block(friction: float, simulation: SimulationConfig) -> World:
+    world, normal = _plane(simulation, _THETA, friction)
+    box(world, normal * 0.25, width=1, height=0.5, angle=_THETA, friction=friction, name="body")
+    return world
+
+
+def _wheel(friction: float, share: float, simulation: SimulationConfig) -> World:
+    world, normal = _plane(simulation, _THETA, friction)
+    _spawn_wheel(world, normal * 0.5, (0.0, 0.0), friction, share)
+    return world
+
+
+def _tall(angle: float, simulation: SimulationConfig) -> World:
+    world, normal = _plane(simulation, angle, 1.0)
+    box(world, normal, width=1, height=2, angle=angle, friction=1, name="body")
+    return world
+
+
+def _gone(world: World) -> tuple[float, float]:
+    """Return how far down the body is [m], and how fast it goes down [m/s]; it started over the origin."""
+    down = -Vector2.from_angle(_THETA)
+    return place(world, "body").dot(down), velocity(world, "body").dot(down)
+
+
+def _going(name: str, title: str, key: str, build: Callable[[SimulationConfig], World]) -> Problem:
+    def error(world: World, i: int) -> float:
+        distance, speed = _gone(world)
+        acceleration = number("incline", key)
+        return max(abs(2.0 * distance / acceleration - 1.0), abs(speed / acceleration - 1.0))
+
+    return _problem(
+        name=f"incline_{name}", title=title, source="incline", compared="distance and speed after 1 s",
+        measure="largest relative error of the acceleration that they stand for", build=build, times=(1.0,),
+        error=error, good=1e-3, excellent=1e-9, ladder=Ladder(240, 4, by_step=True),
+        keeps={"energy"} if "rolling" in key else _NONE,
+    )  # fmt: skip
+
+
+def _bisect(low: float, high: float, width: float, above: Callable[[float], bool]) -> float:
+    """Return where ``above`` turns from false to true, to half of ``width``."""
+    while high - low > width:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if above(middle) else (middle, high)
+    return 0.5 * (low + high)
+
+
+def _threshold(simulation: Callable[[], SimulationConfig]) -> float:
+    """Return the relative error of the friction from which on a block is held."""
+
+    def held(friction: float) -> bool:
+        world = _block(friction, simulation())
+        world.run(seconds=2.0)
+        return _gone(world)[1] < 1e-4
+
+    true = number("incline", "block_slides_if_mu_below")
+    return abs(_bisect(0.55, 0.6, 2e-5, held) / true - 1.0)
+
+
+def _topple_error(simulation: Callable[[], SimulationConfig]) -> float:
+    """Return the error of the angle from which on a box falls over [deg]."""
+
+    def topples(degrees: float) -> bool:
+        angle = math.radians(degrees)
+        world = _tall(angle, simulation())
+        world.run(seconds=4.0)
+        return abs(world.component(world.entity("body"), Transform).angle - angle) > 0.2
+
+    return abs(_bisect(25.5, 27.5, 4e-3, topples) - number("box_topple", "theta_deg"))
+
+
+def _never(world: World, i: int) -> float:
+    raise NotImplementedError("what is compared is looked for with many worlds")
+
+
+_SLOPES = (
+    _going("block", "A block slides down 30 degrees, mu = 0.4", "block_a_mu04", partial(_block, 0.4)),
+    _going("disc", "A disc rolls down 30 degrees", "disc_rolling_a", partial(_wheel, 0.6, 0.5)),
+    _going("sphere", "A sphere rolls down 30 degrees", "sphere_rolling_a", partial(_wheel, 0.6, 0.4)),
+    _going(
+        "slipping", "A disc slips down 30 degrees, mu = 0.1", "disc_slip_mu01_a", partial(_wheel, 0.1, 0.5)
+    ),
+    _problem(
+        name="incline_held", title="A block that friction holds on 30 degrees, mu = 0.7", source="incline",
+        compared="how far it has gone after 10 s", measure="way [m]", build=partial(_block, 0.7),
+        times=(10.0,), error=lambda world, i: abs(_gone(world)[0]), good=1e-4, excellent=1e-12,
+        ladder=Ladder(2400, 2, by_step=True),
+    ),
+    _problem(
+        name="incline_threshold", title="The friction that just holds a block on 30 degrees",
+        source="incline", measure="relative error of the coefficient", build=partial(_block, 0.5),
+        compared="the smallest friction with which it stands still after 2 s, by bisection", times=(2.0,),
+        error=_never, good=1e-2, excellent=1e-3, ladder=Ladder(480, 3, by_step=True), keeps=_NONE,
+        search=_threshold,
+    ),
+    _problem(
+        name="box_topple", title="The slope on which a box of 1 m by 2 m falls over",
+        compared="the smallest angle at which it has fallen after 4 s, by bisection",
+        measure="error of the angle [deg]", build=partial(_tall, math.radians(26.0)), times=(4.0,),
+        error=_never, good=0.5, excellent=0.05, ladder=Ladder(960, 3, by_step=True), keeps=_NONE,
+        search=_topple_error,
+    ),
+)  # fmt: skip
+
+FRICTION = (*_LEVEL, *_SLOPES)
 """Their problems."""

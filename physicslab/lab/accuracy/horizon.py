@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform
 from physicslab.files.reader import read_scene
-from physicslab.lab.accuracy.nudges import ROUNDING
 from physicslab.lab.accuracy.paths import rows_of
-from physicslab.lab.accuracy.twins import Document
+from physicslab.lab.accuracy.twins import ROUNDING, Document
+from physicslab.lab.jobs import Job
 from physicslab.state.masses import Diverged
 from physicslab.world import World
 
-__all__ = ["find_horizon", "scaled", "sizes_of"]
+__all__ = ["find_horizon", "sizes_of"]
 
 _DISPLACED = 1e-10
 """By what share of its size each body is displaced in the twin that shows how errors grow."""
@@ -35,10 +35,8 @@ def sizes_of(world: World, bodies: Sequence[str]) -> NDArray[np.float64]:
     return np.where(sizes > 0.0, sizes, whole)
 
 
-def find_horizon(
-    document: Document, bodies: Sequence[str], seconds: float
-) -> Generator[float, None, float | None]:
-    """Yield the share of the work that is done; return the time at which a rounding has become a future.
+def find_horizon(document: Document, bodies: Sequence[str], seconds: float) -> Job[float | None]:
+    """Find the time at which a rounding has become another future; yield the share of the work that is done.
 
     That is the time from the start [s] at which an error of one rounding has grown to a tenth of a body's
     size, at the rate at which a larger one does; ``None`` where none does within the run.
@@ -73,23 +71,3 @@ def find_horizon(
     except Diverged:
         return None
     return None
-
-
-def scaled[Found](
-    job: Generator[float, None, Found], low: float, high: float
-) -> Generator[float, None, Found]:
-    """Do a job that is the part from ``low`` to ``high`` of a whole, and return what it returns.
-
-    >>> def halves():
-    ...     yield 0.5
-    ...     return "done"
-    >>> list(scaled(halves(), 0.6, 1.0))
-    [0.8]
-    """
-    while True:
-        try:
-            share = next(job)
-        except StopIteration as end:
-            found: Found = end.value
-            return found
-        yield low + (high - low) * share

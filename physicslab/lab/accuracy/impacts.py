@@ -9,31 +9,29 @@ from itertools import pairwise
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.figures import number
 from physicslab.lab.accuracy.problem import Ladder, Problem
-from physicslab.lab.worlds import GRAVITY, empty_world, place, velocity
+from physicslab.lab.worlds import GRAVITY, Surface, empty_world, place, velocity
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 
 __all__ = ["IMPACTS"]
 
 _problem = partial(Problem, group="collision", touches=True)
-_ALL = frozenset({"energy", "momentum"})
 _NEEDS_EXACT = "a problem for located impacts: within steps, impacts crowd"
+_ELASTIC = Surface(friction=0, restitution=1)
 
 
 def _galperin(n: int, rungs: int) -> Problem:
     """Return the problem of two discs before a wall, of masses 1 and 100^n, whose collisions count pi."""
     key, small, large = f"n={n}", 0.25, 0.5  # the radii are left out of the exact solution's places
-    last = number("galperin", key, "t_last")
+    last, count = number("galperin", key, "t_last"), int(number("galperin", key, "collisions"))
     end = last + 1.0
 
     def build(simulation: SimulationConfig) -> World:
         world = empty_world(simulation, gravity=None)
-        box(world, (-0.5, 0), width=1, height=4, static=True, restitution=1, friction=0)
-        circle(world, (1 + small, 0), radius=small, restitution=1, friction=0, name="small")
-        circle(
-            world, (2 + 2 * small + large, 0), radius=large, mass=100.0**n, velocity=(-1, 0), restitution=1,
-            friction=0, name="large",
-        )  # fmt: skip
+        box(world, (-0.5, 0), width=1, height=4, static=True, **_ELASTIC)
+        circle(world, (1 + small, 0), radius=small, name="small", **_ELASTIC)
+        start, mass = (2 + 2 * small + large, 0), 100.0**n
+        circle(world, start, radius=large, mass=mass, velocity=(-1, 0), name="large", **_ELASTIC)
         return world
 
     def error(world: World, i: int) -> float:
@@ -45,25 +43,13 @@ def _galperin(n: int, rungs: int) -> Problem:
         )  # fmt: skip
 
     return _problem(
-        name=f"galperin_n{n}",
-        title=f"Two discs and a wall, 1 to 100^{n}: the collisions count the digits of pi",
-        source="galperin",
-        compared=f"velocities and the large disc's place 1 s after the last of {_count(key)} collisions",
+        name=f"galperin_n{n}", source="galperin", build=build, times=(end,), error=error, good=1e-2,
+        title=f"Two discs and a wall, 1 to 100^{n}: the collisions count the digits of pi", excellent=1e-9,
+        compared=f"velocities and the large disc's place 1 s after the last of {count} collisions",
         measure="largest error [m/s], [m]; excellent and good need the exact number of collisions as well",
-        build=build,
-        times=(end,),
-        error=error,
-        good=1e-2,
-        excellent=1e-9,
-        ladder=Ladder(math.ceil(end * 240), rungs, by_step=True),
-        keeps=frozenset({"energy"}),
-        collisions=_count(key),
+        ladder=Ladder(math.ceil(end * 240), rungs, by_step=True), keeps={"energy"}, collisions=count,
         note=_NEEDS_EXACT,
-    )
-
-
-def _count(key: str) -> int:
-    return int(number("galperin", key, "collisions"))
+    )  # fmt: skip
 
 
 def _cradle(name: str, title: str, pushed: int, gap: float) -> Problem:
@@ -73,11 +59,8 @@ def _cradle(name: str, title: str, pushed: int, gap: float) -> Problem:
     def build(simulation: SimulationConfig) -> World:
         world = empty_world(simulation, gravity=None)
         for i in range(5):
-            speed = 1.0 if i < pushed else 0.0
-            circle(
-                world, (i * (1.0 + gap), 0), radius=0.5, velocity=(speed, 0), restitution=1, friction=0,
-                name=str(i),
-            )  # fmt: skip
+            speed = (1.0 if i < pushed else 0.0, 0)
+            circle(world, (i * (1.0 + gap), 0), radius=0.5, velocity=speed, name=str(i), **_ELASTIC)
         return world
 
     def error(world: World, i: int) -> float:
@@ -88,25 +71,17 @@ def _cradle(name: str, title: str, pushed: int, gap: float) -> Problem:
         return max(off)
 
     return _problem(
-        name=name,
-        title=title,
-        source="newton_cradle",
+        name=name, title=title, source="newton_cradle", build=build, times=(1.0,), error=error, good=1e-6,
         compared="velocities after 1 s" + (", and places, which show when each was hit" if gap else ""),
-        measure="largest error [m/s]" + (", [m]" if gap else ""),
-        build=build,
-        times=(1.0,),
-        error=error,
-        good=1e-6,
-        excellent=1e-12,
-        ladder=Ladder(240, 4, by_step=True),
-        keeps=_ALL,
+        measure="largest error [m/s]" + (", [m]" if gap else ""), excellent=1e-12,
+        ladder=Ladder(240, 4, by_step=True), keeps={"energy", "momentum"},
         collisions=4 if pushed == 1 else None,
-    )
+    )  # fmt: skip
 
 
-def _ball(simulation: SimulationConfig, restitution: float) -> World:
+def _ball(restitution: float, simulation: SimulationConfig) -> World:
     world = empty_world(simulation)
-    box(world, (0, -0.5), width=20, height=1, static=True, restitution=1, friction=0)
+    box(world, (0, -0.5), width=20, height=1, static=True, **_ELASTIC)
     circle(world, (0, 5.5), radius=0.5, restitution=restitution, friction=0, name="ball")
     return world
 
@@ -114,10 +89,6 @@ def _ball(simulation: SimulationConfig, restitution: float) -> World:
 def _at_apex(world: World, height: float) -> float:
     """Return how far a ball is from the top of its path: in height [m] and in time [s]."""
     return max(abs(place(world, "ball").y - 0.5 - height), abs(velocity(world, "ball").y / GRAVITY))
-
-
-def _bounce_error(world: World, i: int) -> float:
-    return _at_apex(world, number("bounce", f"h_{i + 1}"))
 
 
 _HITS = [number("bounce", f"t_{i}") for i in range(1, 11)]
@@ -130,44 +101,28 @@ IMPACTS = (
     _cradle("newton_cradle_touching", "Newton's cradle, touching", 1, 0.0),
     _cradle("newton_cradle_touching_two", "Newton's cradle, touching, two discs coming in", 2, 0.0),
     _problem(
-        name="bounce",
-        title="A ball that loses a fifth of its speed at each bounce",
+        name="bounce", title="A ball that loses a fifth of its speed at each bounce",
         compared="height and speed where the top of each of the first nine bounces should be",
-        measure="largest error of the height [m] and of the time [s]",
-        build=lambda simulation: _ball(simulation, 0.8),
-        times=tuple(0.5 * (early + late) for early, late in pairwise(_HITS)),
-        error=_bounce_error,
-        good=1e-2,
-        excellent=1e-12,
-        ladder=Ladder(1920, 4, by_step=True),
-        keeps=frozenset(),
+        measure="largest error of the height [m] and of the time [s]", build=partial(_ball, 0.8),
+        times=tuple(0.5 * (early + late) for early, late in pairwise(_HITS)), good=1e-2, excellent=1e-12,
+        error=lambda world, i: _at_apex(world, number("bounce", f"h_{i + 1}")),
+        ladder=Ladder(1920, 4, by_step=True), keeps=frozenset(),
     ),
     _problem(
-        name="bounce_rest",
-        title="The same ball after infinitely many bounces",
-        source="bounce",
+        name="bounce_rest", title="The same ball after infinitely many bounces", source="bounce",
         compared="height and speed one step of 1/60 s after the bounces should have ended",
-        measure="largest of height [m] and speed [m/s]",
-        build=lambda simulation: _ball(simulation, 0.8),
-        times=(_ZENO + 1.0 / 60.0,),
+        measure="largest of height [m] and speed [m/s]", build=partial(_ball, 0.8),
+        times=(_ZENO + 1.0 / 60.0,), good=1e-2, excellent=1e-12,
         error=lambda world, i: max(abs(place(world, "ball").y - 0.5), abs(velocity(world, "ball"))),
-        good=1e-2,
-        excellent=1e-12,
-        ladder=Ladder(2184, 4, by_step=True),
-        keeps=frozenset(),
+        ladder=Ladder(2184, 4, by_step=True), keeps=frozenset(),
     ),
     _problem(
-        name="elastic_bounce_100",
-        title="A hundred bounces without loss",
+        name="elastic_bounce_100", title="A hundred bounces without loss",
         compared="height and speed where the top after the hundredth bounce should be",
-        measure="largest error of the height [m] and of the time [s]",
-        build=lambda simulation: _ball(simulation, 1.0),
-        times=(_LAST_HIT * 200.0 / 199.0,),
+        measure="largest error of the height [m] and of the time [s]", build=partial(_ball, 1.0),
+        times=(_LAST_HIT * 200.0 / 199.0,), good=5e-2, excellent=1e-10,
         error=lambda world, i: _at_apex(world, number("elastic_bounce_100", "h")),
-        good=5e-2,
-        excellent=1e-10,
-        ladder=Ladder(48461, 2, by_step=True),
-        collisions=100,
+        ladder=Ladder(48461, 2, by_step=True), collisions=100,
     ),
-)
+)  # fmt: skip
 """Their problems."""

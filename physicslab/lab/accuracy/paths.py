@@ -15,7 +15,7 @@ from physicslab.diagnostics.contact_graph import contact_graph
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.world import World
 
-__all__ = ["OutOfTime", "Path", "rows_of", "run_path"]
+__all__ = ["OutOfTime", "Path", "differences", "rows_of", "run_path"]
 
 _MIRROR = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
 _PATIENCE_S = 0.1
@@ -77,6 +77,15 @@ class Path:
         return replace(
             self, states=self.states * _MIRROR, momentum=self.momentum * _MIRROR[:2], angular=-self.angular
         )
+
+
+def differences(
+    states: NDArray[np.float64], others: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return how far apart states (..., n, 6) are: places [m], velocities [m/s], angles and spins [rad/s]."""
+    off = states - others
+    places, velocities = (np.hypot(off[..., n], off[..., n + 1]) for n in (0, 3))
+    return places, velocities, np.abs(off[..., 2]), np.abs(off[..., 5])
 
 
 def rows_of(world: World, bodies: Sequence[str]) -> list[int]:

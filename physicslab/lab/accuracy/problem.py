@@ -1,16 +1,20 @@
-"""What a problem with a known answer is."""
+"""What a problem with a known answer is, and how far bodies are from it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import override
 
+import numpy as np
+
 from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.lab.case import Case
+from physicslab.lab.worlds import place, velocity
 from physicslab.world import World
 
-__all__ = ["Ladder", "LeftOut", "Problem"]
+__all__ = ["KnownCase", "Ladder", "LeftOut", "Problem", "distance", "state_error"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,22 +46,59 @@ class Ladder:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Problem(Case):
+class KnownCase(Case):
     """A world whose motion is known.
+
+    Attributes
+    ----------
+    compared, measure : str
+        What is compared and when; how the error is measured, with its unit.
+    build : callable
+        Takes a configuration of steps and returns the world.
+    twin : callable, optional
+        Returns a second world that is advanced alike, where that is what the first is compared with.
+    times : tuple of floats
+        When the world is compared [s], in order.
+    error : callable
+        Takes the world, the twin where there is one, and i; returns the error at the i-th of these times.
+    """
+
+    compared: str
+    measure: str
+    build: Callable[[SimulationConfig], World]
+    twin: Callable[[SimulationConfig], World] | None = None
+    times: tuple[float, ...]
+    error: Callable[..., float]
+
+    @property
+    def seconds(self) -> float:
+        """The last of the times that are compared [s]."""
+        return self.times[-1]
+
+    def worlds(self, simulation: SimulationConfig) -> tuple[World, ...]:
+        """Return the world, and the twin if there is one."""
+        builds = (self.build,) if self.twin is None else (self.build, self.twin)
+        return tuple(build(simulation) for build in builds)
+
+    def finish(self, worlds: Sequence[World]) -> float:
+        """Run worlds through the times that are compared, and return the largest error."""
+        largest = 0.0
+        for i, t in enumerate(self.times):
+            for world in worlds:
+                world.run(seconds=t - world.time)
+            largest = float(np.maximum(largest, self.error(*worlds, i)))  # numpy's maximum keeps NaN
+        return largest
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Problem(KnownCase):
+    """A world whose motion is known, for every method.
 
     Attributes
     ----------
     source : str
         The name under which ``problems.json`` holds the figures, where it is not the problem's own. Problems
         that share one are a family, with this name on the command line.
-    compared, measure : str
-        What is compared and when; how the error is measured, with its unit.
-    build : callable
-        Takes a configuration of steps and returns the world.
-    times : tuple of floats
-        When the world is compared [s], in order.
-    error : callable
-        Returns the error of a world at the i-th of these times.
     good, excellent : float
         The largest error that is called so.
     ladder : Ladder
@@ -68,7 +109,7 @@ class Problem(Case):
         Step [s] with which ``auto`` meets it.
     exact_energy : callable, optional
         The energy [J] at a time, where friction, drag or a damper takes some away.
-    keeps : frozenset of str
+    keeps : set of str
         What is conserved among ``"energy"``, ``"momentum"`` and ``"angular_momentum"``.
     collisions : int, optional
         How many impacts there are.
@@ -83,18 +124,13 @@ class Problem(Case):
     """
 
     source: str = ""
-    compared: str
-    measure: str
-    build: Callable[[SimulationConfig], World]
-    times: tuple[float, ...]
-    error: Callable[[World, int], float]
     good: float
     excellent: float
     ladder: Ladder
     touches: bool = False
     dt: float = 1.0 / 60.0
     exact_energy: Callable[[float], float] | None = None
-    keeps: frozenset[str] = frozenset({"energy"})
+    keeps: Set[str] = frozenset({"energy"})
     collisions: int | None = None
     chaotic: bool = False
     not_used: Mapping[str, str] = field(default_factory=dict)
@@ -106,11 +142,6 @@ class Problem(Case):
     def family(self) -> str:
         return self.source or self.name
 
-    @property
-    def seconds(self) -> float:
-        """The last of the times that are compared [s]."""
-        return self.times[-1]
-
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
@@ -118,3 +149,17 @@ class LeftOut:
 
     name: str
     reason: str
+
+
+def distance(world: World, expected: Mapping[str, Sequence[float]]) -> float:
+    """Return the largest distance of a body from where it should be [m], of those that are named."""
+    return max((place(world, name) - Vector2(*where)).magnitude for name, where in expected.items())
+
+
+def state_error(
+    world: World, name: str, where: Sequence[float], how: Sequence[float], rate: float = 1.0
+) -> float:
+    """Return the largest error of x, y [m] and of vx / rate, vy / rate [m] of a body."""
+    off = place(world, name) - Vector2(*where)
+    slip = (velocity(world, name) - Vector2(*how)) / rate
+    return max(abs(off.x), abs(off.y), abs(slip.x), abs(slip.y))

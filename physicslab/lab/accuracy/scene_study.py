@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -18,17 +17,15 @@ from physicslab.files.writer import write_scene
 from physicslab.integrators import INTEGRATORS
 from physicslab.integrators.dop853 import DOP853
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error, find_order
-from physicslab.lab.accuracy.horizon import find_horizon, scaled
+from physicslab.lab.accuracy.horizon import find_horizon
 from physicslab.lab.accuracy.twins import GOLDEN, Document, refined, with_ids
-from physicslab.lab.case import Job, attempt, cpu_time
+from physicslab.lab.case import attempt, cpu_time
+from physicslab.lab.jobs import Job, scaled
 from physicslab.lab.worlds import steps_not_rigid
 from physicslab.stepping.plan import tolerance_for
 from physicslab.world import World
 
 __all__ = ["DEFAULT_S", "ESTIMATE", "SceneRow", "SceneStudy", "study_scene"]
-
-type _Ends = tuple[NDArray[np.float64], NDArray[np.float64]]
-"""Where bodies end [m] (n, 2) as configured, and in finer steps."""
 
 ESTIMATE = "an estimate: there is no reference, runs are compared with each other"
 DEFAULT_S = 5.0
@@ -71,8 +68,6 @@ class SceneRow:
         The error of a step that was allowed to a method that chooses its steps.
     evaluations : int
         Force evaluations.
-    cpu_s : float
-        Process time without compiling [s].
     half_step : float, optional
         The largest distance [m] of any body from where it is with steps of half the length, and a tenth of
         the tolerance.
@@ -86,6 +81,8 @@ class SceneRow:
         The error of the energy at the end, as a share of the energy exchanged: what no account explains.
     failure : str
         Why there are no figures.
+    cpu_ms : float, optional
+        Process time without compiling [ms].
     """
 
     integrator: str
@@ -95,13 +92,13 @@ class SceneRow:
     substeps: int
     tolerance: float
     evaluations: int = 0
-    cpu_s: float = 0.0
     half_step: float | None = None
     error: float | None = None
     at_most: bool = False
     is_located: bool = False
     energy: float | None = None
     failure: str = ""
+    cpu_ms: float | None = None
 
 
 @dataclass(slots=True)
@@ -134,7 +131,7 @@ class SceneStudy:
 
 
 def study_scene(name: str, load: Callable[[], World], seconds: float = DEFAULT_S) -> Job[SceneStudy]:
-    """Run a scene with every method; yield the share of the work that is done, then the result.
+    """Run a scene with every method; yield the share of the work that is done.
 
     Parameters
     ----------
@@ -144,72 +141,127 @@ def study_scene(name: str, load: Callable[[], World], seconds: float = DEFAULT_S
         How long it is run [s].
     """
     load = _without_trails(load)
-    plain = dataclasses.replace(load().simulation, sleeping=False)  # so that errors are those of methods
-    auto = dataclasses.replace(plain, integrator="auto")
-    methods = [method for method in INTEGRATORS if _takes(load, plain, method)]
-    wanted = [auto, *(rung for method in methods for rung in _ladder(plain, method))]
-    study = SceneStudy(name, seconds, "")
-    for found in estimate_error(load, seconds):
-        if isinstance(found, Estimate):
-            study.estimate = found
-            find_order(found, load, seconds)
-        else:
-            yield _ESTIMATE_SHARE * found
     document = with_ids(write_scene(load()))
+    plain = replace(load().simulation, sleeping=False)  # so that errors are those of methods
+    scene, study = _Scene(load, document, seconds), SceneStudy(name, seconds, "")
+    methods = [method for method in INTEGRATORS if scene.is_taken_by(replace(plain, integrator=method))]
+    wanted = [replace(plain, integrator="auto"), *(rung for name in methods for rung in _ladder(plain, name))]
+    study.estimate = yield from scaled(estimate_error(load, seconds), 0.0, _ESTIMATE_SHARE)
+    find_order(study.estimate, load, seconds)
     horizon = find_horizon(document, study.estimate.bodies, _HORIZON_TIMES * seconds)
     study.horizon_s = yield from scaled(horizon, _ESTIMATE_SHARE, _HORIZON_SHARE)
     runs = []
     for i, simulation in enumerate(wanted):
-        row, ends = _row(load, document, simulation, seconds)
-        study.rows.append(row)
-        runs.append((row, ends, simulation))
+        runs.append(scene.run(simulation))
+        study.rows.append(runs[-1].row)
         yield _HORIZON_SHARE + (1.0 - _HORIZON_SHARE) * (i + 1) / len(wanted)
-    _compare(study, runs, document, load, plain)
-    yield study
+    _compare(study, scene, runs, replace(plain, integrator=DOP853.name, tolerance=_TIGHTEST))
+    return study
 
 
-def _compare(
-    study: SceneStudy, runs: list[tuple[SceneRow, _Ends | None, SimulationConfig]], document: Document,
-    load: Callable[[], World], plain: SimulationConfig,
-) -> None:  # fmt: skip
+@dataclass(slots=True)
+class _Run:
+    """A configuration of a scene, its row, and where bodies end [m] (n, 2) by it and in finer steps."""
+
+    simulation: SimulationConfig
+    row: SceneRow
+    places: NDArray[np.float64] | None = None
+    finer: NDArray[np.float64] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class _Scene:
+    """A scene that is run by several configurations for some time [s]."""
+
+    load: Callable[[], World]
+    document: Document
+    seconds: float
+
+    def world(self, simulation: SimulationConfig) -> World:
+        """Return its world, ready to be stepped."""
+        world = self.load()
+        world.simulation = simulation
+        world.synchronise()
+        return world
+
+    def is_taken_by(self, simulation: SimulationConfig) -> bool:
+        """Whether the method that a configuration names can compute it."""
+        return not self.world(simulation).plan.refused
+
+    def refined_end(self, simulation: SimulationConfig, factor: float) -> NDArray[np.float64]:
+        """Return where bodies end [m] (n, 2) in steps shorter by a factor."""
+        document = self.document | {"simulation": asdict(simulation)}
+        return _end(refined(document, self.world(simulation), factor), self.seconds)
+
+    def run(self, simulation: SimulationConfig, repeats: int = _REPEATS) -> _Run:
+        """Run it by a configuration, repeatedly if that is short, and in finer steps."""
+        world = self.world(simulation)
+        method = world.plan
+        step = f"{simulation.dt / method.substeps:.3g} s"
+        if method.integrator.chooses_steps:
+            tolerance = tolerance_for(world, world.schedule.forces)
+            step = "" if method.integrator.name == "exact" else f"tol {tolerance:g}"
+        run = _Run(simulation, SceneRow(
+            method.integrator.name, method.reason, simulation.integrator, step, simulation.substeps,
+            simulation.tolerance,
+        ))  # fmt: skip
+        _, run.row.failure = attempt(partial(self._fill, run, repeats))
+        return run
+
+    def _fill(self, run: _Run, repeats: int) -> bool:
+        """Write cost and errors into the row of a run, and where bodies end."""
+        row, fastest = run.row, math.inf
+        for _ in range(repeats):  # the shortest: the first also compiles, and other programs run as well
+            world = self.world(run.simulation)
+            audit = Audit(world)
+            taken, places = cpu_time(partial(_end, world, self.seconds))
+            fastest = min(fastest, taken)
+            if taken > _REPEATED_BELOW_S:
+                break
+        row.evaluations = world.force_evaluations
+        audit.sample(world)
+        row.energy = audit.error
+        contacts = world.plan.contacts if world.plan.collisions == "step" else "rigid"
+        row.is_located = contacts == "rigid" and not any(steps_not_rigid(world))
+        finer = self.refined_end(run.simulation, 2.0)
+        row.half_step, row.cpu_ms = _apart(places, finer), 1e3 * fastest
+        run.places, run.finer = places, finer
+        return True
+
+
+def _compare(study: SceneStudy, scene: _Scene, runs: list[_Run], tightest: SimulationConfig) -> None:
     """Write into each row how far it is from the finest run: that which changes least in finer steps.
 
     Soft contacts share a sink and agree on it, so where some run locates its contacts it is one of those.
     """
-    others = []
-    if _takes(load, plain, DOP853.name):
-        tightest = dataclasses.replace(plain, integrator=DOP853.name, tolerance=_TIGHTEST)
-        others.append((*_row(load, document, tightest, study.seconds, repeats=1), tightest))
+    others = [scene.run(tightest, repeats=1)] if scene.is_taken_by(tightest) else []
     finest = [
-        (row.half_step, row, ends[1], simulation)
-        for row, ends, simulation in (*runs, *others)
-        if ends and row.half_step is not None
+        (run.row.half_step, run, run.finer)
+        for run in (*runs, *others)
+        if run.finer is not None and run.row.half_step is not None
     ]
-    located = [found for found in finest if found[1].is_located]
+    located = [found for found in finest if found[1].row.is_located]
     rigid, nudged = study.estimate.reference, study.estimate.spread_of("nudged")
     floor = 0.0 if nudged is None else nudged.position
     if rigid is not None and not located:
         known, best, study.reference = 0.0, rigid, "rigid contacts"
     elif finest:
-        known, row, best, simulation = min(located or finest, key=lambda found: found[0])
-        document = document | {"simulation": dataclasses.asdict(simulation)}
-        other = refined(
-            document, _prepared(load, simulation), GOLDEN
-        )  # half the step may meet the same events
-        places, failure = attempt(partial(_end, other, study.seconds))
-        known = max(known, 0.0 if failure or places is None else _apart(places, best) or 0.0)
-        step = f", {row.step}" if row.step else ""
-        how = f"auto: {row.integrator}" if row.asked == "auto" else row.integrator
+        known, run, best = min(located or finest, key=lambda found: found[0])
+        # Half the step may meet the same events.
+        places, _ = attempt(partial(scene.refined_end, run.simulation, GOLDEN))
+        known = max(known, 0.0 if places is None else _apart(places, best) or 0.0)
+        step = f", {run.row.step}" if run.row.step else ""
+        how = f"auto: {run.row.integrator}" if run.row.asked == "auto" else run.row.integrator
         study.reference = f"the finest of all methods ({how}{step}) in half the step"
     else:
         study.reference = "nothing: every method fails"
         return
     known = max(known, floor, _ROUNDINGS * math.ulp(float(np.abs(best).max(initial=0.0))))
     study.reference += f", which is known to {known:.1g} m"
-    for row, ends, _ in runs:
-        if ends and (apart := _apart(ends[0], best)) is not None:
-            row.at_most = apart <= _NO_BETTER * known
-            row.error = max(apart, known) if row.at_most else apart
+    for run in runs:
+        if run.places is not None and (apart := _apart(run.places, best)) is not None:
+            run.row.at_most = apart <= _NO_BETTER * known
+            run.row.error = max(apart, known) if run.row.at_most else apart
 
 
 def _without_trails(load: Callable[[], World]) -> Callable[[], World]:
@@ -227,74 +279,14 @@ def _without_trails(load: Callable[[], World]) -> Callable[[], World]:
 
 def _ladder(plain: SimulationConfig, method: str) -> Iterator[SimulationConfig]:
     """Return the scene's settings for a method, coarser to finer."""
-    own = dataclasses.replace(plain, integrator=method)
+    own = replace(plain, integrator=method)
     if method == "exact":
         yield own
     elif INTEGRATORS[method].chooses_steps:
-        for tolerance in _TOLERANCES:
-            yield dataclasses.replace(own, tolerance=tolerance)
+        yield from (replace(own, tolerance=tolerance) for tolerance in _TOLERANCES)
     else:
         for factor in _SUBSTEP_FACTORS:
-            yield dataclasses.replace(own, substeps=_limited(factor * plain.substeps))
-
-
-def _limited(substeps: float) -> int:
-    return min(_SUBSTEPS_LIMIT, max(1, round(substeps)))
-
-
-def _takes(load: Callable[[], World], plain: SimulationConfig, method: str) -> bool:
-    return not _prepared(load, dataclasses.replace(plain, integrator=method)).plan.refused
-
-
-def _prepared(load: Callable[[], World], simulation: SimulationConfig) -> World:
-    """Return the scene's world, ready to be stepped by a configuration."""
-    world = load()
-    world.simulation = simulation
-    world.synchronise()
-    return world
-
-
-def _row(
-    load: Callable[[], World], document: Document, simulation: SimulationConfig, seconds: float,
-    repeats: int = _REPEATS,
-) -> tuple[SceneRow, _Ends | None]:  # fmt: skip
-    """Return the row of a configuration, and where bodies end by it and by one in finer steps."""
-    world = _prepared(load, simulation)
-    method = world.plan
-    parts = 1 if method.integrator.chooses_steps else method.substeps
-    step = f"{simulation.dt / parts:.3g} s"
-    if method.integrator.chooses_steps:
-        tolerance = tolerance_for(world, world.schedule.forces)
-        step = "" if method.integrator.name == "exact" else f"tol {tolerance:g}"
-    row = SceneRow(
-        method.integrator.name, method.reason, simulation.integrator, step,
-        simulation.substeps, simulation.tolerance,
-    )  # fmt: skip
-    ends, row.failure = attempt(partial(_fill, row, load, document, simulation, seconds, repeats))
-    return row, ends
-
-
-def _fill(
-    row: SceneRow, load: Callable[[], World], document: Document, simulation: SimulationConfig,
-    seconds: float, repeats: int,
-) -> _Ends:  # fmt: skip
-    """Run a scene by a configuration, and write its cost and its errors into a row."""
-    for _ in range(repeats):  # the shortest: the first also compiles, and other programs run as well
-        world = _prepared(load, simulation)
-        audit = Audit(world)
-        taken, places = cpu_time(partial(_end, world, seconds))
-        row.cpu_s = min(row.cpu_s or taken, taken)
-        if taken > _REPEATED_BELOW_S:
-            break
-    row.evaluations = world.force_evaluations
-    audit.sample(world)
-    row.energy = audit.error
-    contacts = world.plan.contacts if world.plan.collisions == "step" else "rigid"
-    row.is_located = contacts == "rigid" and not any(steps_not_rigid(world))
-    own = document | {"simulation": dataclasses.asdict(simulation)}
-    finer = _end(refined(own, _prepared(load, simulation), 2.0), seconds)
-    row.half_step = _apart(places, finer)
-    return places, finer
+            yield replace(own, substeps=min(_SUBSTEPS_LIMIT, max(1, round(factor * plain.substeps))))
 
 
 def _end(world: World, seconds: float) -> NDArray[np.float64]:

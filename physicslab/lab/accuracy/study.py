@@ -2,32 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
-from functools import partial
 
-import numpy as np
-
-from physicslab.components import Transform, Velocity
 from physicslab.integrators import INTEGRATORS, Integrator
-from physicslab.lab.accuracy.measure import Measurement, finish, measure
+from physicslab.lab.accuracy.measure import measure, rounding_floor
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting, ladder, refusal, sees_velocity
-from physicslab.lab.accuracy.verdict import Verdict, measured_order, verdict, why_order_short
-from physicslab.lab.case import Job, attempt
+from physicslab.lab.accuracy.verdict import measured_order, why_order_short
+from physicslab.lab.accuracy.watch import Row
+from physicslab.lab.jobs import Job
 
-__all__ = ["Curve", "Row", "Study", "rounding_floor", "study"]
+__all__ = ["Curve", "Study", "study"]
 
-_LADDER_ENDS_S = 0.3
+_LADDER_ENDS_MS = 300.0
 """The first rung that takes longer is the last."""
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """One measurement and its verdict."""
-
-    measurement: Measurement
-    verdict: Verdict
 
 
 @dataclass(slots=True)
@@ -60,9 +48,7 @@ class Curve:
     @property
     def best(self) -> float | None:
         """The smallest error."""
-        return min(
-            (row.measurement.error for row in self.rows if row.measurement.error is not None), default=None
-        )
+        return min((row.error for row in self.rows if row.error is not None), default=None)
 
 
 @dataclass(slots=True)
@@ -97,12 +83,12 @@ class Study:
     @property
     def best(self) -> float | None:
         """The smallest error of any method."""
-        errors = [row.measurement.error for row in self.chosen] + [curve.best for curve in self.curves]
+        errors = [row.error for row in self.chosen] + [curve.best for curve in self.curves]
         return min((error for error in errors if error is not None), default=None)
 
 
 def study(problem: Problem, *, sparse: bool = False) -> Job[Study]:
-    """Compute a problem with every method; yield the share of the work that is done, then the result.
+    """Compute a problem with every method; yield the share of the work that is done.
 
     Where ``sparse``, every second rung of a ladder is left out, and never the finest.
     """
@@ -112,31 +98,34 @@ def study(problem: Problem, *, sparse: bool = False) -> Job[Study]:
         curve = Curve(method, refused=refused, exception=_exception(problem, method))
         settings = [] if refused else list(ladder(problem, method))
         plan.append((curve, settings[1 - len(settings) % 2 :: 2] if sparse else settings))
-    whole = 1 + sum(len(settings) for _, settings in plan)
+    whole, done = 1 + sum(len(settings) for _, settings in plan), 1
     floor = rounding_floor(problem)
-    auto = _row(problem, Setting("auto"), floor)
-    rigid = _row(problem, Setting("auto", contacts="rigid"), floor) if problem.touches else None
+    auto = measure(problem, Setting("auto"), floor)
+    rigid = measure(problem, Setting("auto", contacts="rigid"), floor) if problem.touches else None
     yield 1 / whole
-    done = 1
     for curve, settings in plan:
         for setting in settings:
-            curve.rows.append(_row(problem, setting, floor))
+            curve.rows.append(measure(problem, setting, floor))
             done += 1
             yield done / whole
-            if curve.rows[-1].measurement.cpu_s > _LADDER_ENDS_S:
+            if curve.rows[-1].cpu_ms > _LADDER_ENDS_MS:
                 break
-        measured = [row.measurement for row in curve.rows]
-        # A method that chooses its steps is compared by the work that they took.
-        efforts = [m.evaluations if curve.integrator.chooses_steps else m.steps for m in measured]
         if curve.rows and curve.integrator.evaluations and problem.search is None:
-            even = not curve.integrator.chooses_steps
-            errors, rates = [m.error for m in measured], [m.watched.rate_dt for m in measured]
-            curve.order = measured_order(efforts, errors, even=even)
-            curve.short = why_order_short(
-                curve.integrator.order, efforts, errors, rates, curve.integrator.stability_limit,
-                even=even, exception=curve.exception,
-            )  # fmt: skip
-    yield Study(problem, auto, [curve for curve, _ in plan], floor, rigid)
+            _find_order(curve)
+    return Study(problem, auto, [curve for curve, _ in plan], floor, rigid)
+
+
+def _find_order(curve: Curve) -> None:
+    """Write into a curve the order that its rows show, and why that is less than is stated."""
+    even = not curve.integrator.chooses_steps
+    # A method that chooses its steps is compared by the work that they took.
+    efforts = [row.steps if even else row.force_evaluations for row in curve.rows]
+    errors, rates = [row.error for row in curve.rows], [row.omega_max_dt for row in curve.rows]
+    curve.order = measured_order(efforts, errors, even=even)
+    curve.short = why_order_short(
+        curve.integrator.order, efforts, errors, rates, curve.integrator.stability_limit,
+        even=even, exception=curve.exception,
+    )  # fmt: skip
 
 
 def _exception(problem: Problem, method: Integrator) -> str:
@@ -146,32 +135,3 @@ def _exception(problem: Problem, method: Integrator) -> str:
     if method.positions_only and sees_velocity(problem):
         return "forces depend on velocities, and its kicks take those from before"
     return ""
-
-
-def _row(problem: Problem, setting: Setting, floor: float | None) -> Row:
-    found = measure(problem, setting)
-    worth = verdict(found.error, problem.good, problem.excellent, floor=floor, chaotic=problem.chaotic)
-    if worth in (Verdict.EXCELLENT, Verdict.GOOD) and found.watched.collisions:
-        worth = Verdict.SHORT  # right by chance: collisions are missing, or too many
-    return Row(found, worth)
-
-
-def rounding_floor(problem: Problem) -> float | None:
-    """Return how much the error changes when the start moves by one rounding; ``None`` where bodies touch.
-
-    Every coordinate and speed is moved to the next float up, and down, and the run is made as ``auto`` does.
-    No method that computes in floats can be relied on to do better than a few times this.
-    """
-    if problem.touches:
-        return None
-    errors = []
-    for way in (0.0, -math.inf, math.inf):
-        world = problem.build(Setting("auto").simulation(problem))
-        world.synchronise()
-        for column in (world.table(Transform)["position"], world.table(Velocity)["linear"]):
-            column[:] = np.where((column == 0.0) | (way == 0.0), column, np.nextafter(column, way))
-        error, _ = attempt(partial(finish, problem, world))
-        if error is None:
-            return None
-        errors.append(error)
-    return max(abs(error - errors[0]) for error in errors)

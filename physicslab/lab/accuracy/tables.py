@@ -2,31 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from physicslab.lab.accuracy.catalogue import LEFT_OUT
-from physicslab.lab.accuracy.estimate import Spread
+from physicslab.lab.accuracy.contacts.study import ROUNDING, ContactCurve, ContactStudy
+from physicslab.lab.accuracy.estimate import Departure
 from physicslab.lab.accuracy.honesty.study import FAMILIES, QUANTITIES, HonestRow, share_of
-from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
-from physicslab.lab.accuracy.study import Curve, Row, Study
+from physicslab.lab.accuracy.study import Curve, Study
 from physicslab.lab.accuracy.trust import Trust
 from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
-from physicslab.lab.accuracy.verdict import Verdict
+from physicslab.lab.accuracy.watch import Row
+from physicslab.lab.case import Verdict
 from physicslab.lab.table import cell, table
 
 __all__ = [
-    "honest_text",
-    "left_out_text",
-    "scene_text",
-    "study_text",
-    "summary_text",
-    "trust_rows_text",
-    "trust_text",
-]
+    "contact_summary", "contact_text", "honest_text", "left_out_text", "order_text", "scene_text",
+    "study_text", "summary_text", "trust_rows_text", "trust_text",
+]  # fmt: skip
 
-_HEAD = ("method", "order", "measured", "dt or tol", "steps", "forces", "CPU ms", "ms / s", "error", "energy",
-         "momentum", "ang. mom.", "omega dt", "overlap", "hits", "verdict")  # fmt: skip
+type _Cells = Sequence[str]
+
+_COLUMNS: dict[str, Callable[[Row], str]] = {
+    "dt or tol": lambda row: cell(row.tolerance if row.dt is None else row.dt, ".3g"),
+    "steps": lambda row: str(row.steps),
+    "forces": lambda row: str(row.force_evaluations),
+    "CPU ms": lambda row: f"{row.cpu_ms:.3g}",
+    "ms / s": lambda row: f"{row.ms_per_simulated_s:.2g}",
+    "error": lambda row: cell(row.error, ".1e"),
+    "energy": lambda row: cell(row.energy_drift, ".1e"),
+    "momentum": lambda row: cell(row.momentum_error, ".1e"),
+    "ang. mom.": lambda row: cell(row.angular_momentum_error, ".1e"),
+    "omega dt": lambda row: cell(row.omega_max_dt, ".2g"),
+    "overlap": lambda row: cell(row.max_penetration, ".1e"),
+    "hits": lambda row: "" if row.collision_count_error is None else f"{row.collision_count_error:+d}",
+    "verdict": lambda row: str(row.verdict),
+}
+"""The columns of a problem's table, behind those of the method and its order."""
 
 
 def study_text(study: Study, *, whole: bool) -> str:
@@ -43,72 +57,110 @@ def study_text(study: Study, *, whole: bool) -> str:
         lines.append("  energy: compared with the exact energy at that time, since some is dissipated")
     if problem.note:
         lines.append(f"  note: {problem.note}")
-    rows = [_HEAD, _cells(problem, study.auto, "auto", "", "")]
-    if study.rigid is not None:
-        rows.append(_cells(problem, study.rigid, "rigid contacts", "", ""))
+    rows = [["method", "order", "measured", *_COLUMNS]]
+    for name, row in zip(("auto", "rigid contacts"), study.chosen, strict=False):
+        rows.append([name, "", "", *_cells(row)])
     for curve in study.curves:
-        rows += _curve_cells(problem, curve, whole)
-    auto = f"  auto: {study.auto.measurement.integrator}, {study.auto.measurement.reason}"
-    return "\n".join([*lines, _reported(rows), auto, *_short_orders(study), *_refusals(study), ""])
+        heads = itertools.chain([_head(curve)], itertools.repeat(["", "", ""]))
+        shown = curve.rows if whole or not curve.rows else [_best_row(curve.rows)]
+        rows += [[*head, *_cells(row)] for head, row in zip(heads, shown, strict=False)]
+    refusals = ((curve.integrator.name, _reason(curve)) for curve in study.curves)
+    short = ((curve.integrator.name, curve.short) for curve in study.curves)
+    return "\n".join([
+        *lines,
+        _reported(rows),
+        f"  auto: {study.auto.integrator}, {study.auto.reason}",
+        *(f"  * order of {names}: {reason}" for reason, names in _together(short)),
+        *(f"  not {names}: {reason}" for reason, names in _together(refusals)),
+        "",
+    ])  # fmt: skip
 
 
-def _refusals(study: Study) -> list[str]:
-    """Return why methods have no row, methods of one reason together."""
-    reasons: dict[str, list[str]] = {}
-    for curve in study.curves:
-        name = curve.integrator.name
-        if curve.refused:
-            reason = curve.refused.removeprefix(f"{name} was asked for, ").removeprefix("and ")
-            reasons.setdefault(reason, []).append(name)
-    return [f"  not {', '.join(names)}: {reason}" for reason, names in reasons.items()]
-
-
-def _short_orders(study: Study) -> list[str]:
-    """Return why orders are not reached, methods of one reason together."""
-    reasons: dict[str, list[str]] = {}
-    for curve in study.curves:
-        if curve.short:
-            reasons.setdefault(curve.short, []).append(curve.integrator.name)
-    return [f"  * order of {', '.join(names)}: {reason}" for reason, names in reasons.items()]
-
-
-def _curve_cells(problem: Problem, curve: Curve, whole: bool) -> list[tuple[str, ...]]:
-    if not curve.rows:
-        return []
+def _head(curve: Curve) -> list[str]:
     order = f"{curve.integrator.order:g}" + ("*" if curve.short else "")
-    measured = cell(curve.order, ".2f")
-    if not whole:
-        return [_cells(problem, _best_row(curve.rows), curve.integrator.name, order, measured)]
-    return [
-        _cells(problem, row, *((curve.integrator.name, order, measured) if i == 0 else ("", "", "")))
-        for i, row in enumerate(curve.rows)
-    ]
+    return [curve.integrator.name, order, cell(curve.order, ".2f")]
+
+
+def _cells(row: Row) -> list[str]:
+    return [text(row) for text in _COLUMNS.values()]
+
+
+def _reason(curve: Curve) -> str:
+    """Return why a method is refused, without its own name."""
+    return curve.refused.removeprefix(f"{curve.integrator.name} was asked for, ").removeprefix("and ")
+
+
+def _together(reasons: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+    """Yield each reason that is not empty, and the names of the methods that have it."""
+    found: dict[str, list[str]] = {}
+    for name, reason in reasons:
+        if reason:
+            found.setdefault(reason, []).append(name)
+    yield from ((reason, ", ".join(names)) for reason, names in found.items())
 
 
 def _best_row(rows: Sequence[Row]) -> Row:
     """Return the cheapest excellent row, or else the one of the smallest error."""
     excellent = [row for row in rows if row.verdict is Verdict.EXCELLENT]
     if excellent:
-        return min(excellent, key=lambda row: row.measurement.cpu_s)
-    return min(rows, key=lambda row: float("inf") if row.measurement.error is None else row.measurement.error)
+        return min(excellent, key=lambda row: row.cpu_ms)
+    return min(rows, key=lambda row: math.inf if row.error is None else row.error)
 
 
-def _cells(problem: Problem, row: Row, name: str, order: str, measured: str) -> tuple[str, ...]:
-    found, seen = row.measurement, row.measurement.watched
-    fineness = found.setting.tolerance if found.dt is None else found.dt
-    return (
-        name, order, measured, cell(fineness, ".3g"), str(found.steps), str(found.evaluations),
-        f"{1e3 * found.cpu_s:.3g}", f"{1e3 * found.cpu_s / problem.seconds:.2g}", cell(found.error, ".1e"),
-        cell(seen.energy, ".1e"), cell(seen.momentum, ".1e"), cell(seen.angular_momentum, ".1e"),
-        cell(seen.rate_dt, ".2g"), cell(seen.penetration, ".1e"),
-        "" if seen.collisions is None else f"{seen.collisions:+d}", str(row.verdict),
-    )  # fmt: skip
-
-
-def _reported(rows: Sequence[tuple[str, ...]]) -> str:
+def _reported(rows: Sequence[_Cells]) -> str:
     """Return rows as a table, without columns that hold nothing."""
-    kept = [i for i in range(len(_HEAD)) if any(row[i] not in ("", "-") for row in rows[1:])]
+    kept = [i for i, column in enumerate(zip(*rows[1:], strict=True)) if {*column} - {"", "-"}]
     return table([[row[i] for i in kept] for row in rows], words=(0, len(kept) - 1), indent="  ")
+
+
+_STAR = "  * some steps were left to soft contacts, or made by impulses in short steps: an error of order one"
+
+
+def contact_text(study: ContactStudy) -> str:
+    """Return a contact case's table: a line for each engine, a column for each step."""
+    case = study.case
+    rows = max((curve.rows for curve in study.curves), key=len)
+    starred = any(row.left_to_soft or row.by_impulses for curve in study.curves for row in curve.rows)
+    head = ("engine", "order", *(f"1/{1.0 / row.dt:.0f} s" for row in rows), "ms / s", "to", "")
+    lines = [_contact_cells(curve, len(rows)) for curve in study.curves if not curve.refused]
+    return "\n".join([
+        f"{case.name}: {case.title}",
+        f"  compared: {case.compared}",
+        f"  error: {case.measure}; with rigid contacts {case.wanted:.0e} is wanted",
+        table([head, *lines], words=(0, len(head) - 1), indent="  "),
+        *(f"  not {curve.engine.title}: {curve.refused}" for curve in study.curves if curve.refused),
+        *([_STAR] if starred else []),
+        "",
+    ])  # fmt: skip
+
+
+def _contact_cells(curve: ContactCurve, count: int) -> _Cells:
+    """Return a line; errors have a star where steps were left to soft contacts or made by impulses."""
+    starred = ["*" if row.left_to_soft or row.by_impulses else "" for row in curve.rows]
+    errors = [cell(row.error, ".1e") + star for row, star in zip(curve.rows, starred, strict=True)]
+    costs = [f"{1e3 * row.cpu_s_per_s:.2g}" for row in (curve.rows[0], curve.rows[-1])]
+    missing = [""] * (count - len(errors))
+    return (curve.engine.title, order_text(curve), *errors, *missing, *costs, str(curve.verdict or ""))
+
+
+def order_text(curve: ContactCurve) -> str:
+    """Return the order of a curve, or why it has none."""
+    if curve.order is not None:
+        return f"{curve.order:.1f}".replace("-0.0", "0.0")
+    return "rounding" if curve.largest is not None and curve.largest <= ROUNDING else "-"
+
+
+def contact_summary(studies: Sequence[ContactStudy]) -> str:
+    """Return on how many cases rigid contacts are exact and soft ones converge, and the others."""
+    lines = []
+    for name, good in (("rigid", "within what is wanted"), ("soft", "of order 0.9 or within what is wanted")):
+        curves = [(s.case.name, c) for s in studies for c in s.curves if c.engine.name == name]
+        short = [(case, c) for case, c in curves if c.verdict in (Verdict.SHORT, Verdict.FAILED)]
+        lines.append(f"{name} contacts: {len(curves) - len(short)} of {len(curves)} cases are {good}")
+        for case, curve in short:
+            largest = cell(curve.largest, ".1e")
+            lines.append(f"  {case}: largest error {largest}, order {order_text(curve)} ({curve.verdict})")
+    return "\n".join(lines)
 
 
 def scene_text(study: SceneStudy) -> str:
@@ -150,7 +202,7 @@ def _horizon_words(horizon_s: float | None) -> str:
     return f"one of many possible futures {horizon_s:.3g} s after the start, by whatever method"
 
 
-def _spread_cells(spread: Spread | None) -> tuple[str, str, str, str]:
+def _spread_cells(spread: Departure | None) -> tuple[str, str, str, str]:
     if spread is None:
         return ("-", "-", "-", "-")
     return f"{spread.position:.1e}", f"{spread.angle:.1e}", f"{spread.velocity:.1e}", f"{spread.spin:.1e}"
@@ -158,7 +210,7 @@ def _spread_cells(spread: Spread | None) -> tuple[str, str, str, str]:
 
 def _scene_cells(row: SceneRow) -> tuple[str, ...]:
     return (
-        row.asked, row.integrator, row.step, str(row.evaluations), f"{1e3 * row.cpu_s:.3g}",
+        row.asked, row.integrator, row.step, str(row.evaluations), cell(row.cpu_ms, ".3g"),
         cell(row.half_step, ".1e"), f"{'at most ' if row.at_most else ''}{cell(row.error, '.1e')}",
         cell(row.energy, ".1e"), row.failure,
     )  # fmt: skip
@@ -167,28 +219,26 @@ def _scene_cells(row: SceneRow) -> tuple[str, ...]:
 def summary_text(studies: Sequence[Study]) -> str:
     """Return the number of problems on which ``auto``, and any method, is excellent; and the others."""
     short = [study for study in studies if study.auto.verdict is not Verdict.EXCELLENT]
-    none = [study for study in studies if _best_verdict(study) is not Verdict.EXCELLENT]
+    some = [study for study in studies if _is_excellent(study)]
     lines = [
         f"auto is excellent on {len(studies) - len(short)} of {len(studies)} problems, "
-        f"some method on {len(studies) - len(none)}"
+        f"some method on {len(some)}"
     ]
     for study in short:
-        name, limit = study.problem.name, study.problem.excellent
-        any_method = "no method is" if study in none else f"the best error of any method is {study.best:.1e}"
-        error = study.auto.measurement.error
+        best = f"the best error of any method is {study.best:.1e}" if study in some else "no method is"
         lines.append(
-            f"  {name}: auto has {cell(error, '.1e')} ({study.auto.verdict}), excellent would "
-            f"be {limit:.1e}; {any_method}"
+            f"  {study.problem.name}: auto has {cell(study.auto.error, '.1e')} ({study.auto.verdict}), "
+            f"excellent would be {study.problem.excellent:.1e}; {best}"
         )
     touching = [study for study in studies if study.problem.touches]
-    if touching and all(study.auto.measurement.integrator != "exact" for study in touching):
+    if touching and all(study.auto.integrator != "exact" for study in touching):
         lines.append("where bodies touch, contacts are found within steps: no impact is located in time")
     return "\n".join(lines)
 
 
-def _best_verdict(study: Study) -> Verdict:
+def _is_excellent(study: Study) -> bool:
     rows = [*study.chosen, *(row for curve in study.curves for row in curve.rows)]
-    return Verdict.EXCELLENT if any(row.verdict is Verdict.EXCELLENT for row in rows) else Verdict.SHORT
+    return any(row.verdict is Verdict.EXCELLENT for row in rows)
 
 
 def left_out_text() -> str:

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Generator, Sequence
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 
 from physicslab.files.reader import read_scene
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error
-from physicslab.lab.accuracy.horizon import find_horizon, scaled, sizes_of
-from physicslab.lab.accuracy.nudges import NUDGE_SHARE, NUDGES, ROUNDING, nudged
-from physicslab.lab.accuracy.paths import Path, run_path
-from physicslab.lab.accuracy.twins import TWINS, Document
-from physicslab.lab.case import Job, attempt
-from physicslab.lab.document import finite
+from physicslab.lab.accuracy.horizon import find_horizon, sizes_of
+from physicslab.lab.accuracy.paths import Path, differences, run_path
+from physicslab.lab.accuracy.twins import NUDGE_SHARE, NUDGES, ROUNDING, TWINS, Document, nudged
+from physicslab.lab.case import attempt
+from physicslab.lab.document import plain
+from physicslab.lab.jobs import Job, scaled
 from physicslab.world import World
 
 __all__ = ["Look", "Trust", "assess", "moments_of", "scales", "trust_report"]
@@ -42,9 +42,6 @@ _IN_STEPS = {twin.name for twin in TWINS if twin.differs_in_step}
 _NUDGED_NAME = "rounding"
 _OVERLAP_NAME = "overlap"
 """Of what no other way to compute it shows: bodies that came to rest in each other, by the limit of a gap."""
-
-_PLACES, _VELOCITIES = slice(0, 2), slice(3, 5)
-"""Columns of a path's states."""
 
 type _Errors = NDArray[np.float64]
 type _Compare = Callable[[Path], _Errors]
@@ -138,7 +135,7 @@ def moments_of(seconds: float, dt: float, count: int) -> list[float]:
 def assess(
     load: Callable[[], World], seconds: float, moments: Sequence[float] = (), budget_s: float = BUDGET_S
 ) -> Job[Trust]:
-    """Compute a scene in all ways there are; yield the share of the work that is done, then the result.
+    """Compute a scene in all ways there are; yield the share of the work that is done.
 
     Parameters
     ----------
@@ -151,15 +148,9 @@ def assess(
     budget_s : float
         After how long [s] ways are left out that are not done, where that is more than three runs.
     """
-    estimate = Estimate()
-    for step in estimate_error(load, seconds, moments, budget_s, _WAYS):
-        if isinstance(step, Estimate):
-            estimate = step
-        else:
-            yield _TWINS * step
+    estimate = yield from scaled(estimate_error(load, seconds, moments, budget_s, _WAYS), 0.0, _TWINS)
     if estimate.path is None or not estimate.bodies:
-        yield Trust(failure=estimate.failure or "nothing moves")
-        return
+        return Trust(failure=estimate.failure or "nothing moves")
     world, own, bodies, times = load(), estimate.path, estimate.bodies, (*moments, seconds)
     world.synchronise()
     left_out = [f"{twin.name}: {twin.failure}" for twin in estimate.twins if twin.spread is None]
@@ -167,8 +158,7 @@ def assess(
     run = partial(run_path, bodies=bodies, moments=times, budget_s=max(estimate.left_s, estimate.own_s))
     nudges = yield from scaled(_nudges(estimate.document, run, deadline, left_out), _TWINS, _NUDGED)
     if not estimate.paths and not nudges:
-        yield Trust(failure="no other way to compute it ends in time", left_out=left_out)
-        return
+        return Trust(failure="no other way to compute it ends in time", left_out=left_out)
 
     def digits(compare: _Compare, scale: _Errors, least: _Errors | float = 0.0) -> _Errors:
         """Return the digits of a quantity at each moment, whose error is known to be so large at least."""
@@ -177,29 +167,39 @@ def assess(
         found: _Errors = np.maximum(-np.log10(shares), 0.0)
         return found
 
-    reach, speeds, angles, spins = scales(world, own, bodies, times)
-    places = digits(_apart(own, _PLACES), reach, own.overlaps)
-    columns = _Columns(
-        places,
-        digits(_apart(own, _VELOCITIES), speeds),
-        digits(lambda path: np.abs(path.states[..., 2] - own.states[..., 2]), angles),
-        digits(lambda path: np.abs(path.states[..., 5] - own.states[..., 5]), spins),
+    def apart(number: int, path: Path) -> _Errors:
+        return differences(path.states, own.states)[number]
+
+    floors: tuple[_Errors | float, ...] = (own.overlaps, 0.0, 0.0, 0.0)
+    each = [
+        digits(partial(apart, n), scale, floor)
+        for n, (scale, floor) in enumerate(zip(scales(world, own, bodies, times), floors, strict=True))
+    ]
+    whole = (
         digits(lambda path: np.abs(path.energy - own.energy), own.energy_scale),
         digits(lambda path: np.hypot(*(path.momentum - own.momentum).T), own.momentum_scale),
         digits(lambda path: np.abs(path.angular - own.angular), own.angular_scale),
-    )  # fmt: skip
-    horizon = yield from _horizon(estimate, seconds, deadline, left_out)
-    worst = int(places[-1].argmin())
-    found = Trust(float(places[-1, worst]), bodies[worst], ways=[*estimate.paths], left_out=left_out)
-    each = _errors(_apart(own, _PLACES), estimate.paths, nudges)[:, -1, worst]
-    each = np.append(each, own.overlaps[-1, worst])
-    found.cause = [*estimate.paths, _NUDGED_NAME, _OVERLAP_NAME][int(each.argmax())]
-    found.energy, found.momentum, found.angular_momentum = (float(column[-1]) for column in columns.whole)
-    found.entities, found.velocities, found.angles, found.spins = (
-        dict(zip(bodies, column[-1].tolist(), strict=True)) for column in columns.each
     )
-    found.horizon_s, found.looks = horizon, columns.looks(times) if moments else []
-    yield found
+    horizon = yield from _horizon(estimate, seconds, deadline, left_out)
+    places = each[0]
+    worst = int(places[-1].argmin())
+    ways = _errors(partial(apart, 0), estimate.paths, nudges)[:, -1, worst]
+    cause = int(np.append(ways, own.overlaps[-1, worst]).argmax())
+    found = Trust(float(places[-1, worst]), bodies[worst], ways=[*estimate.paths], left_out=left_out)
+    found.cause = [*estimate.paths, _NUDGED_NAME, _OVERLAP_NAME][cause]
+    found.energy, found.momentum, found.angular_momentum = (float(column[-1]) for column in whole)
+    found.entities, found.velocities, found.angles, found.spins = (
+        dict(zip(bodies, column[-1].tolist(), strict=True)) for column in each
+    )
+    found.horizon_s, found.looks = horizon, _looks(times, each, whole) if moments else []
+    return found
+
+
+def _looks(times: Sequence[float], each: Sequence[_Errors], whole: Sequence[_Errors]) -> list[Look]:
+    """Return the fewest digits until each moment, of quantities of bodies (k, n) and of the world (k,)."""
+    least = [np.minimum.accumulate(column).tolist() for column in (*whole, *each)]
+    places = least[len(whole)]
+    return [Look(t, min(places[n]), *(column[n] for column in least)) for n, t in enumerate(times)]
 
 
 def scales(
@@ -219,52 +219,9 @@ def scales(
     )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
-class _Columns:
-    """Digits at k moments, of quantities of n bodies (k, n) and of the world (k,)."""
-
-    places: _Errors
-    velocities: _Errors
-    angles: _Errors
-    spins: _Errors
-    energy: _Errors
-    momentum: _Errors
-    angular_momentum: _Errors
-
-    @property
-    def each(self) -> tuple[_Errors, ...]:
-        return self.places, self.velocities, self.angles, self.spins
-
-    @property
-    def whole(self) -> tuple[_Errors, ...]:
-        return self.energy, self.momentum, self.angular_momentum
-
-    def looks(self, times: Sequence[float]) -> list[Look]:
-        """Return the fewest digits until each moment."""
-        each, whole = (
-            [np.minimum.accumulate(column).tolist() for column in columns]
-            for columns in (self.each, self.whole)
-        )
-        return [
-            Look(seconds, min(each[0][n]), *(column[n] for column in whole), *(column[n] for column in each))
-            for n, seconds in enumerate(times)
-        ]
-
-
-def _apart(own: Path, columns: slice) -> _Compare:
-    """Return what measures how far vectors are from those of a path."""
-
-    def compare(path: Path) -> _Errors:
-        off = path.states[..., columns] - own.states[..., columns]
-        found: _Errors = np.hypot(off[..., 0], off[..., 1])
-        return found
-
-    return compare
-
-
 def _nudges(
     document: Document, run: Callable[[World], Path], deadline: float, left_out: list[str]
-) -> Generator[float, None, list[Path]]:
+) -> Job[list[Path]]:
     """Run starts that are moved by one rounding, and return the paths of those that do not fail."""
     paths = []
     for n in range(NUDGES):
@@ -278,9 +235,7 @@ def _nudges(
     return paths
 
 
-def _horizon(
-    estimate: Estimate, seconds: float, deadline: float, left_out: list[str]
-) -> Generator[float, None, float | None]:
+def _horizon(estimate: Estimate, seconds: float, deadline: float, left_out: list[str]) -> Job[float | None]:
     """Look for the horizon, while there is time."""
     job = scaled(find_horizon(estimate.document, estimate.bodies, seconds), _NUDGED, 1.0)
     while True:
@@ -304,9 +259,7 @@ def _errors(compare: _Compare, twins: dict[str, Path], nudges: Sequence[Path]) -
 
 def trust_report(trust: Trust) -> dict[str, Any]:
     """Return it as ``run --json`` has it: no number that is not finite."""
-    found = asdict(trust)
-    for name in ("digits", "energy", "momentum", "angular_momentum"):
-        found[name] = finite(found[name])
+    found: dict[str, Any] = plain(trust)
     if not trust.looks:
         del found["looks"]
     return found

@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-
-import numpy as np
 
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.reader import read_scene
 from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.contacts.case import ContactCase
-from physicslab.lab.accuracy.contacts.engines import OWN, Engine
-from physicslab.lab.accuracy.measure import finish
-from physicslab.lab.accuracy.nudges import NUDGE_SHARE, NUDGES, ROUNDING, nudged
-from physicslab.lab.accuracy.problem import Problem
+from physicslab.lab.accuracy.contacts.engines import OWN, ContactEngine
+from physicslab.lab.accuracy.problem import KnownCase, Problem
 from physicslab.lab.accuracy.settings import Setting
 from physicslab.lab.accuracy.trust import STEP_SAFETY
-from physicslab.lab.accuracy.twins import TWINS, Document, Twin, with_ids
-from physicslab.lab.case import Job, attempt
+from physicslab.lab.accuracy.twins import (
+    NUDGE_SHARE,
+    NUDGES,
+    ROUNDING,
+    TWINS,
+    Document,
+    Twin,
+    nudged,
+    with_ids,
+)
+from physicslab.lab.case import attempt
+from physicslab.lab.jobs import Job
 from physicslab.world import World
 
 __all__ = ["CONTACT_STEP", "TrustRow", "TrustSummary", "assess_contacts", "assess_problem", "summarise"]
@@ -33,8 +39,6 @@ they are to be as near."""
 _OF_ROUNDING = 1e-12
 """An estimate up to this is one of what rounding adds up to, and the sum may by chance be far less."""
 
-type _Worlds = tuple[World, ...]
-
 
 @dataclass(frozen=True, slots=True)
 class TrustRow:
@@ -42,7 +46,7 @@ class TrustRow:
 
     Attributes
     ----------
-    case : Problem or ContactCase
+    case : KnownCase
         Which.
     method : str
         The method that ran, or the model of contacts.
@@ -50,7 +54,7 @@ class TrustRow:
         Both as the case measures errors; ``None`` where the run failed.
     """
 
-    case: Problem | ContactCase
+    case: KnownCase
     method: str
     estimate: float | None
     error: float | None
@@ -63,7 +67,7 @@ class TrustRow:
         return max(self.error, ROUNDING) / max(self.estimate, ROUNDING)
 
     @property
-    def is_near(self) -> bool:
+    def near(self) -> bool:
         """Whether the error is within a factor of 10 of the estimate, or less where both are of rounding."""
         if self.estimate is None or self.ratio is None:
             return False
@@ -98,89 +102,62 @@ class TrustSummary:
 def summarise(rows: Sequence[TrustRow]) -> TrustSummary:
     """Count the rows whose estimate is good."""
     ratios = [row.ratio for row in rows if row.ratio is not None]
-    near = [row.ratio for row in rows if row.is_near and row.ratio is not None]
+    near = [row.ratio for row in rows if row.near and row.ratio is not None]
     cautious = sum(ratio < 1.0 / _NEAR for ratio in near)
     return TrustSummary(len(ratios), len(near), max(ratios, default=0.0), cautious)
 
 
 def assess_problem(problem: Problem) -> Job[TrustRow]:
     """Estimate the error of a problem, run as ``auto`` runs it, and measure its true error."""
-
-    def make(simulation: SimulationConfig) -> _Worlds:
-        return (problem.build(simulation),)
-
-    def measure(worlds: _Worlds) -> float:
-        return finish(problem, worlds[0])
-
     simulation = Setting("auto").simulation(problem)
     world = problem.build(simulation)
     world.synchronise()
-    yield from _assess(problem, world.plan.integrator.name, make, measure, simulation)
+    return (yield from _assess(problem, world.plan.integrator.name, simulation))
 
 
-def assess_contacts(case: ContactCase, engine: Engine) -> Job[TrustRow]:
+def assess_contacts(case: ContactCase, engine: ContactEngine) -> Job[TrustRow]:
     """Estimate the error of a contact case with one of our models of contacts, and measure its true error.
 
     With soft contacts, rigid ones are another way to compute it.
     """
     rigid = next(own for own in OWN if own.name == "rigid")
     others = () if engine is rigid else (rigid.simulation(CONTACT_STEP),)
-    simulation = engine.simulation(CONTACT_STEP)
-    yield from _assess(case, engine.title, case.build, partial(_finish, case), simulation, others)
+    return (yield from _assess(case, engine.title, engine.simulation(CONTACT_STEP), others))
 
 
 def _assess(
-    case: Problem | ContactCase, method: str, make: Callable[[SimulationConfig], _Worlds],
-    measure: Callable[[_Worlds], float], simulation: SimulationConfig,
-    others: Sequence[SimulationConfig] = (),
-) -> Iterator[float | TrustRow]:  # fmt: skip
+    case: KnownCase, method: str, simulation: SimulationConfig, others: Sequence[SimulationConfig] = ()
+) -> Job[TrustRow]:
     """Estimate an error by how much the case's figure changes where it is computed in other ways."""
-    worlds = make(simulation)
+    worlds, ready = case.worlds(simulation), case.worlds(simulation)
     documents = [with_ids(write_scene(world)) for world in worlds]
-    ready = make(simulation)
     for world in ready:
         world.synchronise()
-    error, _ = attempt(partial(measure, worlds))
+    error, _ = attempt(partial(case.finish, worlds))
     if error is None:
-        yield TrustRow(case, method, None, None)
-        return
+        return TrustRow(case, method, None, None)
 
-    def change(build: Callable[[], _Worlds | None]) -> float:
+    def change(other: Sequence[World] | None) -> float:
         """Return how far the figure is from that of other worlds; 0 where there are none."""
-        other = build()
-        found, _ = (None, "") if other is None else attempt(partial(measure, other))
+        found, _ = (None, "") if other is None else attempt(partial(case.finish, other))
         return 0.0 if found is None else abs(error - found)
 
-    known = [change(partial(make, other)) for other in others]
+    known = [change(case.worlds(other)) for other in others]
     ways = [twin for twin in TWINS if twin.differs_in_step or twin.name == "tightest"]
+    whole = len(ways) + NUDGES + 1
     for n, twin in enumerate(ways):
-        apart = change(partial(_twins, twin, documents, ready))
-        known.append(apart * (STEP_SAFETY if twin.differs_in_step else 1.0))
-        yield (n + 1) / (len(ways) + NUDGES + 1)
+        known.append(change(_twins(twin, documents, ready)) * (STEP_SAFETY if twin.differs_in_step else 1.0))
+        yield (n + 1) / whole
     squares = []
     for n in range(NUDGES):
-        squares.append(change(partial(_nudged, documents, n)) ** 2)
-        yield (len(ways) + n + 1) / (len(ways) + NUDGES + 1)
+        squares.append(change([read_scene(nudged(document, n)) for document in documents]) ** 2)
+        yield (len(ways) + n + 1) / whole
     known.append(NUDGE_SHARE * math.sqrt(sum(squares) / NUDGES))
-    yield TrustRow(case, method, max(known), error)
+    return TrustRow(case, method, max(known), error)
 
 
-def _twins(twin: Twin, documents: Sequence[Document], worlds: _Worlds) -> _Worlds | None:
+def _twins(twin: Twin, documents: Sequence[Document], worlds: Sequence[World]) -> list[World] | None:
     """Return the twins of all worlds, ``None`` where one has no such."""
-    found = [twin.make(document, world) for document, world in zip(documents, worlds, strict=True)]
-    return None if None in found else tuple(world for world in found if world is not None)
-
-
-def _nudged(documents: Sequence[Document], seed: int) -> _Worlds:
-    return tuple(read_scene(nudged(document, seed)) for document in documents)
-
-
-def _finish(case: ContactCase, worlds: _Worlds) -> float:
-    """Run worlds through the times that are compared, and return the largest error."""
-    largest, reached = 0.0, 0.0
-    for i, t in enumerate(case.times):
-        for world in worlds:
-            world.run(seconds=t - reached)
-        reached = t
-        largest = float(np.maximum(largest, case.error(worlds, i)))  # numpy's maximum keeps NaN
-    return largest
+    made = [twin.make(document, world) for document, world in zip(documents, worlds, strict=True)]
+    found = [world for world in made if world is not None]
+    return found if len(found) == len(made) else None

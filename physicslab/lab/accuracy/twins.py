@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import copy
 import math
+import random
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -23,7 +24,10 @@ from physicslab.integrators.dop853 import DOP853
 from physicslab.stepping.plan import tolerance_for
 from physicslab.world import World
 
-__all__ = ["GOLDEN", "TWINS", "Document", "Twin", "refined", "with_ids"]
+__all__ = [
+    "GOLDEN", "NUDGES", "NUDGE_SHARE", "ROUNDING", "TWINS", "Document", "Twin", "nudged", "refined",
+    "with_ids",
+]  # fmt: skip
 
 type Document = dict[str, Any]
 """A scene as :func:`physicslab.files.writer.write_scene` returns it, in which every entity has an id."""
@@ -51,6 +55,18 @@ _LEAST_TOLERANCE = 1e-20
 """Of a scene's configuration."""
 _ULP_SCALE = 1e-2
 """Coordinates [m], [m/s], [rad] smaller than this are moved by a rounding of this."""
+NUDGES = 6
+"""How many starts are moved by one rounding."""
+NUDGE_SHARE = 0.5
+"""A number is off by half a rounding where it is rounded, and these are moved by a whole one."""
+ROUNDING = 2.0**-50
+"""The smallest error of a result, as a share of its size: that of a few operations."""
+_NUMBERS: dict[str, tuple[str, ...]] = {
+    "Transform": ("position", "angle"),
+    "Velocity": ("linear", "angular"),
+    "Mass": ("mass",),
+}
+"""The numbers of a body that are moved."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,6 +243,35 @@ def _alternating() -> Iterator[float]:
 
 def _moved(value: float, ways: Iterator[float]) -> float:
     return value + next(ways) * math.ulp(max(abs(value), _ULP_SCALE))
+
+
+def nudged(document: Document, seed: int) -> Document:
+    """Return a scene whose numbers are moved by one rounding each, up or down.
+
+    These are places, velocities and masses of what can move, and gravity. What is zero stays: it is
+    not rounded, and with it a symmetry that no rounding breaks.
+    """
+    twin, order = copy.deepcopy(document), random.Random(seed)
+
+    def move(part: dict[str, Any], *names: str) -> None:
+        for name in names:
+            value = part.get(name)
+            if isinstance(value, list):
+                part[name] = [_next(number, order) for number in value]
+            elif value is not None:
+                part[name] = _next(value, order)
+
+    for entity in twin["entities"]:
+        if "Velocity" in entity:
+            for kind, names in _NUMBERS.items():
+                move(entity.get(kind, {}), *names)
+    move(twin.get("physics", {}), "gravity", "G")
+    return twin
+
+
+def _next(number: float, order: random.Random) -> float:
+    """Return the next number up or down; of zero itself."""
+    return math.nextafter(number, order.choice((-math.inf, math.inf))) if number else number
 
 
 def _awake(document: Document, world: World) -> World | None:

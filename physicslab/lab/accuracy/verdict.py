@@ -5,21 +5,11 @@ from __future__ import annotations
 import math
 import statistics
 from collections.abc import Sequence
-from enum import StrEnum
 from itertools import pairwise
 
-__all__ = ["Verdict", "measured_order", "verdict", "why_order_short"]
+from physicslab.lab.case import Verdict
 
-
-class Verdict(StrEnum):
-    """How good an error is."""
-
-    EXCELLENT = "excellent"
-    GOOD = "good"
-    SHORT = "falls short"
-    ROUNDING = "rounding floor"
-    CHAOS = "chaos limit"
-    FAILED = "failed"
+__all__ = ["measured_order", "verdict", "why_order_short"]
 
 
 _LARGE, _ROUNDING = 0.1, 1e-13

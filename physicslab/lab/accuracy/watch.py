@@ -1,4 +1,4 @@
-"""How well energy and momenta are conserved: measured at random times of a run that is not timed."""
+"""What is measured of a run; energy and momenta at random times of one more run, which is not timed."""
 
 from __future__ import annotations
 
@@ -13,50 +13,84 @@ from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.diagnostics.forces import fastest_force
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
+from physicslab.lab.case import Verdict
 from physicslab.world import World
 
-__all__ = ["Watched", "watch"]
+__all__ = ["Row", "watch"]
 
 _SAMPLES = 48
 _SEED = 20260101
 
 
 @dataclass(slots=True)
-class Watched:
-    """The largest departures; ``None`` for what the problem does not conserve.
+class Row:
+    """One method at one setting on one problem; ``None`` for what it has not or does not conserve.
 
     Attributes
     ----------
-    energy : float, optional
+    integrator, reason : str
+        The method that ran, and why.
+    collisions : str
+        How contacts were to be found.
+    dt : float, optional
+        The method's step [s], where it is fixed.
+    tolerance : float, optional
+        Of an adaptive method, where one was chosen.
+    steps, force_evaluations : int
+        Steps of the method, and how often forces were computed.
+    cpu_ms, ms_per_simulated_s : float
+        Process time of the run [ms], compiling and building the world left out; and of a second of it.
+    time : float
+        The last of the times that are compared [s].
+    error : float, optional
+        As the problem measures it; ``None`` where the run diverged.
+    energy_drift : float, optional
         |E - E_true| as a share of |E| at the start (of the largest kinetic energy, where that is 0). E_true
         is the energy at the start, or where friction, drag or a damper acts the exact energy at that time.
-    numerical : float, optional
+    energy_numerical : float, optional
         What no account explains of the energy, as a share of the energy exchanged.
-    momentum, angular_momentum : float, optional
-        As shares of the sum of the bodies' own.
-    rate_dt : float, optional
+    momentum_error, angular_momentum_error : float, optional
+        The largest departures, as shares of the sum of the bodies' own.
+    omega_max_dt : float, optional
         The fastest rate [rad/s] of any force times the method's step, where that is fixed.
-    penetration : float, optional
+    max_penetration : float, optional
         The deepest overlap after any step [m].
-    collisions : int, optional
+    collision_count_error : int, optional
         How many impacts were counted beyond the right number; negative where some are missing.
+    verdict : Verdict
+        How good the error is.
+    failure : str
+        Why there is no error; empty where there is one.
     """
 
-    energy: float | None = None
-    numerical: float | None = None
-    momentum: float | None = None
-    angular_momentum: float | None = None
-    rate_dt: float | None = None
-    penetration: float | None = None
-    collisions: int | None = None
+    integrator: str
+    reason: str
+    collisions: str
+    dt: float | None
+    tolerance: float | None
+    steps: int
+    force_evaluations: int
+    cpu_ms: float
+    ms_per_simulated_s: float
+    time: float
+    error: float | None
+    energy_drift: float | None = None
+    energy_numerical: float | None = None
+    momentum_error: float | None = None
+    angular_momentum_error: float | None = None
+    omega_max_dt: float | None = None
+    max_penetration: float | None = None
+    collision_count_error: int | None = None
+    verdict: Verdict = Verdict.FAILED
+    failure: str = ""
 
 
-def watch(problem: Problem, setting: Setting) -> Watched:
-    """Run a problem once more, and measure it at random times."""
+def watch(row: Row, problem: Problem, setting: Setting) -> None:
+    """Run a problem once more, measure it at random times, and write into a row what was conserved."""
     world = problem.build(setting.simulation(problem))
     world.synchronise()
-    seen, watched, audit = _Conserved(world), Watched(), Audit(world)
-    energy, momentum, spin = 0.0, 0.0, 0.0
+    start, audit = _Start(world), Audit(world)
+    off = np.zeros(3)
     rate, _ = fastest_force(world)
     deepest = 0.0
     with np.errstate(all="ignore"):
@@ -64,25 +98,21 @@ def watch(problem: Problem, setting: Setting) -> Watched:
             if problem.touches:
                 deepest = max(deepest, world.contacts.max_penetration)
             if sampled:
-                off = seen.measure(world, problem)
+                off = np.maximum(off, start.departures(world, problem))
                 audit.sample(world)
-                energy, momentum, spin = (
-                    float(np.maximum(*pair)) for pair in zip((energy, momentum, spin), off, strict=True)
-                )
                 rate = max(rate, fastest_force(world)[0])
+    energy, momentum, spin = off.tolist()
     if problem.exact_energy is not None or "energy" in problem.keeps:
-        watched.energy = seen.share(energy)
-    watched.numerical = audit.error
-    watched.momentum = momentum if "momentum" in problem.keeps else None
-    watched.angular_momentum = spin if "angular_momentum" in problem.keeps else None
-    method = world.plan
-    if not method.integrator.chooses_steps and rate > 0.0:
-        watched.rate_dt = rate * world.simulation.dt / method.substeps
+        row.energy_drift = start.share(energy)
+    row.energy_numerical = audit.error
+    row.momentum_error = momentum if "momentum" in problem.keeps else None
+    row.angular_momentum_error = spin if "angular_momentum" in problem.keeps else None
+    if row.dt is not None and rate > 0.0:
+        row.omega_max_dt = rate * row.dt
     if problem.touches:
-        watched.penetration = deepest
+        row.max_penetration = deepest
     if problem.collisions is not None:
-        watched.collisions = world.collisions - problem.collisions
-    return watched
+        row.collision_count_error = world.collisions - problem.collisions
 
 
 def _moments(world: World, problem: Problem) -> Iterator[bool]:
@@ -107,14 +137,14 @@ def _moments(world: World, problem: Problem) -> Iterator[bool]:
         yield True
 
 
-class _Conserved:
+class _Start:
     """Energy and momenta of a world at the start, and departures from them."""
 
     def __init__(self, world: World) -> None:
         self._energy, self._momentum = measure_energy(world), measure_momentum(world)
         self._fastest = self._energy.kinetic
 
-    def measure(self, world: World, problem: Problem) -> tuple[float, float, float]:
+    def departures(self, world: World, problem: Problem) -> tuple[float, float, float]:
         """Return how far energy [J], momentum and angular momentum [shares] are from what they should be."""
         energy, momentum = measure_energy(world), measure_momentum(world)
         self._fastest = max(self._fastest, energy.kinetic)

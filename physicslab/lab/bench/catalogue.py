@@ -7,12 +7,13 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from physicslab.components import Velocity
+from physicslab.components import Mass, Name, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
-from physicslab.lab.bench.edits import edit_scenes
 from physicslab.lab.bench.moving import FUNNELS, MOVING
-from physicslab.lab.bench.quality import (
+from physicslab.lab.bench.scene import (
+    BenchScene,
     at_rest,
     energy_change,
     lost,
@@ -21,10 +22,9 @@ from physicslab.lab.bench.quality import (
     sink,
     within,
 )
-from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.bench.untuned import UNTUNED
 from physicslab.lab.case import Catalogue
-from physicslab.lab.worlds import open_space
+from physicslab.lab.worlds import soft_space
 from physicslab.prefabs import box, container, gas, pile, pyramid
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import System
@@ -49,13 +49,15 @@ _KINETIC, _CREEP = 1e-6, 2e-3
 """Largest kinetic energy a body [J] and drift [m] of bodies that count as being at rest."""
 _NAMED = {"piles": (2_000, 8_000), "gases": (4_000, 8_000)}
 """Sizes that are run only where they are named: three others of the group show how the cost grows."""
+_MOVE = 1e-3
+"""By how much a body is moved, to and fro [m]."""
 _PITCH = 0.25
 """From one disc of a pile to the next at the start [m]: that of the prefab."""
 
 
 def _boxes(base: int) -> World:
     """Return a pyramid of boxes of 1 m on a floor."""
-    world = open_space(gravity=10.0, collisions="step", contacts="soft")
+    world = soft_space(gravity=10.0)
     box(world, (0.0, -0.5), width=200.0, height=1.0, static=True, friction=0.6)
     pyramid(world, base)
     return world
@@ -94,7 +96,7 @@ def _gas(count: int) -> World:
     half, top = _gas_box(count)
     bounds = (-half, -top, half, top)
     laws = PhysicsConfig(gravity_mode="none", bounds=bounds, bounds_restitution=1.0, bounds_friction=0.0)
-    world = open_space(physics=laws, collisions="step", contacts="soft")
+    world = soft_space(physics=laws)
     gas(world, count, bounds)
     return world
 
@@ -154,7 +156,32 @@ _AUTO = replace(
     _TEN_DISCS, name="circles_10_auto", title="the ten discs with contacts and collisions of a scene file",
     build=partial(ten_discs, simulation=SimulationConfig(contacts="auto")), steps=2_000,
 )  # fmt: skip
-_PILE_EDITED = 1_000
+
+
+def _edited(world: World) -> int:
+    """Return the body that is edited: the last of those that move, which lies on top."""
+    return int(world.batch(Transform, Velocity).entities[-1])
+
+
+def _rename(world: World, step: int) -> None:
+    """Give a body another name, on which no motion depends."""
+    world.add(_edited(world), Name(f"disc {step % 2}"))
+
+
+def _weigh(world: World, step: int) -> None:
+    """Make a body a tenth heavier, and lighter again."""
+    world.component(_edited(world), Mass).mass *= 1.1 if step % 2 == 0 else 1.0 / 1.1
+
+
+def _move(world: World, step: int) -> None:
+    """Move a body aside, and back."""
+    place = world.component(_edited(world), Transform)
+    place.position = place.position + Vector2(_MOVE if step % 2 == 0 else -_MOVE, 0.0)
+
+
+_edits = partial(
+    BenchScene, group="edits", size=1_000, build=partial(discs, 1_000), quality=(overlap(_OVERLAP),)
+)
 
 SCENES = Catalogue(
     (
@@ -169,7 +196,10 @@ SCENES = Catalogue(
         *MOVING,
         *FUNNELS,
         *UNTUNED,
-        *edit_scenes(partial(discs, _PILE_EDITED), _PILE_EDITED, _OVERLAP),
+        # A pile at rest, edited before every step as a user or a script would do it.
+        _edits(name="edit_name", title="1,000 discs at rest, one renamed before every step", edit=_rename),
+        _edits(name="edit_mass", title="the same, the mass of one set", edit=_weigh),
+        _edits(name="edit_position", title="the same, one moved by a millimetre", edit=_move),
     )
 )
 """Every scene by name; families are groups."""

@@ -11,6 +11,7 @@ import itertools
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,27 +21,35 @@ from physicslab.lab.bench.engine import Engine
 __all__ = ["TURN", "Spread", "Times", "take_turns"]
 
 
+@dataclass(frozen=True, slots=True)
 class Spread:
-    """How the CPU times of one thing, measured many times, are distributed.
+    """How the CPU times of one thing, measured many times, are distributed [ms].
 
     Attributes
     ----------
-    median_ms, p90_ms, p99_ms, mean_ms : float
-        The middle one, those that 90 and 99 of 100 do not exceed, and the mean [ms]. Work that is done every
-        few steps, as new lists of pairs, shows in the mean and not in the median.
+    median, p90, p99, mean : float
+        The middle one, those that 90 and 99 of 100 do not exceed, and the mean. Work that is done every few
+        steps, as new lists of pairs, shows in the mean and not in the median.
     """
 
-    def __init__(self, milliseconds: NDArray[np.float64]) -> None:
-        found = np.percentile(milliseconds, (50, 90, 99))
-        self.median_ms, self.p90_ms, self.p99_ms = map(float, found)
-        self.mean_ms = float(np.mean(milliseconds))
+    median: float
+    p90: float
+    p99: float
+    mean: float
+
+    @classmethod
+    def of(cls, milliseconds: Sequence[float] | NDArray[np.float64]) -> Spread:
+        """Return how some times are distributed."""
+        median, p90, p99 = map(float, np.percentile(milliseconds, (50, 90, 99)))
+        return cls(median, p90, p99, float(np.mean(milliseconds)))
 
     @property
     def tail(self) -> float:
         """The 99th percentile as a multiple of the median: how much longer the longest steps are."""
-        return self.p99_ms / self.median_ms
+        return self.p99 / self.median
 
 
+@dataclass(slots=True)
 class Times:
     """What each step of an engine took.
 
@@ -52,10 +61,9 @@ class Times:
         What all turns took on the wall [ms]: what the schedule's own figures are shares of.
     """
 
-    def __init__(self) -> None:
-        self.step: list[float] = []
-        self.read: list[float] = []
-        self.wall_ms = 0.0
+    step: list[float] = field(default_factory=list)
+    read: list[float] = field(default_factory=list)
+    wall_ms: float = 0.0
 
     @property
     def with_read(self) -> NDArray[np.float64]:
@@ -113,7 +121,7 @@ def _advance(engine: Engine, spent: Times, block: int) -> None:
     if block:
         engine.run(block)
     else:
-        engine.step()
+        engine.advance()
     stepped = time.process_time_ns()
     spent.wall_ms += (time.perf_counter_ns() - entered) / 1e6
     spent.step.append((stepped - began) / 1e6 / max(1, block))

@@ -11,10 +11,8 @@ from typing import override
 from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.bench.scene import BenchScene
-from physicslab.lab.peers.box2d3_mirror import Box2D3Mirror
-from physicslab.lab.peers.box2d_mirror import Box2DMirror
+from physicslab.lab.peers.mirrors import Box2D3Mirror, Box2DMirror, PymunkMirror
 from physicslab.lab.peers.peer import Peer
-from physicslab.lab.peers.pymunk_mirror import PymunkMirror
 from physicslab.world import World
 
 __all__ = ["OURS", "PEERS", "Engine", "OtherEngine", "OurEngine", "missing_peers", "prepared"]
@@ -40,6 +38,8 @@ class Engine(ABC):
         What is simulated, as it was when :meth:`look` was called last.
     dt : float
         The length of a step [s].
+    prepare : callable, optional
+        What is done before every step, as part of what is timed; takes its number, from 0 on.
     """
 
     title: str
@@ -47,6 +47,15 @@ class Engine(ABC):
     def __init__(self, world: World) -> None:
         self.world = world
         self.dt = world.simulation.dt
+        self.prepare: Callable[[int], None] | None = None
+        self._prepared = 0
+
+    def advance(self) -> None:
+        """Advance by one step, after what is done before it."""
+        if self.prepare is not None:
+            self.prepare(self._prepared)
+            self._prepared += 1
+        self.step()
 
     @abstractmethod
     def set_gravity(self, gravity: Vector2) -> None:
@@ -105,19 +114,19 @@ class OtherEngine(Engine):
 
     Parameters
     ----------
-    scene : BenchScene
-        The scene that is built in it.
+    world : World
+        What is built in it.
     peer : type of Peer
         Which engine.
 
     Raises
     ------
     CannotBuild
-        If the engine has nothing of the kind that the scene holds.
+        If the engine has nothing of the kind that the world holds.
     """
 
-    def __init__(self, scene: BenchScene, peer: type[Peer]) -> None:
-        super().__init__(scene.build())
+    def __init__(self, world: World, peer: type[Peer]) -> None:
+        super().__init__(world)
         self.title = peer.title
         self._peer = peer(self.world)
 
@@ -143,54 +152,11 @@ class OtherEngine(Engine):
         return self.world
 
 
-class Prepared(Engine):
-    """An engine with something done before every step, as part of what is timed.
-
-    Parameters
-    ----------
-    engine : Engine
-        What steps.
-    prepare : callable
-        Takes the engine and the number of the coming step, from 0 on.
-    """
-
-    def __init__(self, engine: Engine, prepare: Callable[[Engine, int], None]) -> None:
-        super().__init__(engine.world)
-        self.title, self._engine, self._prepare, self._steps = engine.title, engine, prepare, 0
-
-    @override
-    def set_gravity(self, gravity: Vector2) -> None:
-        self._engine.set_gravity(gravity)
-
-    @override
-    def step(self) -> None:
-        self._prepare(self._engine, self._steps)
-        self._engine.step()
-        self._steps += 1
-
-    @override
-    def run(self, steps: int) -> None:
-        for _ in range(steps):
-            self.step()
-
-    @override
-    def read(self) -> object:
-        return self._engine.read()
-
-    @override
-    def look(self) -> World:
-        return self._engine.look()
-
-    @override
-    def pause(self) -> None:
-        self._engine.pause()
-
-
 def prepared(engine: Engine, scene: BenchScene) -> Engine:
-    """Return the engine with what the scene has done before every step, if anything."""
+    """Return the engine, which does before every step what the scene has done then, if anything."""
     gravity_at, edit = scene.gravity_at, scene.edit
     if gravity_at is not None:
-        return Prepared(engine, lambda engine, step: engine.set_gravity(gravity_at(step * engine.dt)))
-    if edit is not None:
-        return Prepared(engine, lambda engine, step: edit(engine.world, step))
+        engine.prepare = lambda step: engine.set_gravity(gravity_at(step * engine.dt))
+    elif edit is not None:
+        engine.prepare = lambda step: edit(engine.world, step)
     return engine

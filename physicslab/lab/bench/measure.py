@@ -1,4 +1,4 @@
-"""Time a scene, in PhysicsLab alone or beside its peers."""
+"""Time a scene, in PhysicsLab alone or beside its peers, and judge how well each simulates it."""
 
 from __future__ import annotations
 
@@ -6,20 +6,21 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from physicslab.components import Transform, Velocity
 from physicslab.kernels import compile_kernels
 from physicslab.lab.bench.clock import Spread, Times, take_turns
 from physicslab.lab.bench.engine import Engine, OtherEngine, OurEngine, prepared
-from physicslab.lab.bench.judge import Judge
 from physicslab.lab.bench.result import EngineResult, SceneResult
-from physicslab.lab.bench.scene import BenchScene
-from physicslab.lab.case import Job
+from physicslab.lab.bench.scene import BenchScene, Moment, When
+from physicslab.lab.jobs import Job
 from physicslab.lab.peers.peer import CannotBuild, Peer
 from physicslab.state.masses import Diverged
 from physicslab.systems.system import OF_FRAMES
 from physicslab.world import World
 
-__all__ = ["measure_scene"]
+__all__ = ["Judge", "measure_scene"]
 
 _BEGIN_S = 2.0
 """How long [s] the beginning is: a pile falls in it."""
@@ -30,7 +31,7 @@ _BLOCK = 200
 def measure_scene(
     scene: BenchScene, peers: Sequence[type[Peer]] = (), make: Callable[[World], OurEngine] = OurEngine
 ) -> Job[SceneResult]:
-    """Time a scene; yield the share that is done now and then, and at last the result.
+    """Time a scene; yield the share that is done now and then.
 
     Parameters
     ----------
@@ -42,7 +43,7 @@ def measure_scene(
         Takes its world, and returns the engine that steps it.
     """
     ours = make(scene.build())
-    result = SceneResult(scene, scene.steps)
+    result = SceneResult(scene)
     result.engines[ours.title] = EngineResult(ours.title)
     engines = [prepared(engine, scene) for engine in (ours, *_others(scene, peers, result))]
     _load_kernels(ours.world)
@@ -71,7 +72,7 @@ def measure_scene(
         _summarise(result, engines, times)
         result.contacts = ours.world.contacts.count
         result.systems = _shares(before, _spent(ours.world), times[0])
-    yield result
+    return result
 
 
 def _load_kernels(world: World) -> None:
@@ -87,7 +88,7 @@ def _others(scene: BenchScene, peers: Sequence[type[Peer]], result: SceneResult)
     for peer in () if scene.edit is not None else peers:
         result.engines[peer.title] = EngineResult(peer.title)
         try:
-            others.append(OtherEngine(scene, peer))
+            others.append(OtherEngine(scene.build(), peer))
         except CannotBuild as error:
             result.engines[peer.title].failure = str(error)
     return others
@@ -113,8 +114,8 @@ def _note_begin(result: SceneResult, engines: Sequence[Engine], spent: Sequence[
     """Write what the first two seconds took [ms] into the result."""
     for engine, steps in zip(engines, spent, strict=True):
         found = result.engines[engine.title]
-        found.begin = Spread(np.array(steps))
-        found.begin_ratio = float(np.median(np.divide(steps, spent[0])))
+        found.first_seconds_ms = Spread.of(steps)
+        found.times_ours_first_seconds = _ratio(steps, spent[0])
 
 
 def _summarise(result: SceneResult, engines: Sequence[Engine], times: Sequence[Times]) -> None:
@@ -122,8 +123,65 @@ def _summarise(result: SceneResult, engines: Sequence[Engine], times: Sequence[T
     ours = times[0]
     for engine, spent in zip(engines, times, strict=True):
         found = result.engines[engine.title]
-        found.step = Spread(np.array(spent.step))
-        found.ratio = float(np.median(np.divide(spent.step, ours.step)))
+        found.step_ms, found.times_ours = Spread.of(spent.step), _ratio(spent.step, ours.step)
         if spent.read:
-            found.with_read = Spread(spent.with_read)
-            found.ratio_with_read = float(np.median(spent.with_read / ours.with_read))
+            found.step_and_read_ms = Spread.of(spent.with_read)
+            found.times_ours_with_read = _ratio(spent.with_read, ours.with_read)
+
+
+def _ratio(times: ArrayLike, ours: ArrayLike) -> float:
+    return float(np.median(np.divide(times, ours)))
+
+
+class Judge:
+    """Measures the qualities of a scene in every engine, and writes them into its results.
+
+    Every engine's state is copied into one world, and measured there: that disturbs no engine, and all are
+    measured alike.
+
+    Parameters
+    ----------
+    result : SceneResult
+        Whose scene it is, and where figures are written: ``None`` where one is not finite. What diverged has
+        that as its failure.
+    """
+
+    def __init__(self, result: SceneResult) -> None:
+        self._result = result
+        self._world = result.scene.build()
+        self._before: dict[str, Moment] = {}
+
+    def begin(self, engines: Sequence[Engine]) -> None:
+        """Note how the engines' worlds are now: what is measured from here on is measured from that."""
+        for engine in engines:
+            if self._copy(engine):
+                self._before[engine.title] = Moment.of(self._world)
+
+    def look(self, engines: Sequence[Engine], when: When) -> None:
+        """Measure what is due at a time."""
+        due = [quality for quality in self._result.scene.quality if quality.when == when]
+        for engine in engines if due else ():
+            if not self._copy(engine):
+                continue
+            found = self._result.engines[engine.title].quality
+            for quality in due:
+                figure = quality.measure(self._world, self._before[engine.title])
+                if when == "throughout":
+                    figure = max(figure, found.get(quality.name) or 0.0)
+                found[quality.name] = figure if math.isfinite(figure) else None
+
+    def _copy(self, engine: Engine) -> bool:
+        """Copy an engine's state into the world; return whether it is finite."""
+        here, result = self._world, self._result.engines[engine.title]
+        try:
+            there = engine.look()
+        except Diverged:
+            result.failure = "NaN"
+        if result.failure:
+            return False
+        here.synchronise()
+        source, place = (world.batch(Transform, Velocity).rows for world in (there, here))
+        for component, columns in ((Transform, ("position", "angle")), (Velocity, ("linear", "angular"))):
+            for column in columns:
+                here.table(component)[column][place] = there.table(component)[column][source]
+        return True

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from physicslab.components import Spring
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.bench.quality import Places, at_rest, largest_overlap, lost, overlap, within
-from physicslab.lab.bench.scene import BenchScene
-from physicslab.lab.worlds import GRAVITY, floor, open_space
+from physicslab.lab.bench.scene import BenchScene, Places, at_rest, largest_overlap, lost, overlap, within
+from physicslab.lab.worlds import GRAVITY, floor, soft_space
 from physicslab.prefabs import box, circle, container
 from physicslab.world import World
 
@@ -63,17 +62,13 @@ def _columns(of_full_size: int, scale: float) -> int:
     return max(4, round(of_full_size * scale))
 
 
-def _space() -> World:
-    return open_space(collisions="step", contacts="soft")
-
-
 def funnel(count: int, *, floored: bool = True) -> World:
     """Return mixed bodies above two slopes of 35 degrees that leave a gap, with a container below or without.
 
     Lengths go by the root of the number, so that funnels of all sizes are alike; of 3,000 bodies the gap has
     2 m.
     """
-    world, steep, scale = _space(), math.radians(35.0), math.sqrt(count / 3_000)
+    world, steep, scale = soft_space(), math.radians(35.0), math.sqrt(count / 3_000)
     columns = _columns(50, scale)
     across = 0.5 * columns * _PITCH + scale
     for side in (-1.0, 1.0):
@@ -88,7 +83,7 @@ def funnel(count: int, *, floored: bool = True) -> World:
 
 def heap(count: int) -> World:
     """Return mixed bodies that fall into a container."""
-    world, scale = _space(), math.sqrt(count / 2_000)
+    world, scale = soft_space(), math.sqrt(count / 2_000)
     container(world, width=20.0 * scale, height=30.0 * scale)
     _mixed(world, count, Vector2(0.0, 0.2), columns=_columns(40, scale))
     return world
@@ -96,7 +91,7 @@ def heap(count: int) -> World:
 
 def chains(count: int, discs: int = 10) -> World:
     """Return chains of discs on springs of omega dt = 1, bent a little, that fall flat on a floor."""
-    world, random = _space(), np.random.default_rng(1)
+    world, random = soft_space(), np.random.default_rng(1)
     link, mass = 0.25, 0.1
     stiffness = mass / world.simulation.dt**2
     floor(world, width=2.0 * count * discs * link)
@@ -112,7 +107,7 @@ def chains(count: int, discs: int = 10) -> World:
 
 def tumbler(count: int) -> World:
     """Return boxes between four walls."""
-    world, columns = _space(), math.ceil(math.sqrt(count))
+    world, columns = soft_space(), math.ceil(math.sqrt(count))
     inside = (columns + 2) * _PITCH
     container(world, width=inside, height=inside)
     box(world, (0.0, inside + 0.5), width=inside + 2.0, height=1.0, static=True)

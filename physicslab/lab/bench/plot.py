@@ -76,7 +76,7 @@ def _bars(report: BenchReport) -> list[tuple[str, list[EngineResult]]]:
     found = [
         (
             result.scene.name,
-            [other for other in result.engines.values() if other.ratio and other.title != OURS],
+            [other for other in result.engines.values() if other.times_ours and other.name != OURS],
         )
         for result in reversed(report.scenes)
     ]
@@ -94,14 +94,14 @@ def _ratios(axes: Axes, bars: Sequence[tuple[str, Sequence[EngineResult]]]) -> N
         height = 0.84 / len(others)
         for n, other in enumerate(others):
             y = row + 0.42 - (n + 0.5) * height
-            colour, longest = _COLOURS[other.title], other.ratio_with_read or other.ratio or 0.0
-            label = None if other.title in named else other.title
-            named.add(other.title)
+            colour, longest = _COLOURS[other.name], other.times_ours_with_read or other.times_ours or 0.0
+            label = None if other.name in named else other.name
+            named.add(other.name)
             axes.barh(y, longest, height=0.9 * height, color=colour, alpha=0.3)
-            axes.barh(y, other.ratio or 0.0, height=0.9 * height, color=colour, label=label)
-            figures = f"{other.ratio:.2g}"
-            if other.ratio_with_read is not None:
-                figures += f", read back {other.ratio_with_read:.2g}"
+            axes.barh(y, other.times_ours or 0.0, height=0.9 * height, color=colour, label=label)
+            figures = f"{other.times_ours:.2g}"
+            if other.times_ours_with_read is not None:
+                figures += f", read back {other.times_ours_with_read:.2g}"
             axes.annotate(
                 figures, (longest, y), (3, 0), textcoords="offset points", va="center", fontsize=6.5
             )

@@ -1,14 +1,14 @@
-"""All that a run of the benchmark found."""
+"""All that a run of the benchmark found, and its document: times in ms, else SI units."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
-from physicslab.lab.bench.growth import Growth, growths
-from physicslab.lab.bench.memory import Memory
-from physicslab.lab.bench.result import SceneResult
+from physicslab.lab.bench.costs import Memory, Unused
+from physicslab.lab.bench.result import Growth, SceneResult, growths
 from physicslab.lab.bench.targets import Check, checks
-from physicslab.lab.bench.unused import Unused
+from physicslab.lab.document import lab_document, pick, plain
 
 __all__ = ["BenchReport"]
 
@@ -43,3 +43,22 @@ class BenchReport:
     def checks(self) -> list[Check]:
         """These figures beside their targets."""
         return checks(self.scenes, self.growths, self.unused)
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """Every figure, its target, and the machine it was taken on."""
+        return lab_document(
+            "bench", peers=self.peers, scenes=[_scene(result) for result in self.scenes],
+            growth=self.growths, unused=self.unused, bytes_per_body=self.memory,
+            targets=[{**plain(check), "met": check.met} for check in self.checks],
+        )  # fmt: skip
+
+
+def _scene(result: SceneResult) -> dict[str, Any]:
+    scene = result.scene
+    return {
+        **pick(scene, "name", "title", "group"), "bodies": scene.size, "contacts": result.contacts,
+        "settled_s": scene.seconds, "steps": scene.steps, "one_call": scene.compiled_runs,
+        "quality_limits": [pick(quality, "name", "unit", "limit", "when") for quality in scene.quality],
+        "systems_ms": result.systems, "engines": [*result.engines.values()],
+    }  # fmt: skip

@@ -1,14 +1,21 @@
-"""The results of a scene."""
+"""The results of a scene, and how costs grow with the number of bodies."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+
+import numpy as np
 
 from physicslab.lab.bench.clock import Spread
 from physicslab.lab.bench.engine import OURS
 from physicslab.lab.bench.scene import BenchScene
 
-__all__ = ["EngineResult", "SceneResult"]
+__all__ = ["EngineResult", "Growth", "SceneResult", "exponent", "growths"]
+
+_GROUPS = ("piles", "gases", "funnels")
+_SIZES_NEEDED = 3
+"""Without so many, no exponent is fitted."""
 
 
 @dataclass(slots=True)
@@ -17,15 +24,15 @@ class EngineResult:
 
     Attributes
     ----------
-    title : str
-        The engine's name.
-    step : Spread, optional
+    name : str
+        The engine's.
+    step_ms : Spread, optional
         A step of those that are timed; ``None`` where none was.
-    with_read : Spread, optional
+    step_and_read_ms : Spread, optional
         The same, with the state read back; ``None`` for runs in one call.
-    begin : Spread, optional
+    first_seconds_ms : Spread, optional
         A step of the first two seconds, while a pile falls.
-    ratio, ratio_with_read, begin_ratio : float, optional
+    times_ours, times_ours_with_read, times_ours_first_seconds : float, optional
         Median of how many times longer than PhysicsLab it took for the same step; 1 for PhysicsLab.
     quality : dict of str to float or None
         What was measured of how well it simulates; ``None`` where it is not finite.
@@ -33,13 +40,13 @@ class EngineResult:
         Why it was not timed.
     """
 
-    title: str
-    step: Spread | None = None
-    with_read: Spread | None = None
-    begin: Spread | None = None
-    ratio: float | None = None
-    ratio_with_read: float | None = None
-    begin_ratio: float | None = None
+    name: str
+    step_ms: Spread | None = None
+    step_and_read_ms: Spread | None = None
+    first_seconds_ms: Spread | None = None
+    times_ours: float | None = None
+    times_ours_with_read: float | None = None
+    times_ours_first_seconds: float | None = None
     quality: dict[str, float | None] = field(default_factory=dict)
     failure: str = ""
 
@@ -52,8 +59,6 @@ class SceneResult:
     ----------
     scene : BenchScene
         Which.
-    steps : int
-        How many were timed.
     contacts : int
         How many pairs touch at the end.
     engines : dict of str to EngineResult
@@ -63,7 +68,6 @@ class SceneResult:
     """
 
     scene: BenchScene
-    steps: int
     contacts: int = 0
     engines: dict[str, EngineResult] = field(default_factory=dict)
     systems: dict[str, float] = field(default_factory=dict)
@@ -81,3 +85,50 @@ class SceneResult:
         return not self.ours.failure and all(
             figure is not None and figure <= limit for figure, limit in figures
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Growth:
+    """How an engine's cost grows over the sizes of a group.
+
+    Attributes
+    ----------
+    group, engine : str
+        Which scenes, and in which engine.
+    sizes : tuple of int
+        How many bodies.
+    ms : tuple of float
+        Median of a step [ms], size by size.
+    exponent : float
+        The p of the N^p that fits best.
+    """
+
+    group: str
+    engine: str
+    sizes: tuple[int, ...]
+    ms: tuple[float, ...]
+    exponent: float
+
+
+def exponent(sizes: Sequence[float], costs: Sequence[float]) -> float:
+    """Return the slope of the straight line that fits best, by least squares of logarithms.
+
+    >>> round(exponent([10, 20, 40], [3.0, 12.0, 48.0]), 12)
+    2.0
+    """
+    slope, _ = np.polyfit(np.log(sizes), np.log(costs), 1)
+    return float(slope)
+
+
+def growths(results: Sequence[SceneResult]) -> list[Growth]:
+    """Return the growth of every engine in each group of which it ran three sizes or more."""
+    costs: dict[tuple[str, str], dict[int, float]] = {}
+    for result in results:
+        for engine, found in result.engines.items():
+            if found.step_ms is not None and result.scene.group in _GROUPS:
+                costs.setdefault((result.scene.group, engine), {})[result.scene.size] = found.step_ms.median
+    return [
+        Growth(*which, tuple(sizes), tuple(sizes.values()), exponent([*sizes], [*sizes.values()]))
+        for which, sizes in costs.items()
+        if len(sizes) >= _SIZES_NEEDED
+    ]

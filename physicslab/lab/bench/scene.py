@@ -1,16 +1,162 @@
-"""What a scene of the benchmark is: how it is built, for how long it runs, and which quality it must have."""
+"""What a scene of the benchmark is, and figures of quality: speed without them does not count."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
+from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Transform, Velocity
+from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.bench.quality import Quality
 from physicslab.lab.case import Case
+from physicslab.lab.peers.peer import find_contacts
 from physicslab.world import World
 
-__all__ = ["BenchScene"]
+__all__ = [
+    "BenchScene", "Moment", "Places", "Quality", "When", "at_rest", "energy_change", "largest_overlap",
+    "lost", "overlap", "sideways", "sink", "within",
+]  # fmt: skip
+
+type When = Literal["settled", "throughout", "end"]
+"""Before the steps that are timed; the largest of all looks, from the start on; after those steps."""
+type Places = NDArray[np.float64]
+"""Positions of bodies (n, 2) [m]."""
+type Inside = Callable[[Places], NDArray[np.bool_]]
+"""Returns which positions are where bodies may be (n,)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """A world as it was.
+
+    Attributes
+    ----------
+    positions : float64 array (rows, 2)
+        Where its bodies were [m].
+    energy : float
+        Their energy [J].
+    """
+
+    positions: Places
+    energy: float
+
+    @classmethod
+    def of(cls, world: World) -> Moment:
+        """Note how a world is now."""
+        world.synchronise()
+        return cls(world.table(Transform)["position"].copy(), measure_energy(world).total)
+
+
+@dataclass(frozen=True, slots=True)
+class Quality:
+    """A figure of how well a scene was simulated; less is better.
+
+    Attributes
+    ----------
+    name, unit : str
+        What it is, and its SI unit; no unit for a share or a number.
+    limit : float
+        The largest that counts as right.
+    measure : callable
+        Takes the world as it is now, and as it was: at the end since the steps that are timed began, else
+        since the start.
+    when : str
+        When it is measured.
+    """
+
+    name: str
+    unit: str
+    limit: float
+    measure: Callable[[World, Moment], float]
+    when: When = "settled"
+
+
+def _moved(world: World, before: Moment) -> Places:
+    moved: Places = world.table(Transform)["position"] - before.positions
+    return moved
+
+
+def _sideways(world: World, before: Moment) -> float:
+    return float(np.abs(_moved(world, before)[:, 0]).max())
+
+
+def _sink(world: World, before: Moment) -> float:
+    return float(max(0.0, -_moved(world, before)[:, 1].min()))
+
+
+def _overlap(world: World, before: Moment) -> float:
+    find_contacts(world)  # the same measure for every engine
+    return max(0.0, world.contacts.max_penetration)
+
+
+def _energy(world: World, before: Moment) -> float:
+    return abs(measure_energy(world).total / before.energy - 1.0)
+
+
+def _kinetic_energy(world: World, before: Moment) -> float:
+    return measure_energy(world).kinetic
+
+
+def _creep(world: World, before: Moment) -> float:
+    moving = world.batch(Transform, Velocity).rows
+    return float(np.sqrt((_moved(world, before)[moving] ** 2).sum(axis=1).mean()))
+
+
+sideways = partial(Quality, "sideways drift", "m", measure=_sideways)
+"""Returns the largest displacement of a body sideways as a quality, with its limit [m]."""
+sink = partial(Quality, "sink", "m", measure=_sink)
+"""Returns the largest displacement of a body downwards as a quality, with its limit [m]."""
+overlap = partial(Quality, "deepest overlap", "m", measure=_overlap)
+"""Returns the deepest overlap of two bodies as a quality, with its limit [m]."""
+largest_overlap = partial(Quality, "largest overlap", "m", measure=_overlap, when="throughout")
+"""Returns the deepest overlap that was seen while bodies moved as a quality, with its limit [m]."""
+energy_change = partial(Quality, "energy change", "", measure=_energy)
+"""Returns the change of the energy since the start as a quality, with its limit, as a share of it."""
+
+
+def at_rest(energy: float, drift: float) -> tuple[Quality, Quality]:
+    """Return what still moves in a scene that should be at rest, as qualities.
+
+    They are the kinetic energy [J] at the end, and how far bodies went while they were timed [m, rms].
+    """
+    return (
+        Quality("kinetic energy at rest", "J", energy, _kinetic_energy, "end"),
+        Quality("drift at rest", "m", drift, _creep, "end"),
+    )
+
+
+def within(half: float, *, floor: float = 0.0, top: float = math.inf) -> Inside:
+    """Return which places are less than ``half`` from the middle, above a floor and below a top [m]."""
+
+    def inside(places: Places) -> NDArray[np.bool_]:
+        found: NDArray[np.bool_] = (
+            (np.abs(places[:, 0]) < half) & (places[:, 1] > floor) & (places[:, 1] < top)
+        )
+        return found
+
+    return inside
+
+
+def lost(inside: Inside) -> Quality:
+    """Return how many bodies are where they can only be by having passed through others, as a quality.
+
+    Parameters
+    ----------
+    inside : callable
+        Takes positions of bodies, and returns which of them are where they may be.
+    """
+
+    def count(world: World, before: Moment) -> float:
+        places = world.table(Transform)["position"][world.batch(Transform, Velocity).rows]
+        return float(np.count_nonzero(~inside(places)))
+
+    return Quality("lost bodies", "", 0.0, count, "end")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

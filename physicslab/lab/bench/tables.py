@@ -23,54 +23,43 @@ _WITH_READ = "the same, with every position read back after each step"
 
 
 def _ms(spread: Spread | None) -> str:
-    return cell(None if spread is None else spread.median_ms, "#.3g")
+    return cell(None if spread is None else spread.median, "#.3g")
 
 
 def scene_text(result: SceneResult) -> str:
     """Return a line on a scene that has been timed."""
-    parts = [f"{found.title} {found.failure or _ms(found.step) + ' ms'}" for found in result.engines.values()]
+    parts = [
+        f"{found.name} {found.failure or _ms(found.step_ms) + ' ms'}" for found in result.engines.values()
+    ]
     return f"{result.scene.name}: " + ", ".join(parts)
 
 
 def report_text(report: BenchReport) -> str:
     """Return every table that is not empty, the machine first."""
-    blocks = [("", machine_text(peers=report.peers))]
+    blocks = {"": machine_text(peers=report.peers)}
     if report.scenes:
-        blocks += [(_BEGIN, _begin(report)), (_SETTLED, _settled(report))]
-        if report.peers:
-            blocks.append((_WITH_READ, _with_read(report)))
-        blocks += [
-            ("quality: the largest that was seen, before the timing, or at the end", _quality(report)),
-            ("ms a step by system, as shares of the median", _systems(report)),
-        ]
-    if report.growths:
-        blocks.append((_growth_title(report), _growth(report)))
-    if report.unused:
-        blocks.append(
-            ("a step with the systems that the scene needs, and with all there are", _unused(report))
+        blocks[_BEGIN] = _times(
+            report, lambda found: (found.first_seconds_ms, found.times_ours_first_seconds)
         )
-    if report.memory is not None:
-        memory = report.memory
-        blocks.append(
-            ("bytes a body",
-             f"{memory.columns:.0f} in columns, {memory.spawned:.0f} with handles and esper's part, "
-             f"{memory.with_contacts:.0f} with the contacts of a pile")
-        )  # fmt: skip
+        blocks[_SETTLED] = _times(report, lambda found: (found.step_ms, found.times_ours))
+        if report.peers:
+            blocks[_WITH_READ] = _times(
+                report, lambda found: (found.step_and_read_ms, found.times_ours_with_read)
+            )
+        blocks["quality: the largest that was seen, before the timing, or at the end"] = _quality(report)
+        blocks["ms a step by system, as shares of the median"] = _systems(report)
+    if report.growths:
+        blocks[_growth_title(report)] = _growth(report)
+    if report.unused:
+        blocks["a step with the systems that the scene needs, and with all there are"] = _unused(report)
+    if memory := report.memory:
+        blocks["bytes a body"] = (
+            f"{memory.columns:.0f} in columns, {memory.spawned:.0f} with handles and esper's part, "
+            f"{memory.with_contacts:.0f} with the contacts of a pile"
+        )
     if report.checks:
-        blocks.append(("targets", _targets(report)))
-    return "\n\n".join(f"{title}\n{text}" if title else text for title, text in blocks)
-
-
-def _begin(report: BenchReport) -> str:
-    return _times(report, lambda found: (found.begin, found.begin_ratio))
-
-
-def _settled(report: BenchReport) -> str:
-    return _times(report, lambda found: (found.step, found.ratio))
-
-
-def _with_read(report: BenchReport) -> str:
-    return _times(report, lambda found: (found.with_read, found.ratio_with_read))
+        blocks["targets"] = _targets(report)
+    return "\n\n".join(f"{title}\n{text}" if title else text for title, text in blocks.items())
 
 
 def _times(report: BenchReport, of: Callable[[EngineResult], tuple[Spread | None, float | None]]) -> str:
@@ -115,9 +104,9 @@ def _systems(report: BenchReport) -> str:
     names = list(dict.fromkeys(name for result in report.scenes for name in result.systems))
     rows = [["scene", *(name.removesuffix("System") for name in names), "beside them"]]
     for result in report.scenes:
-        if result.ours.step is None:
+        if result.ours.step_ms is None:
             continue
-        rest = result.ours.step.median_ms - sum(result.systems.values())
+        rest = result.ours.step_ms.median - sum(result.systems.values())
         spent = [result.systems.get(name) for name in names]
         rows.append([result.scene.name, *(cell(ms, ".4f") for ms in spent), cell(max(0.0, rest), ".4f")])
     return table(rows)
@@ -144,7 +133,7 @@ def _unused(report: BenchReport) -> str:
     rows = [["scene", "needed, ms", "all, ms", "ratio", "not run", "same bits"]]
     rows += [
         [
-            spent.case.name, _ms(spent.bare), _ms(spent.whole), cell(spent.ratio, ".3f"),
+            spent.scene, _ms(spent.needed_ms), _ms(spent.all_ms), cell(spent.ratio, ".3f"),
             ", ".join(name.removesuffix("System") for name in spent.left_out),
             "yes" if spent.same_bits else "no",
         ]

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from physicslab.lab.bench.catalogue import SIZES
-from physicslab.lab.bench.growth import Growth
-from physicslab.lab.bench.result import SceneResult
-from physicslab.lab.bench.unused import Unused
+from physicslab.lab.bench.costs import Unused
+from physicslab.lab.bench.engine import OURS
+from physicslab.lab.bench.result import Growth, SceneResult
 from physicslab.lab.peers.box2d3_built import BuiltBox2D
-from physicslab.lab.peers.pymunk_mirror import PymunkMirror
+from physicslab.lab.peers.mirrors import PymunkMirror
 
 __all__ = ["Check", "checks"]
 
@@ -70,53 +71,43 @@ class Check:
 
 def checks(results: Sequence[SceneResult], grown: Sequence[Growth], unused: Sequence[Unused]) -> list[Check]:
     """Return every figure of these that has a target."""
-    found = [check for result in results for check in _of_scene(result)]
+    found = [check for result in results for check in (*_of_scene(result), *_of_many(result))]
     for growth in grown:
-        if growth.engine == "PhysicsLab" and {SIZES[0], SIZES[-1]} <= set(growth.sizes):
+        if growth.engine == OURS and {SIZES[0], SIZES[-1]} <= set(growth.sizes):
             found.append(Check(growth.group, "exponent of growth", growth.exponent, EXPONENT, False))
     for spent in unused:
         what = "with unused systems / without"
-        found.append(Check(spent.case.name, what, spent.ratio, UNUSED, False, spent.same_bits))
+        found.append(Check(spent.scene, what, spent.ratio, UNUSED, False, spent.same_bits))
     return found
 
 
-def _of_scene(result: SceneResult) -> list[Check]:
-    name, right = result.scene.name, result.right
+def _of_scene(result: SceneResult) -> Iterator[Check]:
+    name, check, ours = result.scene.name, partial(Check, result.scene.name, right=result.right), result.ours
     peer = result.engines.get(PymunkMirror.title)
-    found: list[Check] = []
-    if result.ours.step is not None and name in SINGLE_STEPS:
-        found.append(
-            Check(
-                name, "a single step, us", 1e3 * result.ours.step.median_ms, SINGLE_STEPS[name], False, right
-            )
-        )
-    if peer is not None and peer.ratio is not None:
+    if ours.step_ms is not None and name in SINGLE_STEPS:
+        yield check("a single step, us", 1e3 * ours.step_ms.median, SINGLE_STEPS[name], False)
+    if peer is not None and peer.times_ours is not None:
         if name == "circles_10":
-            found.append(
-                Check(name, "run, PhysicsLab / pymunk", 1.0 / peer.ratio, COMPILED_RUN, False, right)
-            )
+            yield check("run, PhysicsLab / pymunk", 1.0 / peer.times_ours, COMPILED_RUN, False)
         if name in FASTER:
-            found.append(Check(name, "step, pymunk / PhysicsLab", peer.ratio, FASTER[name], True, right))
-            if peer.ratio_with_read is not None:
-                what = "the same, positions read back"
-                found.append(Check(name, what, peer.ratio_with_read, FASTER_WITH_READ, True, right))
-    return found + _of_many(result) if name in MANY else found
+            yield check("step, pymunk / PhysicsLab", peer.times_ours, FASTER[name], True)
+            if peer.times_ours_with_read is not None:
+                yield check(
+                    "the same, positions read back", peer.times_ours_with_read, FASTER_WITH_READ, True
+                )
 
 
-def _of_many(result: SceneResult) -> list[Check]:
-    """Return the checks of a scene of many bodies: of the first two seconds, and of the steps after that."""
-    name, right, found = result.scene.name, result.right, list[Check]()
-    for when, spread in (("first 2 s", result.ours.begin), ("then", result.ours.step)):
+def _of_many(result: SceneResult) -> Iterator[Check]:
+    """Yield the checks of a scene of many bodies: of the first two seconds, and of the steps after that."""
+    if result.scene.name not in MANY:
+        return
+    check = partial(Check, result.scene.name, right=result.right)
+    for when, spread in (("first 2 s", result.ours.first_seconds_ms), ("then", result.ours.step_ms)):
         for engine in result.engines.values():
-            ratio = engine.begin_ratio if when == "first 2 s" else engine.ratio
-            if ratio is None:
-                continue
-            if engine.title == PymunkMirror.title:
-                what = f"{when}: pymunk / PhysicsLab"
-                found.append(Check(name, what, ratio, FASTER_THAN_PYMUNK, True, right))
-            elif engine.title.startswith(BuiltBox2D.title):
-                what = f"{when}: PhysicsLab / {engine.title}"
-                found.append(Check(name, what, 1.0 / ratio, BESIDE_BOX2D, False, right))
+            ratio = engine.times_ours_first_seconds if when == "first 2 s" else engine.times_ours
+            if ratio is not None and engine.name == PymunkMirror.title:
+                yield check(f"{when}: pymunk / PhysicsLab", ratio, FASTER_THAN_PYMUNK, True)
+            elif ratio is not None and engine.name.startswith(BuiltBox2D.title):
+                yield check(f"{when}: PhysicsLab / {engine.name}", 1.0 / ratio, BESIDE_BOX2D, False)
         if spread is not None:
-            found.append(Check(name, f"{when}: p99 / median", spread.tail, TAIL, False, right))
-    return found
+            yield check(f"{when}: p99 / median", spread.tail, TAIL, False)

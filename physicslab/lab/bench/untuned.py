@@ -11,9 +11,8 @@ from functools import partial
 import numpy as np
 
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.bench.quality import largest_overlap, lost, overlap, within
-from physicslab.lab.bench.scene import BenchScene
-from physicslab.lab.worlds import floor, open_space
+from physicslab.lab.bench.scene import BenchScene, largest_overlap, lost, overlap, within
+from physicslab.lab.worlds import floor, soft_space
 from physicslab.prefabs import box, circle, container
 from physicslab.world import World
 
@@ -23,13 +22,9 @@ _OVERLAP, _LARGEST = 0.06, 0.25
 """Deepest overlap that counts as right at the end, and at any time [m]."""
 
 
-def _space() -> World:
-    return open_space(collisions="step", contacts="soft")
-
-
 def stairs(count: int, steps: int = 30) -> World:
     """Return discs and boxes in turn that fall on stairs and bounce down them into a container."""
-    world, random = _space(), np.random.default_rng(11)
+    world, random = soft_space(), np.random.default_rng(11)
     for n in range(steps):
         box(world, (n * 1.0, -0.5 * n - 5.0), width=1.0, height=10.0, static=True, friction=0.4)
     container(world, (steps + 9.0, -0.5 * steps - 6.0), width=20.0, height=12.0)
@@ -45,7 +40,7 @@ def stairs(count: int, steps: int = 30) -> World:
 
 def dominoes(count: int) -> World:
     """Return dominoes in a row, the first of which is struck by a ball."""
-    world = _space()
+    world = soft_space()
     floor(world, width=0.4 * count + 40.0)
     for n in range(count):
         box(world, (0.35 * n, 0.5), width=0.1, height=1.0, mass=0.5, friction=0.4)
@@ -55,7 +50,7 @@ def dominoes(count: int) -> World:
 
 def struck_wall(rows: int, columns: int) -> World:
     """Return a wall of bricks in bond that heavy discs hit at 15 m/s, one after the other."""
-    world = _space()
+    world = soft_space()
     floor(world, width=400.0)
     for row in range(rows):
         for column in range(columns):
@@ -69,7 +64,7 @@ def struck_wall(rows: int, columns: int) -> World:
 
 def hail(count: int) -> World:
     """Return discs whose sizes differ by a factor of ten, that fall into a container."""
-    world, random = _space(), np.random.default_rng(12)
+    world, random = soft_space(), np.random.default_rng(12)
     container(world, width=14.0, height=40.0)
     radii = np.exp(random.uniform(math.log(0.05), math.log(0.5), count))
     for n, radius in enumerate(radii.tolist()):
@@ -80,19 +75,12 @@ def hail(count: int) -> World:
 
 def zigzag(count: int, boards: int = 6) -> World:
     """Return boxes that slide down boards which lead from side to side."""
-    world, random = _space(), np.random.default_rng(13)
+    world, random = soft_space(), np.random.default_rng(13)
     container(world, (0.0, -3.5 * boards - 6.0), width=16.0, height=6.0)
     for n in range(boards):
         side = 1.0 if n % 2 else -1.0
-        box(
-            world,
-            (1.5 * side, -3.5 * n),
-            width=13.0,
-            height=0.4,
-            angle=0.35 * side,
-            static=True,
-            friction=0.2,
-        )
+        board = (1.5 * side, -3.5 * n)
+        box(world, board, width=13.0, height=0.4, angle=0.35 * side, static=True, friction=0.2)
     sizes = random.uniform(0.15, 0.35, (count, 2)).tolist()
     for n, (width, height) in enumerate(sizes):
         place = Vector2(-5.0 + n % 20 * 0.45, 3.5 + n // 20 * 0.45)
@@ -100,29 +88,29 @@ def zigzag(count: int, boards: int = 6) -> World:
     return world
 
 
-_scene = partial(BenchScene, group="untuned")
+_scene = partial(BenchScene, group="untuned", seconds=5.0)
 _quality = overlap(_OVERLAP), largest_overlap(_LARGEST)
 
 UNTUNED = (
     _scene(
         name="stairs", title="1,500 discs and boxes that fall on stairs", size=1_500,
-        build=partial(stairs, 1_500), quality=_quality, seconds=5.0, steps=300,
+        build=partial(stairs, 1_500), quality=_quality,
     ),
     _scene(
         name="dominoes_400", title="400 dominoes, the first of them struck", size=400,
-        build=partial(dominoes, 400), quality=_quality, seconds=5.0, steps=300,
+        build=partial(dominoes, 400), quality=_quality,
     ),
     _scene(
         name="struck_wall", title="a wall of 800 bricks that heavy discs hit", size=800,
-        build=partial(struck_wall, 20, 40), quality=(*_quality, lost(within(400.0))), seconds=5.0, steps=300,
+        build=partial(struck_wall, 20, 40), quality=(*_quality, lost(within(400.0))),
     ),
     _scene(
         name="hail", title="1,500 discs whose sizes differ by a factor of ten", size=1_500,
-        build=partial(hail, 1_500), quality=(*_quality, lost(within(7.0))), seconds=5.0, steps=300,
+        build=partial(hail, 1_500), quality=(*_quality, lost(within(7.0))),
     ),
     _scene(
         name="zigzag", title="1,000 boxes that slide from board to board", size=1_000,
-        build=partial(zigzag, 1_000), quality=_quality, seconds=5.0, steps=300,
+        build=partial(zigzag, 1_000), quality=_quality,
     ),
 )  # fmt: skip
 """Their scenes; none is run unless it is named."""

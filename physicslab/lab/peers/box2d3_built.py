@@ -8,16 +8,17 @@ import os
 import shlex
 import subprocess
 import weakref
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import ClassVar, override
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.components import Material, Shape, Spring
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.peers.peer import Peer
+from physicslab.lab.peers.peer import Peer, PeerBody
 
 __all__ = ["BuildError", "BuiltBox2D", "built_box2d"]
 
@@ -26,7 +27,8 @@ _DRIVER = Path(__file__).with_name("box2d3.c")
 _OPTIONS = ("-std=c17", "-O3", "-DNDEBUG", "-ffp-contract=off", "-w", "-shared", "-fPIC")
 """Those of Box2D's own release build, for a library."""
 _WIDE = ("-mavx2", "-DBOX2D_AVX2")
-_STATIC, _KINEMATIC, _DYNAMIC = range(3)
+_KINDS = ("static", "kinematic", "dynamic")
+"""By the numbers that the driver has for them."""
 _Numbers = ctypes.POINTER(ctypes.c_double)
 
 
@@ -37,8 +39,7 @@ class BuildError(Exception):
 class BuiltBox2D(Peer):
     """A world in one of Box2D 3's in C: its usual contact stiffness, one worker, no Python within a step.
 
-    Masses, moments of inertia, outlines, springs, friction and restitution are the world's. Made of a
-    subclass that has a library: :func:`built_box2d`.
+    Made of a subclass that has a library: :func:`built_box2d`.
     """
 
     title, module = "Box2D 3 C", "ctypes"
@@ -46,66 +47,48 @@ class BuiltBox2D(Peer):
 
     @override
     def make_space(self) -> None:
-        self._scene = self.library.scene_open(*self.gravity)
-        weakref.finalize(self, self.library.scene_close, self._scene)
-        self._bodies: dict[int, int] = {}
-        self._ground = self._body(_STATIC, (0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0))
-        physics = self.world.physics
+        self.space = self.library.scene_open(*self.gravity)
+        weakref.finalize(self, self.library.scene_close, self.space)
+        self.ground = self.add_body(PeerBody("static", (0.0, 0.0), 0.0))
+        surface = self.world.physics.bounds_friction, self.world.physics.bounds_restitution
         for wall in self.walls():
-            surface = physics.bounds_friction, physics.bounds_restitution
-            self.library.scene_wall(self._scene, self._ground, _array(wall), *surface)
-
-    def _body(self, kind: int, state: Sequence[float]) -> int:
-        return int(self.library.scene_body(self._scene, kind, _array(state)))
+            self.library.scene_wall(self.space, self.ground, _array(wall), *surface)
 
     @override
     def set_gravity(self, gravity: Vector2) -> None:
-        self.library.scene_gravity(self._scene, *gravity)
+        self.library.scene_gravity(self.space, *gravity)
 
     @override
-    def add_body(self, entity: int) -> None:
-        world, kind = self.world, _STATIC
-        pose = world.component(entity, Transform)
-        state = [*pose.position, math.cos(pose.angle), math.sin(pose.angle), 0.0, 0.0, 0.0]
-        if world.has(entity, Velocity):
-            velocity = world.component(entity, Velocity)
-            state[4:] = *velocity.linear, velocity.angular
-            kind = _DYNAMIC if world.has(entity, Mass) else _KINEMATIC
-        self._bodies[entity] = self._body(kind, state)
-        self._weigh(entity)
+    def add_body(self, body: PeerBody) -> int:
+        state = *body.place, math.cos(body.angle), math.sin(body.angle), *body.linear, body.angular
+        return int(self.library.scene_body(self.space, _KINDS.index(body.kind), _array(state)))
 
     @override
-    def add_shape(self, entity: int) -> None:
-        outline, material = self.world.component(entity, Shape), self.world.component(entity, Material)
-        body, surface = self._bodies[entity], (material.friction, material.restitution)
-        if outline.kind == "circle":
-            self.library.scene_disc(self._scene, body, outline.radius, *surface)
+    def add_shape(self, body: int, shape: Shape, material: Material) -> None:
+        surface = material.friction, material.restitution
+        if shape.kind == "circle":
+            self.library.scene_disc(self.space, body, shape.radius, *surface)
         else:
-            self.library.scene_box(self._scene, body, outline.width, outline.height, *surface)
-        self._weigh(entity)  # again: a shape changes the mass of its body
-
-    def _weigh(self, entity: int) -> None:
-        world = self.world
-        if world.has(entity, Mass) and world.has(entity, Velocity):
-            mass = world.component(entity, Mass)
-            turns = world.has(entity, Shape) and not mass.fixed_rotation
-            inertia = float(mass.inertia or 0.0) if turns else 0.0
-            self.library.scene_mass(self._scene, self._bodies[entity], mass.mass, inertia)
+            self.library.scene_box(self.space, body, shape.width, shape.height, *surface)
 
     @override
-    def add_spring(self, entity: int, spring: Spring) -> None:
-        ends = [self._bodies[end] if end else self._ground for end in (spring.a or entity, spring.b)]
+    def weigh(self, body: int, mass: float, inertia: float) -> None:
+        self.library.scene_mass(self.space, body, mass, inertia)
+
+    @override
+    def add_spring(self, spring: Spring, ends: Sequence[int], entity: int) -> None:
         anchors = _array((*spring.anchor_a, *spring.anchor_b))
         numbers = spring.rest_length, *self.frequency(entity, spring)
-        self.library.scene_spring(self._scene, *ends, anchors, *numbers)
+        self.library.scene_spring(self.space, *ends, anchors, *numbers)
 
+    @property
     @override
-    def step(self, dt: float) -> None:
-        self.run(dt, 1)
+    def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
+        return partial(self.library.scene_step, self.space), (SUBSTEPS, 1)
 
     @override
     def run(self, dt: float, steps: int) -> None:
-        self.library.scene_step(self._scene, dt, SUBSTEPS, steps)
+        self.library.scene_step(self.space, dt, SUBSTEPS, steps)
 
     @override
     def positions(self) -> NDArray[np.float64]:
@@ -114,7 +97,7 @@ class BuiltBox2D(Peer):
     def _every_state(self) -> NDArray[np.float64]:
         """Return x, y, vx, vy, angle and angular velocity of the ground and of every body (n, 6)."""
         found = np.empty((len(self._bodies) + 1, 6))
-        self.library.scene_state(self._scene, found.ctypes.data_as(_Numbers))
+        self.library.scene_state(self.space, found.ctypes.data_as(_Numbers))
         return found
 
     @override

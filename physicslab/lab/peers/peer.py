@@ -6,8 +6,9 @@ import importlib
 import math
 import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from typing import Any, ClassVar
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +19,42 @@ from physicslab.state.masses import Diverged
 from physicslab.systems.system import Stage
 from physicslab.world import World
 
-__all__ = ["CannotBuild", "Peer", "find_contacts"]
+__all__ = ["CannotBuild", "Peer", "PeerBody", "find_contacts"]
 
 
 class CannotBuild(Exception):
     """An engine has nothing of the kind that a scene holds."""
 
 
+@dataclass(frozen=True, slots=True)
+class PeerBody:
+    """A body as other engines take it.
+
+    Attributes
+    ----------
+    kind : str
+        ``"static"``, ``"kinematic"`` or ``"dynamic"``.
+    place, linear : pair of floats
+        Where it is [m], and its velocity [m/s].
+    angle, angular : float
+        Its angle [rad], and its angular velocity [rad/s].
+    mass, inertia : float
+        Of one that is dynamic [kg], [kg m^2]; the second is 0 where it does not turn.
+    """
+
+    kind: Literal["static", "kinematic", "dynamic"]
+    place: tuple[float, float]
+    angle: float
+    linear: tuple[float, float] = (0.0, 0.0)
+    angular: float = 0.0
+    mass: float = 0.0
+    inertia: float = 0.0
+
+
 class Peer(ABC):
     """A world's bodies, as they are when this is made, in another engine.
+
+    Masses, moments of inertia, outlines, springs, friction and restitution are the world's.
 
     Attributes
     ----------
@@ -36,6 +64,10 @@ class Peer(ABC):
         Where the bodies came from, and where :meth:`bring_back` writes their state.
     moving : list of int
         The entities that can move.
+    space : Any
+        The engine's own world.
+    ground : Any
+        What is fixed in it, for springs without a second body.
 
     Raises
     ------
@@ -47,6 +79,8 @@ class Peer(ABC):
 
     title: ClassVar[str]
     module: ClassVar[str]
+    space: Any
+    ground: Any
 
     def __init__(self, world: World) -> None:
         with warnings.catch_warnings():
@@ -59,14 +93,35 @@ class Peer(ABC):
             raise CannotBuild("no such force")
         self.gravity = world.physics.gravity if world.physics.gravity_mode == "linear" else Vector2()
         self.make_space()
+        self._bodies: dict[int, Any] = {}
         for entity in world.batch(Transform).entities.tolist():
-            self.add_body(entity)
+            body = self._body(entity)
+            made = self._bodies[entity] = self.add_body(body)
             if world.has(entity, Shape):
-                self.add_shape(entity)
+                self.add_shape(made, world.component(entity, Shape), world.component(entity, Material))
+            if body.kind == "dynamic":  # after its shape, which changes its mass
+                self.weigh(made, body.mass, body.inertia)
         for entity in world.batch(Spring).entities.tolist():
-            self.add_spring(entity, world.component(entity, Spring))
+            spring = world.component(entity, Spring)
+            ends = [self._bodies[end] if end else self.ground for end in (spring.a or entity, spring.b)]
+            self.add_spring(spring, ends, entity)
         moving = world.batch(Transform, Velocity)
         self._rows, self.moving = moving.rows.copy(), moving.entities.tolist()
+
+    def _body(self, entity: int) -> PeerBody:
+        """Return a body of the world."""
+        world = self.world
+        pose = world.component(entity, Transform)
+        place = (pose.position.x, pose.position.y), pose.angle
+        if not world.has(entity, Velocity):
+            return PeerBody("static", *place)
+        velocity = world.component(entity, Velocity)
+        motion = (velocity.linear.x, velocity.linear.y), velocity.angular
+        if not world.has(entity, Mass):
+            return PeerBody("kinematic", *place, *motion)
+        mass = world.component(entity, Mass)
+        turns = world.has(entity, Shape) and not mass.fixed_rotation
+        return PeerBody("dynamic", *place, *motion, mass.mass, float(mass.inertia or 0.0) if turns else 0.0)
 
     @abstractmethod
     def make_space(self) -> None:
@@ -77,25 +132,34 @@ class Peer(ABC):
         """Replace uniform gravity [m/s^2]."""
 
     @abstractmethod
-    def add_body(self, entity: int) -> None:
-        """Add a body without its outline."""
+    def add_body(self, body: PeerBody) -> Any:
+        """Add a body without its outline, and return it."""
 
     @abstractmethod
-    def add_shape(self, entity: int) -> None:
+    def add_shape(self, body: Any, shape: Shape, material: Material) -> None:
         """Add a body's outline and surface."""
 
-    @abstractmethod
-    def add_spring(self, entity: int, spring: Spring) -> None:
-        """Add a spring, which an entity carries."""
+    def weigh(self, body: Any, mass: float, inertia: float) -> None:  # noqa: B027 (not all need it)
+        """Set the mass [kg] and inertia [kg m^2] of a dynamic body, the second 0 where it does not turn."""
 
     @abstractmethod
+    def add_spring(self, spring: Spring, ends: Sequence[Any], entity: int) -> None:
+        """Add a spring between two bodies, which an entity carries."""
+
+    @property
+    @abstractmethod
+    def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
+        """What a program calls with the step [s] to advance, and the settings that come after the step."""
+
     def step(self, dt: float) -> None:
         """Advance by one step [s]."""
+        self.run(dt, 1)
 
     def run(self, dt: float, steps: int) -> None:
         """Advance by so many steps [s]."""
+        step, settings = self.stepping
         for _ in range(steps):
-            self.step(dt)
+            step(dt, *settings)
 
     @abstractmethod
     def positions(self) -> object:
@@ -109,11 +173,11 @@ class Peer(ABC):
         """Return the state of every body that can move (n, 6)."""
         return np.array([self.state(entity) for entity in self.moving]).reshape(-1, 6)
 
-    def restitutions(self) -> set[float]:
-        """Return the restitutions that there are, of bodies and bounds."""
+    def restitutions(self, *, bounds: bool = True) -> set[float]:
+        """Return the restitutions that there are, of bodies and, where ``bounds``, of these."""
         physics, rows = self.world.physics, self.world.batch(Material).rows
         found: set[float] = set(self.world.table(Material)["restitution"][rows].tolist())
-        return found if physics.bounds is None else {*found, physics.bounds_restitution}
+        return {*found, physics.bounds_restitution} if bounds and physics.bounds is not None else found
 
     def walls(self) -> list[tuple[float, float, float, float]]:
         """Return the bounds of the world as lines [m]: x, y of one end, x, y of the other."""

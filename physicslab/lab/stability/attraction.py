@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
 
 from physicslab.components import Transform, Velocity
-from physicslab.diagnostics.audit import Audit
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.lab.stability.case import StabilityCase
-from physicslab.lab.worlds import open_space, spawn_point
+from physicslab.lab.worlds import energy_change, open_space, spawn_point
 from physicslab.prefabs import binary
 from physicslab.state.masses import Diverged
 from physicslab.world import World
@@ -37,13 +37,11 @@ def _unreported(softening: float, apart: float) -> float:
     return float((~finite).sum())
 
 
-def _energy_change(world: World, seconds: float) -> float:
-    """Return the largest change of energy, seen 97 times on the way; the world chooses its steps."""
-    audit = Audit(world)
+def _stops(world: World, seconds: float) -> Iterator[None]:
+    """Advance a world that chooses its steps, with 97 stops on the way."""
     for _ in range(97):
         world.run(seconds=seconds / 97.0)
-        audit.sample(world)
-    return audit.change
+        yield
 
 
 def _close_encounter() -> float:
@@ -51,7 +49,7 @@ def _close_encounter() -> float:
     world = _planets()
     binary(world, separation=2.0, eccentricity=(1.0 - 1e-6) / (1.0 + 1e-6))
     period = 2.0 * math.pi * math.sqrt((1.0 + 1e-6) ** 3 / 2.0)
-    return _energy_change(world, 2.3 * period)
+    return energy_change(world, _stops(world, 2.3 * period))
 
 
 def _pythagorean() -> float:
@@ -59,15 +57,19 @@ def _pythagorean() -> float:
     world = _planets()
     for mass, corner in ((3.0, (1.0, 3.0)), (4.0, (-2.0, -1.0)), (5.0, (1.0, -1.0))):
         spawn_point(world, corner, mass=mass)
-    return _energy_change(world, 70.0)
+    return energy_change(world, _stops(world, 70.0))
 
 
-ATTRACTION = [
+_case = partial(StabilityCase, group="planets")
+_keeps = partial(
+    _case, right="the adaptive method keeps the energy", figure="largest change of energy", limit=1e-6
+)
+
+ATTRACTION = (
     *(
-        StabilityCase(
-            name=name, title=title, group="planets",
+        _case(
+            name=name, title=title, figure="bodies without a finite place, unreported", limit=0.0,
             right="a clear end that names the time, or the right motion: never NaN",
-            figure="bodies without a finite place, unreported", limit=0.0,
             measure=partial(_unreported, softening, apart),
         )
         for name, title, softening, apart in (
@@ -76,14 +78,9 @@ ATTRACTION = [
             ("planets_head_on", "two bodies that fall into each other, softening 0", 0.0, 1.0),
         )
     ),
-    StabilityCase(
-        name="planets_close", title="two bodies that pass at 1e-6 of their largest distance", group="planets",
-        right="the adaptive method keeps the energy", figure="largest change of energy", limit=1e-6,
+    _keeps(
+        name="planets_close", title="two bodies that pass at 1e-6 of their largest distance",
         measure=_close_encounter,
     ),
-    StabilityCase(
-        name="planets_pythagorean", title="the Pythagorean problem, t = 70", group="planets",
-        right="the adaptive method keeps the energy", figure="largest change of energy", limit=1e-6,
-        measure=_pythagorean,
-    ),
-]  # fmt: skip
+    _keeps(name="planets_pythagorean", title="the Pythagorean problem, t = 70", measure=_pythagorean),
+)  # fmt: skip

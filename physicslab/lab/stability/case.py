@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
+from functools import partial
 
-from physicslab.lab.case import Case, attempt
+from physicslab.lab.case import Case, Verdict, attempt
+from physicslab.lab.worlds import open_space
 
-__all__ = ["Outcome", "StabilityCase", "Verdict", "run_case"]
+__all__ = ["MODELS", "Outcome", "StabilityCase", "part_of", "run_case", "touching_space"]
 
-
-class Verdict(StrEnum):
-    """Whether a figure is within its limit."""
-
-    PASSED = "passed"
-    SHORT = "falls short"
+MODELS = {"soft": "soft contacts", "rigid": "rigid contacts"}
+"""What both models of contacts are called, by the word in a scene's ``simulation``."""
+touching_space = partial(open_space, collisions="step")
+"""Returns an empty world for a model of contacts, to which impacts belong as well."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,8 +34,6 @@ class StabilityCase(Case):
         Builds a world, runs it and returns the figure.
     long_s : float
         About how long it takes [s], where only the command runs it, and no test; else 0.
-    run : str
-        The run that it shares with other cases, which look at it from another side; none if empty.
     """
 
     right: str
@@ -45,7 +42,12 @@ class StabilityCase(Case):
     measure: Callable[[], float]
     unit: str = ""
     long_s: float = 0.0
-    run: str = ""
+
+    @property
+    def run(self) -> Hashable:
+        """What is alike for cases that look at one run from several sides."""
+        measure = self.measure
+        return measure.args[1:] if isinstance(measure, partial) and measure.func is part_of else self.name
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,3 +83,12 @@ def run_case(case: StabilityCase) -> Outcome:
     start = time.perf_counter()
     figure, failure = attempt(case.measure)
     return Outcome(case, figure, failure, time.perf_counter() - start)
+
+
+def part_of[*Given](number: int, run: Callable[[*Given], Sequence[float]], *given: *Given) -> float:
+    """Return one of the figures of a run, at which several cases look.
+
+    >>> part_of(1, divmod, 17.0, 5.0)
+    2.0
+    """
+    return run(*given)[number]

@@ -2,53 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 
 from physicslab.lab.case import Catalogue
 from physicslab.lab.stability.attraction import ATTRACTION
-from physicslab.lab.stability.bounces import BOUNCES
-from physicslab.lab.stability.bullets import BULLETS
 from physicslab.lab.stability.case import StabilityCase, run_case
 from physicslab.lab.stability.chains import CHAINS
-from physicslab.lab.stability.crowds import CROWDS
-from physicslab.lab.stability.extremes import EXTREMES
-from physicslab.lab.stability.far import FAR
+from physicslab.lab.stability.impacts import IMPACTS
 from physicslab.lab.stability.ranges import RANGES
-from physicslab.lab.stability.slopes import SLOPES
 from physicslab.lab.stability.springs import SPRINGS
 from physicslab.lab.stability.squeezed import SQUEEZED
-from physicslab.lab.stability.stacks import STACKS
+from physicslab.lab.stability.standing import STANDING
 from physicslab.lab.stability.steps import STEPS
-from physicslab.lab.stability.towers import TOWERS
 
 __all__ = ["CASES", "run_named", "runs_of"]
 
-CASES = Catalogue(
-    (
-        *SPRINGS,
-        *CHAINS,
-        *STACKS,
-        *TOWERS,
-        *CROWDS,
-        *SQUEEZED,
-        *BULLETS,
-        *BOUNCES,
-        *SLOPES,
-        *STEPS,
-        *EXTREMES,
-        *FAR,
-        *ATTRACTION,
-        *RANGES,
-    )
-)
+CASES = Catalogue((*SPRINGS, *CHAINS, *STANDING, *SQUEEZED, *IMPACTS, *STEPS, *ATTRACTION, *RANGES))
 """Every case by name; families are groups."""
 
 
 def runs_of(cases: Sequence[StabilityCase]) -> list[list[str]]:
-    """Return the names of cases by the run that they share, the longest run first."""
-    runs: dict[str, list[StabilityCase]] = {}
+    """Return the names of cases by the run at which they look, the longest run first."""
+    runs: dict[Hashable, list[StabilityCase]] = {}
     for case in cases:
-        runs.setdefault(case.run or case.name, []).append(case)
+        runs.setdefault(case.run, []).append(case)
     longest = max(runs.values(), key=lambda run: run[0].long_s, default=[])
     ordered = sorted(runs.values(), key=lambda run: run is not longest)
     return [[case.name for case in run] for run in ordered]

@@ -31,7 +31,7 @@ def _chain(touches: bool) -> tuple[World, list[int]]:
         for i in range(_LINKS):
             ball = spawn_point(world, ((i + 1) * link, 0.0), mass=0.1)
             before = balls[-1] if balls else None
-            world.add(ball, Spring(None, before, (0.0, 0.0), (0.0, 0.0), link, _STIFF, 0.0))
+            world.add(ball, Spring(None, before, rest_length=link, stiffness=_STIFF))
             balls.append(ball)
     world.component(balls[-1], Mass).mass = 100.0
     return world, balls
@@ -52,17 +52,18 @@ def _chain_growth(touches: bool) -> float:
 def _net_growth(steps: int) -> float:
     """Return how the energy grows of a net of 20 x 20 masses, held at two corners and let go level."""
     world, pitch = open_space(), 0.25
-    made = [
-        [spawn_point(world, (i * pitch, -j * pitch), mass=0.1) for i in range(_SIDE)] for j in range(_SIDE)
-    ]
-    for j in range(_SIDE):
-        for i in range(_SIDE):
-            for dj, di in ((0, 1), (1, 0)):
-                if i + di < _SIDE and j + dj < _SIDE:
-                    ends = (made[j][i], made[j + dj][i + di])
-                    world.spawn(Spring(*ends, (0.0, 0.0), (0.0, 0.0), pitch, _STIFF, 0.0))
+    link = partial(Spring, rest_length=pitch, stiffness=_STIFF)
+    made = {
+        (j, i): spawn_point(world, (i * pitch, -j * pitch), mass=0.1)
+        for j in range(_SIDE)
+        for i in range(_SIDE)
+    }
+    for (j, i), body in made.items():
+        for other in ((j, i + 1), (j + 1, i)):
+            if other in made:
+                world.spawn(link(body, made[other]))
     for i in (0, _SIDE - 1):
-        world.add(made[0][i], Spring(None, None, (0.0, 0.0), Vector2(i * pitch, pitch), pitch, _STIFF, 0.0))
+        world.add(made[0, i], link(anchor_b=Vector2(i * pitch, pitch)))
     weight = 0.1 * _SIDE * _SIDE * GRAVITY
     return energy_growth(world, steps, scale=weight * _SIDE * pitch)
 
@@ -80,10 +81,9 @@ def _off_modes(ratio: float) -> float:
         spawn_point(world, (i + 1.0 + (pulled if i == 0 else 0.0), 0.0), mass=float(mass))
         for i, mass in enumerate(masses)
     ]
-    nothing = (0.0, 0.0)
     for i, (a, b) in enumerate(zip([*made, made[-1]], [None, *made[:-1], None], strict=True)):
-        hook = (0.0 if i == 0 else count + 1.0, 0.0) if b is None else nothing
-        world.spawn(Spring(a, b, nothing, hook, 1.0, stiffness, 0.0))
+        hook = (count + 1.0 if b is None and i else 0.0, 0.0)
+        world.spawn(Spring(a, b, anchor_b=hook, rest_length=1.0, stiffness=stiffness))
     world.run(seconds=seconds)
     root = np.sqrt(masses)
     springs = 2.0 * np.eye(count) - np.eye(count, k=1) - np.eye(count, k=-1)
@@ -95,38 +95,38 @@ def _off_modes(ratio: float) -> float:
     return float(np.abs(found - expected).max())
 
 
-def _cases(touches: bool) -> list[StabilityCase]:
-    scene = "of discs that touch others" if touches else "of points"
-    prefix = "chain_touching" if touches else "chain"
-    title = f"chain {scene}: 50 springs of 1e6 N/m, 0.1 kg each, 100 kg at the end"
-    return [
-        StabilityCase(
-            name=f"{prefix}_bounded", title=title, group="chains",
+_case = partial(StabilityCase, group="chains")
+
+
+def _hung(prefix: str, scene: str, touches: bool) -> tuple[StabilityCase, StabilityCase]:
+    title = f"chain of {scene}: 50 springs of 1e6 N/m, 0.1 kg each, 100 kg at the end"
+    return (
+        _case(
+            name=f"{prefix}_bounded", title=title, figure="farthest from the hook, of its length", limit=1.05,
             right="it swings and stays together: nothing is farther from the hook than the chain is long",
-            figure="farthest from the hook, of its length", limit=1.05, measure=partial(_reach, touches),
+            measure=partial(_reach, touches),
         ),
-        StabilityCase(
-            name=f"{prefix}_energy", title=title, group="chains", right="energy never grows",
-            figure="growth, of what the fall can give", limit=1e-6, measure=partial(_chain_growth, touches),
+        _case(
+            name=f"{prefix}_energy", title=title, figure="growth, of what the fall can give", limit=1e-6,
+            right="energy never grows", measure=partial(_chain_growth, touches),
         ),
-    ]  # fmt: skip
+    )  # fmt: skip
 
 
-CHAINS = [
-    *_cases(touches=False),
-    *_cases(touches=True),
+CHAINS = (
+    *_hung("chain", "points", touches=False),
+    *_hung("chain_touching", "discs that touch others", touches=True),
     *(
-        StabilityCase(
-            name=f"chain_modes_{ratio:g}", group="chains",
+        _case(
+            name=f"chain_modes_{ratio:g}", unit="m", limit=1e-6, measure=partial(_off_modes, ratio),
             title=f"chain of 100 springs between walls, every second mass {ratio:g} times the others, 2 s",
-            right="it goes as its modes do", figure="farthest from there", unit="m", limit=1e-6,
-            measure=partial(_off_modes, ratio),
+            right="it goes as its modes do", figure="farthest from there",
         )
         for ratio in (1.0, 1e3, 1e6)
     ),
-    StabilityCase(
-        name="net_energy", title="net of 20 x 20 masses on springs of 1e6 N/m, 2 s", group="chains",
-        right="bounded: energy never grows", figure="growth, of what the fall can give", limit=1e-6,
+    _case(
+        name="net_energy", title="net of 20 x 20 masses on springs of 1e6 N/m, 2 s", limit=1e-6,
+        right="bounded: energy never grows", figure="growth, of what the fall can give",
         measure=partial(_net_growth, 120),
     ),
-]  # fmt: skip
+)  # fmt: skip

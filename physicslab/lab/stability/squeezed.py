@@ -1,4 +1,4 @@
-"""A box that spins against a wall, and discs that a piston squeezes beyond their volume."""
+"""Bodies put where others are already, a box that spins against a wall, and discs below a piston."""
 
 from __future__ import annotations
 
@@ -7,27 +7,53 @@ from functools import cache, partial
 import numpy as np
 
 from physicslab.components import Material, Shape, Transform, Velocity
-from physicslab.lab.stability.case import StabilityCase
-from physicslab.lab.stability.contact_models import MODELS, touching_space
-from physicslab.lab.worlds import energy_growth, place
+from physicslab.lab.stability.case import MODELS, StabilityCase, part_of, touching_space
+from physicslab.lab.worlds import energy_growth, largest, open_space, place
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 
 __all__ = ["SQUEEZED"]
 
+_CROWD_RADIUS = 0.1
 _SPIN = 1e4
 _DISCS, _RADIUS = 20, 0.25
 
 
+def _crowd(count: int) -> World:
+    """Return a world of discs whose centres coincide; nothing pulls at them."""
+    world = open_space(gravity=None)
+    for _ in range(count):
+        circle(world, (0.0, 0.0), radius=_CROWD_RADIUS)
+    return world
+
+
+def _fastest(world: World) -> float:
+    linear = world.table(Velocity)["linear"]
+    return float(np.hypot(linear[:, 0], linear[:, 1]).max())
+
+
+@cache  # two cases look at one run
+def _parting(count: int, steps: int) -> tuple[float, float]:
+    """Return how fast the fastest disc is on the way [m/s], and the overlap at the end, of a radius."""
+    world = _crowd(count)
+    fastest = largest(world, steps, lambda: _fastest(world))
+    return fastest, world.contacts.max_penetration / _CROWD_RADIUS
+
+
+def _difference(count: int, steps: int) -> float:
+    """Return how far apart two runs end."""
+    worlds = [_crowd(count), _crowd(count)]
+    for world in worlds:
+        world.run(steps=steps)
+    one, other = (world.table(Transform)["position"] for world in worlds)
+    return float(np.abs(one - other).max())
+
+
 def _spinning(contacts: str, e: float) -> tuple[World, int]:
     """Return a box of 50 cm that flies at a wall at 5 m/s while it spins, and the box."""
-    world = touching_space(contacts, gravity=None)
+    world = touching_space(contacts=contacts, gravity=None)
     box(world, (2.0, 0.0), width=1, height=20, static=True, restitution=e, friction=0.5)
-    spinning = box(
-        world, (0.0, 0.0), width=0.5, height=0.5, velocity=(5, 0), angular_velocity=_SPIN, restitution=e,
-        friction=0.5,
-    )  # fmt: skip
-    return world, spinning
+    return world, box(world, (0.0, 0.0), velocity=(5, 0), angular_velocity=_SPIN, restitution=e, friction=0.5)
 
 
 def _spin_growth(contacts: str, e: float) -> float:
@@ -47,12 +73,11 @@ def _squeezed(contacts: str, speed: float) -> tuple[float, float]:
 
     The piston ends where half of the room is left that discs of their area need.
     """
-    world = touching_space(contacts, gravity=None)
-    width, height = 5 * 2.2 * _RADIUS, 4 * 2.2 * _RADIUS
+    world, pitch = touching_space(contacts=contacts, gravity=None), 2.2 * _RADIUS
+    width, height = 5 * pitch, 4 * pitch
     for x in (-0.5, width + 0.5):
         box(world, (x, 0.0), width=1, height=10 * height, static=True, friction=0.3)
     box(world, (0.5 * width, -0.5), width=width + 2, height=1, static=True, friction=0.3)
-    pitch = 2.2 * _RADIUS
     discs = [
         circle(world, (pitch * (i % 5 + 0.5), pitch * (i // 5 + 0.5)), radius=_RADIUS, friction=0.3)
         for i in range(_DISCS)
@@ -67,26 +92,48 @@ def _squeezed(contacts: str, speed: float) -> tuple[float, float]:
         if done / 60.0 >= seconds:
             world.component(piston, Velocity).linear = (0.0, 0.0)
         top = place(world, piston).y - 0.5
-        linear = world.table(Velocity)["linear"]
-        fastest = max(fastest, float(np.hypot(linear[:, 0], linear[:, 1]).max()) / speed)
+        fastest = max(fastest, _fastest(world) / speed)
         out = [not (0.0 < row.position.x < width and 0.0 < row.position.y < top) for row in rows]
         outside = max(outside, float(sum(out)))
     return outside, fastest
 
 
-def _outside(contacts: str, speed: float) -> float:
-    return _squeezed(contacts, speed)[0]
+_crowds = partial(StabilityCase, group="crowds")
 
 
-def _fastest(contacts: str, speed: float) -> float:
-    return _squeezed(contacts, speed)[1]
+def _apart(count: int, steps: int, long_s: float = 0.0) -> tuple[StabilityCase, ...]:
+    title = f"{count:,} discs of 0.1 m on one spot"
+    return (
+        _crowds(
+            name=f"crowd_{count}_speed", title=title, figure="fastest disc", unit="m/s", limit=2.0,
+            right="they come apart slowly: coming apart makes no energy to speak of", long_s=long_s,
+            measure=partial(part_of, 0, _parting, count, steps),
+        ),
+        _crowds(
+            name=f"crowd_{count}_apart", title=f"{title}, after {steps} steps", limit=0.2, long_s=long_s,
+            right="they are apart, to a tenth of their size", figure="deepest overlap, of a radius",
+            measure=partial(part_of, 1, _parting, count, steps),
+        ),
+    )  # fmt: skip
 
 
-SQUEEZED = [
+SQUEEZED = (
+    _crowds(
+        name="coincident_centres", title="two discs on one spot", figure="overlap after 2 s, of a radius",
+        right="they come apart, to a tenth of their size", limit=0.2,
+        measure=partial(part_of, 1, _parting, 2, 120),
+    ),
+    *_apart(1_000, 300),
+    _crowds(
+        name="crowd_1000_same", title="1,000 discs on one spot, twice", figure="difference of two runs",
+        unit="m", right="they go the same ways: no normal is left to chance", limit=0.0,
+        measure=partial(_difference, 1_000, 6),
+    ),
+    *_apart(5_000, 900, long_s=60.0),
     *(
         StabilityCase(
-            name=f"spin_1e4_e{e:g}_{kind}_{contacts}",
-            title=f"a box that spins at 1e4 rad/s against a wall, e = {e:g}, {model}, 1 s", group="spins",
+            name=f"spin_1e4_e{e:g}_{kind}_{contacts}", group="spins",
+            title=f"a box that spins at 1e4 rad/s against a wall, e = {e:g}, {model}, 1 s",
             right=right, figure=figure, limit=limit, measure=partial(measure, contacts, e),
         )
         for e in (0.0, 0.5, 1.0)
@@ -98,17 +145,15 @@ SQUEEZED = [
     ),
     *(
         StabilityCase(
-            name=f"piston_{speed:g}_{kind}_{contacts}",
+            name=f"piston_{speed:g}_{kind}_{contacts}", group="pistons",
             title=f"a piston of {speed:g} m/s presses 20 discs into half of their own area, {model}",
-            group="pistons", right=right, figure=figure, limit=limit,
-            measure=partial(measure, contacts, speed), run=f"piston_{speed:g}_{contacts}",
+            right=right, figure=figure, limit=limit, measure=partial(part_of, n, _squeezed, contacts, speed),
         )
         for speed in (0.2, 2.0, 20.0)
         for contacts, model in MODELS.items()
-        for kind, right, figure, limit, measure in (
-            ("outside", "none leaves the cylinder", "discs outside", 0.0, _outside),
-            ("speed", "none is flung aside at twice its speed", "fastest, of the piston", 2.0, _fastest),
+        for n, kind, right, figure, limit in (
+            (0, "outside", "none leaves the cylinder", "discs outside", 0.0),
+            (1, "speed", "none is flung aside at twice its speed", "fastest, of the piston", 2.0),
         )
     ),
-]  # fmt: skip
-"""Their cases."""
+)  # fmt: skip

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 
 from physicslab.components import Transform
 from physicslab.ecs.config import SimulationConfig
-from physicslab.lab.accuracy.contacts.case import ContactCase, Pose, in_frames, single, state_off
-from physicslab.lab.worlds import GRAVITY, empty_world, floor
+from physicslab.lab.accuracy.contacts.case import ContactCase, Pose, pose_case, state_off
+from physicslab.lab.closed_forms import slid
+from physicslab.lab.worlds import GRAVITY, Surface, empty_world, floor
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 
@@ -30,10 +31,8 @@ def _tiles(friction: float, simulation: SimulationConfig) -> World:
 
 
 def _plank(friction: float, simulation: SimulationConfig) -> World:
-    world = _tiles(friction, simulation)
-    box(
-        world, (0, 0.5 * _THICK), width=1, height=_THICK, friction=friction, velocity=(_SPEED, 0), name="body"
-    )
+    world, start, speed = _tiles(friction, simulation), (0, 0.5 * _THICK), (_SPEED, 0)
+    box(world, start, width=1, height=_THICK, friction=friction, velocity=speed, name="body")
     return world
 
 
@@ -43,72 +42,51 @@ def _disc(simulation: SimulationConfig) -> World:
     return world
 
 
-def _slid(friction: float, height: float, t: float) -> dict[str, Pose]:
-    slowing = friction * GRAVITY
-    t = min(t, _SPEED / slowing) if slowing else t
-    return {"body": (_SPEED * t - 0.5 * slowing * t * t, height, 0.0)}
+def _gone(friction: float, height: float, t: float) -> dict[str, Pose]:
+    return {"body": (slid(_SPEED, friction * GRAVITY, t)[0], height, 0.0)}
 
 
 def _boxes(starts: Sequence[Pose], e: float, way: float, order: int, simulation: SimulationConfig) -> World:
     world = empty_world(simulation)
-    floor(world, restitution=e)
+    surface = Surface(friction=0.6, restitution=e)
+    floor(world, **surface)
     for i, (x, y, angle) in list(enumerate(starts))[::order]:
-        box(
-            world,
-            (way * x, y),
-            width=1,
-            height=1,
-            angle=way * angle,
-            restitution=e,
-            friction=0.6,
-            name=str(i),
-        )
+        box(world, (way * x, y), width=1, height=1, angle=way * angle, name=str(i), **surface)
     return world
 
 
-def _both(
-    one: Callable[[SimulationConfig], World], other: Callable[[SimulationConfig], World],
-    simulation: SimulationConfig,
-) -> tuple[World, ...]:  # fmt: skip
-    return one(simulation), other(simulation)
-
-
-def _apart(count: int, way: float, worlds: Sequence[World], i: int) -> float:
+def _apart(count: int, way: float, world: World, twin: World, i: int) -> float:
     """Return how far boxes are from those of the twin, which ``way`` mirrors where it is -1."""
-    one, twin = worlds
-    poses = {}
-    for n in range(count):
-        pose = twin.component(twin.entity(str(n)), Transform)
-        poses[str(n)] = way * pose.position.x, pose.position.y, way * pose.angle
-    return max(state_off(one, name, pose) for name, pose in poses.items())
+    rows = {str(n): twin.component(twin.entity(str(n)), Transform) for n in range(count)}
+    poses = {name: (way * row.position.x, row.position.y, way * row.angle) for name, row in rows.items()}
+    return max(state_off(world, name, pose) for name, pose in poses.items())
 
 
 def _twins(
     name: str, title: str, what: str, starts: Sequence[Pose], e: float, way: float, order: int
 ) -> ContactCase:
-    build = partial(_boxes, starts, e)
     return ContactCase(
         name=name, title=title, group="symmetry", compared=f"two runs after 1.5 s, the second {what}",
-        measure="largest difference of x, y [m] and of the angle [rad]", source="the other run",
-        build=partial(_both, partial(build, 1.0, 1), partial(build, way, order)), times=in_frames(90),
+        measure="largest difference of x, y [m] and of the angle [rad]", source="the other run", times=(1.5,),
+        build=partial(_boxes, starts, e, 1.0, 1), twin=partial(_boxes, starts, e, way, order),
         error=partial(_apart, len(starts), way),
     )  # fmt: skip
 
 
+_seam = partial(pose_case, group="seams", source="closed form, of one floor")
+
 ALIKE = (
-    single(
+    _seam(
         "seam_plank", "A plank slides over a floor of 1 m tiles, mu = 0.3", "where it is after 0.5 and 2 s",
-        partial(_plank, _MU), (30, 120), partial(_slid, _MU, 0.5 * _THICK), group="seams",
-        source="closed form, of one floor",
+        partial(_plank, _MU), (30, 120), partial(_gone, _MU, 0.5 * _THICK),
     ),
-    single(
+    _seam(
         "seam_box", "A thin box slides over a floor of 1 m tiles, without friction", "where it is after 1 s",
-        partial(_plank, 0.0), (60,), partial(_slid, 0.0, 0.5 * _THICK), group="seams",
-        source="closed form, of one floor",
+        partial(_plank, 0.0), (60,), partial(_gone, 0.0, 0.5 * _THICK),
     ),
-    single(
+    _seam(
         "seam_disc", "A disc slides over a floor of 1 m tiles, without friction", "where it is after 1 s",
-        _disc, (60,), partial(_slid, 0.0, 0.25), group="seams", source="closed form, of one floor",
+        _disc, (60,), partial(_gone, 0.0, 0.25),
     ),
     _twins("mirrored", "Two boxes fall on each other, e = 0.5", "mirrored", _PAIR, 0.5, -1.0, 1),
     _twins("permuted", "Five boxes fall and slide", "with bodies in another order", _HEAP, 0.2, 1.0, -1),

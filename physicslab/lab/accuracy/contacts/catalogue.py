@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from physicslab.lab.accuracy.contacts.alike import ALIKE
-from physicslab.lab.accuracy.contacts.resting import RESTING
-from physicslab.lab.accuracy.contacts.rolling import PIVOTING, ROLLING
+from physicslab.lab.accuracy.contacts.rolling import ROLLING
 from physicslab.lab.accuracy.contacts.sliding import SLIDING
 from physicslab.lab.accuracy.contacts.striking import STRIKING
 from physicslab.lab.case import Catalogue
 
 __all__ = ["CONTACTS", "CONVERGENCE"]
 
-CONTACTS = Catalogue((*RESTING, *SLIDING, *ROLLING, *PIVOTING, *STRIKING, *ALIKE))
+CONTACTS = Catalogue((*SLIDING, *ROLLING, *STRIKING, *ALIKE))
 """Every case by name; families are groups."""
 
 CONVERGENCE = (

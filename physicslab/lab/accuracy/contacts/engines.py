@@ -7,20 +7,18 @@ from dataclasses import dataclass
 from functools import partial
 
 from physicslab.ecs.config import SimulationConfig
-from physicslab.lab.peers.box2d3_mirror import Box2D3Mirror
-from physicslab.lab.peers.box2d_mirror import Box2DMirror
+from physicslab.lab.peers.mirrors import Box2D3Mirror, Box2DMirror, PymunkMirror
 from physicslab.lab.peers.peer import Peer
-from physicslab.lab.peers.pymunk_mirror import PymunkMirror
 from physicslab.world import World
 
-__all__ = ["ENGINES", "OWN", "Engine"]
+__all__ = ["ENGINES", "OWN", "ContactEngine"]
 
 type Advance = Callable[[float], None]
 """Advances one world by a time [s]."""
 
 
 @dataclass(frozen=True, slots=True)
-class Engine:
+class ContactEngine:
     """One way to compute a contact case.
 
     Attributes
@@ -65,14 +63,14 @@ def _theirs(peer: type[Peer], world: World, dt: float) -> Advance:
 
 _SOFT = partial(_simulation, "soft", "step")
 OWN = (
-    Engine("rigid", "rigid contacts", partial(_simulation, "rigid", "auto"), _ours, own=True),
-    Engine("soft", "soft contacts", _SOFT, _ours, own=True),
+    ContactEngine("rigid", "rigid contacts", partial(_simulation, "rigid", "auto"), _ours, own=True),
+    ContactEngine("soft", "soft contacts", _SOFT, _ours, own=True),
 )
 """Ours."""
 ENGINES = (
     *OWN,
-    Engine("pymunk", "pymunk", _SOFT, partial(_theirs, PymunkMirror)),
-    Engine("box2d", "Box2D 2.3", _SOFT, partial(_theirs, Box2DMirror)),
-    Engine("box2d_v3", "Box2D 3", _SOFT, partial(_theirs, Box2D3Mirror)),
+    ContactEngine("pymunk", "pymunk", _SOFT, partial(_theirs, PymunkMirror)),
+    ContactEngine("box2d", "Box2D 2.3", _SOFT, partial(_theirs, Box2DMirror)),
+    ContactEngine("box2d_v3", "Box2D 3", _SOFT, partial(_theirs, Box2D3Mirror)),
 )
 """All of them; each takes one of its own steps for one of the scene's."""

@@ -6,13 +6,14 @@ import math
 from functools import partial
 
 from physicslab.ecs.config import SimulationConfig
-from physicslab.lab.accuracy.contacts.case import Pose, single
+from physicslab.lab.accuracy.contacts.case import Pose, pose_case
 from physicslab.lab.accuracy.figures import number
+from physicslab.lab.closed_forms import rolled
 from physicslab.lab.worlds import GRAVITY, empty_world, floor
 from physicslab.prefabs import box, circle
 from physicslab.world import World
 
-__all__ = ["PIVOTING", "ROLLING"]
+__all__ = ["ROLLING"]
 
 _R = 0.25
 _SPEED, _MU = 3.0, 0.3
@@ -27,13 +28,9 @@ def _thrown(simulation: SimulationConfig) -> World:
     return world
 
 
-def _rolled(t: float) -> dict[str, Pose]:
-    """Return where a disc is that slides until its rim is as fast as its centre, at 2/3 of its speed."""
-    slowing = _MU * GRAVITY
-    sliding = min(t, _SPEED / (3.0 * slowing))
-    speed, turning = _SPEED - slowing * sliding, -2.0 * slowing * sliding / _R
-    x = _SPEED * sliding - 0.5 * slowing * sliding**2 + speed * (t - sliding)
-    return {"disc": (x, _R, 0.5 * turning * sliding + turning * (t - sliding))}
+def _gone(t: float) -> dict[str, Pose]:
+    way, _, rim, _ = rolled(_SPEED, _MU * GRAVITY, t)
+    return {"disc": (way, _R, -rim / _R)}
 
 
 def _groove(simulation: SimulationConfig) -> World:
@@ -88,32 +85,29 @@ def _pivoted(width: float, height: float, key: str, t: float) -> dict[str, Pose]
     return {"box": (arm * math.sin(lean), arm * math.cos(lean), -(inner + lean))}
 
 
-ROLLING = (
-    single(
-        "roll_slip", "A disc of 3 m/s that slides and then rolls, mu = 0.3",
-        "where it is, and how far it has turned, after 0.2 and 1 s", _thrown, (12, 60), _rolled,
-        group="rolling",
-    ),
-    single(
-        "roll_groove", "A disc of 20 rad/s spins down in a groove of 45 degrees, mu = 0.5",
-        "where it is, and how far it has turned, after 0.25 and 2 s", _groove, (15, 120), _spun,
-        group="rolling", wanted=1e-8,
-    ),
-    single(
-        "roll_hill", "A disc rolls over a round hill", "where it is, and how far it has turned, after 1.5 s",
-        _over_hill, (90,), _on_hill, group="rolling", source="an equation of motion, solved to 25 digits",
-        wanted=1e-8,
-    ),
-)  # fmt: skip
-"""Their cases."""
+_rolling = partial(pose_case, group="rolling")
+_EQUATION = "an equation of motion, solved to 25 digits"
 
-PIVOTING = tuple(
-    single(
-        f"pivot_{key}", f"A box of {width:g} m by {height:g} m turns over on its corner",
-        "where it is, and its angle, after 0.4 s", partial(_on_corner, width, height, lean), (24,),
-        partial(_pivoted, width, height, key), group="toppling",
-        source="an equation of motion, solved to 25 digits", wanted=1e-8,
-    )
-    for key, width, height, lean in (("cube", 1.0, 1.0, 0.3), ("tall", 0.5, 1.5, 0.05))
+ROLLING = (
+    _rolling(
+        "roll_slip", "A disc of 3 m/s that slides and then rolls, mu = 0.3",
+        "where it is, and how far it has turned, after 0.2 and 1 s", _thrown, (12, 60), _gone,
+    ),
+    _rolling(
+        "roll_groove", "A disc of 20 rad/s spins down in a groove of 45 degrees, mu = 0.5",
+        "where it is, and how far it has turned, after 0.25 and 2 s", _groove, (15, 120), _spun, wanted=1e-8,
+    ),
+    _rolling(
+        "roll_hill", "A disc rolls over a round hill", "where it is, and how far it has turned, after 1.5 s",
+        _over_hill, (90,), _on_hill, source=_EQUATION, wanted=1e-8,
+    ),
+    *(
+        pose_case(
+            f"pivot_{key}", f"A box of {width:g} m by {height:g} m turns over on its corner",
+            "where it is, and its angle, after 0.4 s", partial(_on_corner, width, height, lean), (24,),
+            partial(_pivoted, width, height, key), group="toppling", source=_EQUATION, wanted=1e-8,
+        )
+        for key, width, height, lean in (("cube", 1.0, 1.0, 0.3), ("tall", 0.5, 1.5, 0.05))
+    ),
 )  # fmt: skip
 """Their cases."""

@@ -12,12 +12,11 @@ from itertools import pairwise
 import numpy as np
 
 from physicslab.lab.accuracy.contacts.case import ContactCase
-from physicslab.lab.accuracy.contacts.engines import ENGINES, OWN, Engine
-from physicslab.lab.accuracy.verdict import Verdict
-from physicslab.lab.case import Job, attempt, cpu_time
+from physicslab.lab.accuracy.contacts.engines import ENGINES, OWN, ContactEngine
+from physicslab.lab.case import Verdict, attempt, cpu_time
+from physicslab.lab.jobs import Job
 from physicslab.lab.peers.peer import CannotBuild
 from physicslab.lab.worlds import steps_not_rigid
-from physicslab.world import World
 
 __all__ = [
     "HALVINGS", "ROUNDING", "ContactCurve", "ContactRow", "ContactStudy", "fitted_order", "measure_row",
@@ -70,7 +69,7 @@ class ContactCurve:
 
     Attributes
     ----------
-    engine : Engine
+    engine : ContactEngine
         Which.
     rows : list of ContactRow
         From the longest step to the shortest.
@@ -82,7 +81,7 @@ class ContactCurve:
         Why there are no rows.
     """
 
-    engine: Engine
+    engine: ContactEngine
     rows: list[ContactRow] = field(default_factory=list)
     order: float | None = None
     verdict: Verdict | None = None
@@ -120,7 +119,7 @@ def fitted_order(steps: Sequence[float], errors: Sequence[float | None]) -> floa
 
 
 def study_case(case: ContactCase, *, sparse: bool = False) -> Job[ContactStudy]:
-    """Compute a case with every engine; yield the share of the work that is done, then the result.
+    """Compute a case with every engine; yield the share of the work that is done.
 
     Where ``sparse``, with our own engines alone, and three steps in place of seven.
     """
@@ -141,7 +140,7 @@ def study_case(case: ContactCase, *, sparse: bool = False) -> Job[ContactStudy]:
                 break
         curve.order = fitted_order([row.dt for row in curve.rows], [row.error for row in curve.rows])
         curve.verdict = _verdict(case, curve)
-    yield ContactStudy(case, curves)
+    return ContactStudy(case, curves)
 
 
 def _verdict(case: ContactCase, curve: ContactCurve) -> Verdict | None:
@@ -156,7 +155,7 @@ def _verdict(case: ContactCase, curve: ContactCurve) -> Verdict | None:
     return Verdict.GOOD if curve.engine.name == "soft" and converges else Verdict.SHORT
 
 
-def measure_row(case: ContactCase, engine: Engine, dt: float) -> ContactRow:
+def measure_row(case: ContactCase, engine: ContactEngine, dt: float) -> ContactRow:
     """Compute a case with an engine and a step [s], repeatedly if that is short.
 
     Raises
@@ -166,7 +165,7 @@ def measure_row(case: ContactCase, engine: Engine, dt: float) -> ContactRow:
     ImportError
         If the engine is not installed.
     """
-    for world in case.build(engine.simulation(dt)):
+    for world in case.worlds(engine.simulation(dt)):
         attempt(partial(engine.start(world, dt), 1.0 / 60.0))  # loads kernels, which is no part of a run
     row = _run(case, engine, dt)
     if row.cpu_s_per_s * case.seconds < _REPEATED_BELOW_S:
@@ -175,26 +174,25 @@ def measure_row(case: ContactCase, engine: Engine, dt: float) -> ContactRow:
     return row
 
 
-def _run(case: ContactCase, engine: Engine, dt: float) -> ContactRow:
-    worlds = case.build(engine.simulation(dt))
+def _run(case: ContactCase, engine: ContactEngine, dt: float) -> ContactRow:
+    worlds = case.worlds(engine.simulation(dt))
     advances = [engine.start(world, dt) for world in worlds]
     compiled = sum(world.compile_s for world in worlds)
-    spent, largest, reached = 0.0, 0.0, 0.0
+    row, spent, reached = ContactRow(dt, 0.0, 0.0), 0.0, 0.0
     for i, t in enumerate(case.times):
         for advance in advances:
-            cpu_s, (_, failure) = cpu_time(partial(attempt, partial(advance, t - reached)))
+            cpu_s, (_, row.failure) = cpu_time(partial(attempt, partial(advance, t - reached)))
             spent += cpu_s
-            if failure:
-                return ContactRow(dt, None, _share(spent, t, worlds, compiled), failure=failure)
-        reached = t
-        error, failure = attempt(partial(case.error, worlds, i))
-        if error is None:
-            return ContactRow(dt, None, _share(spent, t, worlds, compiled), failure=failure)
-        largest = float(np.maximum(largest, error))
-    return ContactRow(dt, largest, _share(spent, reached, worlds, compiled), *steps_not_rigid(*worlds))
-
-
-def _share(spent: float, seconds: float, worlds: Sequence[World], compiled: float) -> float:
-    """Return the process time of a world a second, without the time in which kernels were compiled."""
+            if row.failure:
+                break
+        reached, error = t, None
+        if not row.failure:
+            error, row.failure = attempt(partial(case.error, *worlds, i))
+        row.error = None if error is None or row.error is None else float(np.maximum(row.error, error))
+        if row.failure:
+            break
+    else:
+        row.left_to_soft, row.by_impulses = steps_not_rigid(*worlds)
     compiled = sum(world.compile_s for world in worlds) - compiled
-    return max(0.0, spent - compiled) / seconds / len(worlds)
+    row.cpu_s_per_s = max(0.0, spent - compiled) / reached / len(worlds)
+    return row

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -11,7 +13,7 @@ from numpy.typing import NDArray
 
 from physicslab.lab.accuracy.twins import Document
 
-__all__ = ["KnownScene", "State", "body", "still", "written"]
+__all__ = ["KnownScene", "State", "between", "body", "spring", "still", "written"]
 
 type State = tuple[float, float, float, float, float, float]
 """x, y [m], angle [rad], vx, vy [m/s], spin [rad/s]."""
@@ -36,6 +38,11 @@ class KnownScene:
     truth: Callable[[], NDArray[np.float64]]
 
 
+def between(draw: Random, low: float, high: float) -> float:
+    """Return a number between two, whose logarithm is drawn evenly."""
+    return math.exp(draw.uniform(math.log(low), math.log(high)))
+
+
 def written(
     bodies: list[dict[str, Any]], dt: float, physics: dict[str, Any] | None = None, **simulation: Any
 ) -> Document:
@@ -48,34 +55,39 @@ def written(
     }
 
 
-def still(name: str, place: tuple[float, float], size: tuple[float, float], *, angle: float = 0.0,
-          restitution: float = 0.0, friction: float = 0.0, velocity: tuple[float, float] | None = None,
-          ) -> dict[str, Any]:  # fmt: skip
+def still(
+    name: str, place: tuple[float, float], size: tuple[float, float], *, angle: float = 0.0,
+    restitution: float = 0.0, friction: float = 0.0, velocity: tuple[float, float] | None = None,
+) -> dict[str, Any]:  # fmt: skip
     """Return a box that nothing moves; one with a velocity is driven."""
     driven = {} if velocity is None else {"Velocity": {"linear": list(velocity)}}
-    return {
-        "id": name,
-        "Transform": {"position": list(place), "angle": angle},
-        "Shape": {"kind": "box", "width": size[0], "height": size[1]},
-        "Material": {"restitution": restitution, "friction": friction},
-        **driven,
-    }
+    return _thing(name, place, angle, size, 0.0, restitution, friction) | driven
 
 
-def body(name: str, place: tuple[float, float], *, velocity: tuple[float, float] = (0.0, 0.0),
-         spin: float = 0.0, mass: float = 1.0, radius: float = 0.0,
-         size: tuple[float, float] | None = None, angle: float = 0.0,
-         restitution: float = 0.0, friction: float = 0.0, **parts: Any) -> dict[str, Any]:  # fmt: skip
+def body(
+    name: str, place: tuple[float, float], *, velocity: tuple[float, float] = (0.0, 0.0), spin: float = 0.0,
+    mass: float = 1.0, radius: float = 0.0, size: tuple[float, float] | None = None, angle: float = 0.0,
+    restitution: float = 0.0, friction: float = 0.0, **parts: Any,
+) -> dict[str, Any]:  # fmt: skip
     """Return a body that moves: a disc, a box where it has a size, or a point where it has neither."""
-    shape = {"kind": "circle", "radius": radius} if size is None else {
-        "kind": "box", "width": size[0], "height": size[1]
-    }  # fmt: skip
-    touches = {"Shape": shape, "Material": {"restitution": restitution, "friction": friction}}
-    return {
-        "id": name,
-        "Transform": {"position": list(place), "angle": angle},
-        "Velocity": {"linear": list(velocity), "angular": spin},
-        "Mass": {"mass": mass},
-        **(touches if radius or size else {}),
-        **parts,
-    }
+    motion = {"Velocity": {"linear": list(velocity), "angular": spin}, "Mass": {"mass": mass}}
+    return _thing(name, place, angle, size, radius, restitution, friction) | motion | parts
+
+
+def _thing(
+    name: str, place: tuple[float, float], angle: float, size: tuple[float, float] | None, radius: float,
+    restitution: float, friction: float,
+) -> dict[str, Any]:  # fmt: skip
+    found: dict[str, Any] = {"id": name, "Transform": {"position": list(place), "angle": angle}}
+    if size is not None:
+        found["Shape"] = {"kind": "box", "width": size[0], "height": size[1]}
+    elif radius:
+        found["Shape"] = {"kind": "circle", "radius": radius}
+    if "Shape" in found:
+        found["Material"] = {"restitution": restitution, "friction": friction}
+    return found
+
+
+def spring(name: str, a: str, **fields: Any) -> dict[str, Any]:
+    """Return a spring that holds a body."""
+    return {"id": name, "Spring": {"a": a, **fields}}

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from physicslab.files.reader import read_scene
 from physicslab.lab.accuracy.honesty import smooth, touching
 from physicslab.lab.accuracy.honesty.scene import KnownScene
-from physicslab.lab.accuracy.nudges import ROUNDING
-from physicslab.lab.accuracy.paths import run_path
-from physicslab.lab.accuracy.trust import Trust, assess, scales
-from physicslab.lab.case import Job, attempt
+from physicslab.lab.accuracy.paths import differences, run_path
+from physicslab.lab.accuracy.trust import assess, scales
+from physicslab.lab.accuracy.twins import ROUNDING
+from physicslab.lab.case import attempt
+from physicslab.lab.jobs import Job, scaled
 from physicslab.world import World
 
 __all__ = ["FAMILIES", "QUANTITIES", "HonestRow", "HonestShare", "assess_known", "share_of"]
@@ -115,25 +116,18 @@ def share_of(rows: Sequence[HonestRow]) -> HonestShare:
 def assess_known(family: str, seed: int) -> Job[HonestRow]:
     """Draw a scene of a family, estimate its error, and compare with its truth."""
     known = FAMILIES[family](Random(f"{family} {seed}"))
-    trust = Trust()
-    for found in assess(lambda: read_scene(known.document), known.seconds):
-        if isinstance(found, Trust):
-            trust = found
-        else:
-            yield 0.9 * found
+    trust = yield from scaled(assess(lambda: read_scene(known.document), known.seconds), 0.0, 0.9)
     if trust.failure:
-        yield HonestRow(family, seed, failure=trust.failure)
-        return
+        return HonestRow(family, seed, failure=trust.failure)
     shares, failure = attempt(lambda: _true_shares(known, read_scene(known.document), [*trust.entities]))
     if shares is None:
-        yield HonestRow(family, seed, failure=failure)
-        return
+        return HonestRow(family, seed, failure=failure)
     digits = (trust.entities, trust.velocities, trust.angles, trust.spins)
     claimed = np.array([[10.0**-count for count in each.values()] for each in digits])
     shares = np.clip(shares, ROUNDING, 1.0)
     worst = shares.shape[1] and int((shares[0] / claimed[0]).argmax())
     estimate, error = float(claimed[0].max()), float(shares[0].max())
-    yield HonestRow(
+    return HonestRow(
         family, seed, tuple((shares / claimed).max(axis=1).tolist()), float(claimed[0, worst]),
         float(shares[0, worst]), estimate > _OF_ROUNDING and estimate > _FAR * error,
     )  # fmt: skip
@@ -142,11 +136,6 @@ def assess_known(family: str, seed: int) -> Job[HonestRow]:
 def _true_shares(known: KnownScene, world: World, bodies: list[str]) -> NDArray[np.float64]:
     """Return the true errors (4, n): of positions, velocities, angles and spins, as shares."""
     path = run_path(world, bodies, (known.seconds,))
-    off = path.end - known.truth()
-    errors = np.array(
-        [np.hypot(off[:, 0], off[:, 1]), np.hypot(off[:, 3], off[:, 4]), np.abs(off[:, 2]), np.abs(off[:, 5])]
-    )
-    found: NDArray[np.float64] = errors / np.array(
-        [scale[-1] for scale in scales(world, path, bodies, (known.seconds,))]
-    )
-    return found
+    errors = differences(path.end, known.truth())
+    whole = scales(world, path, bodies, (known.seconds,))
+    return np.array([error / scale[-1] for error, scale in zip(errors, whole, strict=True)])

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.lab.accuracy.honesty.scene import KnownScene, State, body, still, written
+from physicslab.lab.accuracy.honesty.scene import KnownScene, State, between, body, spring, still, written
+from physicslab.lab.closed_forms import rolled, slid
 
 __all__ = ["belt", "bounce", "crowd", "edge", "fall", "slope", "stack"]
 
@@ -19,12 +20,8 @@ _MAX_SCAN = 20_000
 """Parts of a flight in which the first corner that strikes is looked for."""
 
 
-def _log(draw: Random, low: float, high: float) -> float:
-    return math.exp(draw.uniform(math.log(low), math.log(high)))
-
-
 def _dt(draw: Random) -> float:
-    return draw.choice((1 / 60, 1 / 60, _log(draw, 1 / 480, 1 / 12)))
+    return draw.choice((1 / 60, 1 / 60, between(draw, 1 / 480, 1 / 12)))
 
 
 def _of(*states: State) -> Callable[[], NDArray[np.float64]]:
@@ -71,18 +68,13 @@ def belt(draw: Random) -> KnownScene:
     moved: State = (speed * seconds, -0.5, 0.0, speed, 0.0, 0.0)
     bodies = [driven, block]
     if draw.random() < 0.5:
-        slipped = min(seconds, speed / push)
-        x, vx = 0.5 * push * slipped**2 + speed * (seconds - slipped), min(push * seconds, speed)
+        behind, slower = slid(speed, push, seconds)  # seen from the belt
+        x, vx = speed * seconds - behind, speed - slower
     else:
-        stiffness = _log(draw, 3.0, 100.0)
+        stiffness = between(draw, 3.0, 100.0)
         omega = math.sqrt(stiffness / mass)
         far = push / omega**2
-        bodies.append(
-            {
-                "id": "s",
-                "Spring": {"a": "b", "anchor_b": [-2.0, 0.25], "rest_length": 2.0, "stiffness": stiffness},
-            }
-        )
+        bodies.append(spring("s", "b", anchor_b=[-2.0, 0.25], rest_length=2.0, stiffness=stiffness))
         sticks = math.asin(speed / (far * omega)) / omega if speed < far * omega else math.inf
         along = far * (1.0 - math.cos(omega * sticks)) if sticks < math.inf else 0.0
         slips = sticks + (far - along) / speed
@@ -105,39 +97,19 @@ def slope(draw: Random) -> KnownScene:
     plane = still(
         "slope", (0.5 * math.sin(angle), -0.5 * math.cos(angle)), (80.0, 1.0), angle=angle, friction=friction
     )
-    turned = spin = 0.0
     if draw.random() < 0.5:
         rises = 0.25 * size
         shape: dict[str, Any] = {"size": (size, 2.0 * rises), "angle": angle}
-        slides = speed / (held - down) if held > down else math.inf
-        moving = min(seconds, slides)
-        way, rate = speed * moving + 0.5 * (down - held) * moving**2, speed + (down - held) * moving
-        turned = angle
-        rate = rate if moving < slides else 0.0
+        way, rate = slid(speed, held - down, seconds)
+        turned, spin = angle, 0.0
     else:
         rises, shape = 0.5 * size, {"radius": 0.5 * size}
-        # Slipping slows it by mu g cos and turns it by twice that over the radius, until its rim rests.
-        grip = speed / (3.0 * held - down) if 3.0 * held > down else math.inf
-        slipped = min(seconds, grip)
-        rolled = seconds - slipped
-        way, rate = speed * slipped + 0.5 * (down - held) * slipped**2, speed + (down - held) * slipped
-        turn, turns = held / rises * slipped**2, 2.0 * held / rises * slipped
-        if rolled > 0.0:
-            pull = 2.0 / 3.0 * down
-            turn += turns * rolled + 0.5 * pull / rises * rolled**2
-            way, rate = way + rate * rolled + 0.5 * pull * rolled**2, rate + pull * rolled
-            turns += pull / rises * rolled
-        turned, spin = turn, turns  # down is to the left, so that it turns counter-clockwise
-    start = (rises * out[0], rises * out[1])
-    block = body("b", start, velocity=(speed * along[0], speed * along[1]), friction=friction, **shape)
-    end: State = (
-        start[0] + way * along[0],
-        start[1] + way * along[1],
-        turned,
-        rate * along[0],
-        rate * along[1],
-        spin,
-    )
+        way, rate, rim, turns = rolled(speed, held, seconds, pull=down)
+        turned, spin = rim / rises, turns / rises  # down is to the left, so that it turns counter-clockwise
+    start = np.multiply(rises, out)
+    block = body("b", tuple(start.tolist()), velocity=(speed * along[0], speed * along[1]), friction=friction,
+                 **shape)  # fmt: skip
+    end = (*(start + np.multiply(way, along)).tolist(), turned, rate * along[0], rate * along[1], spin)
     return KnownScene(written([plane, block], _dt(draw)), seconds, _of(end))
 
 
@@ -203,11 +175,11 @@ def _next_impact(state: State, width: float, height: float) -> tuple[float, floa
 
 def fall(draw: Random) -> KnownScene:
     """Return a box or disc that falls on a floor, or lies on it, tiny to large, in short and long steps."""
-    size, gravity = _log(draw, 1e-5, 2.0), draw.choice((_G, _G, _log(draw, 1.0, 1e3)))
-    dt = draw.choice((1 / 60, _log(draw, 1e-3, 1.0)))
+    size, gravity = between(draw, 1e-5, 2.0), draw.choice((_G, _G, between(draw, 1.0, 1e3)))
+    dt = draw.choice((1 / 60, between(draw, 1e-3, 1.0)))
     restitution = draw.choice((0.0, 0.0, draw.uniform(0.1, 0.9)))
-    high = draw.choice((0.0, size * _log(draw, 0.1, 100.0)))
-    seconds, thick = dt * draw.randint(3, 40), size * _log(draw, 1.0, 100.0)
+    high = draw.choice((0.0, size * between(draw, 0.1, 100.0)))
+    seconds, thick = dt * draw.randint(3, 40), size * between(draw, 1.0, 100.0)
     left, speed = seconds - math.sqrt(2.0 * high / gravity), restitution * math.sqrt(2.0 * gravity * high)
     y, vy = high - 0.5 * gravity * seconds**2, -gravity * seconds
     if left >= 0.0:
@@ -226,8 +198,8 @@ def fall(draw: Random) -> KnownScene:
 
 def stack(draw: Random) -> KnownScene:
     """Return boxes that lie on each other, a little aside, equal or heavier and heavier: they stay."""
-    count, size, friction = draw.randint(1, 6), _log(draw, 0.02, 2.0), draw.uniform(0.2, 0.9)
-    ratio = draw.choice((1.0, _log(draw, 0.2, 5.0)))
+    count, size, friction = draw.randint(1, 6), between(draw, 0.02, 2.0), draw.uniform(0.2, 0.9)
+    ratio = draw.choice((1.0, between(draw, 0.2, 5.0)))
     bodies = [still("floor", (0.0, -0.5), (50.0, 1.0), friction=friction)]
     bodies += [
         body(f"b{n}", (size * draw.uniform(-0.05, 0.05), (n + 0.5) * size), size=(size, size), mass=ratio**n,
@@ -245,9 +217,8 @@ def crowd(draw: Random) -> KnownScene:
     bodies, truth = [still("floor", (50.0, -0.5), (400.0, 1.0), friction=friction)], []
     for n in range(draw.randint(13, 16)):
         size, speed = draw.uniform(0.2, 1.0), draw.uniform(0.0, 3.0)
-        moving = min(seconds, speed / (friction * _G))
         start = (8.0 * n, 0.25 * size)
         bodies.append(body(f"b{n}", start, velocity=(speed, 0.0), size=(size, 0.5 * size), friction=friction))
-        way = speed * moving - 0.5 * friction * _G * moving**2
-        truth.append((start[0] + way, start[1], 0.0, speed - friction * _G * moving, 0.0, 0.0))
+        way, left = slid(speed, friction * _G, seconds)
+        truth.append((start[0] + way, start[1], 0.0, left, 0.0, 0.0))
     return KnownScene(written(bodies, _dt(draw)), seconds, _of(*truth))

@@ -1,18 +1,69 @@
-"""Cases of a lab in several processes, where no figure depends on what else the machine does."""
+"""The work of a lab: jobs one after the other, or in processes where no figure depends on the machine."""
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 
 from physicslab.kernels.warm import Warmup, is_warm
 
-__all__ = ["in_processes"]
+__all__ = ["Job", "in_processes", "result_of", "run_jobs", "scaled"]
+
+type Job[Result] = Generator[float, None, Result]
+"""Work that yields the share of it that is done (0 to 1) now and then, and returns the result."""
 
 _WORTH_A_PROCESS = 8
 """As many cases take longer than a process needs to start."""
+
+
+def run_jobs[Result](jobs: Iterable[tuple[float, Job[Result]]]) -> Iterator[float | Result]:
+    """Run jobs one after the other; yield the share of the whole that is done, and each result.
+
+    Each begins with the garbage of the one before collected: worlds hold cycles.
+
+    Parameters
+    ----------
+    jobs : iterable of pairs
+        How much of the whole each is, in any unit, and the job.
+    """
+    listed = list(jobs)
+    whole, done = sum(weight for weight, _ in listed) or 1.0, 0.0  # a scene may have no bodies: a weight of 0
+    for weight, job in listed:
+        gc.collect()
+        yield done / whole
+        yield (yield from scaled(job, done / whole, (done + weight) / whole))
+        done += weight
+
+
+def scaled[Result](job: Job[Result], low: float, high: float) -> Job[Result]:
+    """Do a job that is the part from ``low`` to ``high`` of a whole.
+
+    >>> def halves():
+    ...     yield 0.5
+    ...     return "done"
+    >>> list(scaled(halves(), 0.6, 1.0)), result_of(scaled(halves(), 0.6, 1.0))
+    ([0.8], 'done')
+    """
+    while True:
+        try:
+            share = next(job)
+        except StopIteration as end:
+            found: Result = end.value
+            return found
+        yield low + (high - low) * share
+
+
+def result_of[Result](job: Job[Result], show: Callable[[float], object] = float) -> Result:
+    """Do a job, show each share that is done, and return the result."""
+    while True:
+        try:
+            show(next(job))
+        except StopIteration as end:
+            found: Result = end.value
+            return found
 
 
 def in_processes[Result](

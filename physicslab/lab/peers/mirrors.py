@@ -1,0 +1,258 @@
+"""A world's scene in pymunk, Box2D 2.3 and Box2D 3, by their Python bindings."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, override
+
+from physicslab.components import Material, Shape, Spring
+from physicslab.ecs.vector import Vector2
+from physicslab.lab.peers.peer import CannotBuild, Peer, PeerBody
+
+__all__ = ["Box2D3Mirror", "Box2DMirror", "PymunkMirror"]
+
+FAST = 20.0
+"""A body that starts faster [m/s] is one of Box2D's bullets, which do not pass through moving bodies."""
+
+
+class PymunkMirror(Peer):
+    """A world in a space of pymunk's, at its usual settings of 10 iterations and a slop of 5 mm."""
+
+    title, module = "pymunk", "pymunk"
+
+    @override
+    def make_space(self) -> None:
+        engine, physics = self.engine, self.world.physics
+        self.space = engine.Space()
+        self.space.iterations, self.space.collision_slop = 10, 0.005
+        self.set_gravity(self.gravity)
+        self.ground = self.space.static_body
+        self._one_restitution = len(self.restitutions(bounds=False)) < 2
+        for x, y, to_x, to_y in self.walls():
+            # pymunk's walls have a thickness; this puts their inner face on the bound.
+            outward = engine.Vec2d(to_y - y, x - to_x).normalized()
+            ends = engine.Vec2d(x, y) + outward, engine.Vec2d(to_x, to_y) + outward
+            wall = engine.Segment(self.ground, *ends, 1.0)
+            wall.elasticity, wall.friction = physics.bounds_restitution, physics.bounds_friction
+            self.space.add(wall)
+
+    @override
+    def set_gravity(self, gravity: Vector2) -> None:
+        self.space.gravity = gravity.x, gravity.y
+
+    @override
+    def add_body(self, body: PeerBody) -> Any:
+        kinds = self.engine.Body
+        if body.kind == "dynamic":
+            made = kinds(body.mass, body.inertia or math.inf)
+        else:
+            made = kinds(body_type=kinds.STATIC if body.kind == "static" else kinds.KINEMATIC)
+        made.position, made.angle = body.place, body.angle
+        self.space.add(made)
+        if body.kind != "static":
+            made.velocity, made.angular_velocity = body.linear, body.angular
+        return made
+
+    @override
+    def add_shape(self, body: Any, shape: Shape, material: Material) -> None:
+        """Add a body's outline.
+
+        Of the values of a pair pymunk takes the product; the world takes the smaller restitution, which is
+        the product where one is 0 or 1, and the root of the product of frictions.
+        """
+        if shape.kind == "circle":
+            made = self.engine.Circle(body, shape.radius)
+        else:
+            made = self.engine.Poly.create_box(body, (shape.width, shape.height))
+        e = material.restitution
+        made.elasticity = math.sqrt(e) if self._one_restitution else e
+        made.friction = math.sqrt(material.friction)
+        self.space.add(made)
+
+    @override
+    def add_spring(self, spring: Spring, ends: Sequence[Any], entity: int) -> None:
+        anchors = tuple(spring.anchor_a), tuple(spring.anchor_b)
+        numbers = spring.rest_length, spring.stiffness, spring.damping
+        self.space.add(self.engine.DampedSpring(*ends, *anchors, *numbers))
+
+    @property
+    @override
+    def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
+        return self.space.step, ()
+
+    @override
+    def positions(self) -> list[tuple[float, float]]:
+        return [body.position for body in self._bodies.values()]
+
+    @override
+    def state(self, entity: int) -> Sequence[float]:
+        body = self._bodies[entity]
+        return (*body.position, *body.velocity, body.angle, body.angular_velocity)
+
+
+def _smaller_restitution(engine: Any) -> Any:
+    """Return a listener that takes the smaller restitution of a pair, as the world does; Box2D the larger."""
+
+    class SmallerRestitution(engine.b2ContactListener):  # type: ignore[misc]
+        def PreSolve(self, contact: Any, _old: object) -> None:  # noqa: N802
+            contact.restitution = min(contact.fixtureA.restitution, contact.fixtureB.restitution)
+
+    return SmallerRestitution()
+
+
+class Box2DMirror(Peer):
+    """A world in one of Box2D's, at its usual settings of 8 and 3 iterations."""
+
+    title, module = "Box2D 2.3", "Box2D"
+
+    @override
+    def make_space(self) -> None:
+        self.space = self.engine.b2World(gravity=tuple(self.gravity), doSleep=False)
+        if len(self.restitutions()) > 1:  # a call into Python for each contact would be most of a step
+            self._listener = _smaller_restitution(self.engine)
+            self.space.contactListener = self._listener
+        self.ground = self.space.CreateStaticBody()
+        physics, corners = self.world.physics, [wall[:2] for wall in self.walls()]
+        if corners:
+            self.ground.CreateFixture(
+                shape=self.engine.b2ChainShape(vertices_chain=[*corners, corners[0]]),
+                friction=physics.bounds_friction, restitution=physics.bounds_restitution,
+            )  # fmt: skip
+
+    @override
+    def set_gravity(self, gravity: Vector2) -> None:
+        self.space.gravity = gravity.x, gravity.y
+
+    @override
+    def add_body(self, body: PeerBody) -> Any:
+        place = {"position": body.place, "angle": body.angle}
+        motion = {
+            "linearVelocity": body.linear, "angularVelocity": body.angular,
+            "bullet": math.hypot(*body.linear) > FAST,
+        }  # fmt: skip
+        if body.kind == "static":
+            return self.space.CreateStaticBody(**place)
+        if body.kind == "kinematic":
+            return self.space.CreateKinematicBody(**place, **motion)
+        # Set for each body as well: the binding's world lets them sleep after a while in spite of doSleep.
+        fixed = body.inertia == 0.0
+        return self.space.CreateDynamicBody(**place, **motion, fixedRotation=fixed, allowSleep=False)
+
+    @override
+    def add_shape(self, body: Any, shape: Shape, material: Material) -> None:
+        if shape.kind == "circle":
+            made = self.engine.b2CircleShape(radius=shape.radius)
+        else:
+            made = self.engine.b2PolygonShape(box=(0.5 * shape.width, 0.5 * shape.height))
+        body.CreateFixture(
+            shape=made, density=1.0, friction=material.friction, restitution=material.restitution
+        )
+
+    @override
+    def weigh(self, body: Any, mass: float, inertia: float) -> None:
+        body.massData = self.engine.b2MassData(mass=mass, I=inertia, center=(0.0, 0.0))
+
+    @override
+    def add_spring(self, spring: Spring, ends: Sequence[Any], entity: int) -> None:
+        hertz, damping = self.frequency(entity, spring)
+        self.space.CreateDistanceJoint(
+            bodyA=ends[0], bodyB=ends[1], localAnchorA=tuple(spring.anchor_a),
+            localAnchorB=tuple(spring.anchor_b), length=spring.rest_length, frequencyHz=hertz,
+            dampingRatio=damping, collideConnected=True,
+        )  # fmt: skip
+
+    @property
+    @override
+    def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
+        return self.space.Step, (8, 3)
+
+    @override
+    def positions(self) -> list[tuple[float, float]]:
+        return [body.position.tuple for body in self._bodies.values()]
+
+    @override
+    def state(self, entity: int) -> Sequence[float]:
+        body = self._bodies[entity]
+        place, linear = body.position, body.linearVelocity
+        return place.x, place.y, linear.x, linear.y, body.angle, body.angularVelocity
+
+
+class Box2D3Mirror(Peer):
+    """A world in one of Box2D 3's, each step in its usual 4 substeps, with its usual contact stiffness.
+
+    Of a pair's restitutions Box2D takes the larger, the world the smaller: they must all be alike.
+    """
+
+    title, module = "Box2D 3", "pyb2d3"
+
+    @override
+    def make_space(self) -> None:
+        if len(self.restitutions()) > 1:
+            raise CannotBuild("no restitutions that differ")
+        self.space = self.engine.World(gravity=tuple(self.gravity))
+        self.space.sleeping_enabled = False
+        self.ground = self.space.create_static_body()
+        physics = self.world.physics
+        for x, y, to_x, to_y in self.walls():
+            surface = self._surface(physics.bounds_friction, physics.bounds_restitution)
+            self.ground.create_shape(surface, self.engine.segment((x, y), (to_x, to_y)))
+
+    def _surface(self, friction: float, restitution: float) -> Any:
+        material = self.engine.surface_material(friction=friction, restitution=restitution)
+        return self.engine.shape_def(density=1.0, material=material)
+
+    @override
+    def set_gravity(self, gravity: Vector2) -> None:
+        self.space.gravity = gravity.x, gravity.y
+
+    @override
+    def add_body(self, body: PeerBody) -> Any:
+        rotation = self.engine.Rot()
+        rotation.c, rotation.s = math.cos(body.angle), math.sin(body.angle)  # its own are approximate
+        place = {"position": body.place, "rotation": rotation}
+        motion = {"linear_velocity": body.linear, "angular_velocity": body.angular}
+        if body.kind == "static":
+            return self.space.create_static_body(**place)
+        if body.kind == "kinematic":
+            return self.space.create_kinematic_body(**place, **motion)
+        return self.space.create_dynamic_body(**place, **motion, fixed_rotation=body.inertia == 0.0)
+
+    @override
+    def add_shape(self, body: Any, shape: Shape, material: Material) -> None:
+        if shape.kind == "circle":
+            made = self.engine.circle(center=(0.0, 0.0), radius=shape.radius)
+        else:
+            made = self.engine.box(0.5 * shape.width, 0.5 * shape.height)
+        body.create_shape(self._surface(material.friction, material.restitution), made)
+
+    @override
+    def weigh(self, body: Any, mass: float, inertia: float) -> None:
+        data = self.engine.MassData()
+        data.mass, data.center, data.rotational_inertia = mass, (0.0, 0.0), inertia
+        body.mass_data = data
+
+    @override
+    def add_spring(self, spring: Spring, ends: Sequence[Any], entity: int) -> None:
+        hertz, damping = self.frequency(entity, spring)
+        self.space.create_distance_joint(
+            body_a=ends[0], body_b=ends[1], local_anchor_a=tuple(spring.anchor_a),
+            local_anchor_b=tuple(spring.anchor_b), length=spring.rest_length, enable_spring=True,
+            hertz=hertz, damping_ratio=damping, collide_connected=True,
+        )  # fmt: skip
+
+    @property
+    @override
+    def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
+        return self.space.step, (4,)
+
+    @override
+    def positions(self) -> list[tuple[float, float]]:
+        return [tuple(body.position) for body in self._bodies.values()]
+
+    @override
+    def state(self, entity: int) -> Sequence[float]:
+        body = self._bodies[entity]
+        place, linear = body.position, body.linear_velocity
+        angle = math.atan2(body.rotation.s, body.rotation.c)
+        return place[0], place[1], linear[0], linear[1], angle, body.angular_velocity
