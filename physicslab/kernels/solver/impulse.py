@@ -130,22 +130,22 @@ def relax(
     of the impulses of that is booked, and of those found here: each by the mean velocity of before and after
     all of them, or in a crowd, which has too many points to look at again, of before and after itself.
     """
-    pressed, rubbed = book_solved(contacts, near, motion, inverse, acting, h)
+    pressed, friction_work = book_solved(contacts, near, motion, inverse, acting, h)
     crowd = near.counts[WIDE_COUNT] > 0
     if crowd:
         take_means(near, motion)
     rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0), h
     for n in range(sweeps):
         unsettled, push, rub = sweep(contacts, motion, inverse, rigid, n % 2 == 1, crowd)
-        pressed, rubbed = pressed + push, rubbed + rub
+        pressed, friction_work = pressed + push, friction_work + rub
         if crowd:
             push, rub = sweep_wide(near, motion, drift, rigid, True)
-            pressed, rubbed, drift = pressed + push, rubbed + rub, 0.0
+            pressed, friction_work, drift = pressed + push, friction_work + rub, 0.0
         elif not unsettled:
             break
     push, rub = book_relaxed(contacts, near, motion, inverse)
     near.account[CONTACT, ENERGY] += pressed if crowd else pressed + push
-    near.account[FRICTION, ENERGY] += rubbed if crowd else rubbed + rub
+    near.account[FRICTION, ENERGY] += friction_work if crowd else friction_work + rub
 
 
 @kernel

@@ -39,7 +39,7 @@ class Done(NamedTuple):
 
     change: float
     pressed: float
-    rubbed: float
+    friction_work: float
 
 
 @fused
@@ -74,7 +74,7 @@ def _one_point(
     before = point.normal_impulse
     normal, tangent, moment_a, moment_b = one_normal(before, change), 0.0, 0.0, 0.0
     point.normal_impulse = before + normal
-    ma, ia, ib, rubbed = mass.a + mass.b, mass.inertia_a, mass.inertia_b, 0.0
+    ma, ia, ib, friction_work = mass.a + mass.b, mass.inertia_a, mass.inertia_b, 0.0
     pressed = work_of(normal * approach, normal, normal * turn_a, normal * turn_b, ma, ia, ib)
     if manifold.friction > 0.0:
         coupling = response(0.0, ia, ib, turn_a, turn_b, roll_a, roll_b)
@@ -84,10 +84,10 @@ def _one_point(
         point.tangent_impulse = held + tangent
         moment_a, moment_b = tangent * roll_a, tangent * roll_b
         if booked:
-            rubbed = work_of(tangent * slide, tangent, moment_a, moment_b, ma, ia, ib)
+            friction_work = work_of(tangent * slide, tangent, moment_a, moment_b, ma, ia, ib)
     px, py = impulse_at(at.nx, at.ny, normal, tangent)
     moment_a, moment_b = normal * turn_a + moment_a, normal * turn_b + moment_b
-    done = Done(max(abs(normal), abs(tangent)), pressed, rubbed)
+    done = Done(max(abs(normal), abs(tangent)), pressed, friction_work)
     return after_impulse(v, mass, px, py, moment_a, moment_b), done
 
 
@@ -153,7 +153,7 @@ def sweep(
     :data:`_SETTLED`, and where it is ``booked`` the work of normal and of tangential impulses [J].
     """
     linear, angular, unsettled = motion.linear, motion.angular, False
-    pressed, rubbed = 0.0, 0.0
+    pressed, friction_work = 0.0, 0.0
     for number in range(contacts.number):
         p = contacts.touching[contacts.number - 1 - number if backward else number]
         manifold, one, two = contacts.manifolds[p], contacts.points[2 * p], contacts.points[2 * p + 1]
@@ -163,7 +163,7 @@ def sweep(
             v, done = _one_point(manifold, one, v, mass, soft, booked)
             change = done.change
             if booked:
-                pressed, rubbed = pressed + done.pressed, rubbed + done.rubbed
+                pressed, friction_work = pressed + done.pressed, friction_work + done.friction_work
         else:
             v, done = _normals(manifold, one, two, v, mass, soft)
             change = done.change
@@ -173,8 +173,8 @@ def sweep(
                 v, done = _friction(manifold, one, two, v, mass)
                 change = max(change, done.change)
                 if booked:
-                    rubbed += done.rubbed
+                    friction_work += done.friction_work
         put_velocity(linear, angular, a, b, v)
         held = one.normal_impulse + (two.normal_impulse if manifold.count == 2 else 0.0)
         unsettled = unsettled or change > _SETTLED * held
-    return unsettled, pressed, rubbed
+    return unsettled, pressed, friction_work

@@ -127,7 +127,7 @@ def book_solved(
     outside is booked by :func:`book_relaxed`, at the places that bodies have now; that these impulses acted
     before is booked here.
     """
-    pressed, rubbed = 0.0, 0.0
+    pressed, friction_work = 0.0, 0.0
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
@@ -141,7 +141,7 @@ def book_solved(
             if push != 0.0 or rub != 0.0:  # most that do not touch yet have none
                 before = point_state(frame, velocity_of(near.linear_before, near.angular_before, a, b))
                 pressed += 0.5 * push * (before.v + at.v)
-                rubbed += 0.5 * rub * (before.sliding + at.sliding)
+                friction_work += 0.5 * rub * (before.sliding + at.sliding)
             point.separation += h * at.v
             noted[j, 0], noted[j, 1], noted[j, 2], noted[j, 3] = push, rub, at.v, at.sliding
             x, y = impulse_at(nx, ny, push, rub)
@@ -156,9 +156,9 @@ def book_solved(
                 pull, across = along_and_across(nx, ny, ax, ay)
                 push, rub = along_and_across(nx, ny, px, py)
                 pressed -= h * push * pull
-                rubbed -= h * rub * across
+                friction_work -= h * rub * across
             _book_moved(near, motion, inverse, a, b, x, y, px, py)
-    return pressed, rubbed
+    return pressed, friction_work
 
 
 class Given(NamedTuple):
@@ -210,7 +210,7 @@ def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
     Book what comes from outside by the whole of them: momentum, and the work of drivers. Outside is what no
     impulse moves: fixed, held and driven bodies, and what keeps a body from turning.
     """
-    pressed, rubbed, given = 0.0, 0.0, Given(0.0, 0.0, 0.0)
+    pressed, friction_work, given = 0.0, 0.0, Given(0.0, 0.0, 0.0)
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
@@ -224,14 +224,14 @@ def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
             if more != 0.0 or also != 0.0:
                 at = point_state(frame, v)
                 pressed += 0.5 * more * (noted[j, 2] + at.v)
-                rubbed += 0.5 * also * (noted[j, 3] + at.sliding)
+                friction_work += 0.5 * also * (noted[j, 3] + at.sliding)
             x, y = impulse_at(frame.nx, frame.ny, push, rub)
             moment_a, moment_b = moments_of(frame, x, y)
             px, py, turn_a, turn_b = px + x, py + y, turn_a + moment_a, turn_b + moment_b
         if inverse.inertia[a] == 0.0 or inverse.inertia[b] == 0.0:
             given = _given(given, near, motion, inverse, a, b, px, py, turn_a, turn_b)
     _book_given(near, given)
-    return pressed, rubbed
+    return pressed, friction_work
 
 
 @always_inlined

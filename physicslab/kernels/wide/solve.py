@@ -256,10 +256,10 @@ def _sweep_discs(
     answer = PairInverseMass(ma, ia * ra, mb, ib * rb)  # of discs, to a tangential impulse
     after = after_impulse(v, answer, px, py, friction_impulse, -friction_impulse)
     _put_velocities(slots, k, motion, after)
-    pressed, rubbed = everywhere(0.0), everywhere(0.0)
+    pressed, friction_work = everywhere(0.0), everywhere(0.0)
     if booked:
         pressed = push * (approach + 0.5 * (ma + mb) * push)
-        rubbed = work_of(
+        friction_work = work_of(
             friction_impulse * across, friction_impulse, ra * friction_impulse, rb * friction_impulse,
             ma + mb, ia, ib,
         )  # fmt: skip
@@ -267,8 +267,8 @@ def _sweep_discs(
         u = mean_velocities(slots, k, mean)
         along, across = along_and_across(nx, ny, u.bx - u.ax, u.by - u.ay)
         pressed = pressed + impulse * along
-        rubbed = rubbed + tangent * (across - rb * u.wb - ra * u.wa)
-    return pressed, rubbed
+        friction_work = friction_work + tangent * (across - rb * u.wb - ra * u.wa)
+    return pressed, friction_work
 
 
 @fused
@@ -320,7 +320,7 @@ def _sweep_boxes(
     put(data, at + TWO + IMPULSE, impulse2 + push2)
     turn_a, turn_b = n1a * push1 + n2a * push2, n1b * push1 + n2b * push2
     wa, wb = v.wa - ia * turn_a, v.wb + ib * turn_b
-    pressed, rubbed = everywhere(0.0), everywhere(0.0)
+    pressed, friction_work = everywhere(0.0), everywhere(0.0)
     if booked:
         pressed = work_of(
             push1 * approach1 + push2 * approach2, push1 + push2, turn_a, turn_b, ma + mb, ia, ib
@@ -341,7 +341,7 @@ def _sweep_boxes(
     turned = PairVelocity(v.ax, v.ay, wa, v.bx, v.by, wb)
     _put_velocities(slots, k, motion, after_impulse(turned, mass, px, py, turn_a, turn_b))
     if booked:
-        rubbed = work_of(
+        friction_work = work_of(
             friction1 * sliding1 + friction2 * sliding2, friction_impulse, turn_a, turn_b, ma + mb, ia, ib
         )
     if drift != 0.0:
@@ -349,9 +349,9 @@ def _sweep_boxes(
         along, across = along_and_across(nx, ny, u.bx - u.ax, u.by - u.ay)
         pressed = pressed + impulse1 * (along + u.wb * n1b - u.wa * n1a)
         pressed = pressed + impulse2 * (along + u.wb * n2b - u.wa * n2a)
-        rubbed = rubbed + tangent1 * (across + u.wb * t1b - u.wa * t1a)
-        rubbed = rubbed + tangent2 * (across + u.wb * t2b - u.wa * t2a)
-    return pressed, rubbed
+        friction_work = friction_work + tangent1 * (across + u.wb * t1b - u.wa * t1a)
+        friction_work = friction_work + tangent2 * (across + u.wb * t2b - u.wa * t2a)
+    return pressed, friction_work
 
 
 @inlined
@@ -364,15 +364,15 @@ def sweep_wide(
     and where there is a drift that of those before it, at the mean velocities that ``near.linear_before`` and
     the angular ones hold.
     """
-    pressed, rubbed = everywhere(0.0), everywhere(0.0)
+    pressed, friction_work = everywhere(0.0), everywhere(0.0)
     mean = Mean(near.linear_before, near.angular_before)
     for number in range(near.counts[DISC_BLOCKS]):
         one, other = _sweep_discs(near.discs, near.discs.order[number], motion, mean, drift, soft, booked)
-        pressed, rubbed = pressed + one, rubbed + other
+        pressed, friction_work = pressed + one, friction_work + other
     for number in range(near.counts[BOX_BLOCKS]):
         one, other = _sweep_boxes(near.boxes, near.boxes.order[number], motion, mean, drift, soft, booked)
-        pressed, rubbed = pressed + one, rubbed + other
-    return sum_of(pressed), sum_of(rubbed)
+        pressed, friction_work = pressed + one, friction_work + other
+    return sum_of(pressed), sum_of(friction_work)
 
 
 @fused
