@@ -112,7 +112,7 @@ def _gather(
     return n, approaching
 
 
-@inlined
+@fused
 def _solve(impact: Equations, n: int, share: float, rest: float, rate: float) -> bool:
     """Find the impulses at ``share`` of the restitutions; return whether there are any."""
     for i in range(n):
@@ -146,7 +146,7 @@ def _energy_gained(impact: Equations, n: int) -> float:
     return (work + _ROUNDING * cancelled) / scale if scale > 0.0 else 0.0
 
 
-@inlined
+@fused
 def _find_impulses(impact: Equations, n: int, rest: float, rate: float) -> tuple[bool, int]:
     """Find the impulses of points that meet at once; return whether there are any, and their law."""
     a, measures, vectors = impact.a, impact.measures, impact.vectors
