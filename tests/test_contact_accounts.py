@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from physicslab import World
@@ -142,6 +142,7 @@ def test_damping_takes_what_a_body_in_free_fall_does_not_keep(staged: bool) -> N
 
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from((0.0, 0.3, 0.9)), st.sampled_from((0.0, 0.4)), st.booleans())
+@example(240, 0.3, 0.0, False)  # friction would give 1.7 mJ
 def test_both_ways_to_make_a_step_book_the_same(seed: int, e: float, damping: float, driven: bool) -> None:
     random = np.random.default_rng(seed)
     both: list[Accounts] = []
@@ -161,7 +162,7 @@ def test_both_ways_to_make_a_step_book_the_same(seed: int, e: float, damping: fl
     turned = (found.angular_momentum for found in both)
     for one, other in zip(*(found.items() for found in turned), strict=True):
         assert one[0] == other[0] and abs(one[1] - other[1]) <= 1e-9 * scale
-    assert both[0].energy["friction"] <= 1e-9 and both[0].energy["impacts"] <= 1e-12
+    assert both[0].energy["friction"] <= 0.0 and both[0].energy["impacts"] <= 1e-12
 
 
 def test_a_step_that_fails_leaves_nothing_in_the_account() -> None:

@@ -183,8 +183,12 @@ def watch_stages(world: World, monkeypatch: pytest.MonkeyPatch) -> list[NDArray[
             momentum = float(np.abs(mass[:, None] * velocity).sum())
             energy = np.abs(booked[:, 0]).sum() + abs(before.energy)
             assert booked[[accounts.IMPACTS, accounts.FRICTION], 0].max() <= 1e-12 * energy
-            left = np.abs(change - booked.sum(axis=0))
-            missed.append(left / (energy, momentum, momentum, 10.0 * momentum))
+            left = np.abs(change - booked.sum(axis=0)) / (energy, momentum, momentum, 10.0 * momentum)
+            if state.collisions > impacts + 1:
+                left[3] = (
+                    0.0  # a body that meets two others in a substep may keep its angular momentum less well
+                )
+            missed.append(left)
 
     monkeypatch.setattr(ResolveSystem, "resolve_impacts", watched)
     return missed
@@ -214,8 +218,7 @@ def test_each_stage_of_impacts_of_a_crowd_is_explained(name: str, monkeypatch: p
     world.install(Bystander())
     missed = watch_stages(world, monkeypatch)
     world.run(steps=40)
-    # A body that meets two others within a substep may keep its angular momentum less well.
-    assert missed and np.max(missed, axis=0)[:3].max() <= 1e-12
+    assert missed and np.max(missed) <= 1e-12
 
 
 @settings(max_examples=60, deadline=None)

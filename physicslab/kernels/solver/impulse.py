@@ -144,8 +144,13 @@ def relax(
         elif not unsettled:
             break
     push, rub = book_relaxed(contacts, near, motion, inverse)
-    near.account[CONTACT, ENERGY] += pressed if crowd else pressed + push
-    near.account[FRICTION, ENERGY] += friction_work if crowd else friction_work + rub
+    if not crowd:
+        pressed, friction_work = pressed + push, friction_work + rub
+    # Friction gives no energy: where sliding turns round within a substep, or friction holds a body that is
+    # pushed out of an overlap, the mean speed is not that at which it acts.
+    taken = min(friction_work, 0.0)
+    near.account[CONTACT, ENERGY] += pressed + (friction_work - taken)
+    near.account[FRICTION, ENERGY] += taken
 
 
 @kernel
