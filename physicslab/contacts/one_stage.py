@@ -53,11 +53,11 @@ def do_stage(
     course = np.array([part]), np.array([[1.0], [0.0], [0.0]]), *state.window, -1.0, True
     plan = 2, state.simulation.iterations or 0, h, h, state.moment, h, 1 if first else 0
     gravity = _NOTHING, _NOTHING, *inverse, 0.0, 0.0, speculative_margin(state, h), 0
-    packed = _NO_VECTORS, np.zeros((0, 3), np.int64), _NO_VECTORS
+    packed = _NO_VECTORS, np.zeros((0, 3), np.int64)
     rows = np.zeros(0, np.int64)
     sleepers = False, 0, none, _NOTHING, _NOTHING, none, none, rows, _NO_VECTORS, False
     *_, impacts, _, contacts.impulse_dt = soft.advance(
-        1, 1, 0, plan, course, -1, motion, motion, sizes_of(state), materials_of(state), inverse,
+        1, 1, 0, plan, course, -1, motion, _NOTHING, sizes_of(state), materials_of(state), inverse,
         state.bodies.sub_integrated, acting or acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
         (0.0, 0.0), np.zeros((8, 0)), bounds_of(state), near, contacts.opened, softness, contacts.impulse_dt,
         contacts.step_log, np.zeros(soft.COSTS, np.int64),

@@ -175,15 +175,13 @@ class Springs(NamedTuple):
 
 
 class Packed(NamedTuple):
-    """The state as compiled forces read it (2, 3 rows + 1), and their addresses (n, 3).
+    """The state as compiled forces read it, and positions from before bodies are moved apart (3, 3 rows + 1).
 
-    Then room for positions (rows, 2) [m] from before bodies are moved apart; of no length where what that
-    changes is booked in any case.
+    Then the addresses of these forces (n, 3).
     """
 
     state: Vectors
     calls: Calls
-    before: Vectors
 
 
 class Gravity(NamedTuple):
@@ -248,7 +246,7 @@ SoftnessTuple = tuple[float, float, float]
 PlanTuple = tuple[int, int, float, float, float, float, int]
 CourseTuple = tuple[Rows, Vectors, float, float, float, bool]
 SpringsTuple = tuple[Numbers, Rows]
-PackedTuple = tuple[Vectors, Calls, Vectors]
+PackedTuple = tuple[Vectors, Calls]
 GravityTuple = tuple[Numbers, Numbers, Numbers, Numbers, float, float, float, int]
 SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows, Vectors, bool]
 """The same, without names."""

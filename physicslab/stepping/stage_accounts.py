@@ -40,9 +40,8 @@ class StageAccounts:
         The sum of the accelerations [m/s^2] by forces that are the same everywhere.
     other : int
         The cause by which the kicks of other forces are booked.
-    before : float64 array (rows, 2)
-        Room for positions [m] from before bodies are moved apart; of no length where only uniform forces
-        store energy.
+    stores : bool
+        Whether forces store energy that are not uniform.
     """
 
     kernels: tuple[Any, ...] = (work.book_kick, work.book_damping)
@@ -62,7 +61,8 @@ class StageAccounts:
         driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0) & ~bodies.sub_integrated
         self._driven = driven if others and driven.any() else None
         self._start: tuple[NDArray[np.float64], NDArray[np.float64]]
-        self.before: NDArray[np.float64] = np.zeros((len(driven) if self._storing else 0, 2))
+        self.stores = bool(self._storing)
+        self._before = bodies.packed[2, : 2 * len(driven)].reshape(-1, 2)
 
     @property
     def notes_forces(self) -> bool:
@@ -107,8 +107,8 @@ class StageAccounts:
 
     def note_places(self, state: State) -> None:
         """Note where bodies are before they are moved apart."""
-        if self._storing:
-            self.before[:] = state.table(Transform)["position"]
+        if self.stores:
+            self._before[:] = state.table(Transform)["position"]
 
     def book_overlap(self, state: State) -> None:
         """Book what moving bodies apart has changed in what forces store that are not the same everywhere.
@@ -116,11 +116,11 @@ class StageAccounts:
         The kernel has booked their work as if they stayed as they are along that way.
         """
         position, bodies = state.table(Transform)["position"], state.bodies
-        if not self._storing or np.array_equal(position, self.before):
+        if not self.stores or np.array_equal(position, self._before):
             return
-        way, now = position - self.before, position.copy()
+        way, now = position - self._before, position.copy()
         stored = sum(force.potential_energy(state) for force in self._storing)
-        position[:] = self.before
+        position[:] = self._before
         stored -= sum(force.potential_energy(state) for force in self._storing)
         position[:] = now
         weight = state.table(Mass)["mass"][:, None] * np.array((self.gravity.x, self.gravity.y))

@@ -206,7 +206,7 @@ class Substeps:
                 self._part(soft.WIDEN, share)
             if stage is Stage.CONTACT and self._sleep is not None:
                 self._part(soft.WAKE, share)
-            if stage is Stage.RELAX and len(accounts.before):
+            if stage is Stage.RELAX and accounts.stores:
                 self._hooks[len(self._parts)] = lambda state, h: accounts.book_overlap(state)
                 self._part(soft.OVERLAP)
             return ""
@@ -361,7 +361,7 @@ class Substeps:
             self._entry = direct_entry(soft.advance)
         motion, laws, marked = self._fixed
         bodies = state.bodies
-        packed = bodies.packed, self._addresses(state), self._accounts.before
+        packed = bodies.packed, self._addresses(state)
         sleepers = (
             self._sleep is not None, sleep.count, sleep.asleep, sleep.rest, sleep.slowest, marked,
             contacts.inactive, contacts.sleeping, sleep.forces, sleep.unverified,
@@ -391,7 +391,7 @@ class Substeps:
             accounts.gravity.y, speculative_margin(state, h), accounts.other,
         )  # fmt: skip
         columns = (
-            motion_of(state), tuple(state.checkpoint.columns), sizes_of(state), materials_of(state),
+            motion_of(state), state.checkpoint.numbers, sizes_of(state), materials_of(state),
             inverse_in(state), bodies.sub_integrated, acting_in(state), gravity,
         )  # fmt: skip
         laws = (physics.linear_damping, physics.angular_damping), np.zeros((8, 0)), bounds_of(state)

@@ -5,7 +5,7 @@ It goes through the stages of a substep in the order in which it is given them
 list pairs, to wake bodies, or at a stage where systems act that no kernel computes.
 """
 
-from physicslab.kernels import Flags, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.accounts import BALANCE, BEFORE, ENERGY, PX, PY, SPIN
 from physicslab.kernels.arguments import (
     Acting,
@@ -86,13 +86,14 @@ _TIMED = 8
 
 
 @inlined
-def _keep(motion: Motion, kept: Motion) -> None:
-    """Copy a state into existing arrays."""
-    for i in range(len(motion.angle)):
-        kept.position[i, 0], kept.position[i, 1] = motion.position[i, 0], motion.position[i, 1]
-        kept.angle[i] = motion.angle[i]
-        kept.linear[i, 0], kept.linear[i, 1] = motion.linear[i, 0], motion.linear[i, 1]
-        kept.angular[i] = motion.angular[i]
+def _keep(motion: Motion, kept: Numbers) -> None:
+    """Copy a state into an existing array (6 rows,), one column after the other."""
+    n = len(motion.angle)
+    for i in range(n):
+        kept[2 * i], kept[2 * i + 1] = motion.position[i, 0], motion.position[i, 1]
+        kept[2 * n + i] = motion.angle[i]
+        kept[3 * n + 2 * i], kept[3 * n + 2 * i + 1] = motion.linear[i, 0], motion.linear[i, 1]
+        kept[5 * n + i] = motion.angular[i]
 
 
 @inlined
@@ -122,10 +123,10 @@ def _balance(account: Vectors, motion: Motion, gravity: Gravity, cause: int) -> 
 
 
 @inlined
-def _moved(motion: Motion, before: Vectors) -> bool:
+def _moved(motion: Motion, before: Numbers) -> bool:
     """Whether any body is elsewhere than before."""
-    for i in range(len(before)):
-        if motion.position[i, 0] != before[i, 0] or motion.position[i, 1] != before[i, 1]:
+    for i in range(len(motion.angle)):
+        if motion.position[i, 0] != before[2 * i] or motion.position[i, 1] != before[2 * i + 1]:
             return True
     return False
 
@@ -166,22 +167,23 @@ def _made_wide(
 @inlined
 def _advance(
     steps: int, substep: int, part: int, plan: Plan, course: Course, cause: int,
-    motion: Motion, kept: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, sub_integrated: Flags,
-    acting: Acting, gravity: Gravity, packed: Packed, springs: Springs, sleepers: Sleepers,
-    damping: tuple[float, float], fat: Vectors, bounds: Bounds, near: Near, opened: Rows, softness: Softness,
-    impulse_dt: float, impacts: Impacts, cost: Rows,
+    motion: Motion, kept: Numbers, sizes: Sizes, materials: Materials, inverse: Inverse,
+    sub_integrated: Flags, acting: Acting, gravity: Gravity, packed: Packed, springs: Springs,
+    sleepers: Sleepers, damping: tuple[float, float], fat: Vectors, bounds: Bounds, near: Near, opened: Rows,
+    softness: Softness, impulse_dt: float, impacts: Impacts, cost: Rows,
 ) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
     """Advance by steps, beginning at a part of a substep, as :func:`advance` describes."""
     position, angle, linear, angular = motion
     h, counts, account = plan.h, near.counts, near.account
     damped = damping[0] != 0.0 or damping[1] != 0.0
-    done, bounced, finished, evaluations = 0, 0, 0, 0
+    done, bounced, finished, evaluations, evaluated = 0, 0, 0, 0, 0
     weighed, total, mx, my = False, 0.0, 0.0, 0.0
     now = ticks()
     while done < steps:
         if substep == 0 and part == 0:
             now = ticks() if course.hooked or cost[STEPS] % _TIMED == 0 else -1
             cost[STEPS] += 1
+            evaluated = evaluations
             if not course.hooked:
                 _keep(motion, kept)
                 if cause < 0 or done > 0:  # else it was kept before what was changed between steps was booked
@@ -272,12 +274,13 @@ def _advance(
                 impulse_dt = press(near, motion, inverse, acting, softness, span, impulse_dt, plan.iterations)
                 now = charge(cost, RESOLVE, now)
             elif what == RELAX:
-                for i in range(len(packed.before)):
-                    packed.before[i, 0], packed.before[i, 1] = position[i, 0], position[i, 1]
+                if part + 1 < len(course.parts) and course.parts[part + 1] == OVERLAP:
+                    for i in range(len(angle)):
+                        packed.state[2, 2 * i], packed.state[2, 2 * i + 1] = position[i, 0], position[i, 1]
                 relax(near, motion, inverse, acting, softness, span, plan.iterations)
                 weighed = False
                 now = charge(cost, RESOLVE, now)
-            elif what == HOOK or _moved(motion, packed.before):
+            elif what == HOOK or _moved(motion, packed.state[2]):
                 why = PYTHON
             if why != ALL:
                 return why, done, substep, part, finished, bounced, evaluations, impulse_dt
@@ -290,7 +293,7 @@ def _advance(
             failed = find_beyond(position, angle, FARTHEST) >= 0 or find_beyond(linear, angular, LARGEST) >= 0
             now = charge(cost, ACCELERATE, now)
             if failed:
-                return DIVERGED, done, substep, part, finished, bounced, evaluations, impulse_dt
+                return DIVERGED, done, substep, part, finished, bounced, evaluated, impulse_dt
             done, finished = done + 1, bounced
             if sleepers.on:
                 check = count_rest(
@@ -327,7 +330,7 @@ def _advance(
 @kernel
 def advance(
     steps: int, substep: int, part: int, plan: PlanTuple, course: CourseTuple, cause: int,
-    motion: MotionTuple, kept: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
+    motion: MotionTuple, kept: Numbers, sizes: SizesTuple, materials: MaterialsTuple,
     inverse: InverseTuple, sub_integrated: Flags, acting: ActingTuple, gravity: GravityTuple,
     packed: PackedTuple, springs: SpringsTuple, sleepers: SleepersTuple, damping: tuple[float, float],
     fat: Vectors, bounds: BoundsTuple, near: NearTuple, opened: Rows, softness: SoftnessTuple,
@@ -349,7 +352,7 @@ def advance(
     if cause >= 0:
         _balance(of.account, moved, masses, cause)
     ended = _advance(
-        steps, substep, part, Plan(*plan), along, cause, moved, Motion(*kept),
+        steps, substep, part, Plan(*plan), along, cause, moved, kept,
         Sizes(*sizes), Materials(*materials), Inverse(*inverse), sub_integrated,
         named_acting(acting), masses, Packed(*packed), Springs(*springs), Sleepers(*sleepers), damping, fat,
         Bounds(*bounds), of, opened, Softness(*softness), impulse_dt, impacts, cost,
