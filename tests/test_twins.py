@@ -259,7 +259,7 @@ def test_chaos_shows_where_impacts_are_located() -> None:
         )
         assert found.error is not None and found.worst in ("nudged", "other steps")
         ratios.append(found.error.position / true)
-    # Of 40 such gases 6 or 7 are estimated more than ten times too large, at most 66 times, and none too small.
+    # Of 40 such gases 6 or 7 are estimated over ten times too large, at most 66 times, and none too small.
     assert min(ratios) > 0.1 and statistics.median(ratios) < 10.0 and max(ratios) < 100.0
 
 
