@@ -268,8 +268,8 @@ class Substeps:
             while made < steps and self._parts:
                 why = soft.PYTHON
                 if self._is_compiled[part]:
-                    where = substep, part, first
-                    why, done, substep, part = self._advance(state, span, steps - made, made, where, cause)
+                    where = substep, part, first, cause
+                    why, done, substep, part = self._advance(state, span, steps - made, made, where)
                     cause, made = -1, made + done
                 if why == soft.DIVERGED:
                     check_finite(state, span.start + (made + 1) * span.dt)
@@ -321,11 +321,11 @@ class Substeps:
             bring_back(state, self._schedule)
 
     def _advance(
-        self, state: State, span: Span, steps: int, made: int, where: tuple[int, int, int], cause: int
+        self, state: State, span: Span, steps: int, made: int, where: tuple[int, int, int, int]
     ) -> tuple[int, int, int, int]:
         """Run the loop as far as it goes; return why it ended, after how many steps, and where."""
         began = time.perf_counter_ns()
-        contacts, (substep, part, first) = state.contacts, where
+        contacts, (substep, part, first, cause) = state.contacts, where
         plan = (
             span.substeps, state.simulation.iterations or 0, span.h, span.dt, span.start + made * span.dt,
             span.rested, first,
@@ -361,7 +361,7 @@ class Substeps:
             self._entry = direct_entry(soft.advance)
         motion, laws, marked = self._fixed
         bodies = state.bodies
-        packed = bodies.packed, self._addresses(state)
+        packed = bodies.packed, self._addresses(state) if self._packs else self._packed[1]
         sleepers = (
             self._sleep is not None, sleep.count, sleep.asleep, sleep.rest, sleep.slowest, marked,
             contacts.inactive, contacts.sleeping, sleep.forces, sleep.unverified,
@@ -376,10 +376,9 @@ class Substeps:
 
     def _addresses(self, state: State) -> NDArray[np.int64]:
         """Return the addresses (n, 3) of the forces that are compiled."""
-        if self._packs:
-            calls, known = [force.calls(state) for force in self._schedule.forces], self._packed[0]
-            if not known or any(new is not old for new, old in zip(calls, known, strict=True)):
-                self._packed = calls, np.concatenate(calls)
+        calls, known = [force.calls(state) for force in self._schedule.forces], self._packed[0]
+        if not known or any(new is not old for new, old in zip(calls, known, strict=True)):
+            self._packed = calls, np.concatenate(calls)
         return self._packed[1]
 
     def _fixed_arguments(self, state: State, h: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:
