@@ -38,7 +38,7 @@ _ON_TIME = 1e-6
 
 
 class Recorder(Protocol):
-    """What keeps the state of a world at one instant after the other."""
+    """A recorder of the state of a world at one instant after the other."""
 
     def write(self, world: World, account: Accounts) -> None:
         """Keep the state as it is now."""

@@ -1,4 +1,4 @@
-"""Where a command's documents go: a file, or stdout for ``-``."""
+"""Destinations of a command's documents: a file, or stdout for ``-``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a command's pictures go."""
+"""Destinations of a command's pictures."""
 
 from __future__ import annotations
 

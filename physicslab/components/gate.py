@@ -20,5 +20,5 @@ class Gate(Component):
     end: Vector = field(
         default=(0.0, 1.0), unit="m", limit=LENGTH_LIMIT, meaning="the other end, in its body's frame"
     )
-    start_body: int | None = field(default=None, meaning="the body that one end goes with")
-    end_body: int | None = field(default=None, meaning="the body that the other end goes with")
+    start_body: int | None = field(default=None, meaning="the body that one end is attached to")
+    end_body: int | None = field(default=None, meaning="the body that the other end is attached to")

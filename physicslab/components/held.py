@@ -1,4 +1,4 @@
-"""What a hand does to a body."""
+"""A body held by the hand."""
 
 from physicslab.ecs.component import Component, Vector, component, field
 from physicslab.ecs.fields import LENGTH_LIMIT

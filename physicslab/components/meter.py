@@ -6,7 +6,7 @@ from physicslab.components.quantities import QUANTITIES, why_not_of
 from physicslab.ecs.component import Component, InvalidValue, component, field
 
 CORNERS = ("bottom left", "top left", "bottom right", "top right")
-"""Where in the window a small panel may be."""
+"""The corners of the window for a small panel."""
 
 
 @component

@@ -1,6 +1,6 @@
-"""Words at a place of the world.
+"""A text at a point of the world.
 
-Instruments have points. Each is two fields: where it is, and the body that it goes with, ``place`` and
+Instruments have points. Each is two fields: where it is, and the body that it is attached to, ``place`` and
 ``place_body``; without a body it is a point of the world.
 """
 
@@ -23,6 +23,6 @@ class Note(Component):
         default=(0.0, 0.0),
         unit="m",
         limit=LENGTH_LIMIT,
-        meaning="where it is, in the frame of the body that it goes with, or a point of the world",
+        meaning="where it is, in the frame of the body that it is attached to, or a point of the world",
     )
-    place_body: int | None = field(default=None, meaning="the body that it goes with; none: it stays")
+    place_body: int | None = field(default=None, meaning="the body that it is attached to; none: it stays")

@@ -10,7 +10,7 @@ from physicslab.ecs.fields import LENGTH_LIMIT
 
 @component
 class Ruler(Component):
-    """Measures from one point to another; an end that goes with a body follows it."""
+    """Measures from one point to another; an end attached to a body follows it."""
 
     physical: ClassVar[bool] = False
     POINTS: ClassVar[tuple[str, ...]] = ("start", "end")
@@ -18,13 +18,13 @@ class Ruler(Component):
         default=(0.0, 0.0),
         unit="m",
         limit=LENGTH_LIMIT,
-        meaning="where it begins, in the frame of the body that this end goes with, or of the world",
+        meaning="where it begins, in the frame of the body that this end is attached to, or of the world",
     )
     end: Vector = field(
         default=(1.0, 0.0),
         unit="m",
         limit=LENGTH_LIMIT,
-        meaning="where it ends, in the frame of the body that this end goes with, or of the world",
+        meaning="where it ends, in the frame of the body that this end is attached to, or of the world",
     )
-    start_body: int | None = field(default=None, meaning="the body that its beginning goes with")
-    end_body: int | None = field(default=None, meaning="the body that its end goes with")
+    start_body: int | None = field(default=None, meaning="the body that its beginning is attached to")
+    end_body: int | None = field(default=None, meaning="the body that its end is attached to")

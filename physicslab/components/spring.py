@@ -1,10 +1,10 @@
-"""What pulls two points together."""
+"""A spring, which pulls two points together."""
 
 from physicslab.ecs.component import Component, Vector, component, field
 from physicslab.ecs.fields import LENGTH_LIMIT
 
 OTHER_END = "another entity than a"
-"""What ``b`` must be: a pull between two points of one body moves nothing."""
+"""The allowed ``b``: a pull between two points of one body moves nothing."""
 
 
 @component

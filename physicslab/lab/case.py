@@ -1,4 +1,4 @@
-"""What the labs have in common: cases in a catalogue, and what is measured of them."""
+"""Shared parts of the labs: cases in a catalogue, and their measurements."""
 
 from __future__ import annotations
 

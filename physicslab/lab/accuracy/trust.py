@@ -50,7 +50,7 @@ type _Compare = Callable[[Path], _Errors]
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What can be relied on from the start to one moment of a run.
+    """The reliable digits from the start to one moment of a run.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class Look:
 
 @dataclass(slots=True)
 class Trust:
-    """What can be relied on at the end of a run.
+    """The reliable digits at the end of a run.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a body takes of memory, and what a step costs more for systems that the scene does not use."""
+"""Memory of a body, and the extra cost of a step for systems that the scene does not use."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ step is dispatch, and a large one."""
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """What one more disc of a pile takes, of all that Python and numpy hold.
+    """The memory of one more disc of a pile, of all that Python and numpy hold.
 
     Attributes
     ----------

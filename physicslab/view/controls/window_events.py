@@ -169,7 +169,7 @@ class WindowEvents:
             self._panning = event.button
 
     def _takes_handle(self, world: World, pixel: tuple[float, float]) -> bool:
-        """Take the handle of what is selected that lies under the cursor; return whether there is one."""
+        """Take the handle of the selection that lies under the cursor; return whether there is one."""
         window = self._window
         if take_end(world, window):
             return True

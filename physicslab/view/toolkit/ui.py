@@ -1,4 +1,4 @@
-"""What panels are made of: buttons, rows, bars and menus, each found again by its words."""
+"""Elements of panels: buttons, rows, bars and menus, each identified by its label."""
 
 from __future__ import annotations
 
@@ -180,7 +180,7 @@ class Ui:
     # ---- words ---------------------------------------------------------------------------------------------
 
     def text(self, words: str, colour: Colour | None = None, *, wrapped: bool = False) -> None:
-        """Write words in a colour of the theme, broken to the panel's width if asked for."""
+        """Write words in a colour of the theme, broken to the panel's width if ``wrapped``."""
         words = drawable(words)
         self.words.append(words)
         imgui.push_style_color(imgui.Col_.text, packed(colour or self.theme.text))

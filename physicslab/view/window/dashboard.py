@@ -82,7 +82,7 @@ class SliderShown:
 
 
 class Dashboard:
-    """What is measured in a window: the instruments of its world, and the samples for their lines.
+    """Measurements in a window: the instruments of its world, and the samples for their lines.
 
     Samples belong to the window: they are in no scene file, and no undo takes them back. While the place of
     the history lies in the past, the instruments stay that were there at its end.

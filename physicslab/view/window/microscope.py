@@ -39,7 +39,7 @@ class SlowRun:
 
 
 class Microscope:
-    """What the microscope shows of one impact.
+    """The content of the microscope for one impact.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What lines of graphs were before they were made: the steps of the history made again, a slice a frame."""
+"""Samples of graphs from before they were made: the steps of the history repeated, a slice a frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What follows from the fields of an entity: it is shown and cannot be changed."""
+"""Values derived from the fields of an entity: they are shown and cannot be changed."""
 
 from __future__ import annotations
 
@@ -31,9 +31,7 @@ def build_derived(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
         _build_spring(ui, spring_state(world, entity))
         give = gives_way(world, entity)
         if give is not None:
-            tip = (
-                "It serves as a rod and is a stiff spring: weight makes it so much longer, a wide swing more"
-            )
+            tip = "This rod is a stiff spring: weight lengthens it by this much, a wide swing by more"
             ui.row("Gives way", quantity(1e3 * give, "mm"), tip)
     if world.has(entity, Velocity):
         _build_motion(ui, world, entity, is_brief=is_brief)
@@ -77,7 +75,7 @@ def _build_spring(ui: Ui, state: SpringState | None) -> None:
     ui.row(
         "Longer by",
         quantity(without_rounding(state.extension, state.length), "m"),
-        "than at rest; negative where it is shorter",
+        "than at rest; negative if it is shorter",
     )
     pulls = "pulls its ends together" if state.force >= 0.0 else "pushes its ends apart"
     ui.row("Spring force", quantity(abs(state.force), "N"), pulls)
@@ -117,7 +115,7 @@ def build_pairs(ui: Ui, measured: Measured) -> None:
         if one.pair is not None:
             other, friction, restitution = one.pair
             ui.faint(f"With {other}: mu = {friction:.4g}, e = {restitution:.4g}")
-            ui.tip("Of this pair: mu is the root of both frictions multiplied, e the smaller restitution")
+            ui.tip("For this pair mu is the root of both frictions multiplied, e the smaller restitution")
 
 
 def _build_impulses(ui: Ui, step: LastStep) -> None:
@@ -131,7 +129,7 @@ def _build_impulses(ui: Ui, step: LastStep) -> None:
         _vector_row(ui, name.capitalize(), impulse, largest, "N s", "")
     _vector_row(ui, "Sum of impulses", sum(parts.values(), Vector2()), largest, "N s", "Of all of them")
     _vector_row(ui, "Change of momentum", step.change, largest, "kg m/s", "From before the step to after it")
-    tip = "What the impulses leave: forces of contacts and springs are not the same all through a step"
+    tip = "The difference: forces of contacts and springs are not the same all through a step"
     _vector_row(ui, "Not accounted for", step.difference, largest, "N s", tip)
 
 

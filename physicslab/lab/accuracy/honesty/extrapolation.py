@@ -17,7 +17,7 @@ __all__ = ["extrapolated", "moved", "passed"]
 type Long = NDArray[np.longdouble]
 
 _COLUMNS = 9
-"""Of the table of extrapolation: the order is twice that."""
+"""Rows of the table of extrapolation: the order is twice that."""
 _TOLERANCE = 1e-16
 _LEAST = 1e-9
 """Places [m] and velocities [m/s] smaller than this are right to a share of this."""
