@@ -145,7 +145,7 @@ def test_a_body_is_named_in_the_inspector_through_the_history() -> None:
     assert world.component(body, Name).id == "moon"
     fill(desk, "Name", "crate")
     assert world.label(body) == "moon" and world.label(other) == "crate"
-    assert any("a name of its own" in words for words in desk.ui.words)
+    assert any("a unique name" in words for words in desk.ui.words)
     tap(desk, "escape")
     desk.window.edits.history.undo()
     assert world.label(body) == f"circle {body}"

@@ -172,7 +172,7 @@ def test_where_nothing_was_run_there_is_nothing_to_film(desk: Desk) -> None:
     toggle_film(fresh.world, fresh.window)
     fresh.frames(SETTLED)
     click(fresh, "Make the film")
-    assert fresh.window.filming.refused.startswith("no steps to film")
+    assert fresh.window.filming.refused.startswith("There are no steps to film")
     assert list(Path.cwd().iterdir()) == []
 
 
