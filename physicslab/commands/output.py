@@ -82,7 +82,7 @@ class Output:
     def stream(self) -> Iterator[TextIO]:
         """Open for text that is written bit by bit; what was written stays, however the run ends.
 
-        A file takes the place of an older one at the end. Where writing fails, or the process is killed, the
+        A file takes the place of an older one at the end. If writing fails, or the process is killed, the
         older one is still there.
         """
         if self.to_stdout:

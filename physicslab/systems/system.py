@@ -121,7 +121,7 @@ class System:
     def keep(self) -> tuple[NDArray[Any], ...]:
         """Return copies of the arrays that the system goes on from, if it keeps any from step to step.
 
-        So a world can go back to a moment (:mod:`physicslab.history`). What the columns of components hold is
+        So a world can go back to a moment (:mod:`physicslab.history`). The columns of components are
         kept in any case.
         """
         return ()
@@ -235,7 +235,7 @@ class ForceSystem(System):
     def settings(self, state: State) -> bytes:
         """Return the numbers, bit by bit, that the force has apart from the state of motion.
 
-        Where they change, the method that moves the bodies is chosen again.
+        If they change, the method that moves the bodies is chosen again.
         """
         return b""
 

@@ -248,7 +248,7 @@ def _moved(value: float, ways: Iterator[float]) -> float:
 def nudged(document: Document, seed: int) -> Document:
     """Return a scene whose numbers are moved by one rounding each, up or down.
 
-    These are places, velocities and masses of what can move, and gravity. What is zero stays: it is
+    These are positions, velocities and masses of bodies that can move, and gravity. Zeros stay: they are
     not rounded, and with it a symmetry that no rounding breaks.
     """
     twin, order = copy.deepcopy(document), random.Random(seed)

@@ -80,7 +80,7 @@ class WindowEvents:
         """Do what an event calls for."""
         window = self._window
         taken = self._take(event)
-        self._do_pending(world)  # what was written in a field is done before the click beside it
+        self._do_pending(world)  # an entry in a field is done before the click beside it
         self._follow_alt(world, event)
         handler = self._handlers.get(event.type)
         if taken:

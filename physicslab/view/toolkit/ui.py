@@ -26,7 +26,7 @@ _ONLY_SIDES = (
     imgui.DockNodeFlags_.passthru_central_node | imgui.DockNodeFlags_.no_docking_over_central_node
     | imgui.internal.DockNodeFlagsPrivate_.no_close_button
 )  # fmt: skip
-"""What is in the middle stays in sight, and takes the mouse."""
+"""The middle stays in sight, and takes the mouse."""
 _APART = _FLAGS.no_saved_settings | _FLAGS.no_docking
 _TITLE = 6.0
 """Height of what a floating window has above what fills it, at most, in heights of the text."""

@@ -133,7 +133,7 @@ class Dashboard:
 
     @property
     def state(self) -> tuple[object, ...]:
-        """What panels are built from, but for the samples."""
+        """The state that panels are built from, but for the samples."""
         panels = self.graphs, self.meters, self.sliders, self.active
         filled = None if self.past is None else round(self.past.share, 2)
         return *panels, self.pointed, *self.marks, len(self.free_axes), filled
@@ -141,7 +141,7 @@ class Dashboard:
     def begin(self, world: World, before: World | None, *, is_new: bool) -> None:
         """Follow another world; ``before`` is the one that showed the same scene until now, if one did.
 
-        What was recorded of it stays as the run before. In a world that is new the instruments are made again
+        Its samples stay as the run before. In a world that is new the instruments are made again
         that were added to the one before.
         """
         if is_new:

@@ -23,9 +23,9 @@ _ROUNDING = 1e-9
 
 
 def build_derived(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
-    """Write the speed, momentum, energies and period of a body, or what a spring does.
+    """Write the speed, momentum, energies and period of a body, or the state of a spring.
 
-    Where it is brief, parts are left out.
+    Parts are left out if ``is_brief``.
     """
     if world.has(entity, Spring):
         _build_spring(ui, spring_state(world, entity))
@@ -97,7 +97,7 @@ def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
         ui.row(one.name.capitalize(), quantity(one.force.magnitude, "N"), vector_quantity(one.force, "N"))
     total = measured.net
     largest = max((one.force.magnitude for one in measured.forces), default=0.0)
-    _vector_row(ui, "Sum", total, largest, "N", "Of all forces")
+    _vector_row(ui, "Sum", total, largest, "N", "The sum of all forces")
     if step is None:
         return
     largest = max(largest, step.inertia.magnitude)
@@ -127,7 +127,7 @@ def _build_impulses(ui: Ui, step: LastStep) -> None:
     largest = max(largest, step.change.magnitude)
     for name, impulse in parts.items():
         _vector_row(ui, name.capitalize(), impulse, largest, "N s", "")
-    _vector_row(ui, "Sum of impulses", sum(parts.values(), Vector2()), largest, "N s", "Of all of them")
+    _vector_row(ui, "Sum of impulses", sum(parts.values(), Vector2()), largest, "N s", "All of the above")
     _vector_row(ui, "Change of momentum", step.change, largest, "kg m/s", "From before the step to after it")
     tip = "The difference: forces of contacts and springs are not the same all through a step"
     _vector_row(ui, "Not accounted for", step.difference, largest, "N s", tip)

@@ -180,7 +180,7 @@ def _build_momentum(ui: Ui, seen: Collision) -> None:
         for a, b in ((seen.a.before, seen.b.before), (seen.a.after, seen.b.after))
     )
     scale = max(body.momentum(m).magnitude for body in (seen.a, seen.b) for m in (body.before, body.after))
-    ui.row("Momentum before", _vector(before, scale), "Of all that impulses move of the two")
+    ui.row("Momentum before", _vector(before, scale), "The sum over the bodies that impulses move")
     ui.row("Momentum after", _vector(after, scale))
     if not (seen.a.is_free and seen.b.is_free):
         ui.row(

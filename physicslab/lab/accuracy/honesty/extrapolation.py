@@ -22,7 +22,7 @@ _TOLERANCE = 1e-16
 _LEAST = 1e-9
 """Places [m] and velocities [m/s] smaller than this are right to a share of this."""
 _G, _DOWN = 1.0, (0.0, -9.81)
-"""Of scenes that give none."""
+"""The defaults of scenes."""
 
 
 def moved(document: Document, seconds: float) -> NDArray[np.float64]:
