@@ -104,7 +104,6 @@ def _run(
     world: World, name: str, output: Output, every: float, rate: float, arguments: Namespace
 ) -> tuple[int, str]:
     """Make the film; return how many pictures it has, and where the run was stopped, if it was."""
-    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # its greeting goes to stdout
     from physicslab.view.overlay.moving import MovingPicture
 
     try:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import io
 import math
-import os
 import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
@@ -200,7 +199,6 @@ def _configure(world: World, arguments: Namespace) -> None:
 
 def _picture(world: World) -> bytes:
     """Return a PNG of the world as it is now; pygame draws it, without a display."""
-    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # its greeting goes to stdout
     from physicslab.view.picture.picture import save_png
 
     picture = io.BytesIO()

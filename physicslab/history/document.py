@@ -18,6 +18,7 @@ from physicslab.files.checks import SceneError, checked_keys, checked_object, is
 from physicslab.history.commands import (
     AddComponent,
     Command,
+    Configure,
     Group,
     Remove,
     RemoveComponent,
@@ -86,9 +87,9 @@ def _written(command: Command, numbers: _Numbers) -> dict[str, Any]:
             return {"do": "add", "entity": number(entity), "component": kind_name, "values": given}
         case RemoveComponent():
             return {"do": "take", "entity": number(command.entity), "component": command.component}
-        case SetPhysics() | SetSimulation():
-            which = "physics" if isinstance(command, SetPhysics) else "simulation"
-            return {"do": which, "changes": {key: _plain(value) for key, value in command.changes.items()}}
+        case Configure(changes):
+            changed = {key: _plain(value) for key, value in changes.items()}
+            return {"do": command.CONFIG.section, "changes": changed}
         case Group():
             parts_of = [_written(part, numbers) for part in command.commands]
             return {"do": "group", "words": command.text, "commands": parts_of}
@@ -197,10 +198,6 @@ def _spawn(found: Mapping[str, Any], where: str, depth: int) -> Command:
     return Spawn(components, named, _entity(found, where))
 
 
-def _remove(found: Mapping[str, Any], where: str, depth: int) -> Command:
-    return Remove(_entity(found, where))
-
-
 def _set(found: Mapping[str, Any], where: str, depth: int) -> Command:
     name = _text(found.get("field"), f"{where}: field")
     return SetField(_entity(found, where), _component(found, where), name, found.get("value"))
@@ -210,16 +207,8 @@ def _add(found: Mapping[str, Any], where: str, depth: int) -> Command:
     return AddComponent(_entity(found, where), _part(found.get("component"), found.get("values"), where))
 
 
-def _take(found: Mapping[str, Any], where: str, depth: int) -> Command:
-    return RemoveComponent(_entity(found, where), _component(found, where))
-
-
-def _physics(found: Mapping[str, Any], where: str, depth: int) -> Command:
-    return SetPhysics(checked_object(found.get("changes"), f"{where}: changes", "an object of settings"))
-
-
-def _simulation(found: Mapping[str, Any], where: str, depth: int) -> Command:
-    return SetSimulation(checked_object(found.get("changes"), f"{where}: changes", "an object of settings"))
+def _changes(found: Mapping[str, Any], where: str) -> Mapping[str, Any]:
+    return checked_object(found.get("changes"), f"{where}: changes", "an object of settings")
 
 
 def _group(found: Mapping[str, Any], where: str, depth: int) -> Command:
@@ -231,9 +220,15 @@ def _group(found: Mapping[str, Any], where: str, depth: int) -> Command:
 
 
 _READERS: Mapping[str, Callable[[Mapping[str, Any], str, int], Command]] = {
-    "spawn": _spawn, "remove": _remove, "set": _set, "add": _add, "take": _take, "physics": _physics,
-    "simulation": _simulation, "group": _group,
-}  # fmt: skip
+    "spawn": _spawn,
+    "remove": lambda found, where, _: Remove(_entity(found, where)),
+    "set": _set,
+    "add": _add,
+    "take": lambda found, where, _: RemoveComponent(_entity(found, where), _component(found, where)),
+    "physics": lambda found, where, _: SetPhysics(_changes(found, where)),
+    "simulation": lambda found, where, _: SetSimulation(_changes(found, where)),
+    "group": _group,
+}
 
 
 def _entity(found: Mapping[str, Any], where: str) -> int:

@@ -14,7 +14,7 @@ from physicslab.history.keyframe import Keyframe
 from physicslab.history.line import Edit, Run, Steps
 from physicslab.history.places import Places
 from physicslab.history.recording import load, save
-from physicslab.history.replay import Played, edit, play
+from physicslab.history.replay import Played, edit, play, write
 from physicslab.history.seen import Difference, HistoryEntry
 from physicslab.world import World
 
@@ -110,8 +110,7 @@ class History:
         self._places.mend()
         began = time.perf_counter()
         with self._places.all_or_nothing():
-            done = command.carry_out(self.world)
-            self.world.synchronise()
+            done = write(self.world, command)
         self._run().add_write(done)
         self._advance(began)
 
