@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
+from physicslab.ecs.vector import rotated
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.state.packed import spring_ends
 from physicslab.state.state import State
@@ -146,9 +147,7 @@ def _fixed_point(state: State, spring: int, side: str, other: int) -> NDArray[np
     """Return where the end that does not move is [m]."""
     transform = state.table(Transform)
     anchor = state.table(Spring)["anchor_b" if side == "a" else "anchor_a"][spring]
-    c, s = np.cos(transform["angle"][other]), np.sin(transform["angle"][other])
-    turned = np.array((c * anchor[0] - s * anchor[1], s * anchor[0] + c * anchor[1]))
-    place: NDArray[np.float64] = transform["position"][other] + turned
+    place: NDArray[np.float64] = transform["position"][other] + rotated(anchor, transform["angle"][other])
     return place
 
 
