@@ -106,7 +106,7 @@ def _recorded(world: World, arguments: Namespace, tiers: Tiers) -> tuple[bytes, 
     recorder = RunRecorder(world)
     _check_size(world, recorder, arguments)
     try:
-        run = MeasuredRun(world, name, tiers, arguments.at_most, recorder, arguments.every)
+        run = MeasuredRun(world, name, tiers, arguments.at_most, recorder.write, arguments.every)
         run.go(arguments.seconds, None)
     except (Diverged, NotShown) as error:
         raise CommandError(f"{label}: {error}; no page was written", FAILED) from error

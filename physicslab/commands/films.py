@@ -6,14 +6,12 @@ import argparse
 import os
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from physicslab.commands.assignments import assign
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.numbers import STEP_LIMIT
-from physicslab.commands.output import Output
-from physicslab.diagnostics.account import Accounts
+from physicslab.commands.output import Output, reason_of
 from physicslab.ecs.text import printable, shortened
 from physicslab.export.film import Film
 from physicslab.export.framing import Box, extent_of_run
@@ -25,9 +23,6 @@ from physicslab.scenes import SCENES
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
-
-if TYPE_CHECKING:
-    from physicslab.view.overlay.moving import MovingPicture
 
 __all__ = ["film_size", "make_film"]
 
@@ -45,17 +40,6 @@ def film_size(text: str) -> tuple[int, int]:
         allowed = f"WIDTHxHEIGHT, each from {_SMALLEST} to {_LARGEST} px"
         raise argparse.ArgumentTypeError(f"{text!r}: must be {allowed}")
     return width, height
-
-
-class _Filming:
-    """Adds a picture of the world to a film whenever a run is to be kept."""
-
-    def __init__(self, film: Film, picture: MovingPicture) -> None:
-        self._film, self._picture = film, picture
-
-    def write(self, world: World, account: Accounts) -> None:
-        """Add the world as it is now."""
-        self._film.write(self._picture.pixels(world))
 
 
 def make_film(option: str, path: str, arguments: Namespace) -> None:
@@ -111,15 +95,16 @@ def _run(
             extent = world.view or _extent(name, every, arguments, tiers)
             picture = MovingPicture(arguments.size, extent)
             with Film(output.path, arguments.size, rate) as film:
-                filming = _Filming(film, picture)
-                run = MeasuredRun(world, name, tiers, arguments.at_most, filming, every)
+                run = MeasuredRun(
+                    world, name, tiers, arguments.at_most,
+                    lambda now, _: film.write(picture.pixels(now)), every,
+                )  # fmt: skip
                 run.go(arguments.seconds, None)
     except (Diverged, NotShown) as error:
         raise CommandError(f"{shortened(printable(name))}: {error}; no film was written", FAILED) from error
     except OSError as error:
-        reason = error.strerror or str(error)
         label = shortened(printable(output.path), 200)
-        raise CommandError(f"{label}: cannot be written: {reason}", FAILED) from error
+        raise CommandError(f"{label}: cannot be written: {reason_of(error)}", FAILED) from error
     return film.count, run.stopped
 
 
@@ -130,6 +115,6 @@ def _extent(name: str, every: float, arguments: Namespace, tiers: Tiers) -> Box:
     """
     world = _world(arguments)
     recorder = RunRecorder(world)
-    run = MeasuredRun(world, name, tiers, arguments.at_most, recorder, every)
+    run = MeasuredRun(world, name, tiers, arguments.at_most, recorder.write, every)
     run.go(arguments.seconds, None)
     return extent_of_run(world, recorder)

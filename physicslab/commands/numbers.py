@@ -19,18 +19,12 @@ def add_budget(parser: argparse.ArgumentParser) -> None:
 
 def duration(text: str) -> float:
     """Return a time [s] that is finite and not negative."""
-    seconds = _number(text)
-    if not (math.isfinite(seconds) and seconds >= 0.0):
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a finite number >= 0 s")
-    return seconds
+    return _seconds(text, 0.0, ">= 0")
 
 
 def positive_duration(text: str) -> float:
     """Return a time [s] that is finite and greater than 0."""
-    seconds = _number(text)
-    if not (math.isfinite(seconds) and seconds > 0.0):
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a finite number > 0 s")
-    return seconds
+    return _seconds(text, math.ulp(0.0), "> 0")
 
 
 def count(text: str) -> int:
@@ -43,11 +37,14 @@ def positive_count(text: str) -> int:
     return _whole(text, 1)
 
 
-def _number(text: str) -> float:
+def _seconds(text: str, least: float, range_: str) -> float:
     try:
-        return float(text)
+        seconds = float(text)
     except ValueError:
-        return math.nan
+        seconds = math.nan
+    if not least <= seconds < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a finite number {range_} s")
+    return seconds
 
 
 def _whole(text: str, least: int) -> int:

@@ -34,7 +34,7 @@ from physicslab.ecs.config import CONTACTS, INTEGRATORS
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
 from physicslab.files.json_text import json_bytes
-from physicslab.files.rescue import save_last_good
+from physicslab.files.new_scene import save_last_good
 from physicslab.files.scene import SceneError, load_scene
 from physicslab.kernels.tiers import Tiers
 from physicslab.scenes import SCENES
@@ -92,10 +92,10 @@ def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], 
     label = shortened(printable(name))
     seconds = _DEFAULT_S if arguments.seconds is None and arguments.steps is None else arguments.seconds
     with _stream(outputs, "csv") as stream, _stream(outputs, "ledger") as impacts:
-        table = None if stream is None else TrajectoryWriter(stream, world)
+        keep = None if stream is None else TrajectoryWriter(stream, world).write
         ledger = None if impacts is None else LedgerWriter(impacts, world)
         try:
-            run = MeasuredRun(world, name, tiers, arguments.at_most, table, arguments.every or 0.0, ledger)
+            run = MeasuredRun(world, name, tiers, arguments.at_most, keep, arguments.every or 0.0, ledger)
             run.go(seconds, arguments.steps)
         except Diverged as error:
             raise CommandError(f"{label}: {error}; {_rescue(world, name, outputs)}", FAILED) from error

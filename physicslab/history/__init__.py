@@ -17,8 +17,8 @@ from physicslab.history.commands import (
     SetSimulation,
     Spawn,
 )
-from physicslab.history.history import History
-from physicslab.history.seen import Difference, HistoryEntry
+from physicslab.history.history import History, HistoryEntry
+from physicslab.history.places import Difference
 
 __all__ = [
     "AddComponent", "Branch", "Command", "Difference", "Group", "History", "HistoryEntry", "Remove",

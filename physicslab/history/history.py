@@ -6,22 +6,42 @@ import math
 import os
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Self
 
 from physicslab.history.branches import Branch, Branches
 from physicslab.history.commands import Command, Group, Spawn
 from physicslab.history.keyframe import Keyframe
 from physicslab.history.line import Edit, Run, Steps
-from physicslab.history.places import Places
+from physicslab.history.places import Difference, Places
 from physicslab.history.recording import load, save
 from physicslab.history.replay import Played, edit, play, write
-from physicslab.history.seen import Difference, HistoryEntry
 from physicslab.world import World
 
-__all__ = ["History"]
+__all__ = ["History", "HistoryEntry"]
 
 _LATE = 1e-6
 """Share of a step that a time may be after its end and count as within it: sums of steps are rounded."""
+
+
+@dataclass(frozen=True, slots=True)
+class HistoryEntry:
+    """An edit or a run.
+
+    Attributes
+    ----------
+    words : str
+        What it was, in plain English: "made a circle", "mass of ball: 2 kg", "ran 3.2 s".
+    done : bool
+        Whether it, or the beginning of it, lies before the present place.
+    first_step, steps : int
+        How many steps the line has before it, and how many it is.
+    """
+
+    words: str
+    done: bool
+    first_step: int
+    steps: int
 
 
 class History:

@@ -5,16 +5,16 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 from physicslab.history.digest import Digester, differing
 from physicslab.history.keyframe import Keyframe
 from physicslab.history.keyframes import Keyframes
 from physicslab.history.line import Line, Steps
 from physicslab.history.replay import make_again
-from physicslab.history.seen import Difference
 from physicslab.world import World
 
-__all__ = ["Places"]
+__all__ = ["Difference", "Places"]
 
 _RARELY, _OFTEN, _SEEKING = 100.0, 16.0, 5.0
 """How many times as long as a key frame takes that takes which lies between two, at most and at least along
@@ -25,6 +25,22 @@ reached within a frame of the screen. And how much it may be: where that is too 
 no place would be reached in time, and key frames are as rare as they may be."""
 _SOON = 8
 """Number of ticks that are made sooner than a key frame is gone back to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """Where steps that were made again did not give the bits that they once gave.
+
+    Attributes
+    ----------
+    step : int
+        The first such step of the line, from 1.
+    columns : tuple of str
+        The columns of motion that differ.
+    """
+
+    step: int
+    columns: tuple[str, ...]
 
 
 class Places:
