@@ -14,7 +14,15 @@ from physicslab.components import Name
 from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
 from physicslab.ecs.config import MAX_TIME, MIN_TIME
 from physicslab.ecs.vector import Vector2
-from physicslab.files.checks import SceneError, checked_keys, checked_object, is_number, refusal, shown
+from physicslab.files.checks import (
+    SceneError,
+    checked_keys,
+    checked_object,
+    checked_rows,
+    is_number,
+    refusal,
+    shown,
+)
 from physicslab.history.commands import (
     AddComponent,
     Command,
@@ -106,11 +114,8 @@ def _plain(value: Any) -> Any:
 
 def read_line(value: object, source: str) -> Line:
     """Return the line that :func:`line_document` wrote; the first thing not allowed is a SceneError."""
-    if not isinstance(value, list):
-        raise refusal(f"{source}: entries", value, "a list of edits and runs")
     line = Line()
-    for index, entry in enumerate(value):
-        where = f"{source}: entries[{index}]"
+    for where, entry in checked_rows(value, f"{source}: entries", "a list of edits and runs"):
         found = checked_object(entry, where, 'an object {"edit": ...} or {"run": ...}')
         if "edit" in found:
             checked_keys(found, f"{where}: ", "key", ("edit", "command"))
@@ -123,18 +128,16 @@ def read_line(value: object, source: str) -> Line:
 
 def _read_run(found: Mapping[str, Any], where: str) -> Run:
     checked_keys(found, f"{where}: ", "key", ("run", "digests"))
-    pieces = found.get("run")
-    if not isinstance(pieces, list):
-        raise refusal(f"{where}: run", pieces, "a list of [dt, steps] and of commands")
+    pieces = [*checked_rows(found.get("run"), f"{where}: run", "a list of [dt, steps] and of commands")]
     digests = _digests(found.get("digests"), f"{where}: digests")
     run, left = Run(), len(digests) // 4
-    for place, piece in enumerate(pieces):
+    for place, piece in pieces:
         if isinstance(piece, list):
-            dt, count = _steps(piece, f"{where}: run[{place}]", left)
+            dt, count = _steps(piece, place, left)
             run.add_steps(dt, count)
             left -= count
         else:
-            run.add_write(_command(piece, f"{where}: run[{place}]", 0))
+            run.add_write(_command(piece, place, 0))
     if left:
         raise SceneError(f"{where}: digests are of {len(digests) // 4} steps, and there are {run.steps}")
     run.digests = digests

@@ -54,14 +54,15 @@ class ClosedForm:
     acceleration: NDArray[np.float64]
     what: str
 
-    def advanced(self, state: State, t: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the positions [m] and velocities [m/s] (n, 2) a time t [s] from now."""
-        position = state.table(Transform)["position"][self.rows]
-        velocity = state.table(Velocity)["linear"][self.rows]
+    def motion(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return copies of the present positions [m] and velocities [m/s] (n, 2)."""
+        return state.table(Transform)["position"][self.rows], state.table(Velocity)["linear"][self.rows]
+
+    def advance(self, position: NDArray[np.float64], velocity: NDArray[np.float64], t: float) -> None:
+        """Change positions [m] and velocities [m/s] (n, 2) to those a time t [s] later."""
         propagate(
             position, velocity, self.direction, self.rate2, self.drag, self.centre, self.acceleration, t
         )
-        return position, velocity
 
 
 def closed_form(state: State, forces: Sequence[ForceSystem]) -> ClosedForm:

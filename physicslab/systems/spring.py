@@ -145,10 +145,6 @@ class SpringSystem(ForceSystem):
         share = 0.5 if fixed.all() else 1.0  # no pair of bodies moves against each other
         return np.maximum(np.sqrt(share * stiff), share * damped)
 
-    def strongest_rate(self, state: State) -> float:
-        """Return the largest of :meth:`rates`."""
-        return float(self.rates(state).max())
-
     def why_singular(self, state: State) -> str | None:
         """Return a reason if the energy could compress a spring to length zero, where it has no direction.
 
