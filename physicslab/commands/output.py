@@ -31,6 +31,11 @@ class Output:
     path : str
         A path, or ``-`` for stdout.
 
+    Attributes
+    ----------
+    label : str
+        Option and path, for messages.
+
     Raises
     ------
     CommandError
@@ -40,7 +45,7 @@ class Output:
     def __init__(self, option: str, path: str) -> None:
         self.path = path
         self.to_stdout = path == "-"
-        self._label = f"{option} {shortened(printable(path), 200)}"
+        self.label = f"{option} {shortened(printable(path), 200)}"
         if self.to_stdout:
             return
         if not path:
@@ -48,7 +53,7 @@ class Output:
         try:
             check_writable(path)
         except (OSError, ValueError) as error:  # ValueError: a null character in the name
-            raise CommandError(f"{self._label}: cannot be written: {reason_of(error)}") from error
+            raise CommandError(f"{self.label}: cannot be written: {reason_of(error)}") from error
 
     def is_same_as(self, path: str) -> bool:
         """Whether this is the same file as ``path``, under whatever name; ``-`` is stdout."""
@@ -60,6 +65,11 @@ class Output:
         if own is None or other is None or not os.path.samestat(own, other):
             return False
         return nowhere is None or not os.path.samestat(own, nowhere)
+
+    def refuse_same(self, path: str, what: str) -> None:
+        """Raise :class:`CommandError` where this is the file that is read, ``what`` in words."""
+        if self.is_same_as(path):
+            raise CommandError(f"{self.label}: is {what} itself")
 
     def write(self, content: bytes) -> None:
         """Write all of a document: a file is replaced whole, or left as it was.
@@ -79,7 +89,7 @@ class Output:
         except BrokenPipeError:
             raise
         except OSError as error:
-            raise CommandError(f"{self._label}: cannot be written: {reason_of(error)}", FAILED) from error
+            raise CommandError(f"{self.label}: cannot be written: {reason_of(error)}", FAILED) from error
 
     @contextmanager
     def stream(self) -> Iterator[TextIO]:
@@ -108,7 +118,7 @@ class Output:
         except BrokenPipeError:
             raise
         except OSError as error:
-            raise CommandError(f"{self._label}: cannot be written: {reason_of(error)}", FAILED) from error
+            raise CommandError(f"{self.label}: cannot be written: {reason_of(error)}", FAILED) from error
         if ended is not None:
             raise ended
 

@@ -32,8 +32,8 @@ def execute(arguments: Namespace) -> int:
     """Play the recording to its end; exit 1 where a column of a step has other bits than in the recording."""
     label = shortened(printable(arguments.file), 200)
     output = None if arguments.json is None else Output("--json", arguments.json)
-    if output is not None and output.is_same_as(arguments.file):
-        raise CommandError(f"--json {shortened(printable(arguments.json), 200)}: is the recording itself")
+    if output is not None:
+        output.refuse_same(arguments.file, "the recording")
     world, line = load(arguments.file)
     first: Played | None = None
     stopped, began = "", time.perf_counter() - world.compile_s
