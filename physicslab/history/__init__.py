@@ -18,9 +18,9 @@ from physicslab.history.commands import (
     Spawn,
 )
 from physicslab.history.history import History, HistoryEntry
-from physicslab.history.places import Difference
+from physicslab.history.replay import Played
 
 __all__ = [
-    "AddComponent", "Branch", "Command", "Difference", "Group", "History", "HistoryEntry", "Remove",
+    "AddComponent", "Branch", "Command", "Group", "History", "HistoryEntry", "Played", "Remove",
     "RemoveComponent", "SetField", "SetPhysics", "SetSimulation", "Spawn",
 ]  # fmt: skip

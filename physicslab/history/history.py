@@ -13,7 +13,7 @@ from physicslab.history.branches import Branch, Branches
 from physicslab.history.commands import Command, Group, Spawn
 from physicslab.history.keyframe import Keyframe
 from physicslab.history.line import Edit, Run, Steps
-from physicslab.history.places import Difference, Places
+from physicslab.history.places import Places
 from physicslab.history.recording import load, save
 from physicslab.history.replay import Played, edit, play, write
 from physicslab.world import World
@@ -276,7 +276,7 @@ class History:
         return self.world.next_entity
 
     @property
-    def difference(self) -> Difference | None:
+    def difference(self) -> Played | None:
         """The first place found where steps that were made again gave other bits; ``None`` as it should be.
 
         Those of a system that goes on from numbers of its own, and does not keep them, do.

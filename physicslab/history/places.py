@@ -5,16 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 
 from physicslab.history.digest import Digester, differing
 from physicslab.history.keyframe import Keyframe
 from physicslab.history.keyframes import Keyframes
 from physicslab.history.line import Line, Steps
-from physicslab.history.replay import make_again
+from physicslab.history.replay import Played, make_again
 from physicslab.world import World
 
-__all__ = ["Difference", "Places"]
+__all__ = ["Places"]
 
 _RARELY, _OFTEN, _SEEKING = 100.0, 16.0, 5.0
 """How many times as long as a key frame takes that takes which lies between two, at most and at least along
@@ -25,22 +24,6 @@ reached within a frame of the screen. And how much it may be: where that is too 
 no place would be reached in time, and key frames are as rare as they may be."""
 _SOON = 8
 """Number of ticks that are made sooner than a key frame is gone back to."""
-
-
-@dataclass(frozen=True, slots=True)
-class Difference:
-    """Where steps that were made again did not give the bits that they once gave.
-
-    Attributes
-    ----------
-    step : int
-        The first such step of the line, from 1.
-    columns : tuple of str
-        The columns of motion that differ.
-    """
-
-    step: int
-    columns: tuple[str, ...]
 
 
 class Places:
@@ -64,14 +47,14 @@ class Places:
         The present place [ticks].
     digester : Digester
         Makes the digests of the world.
-    difference : Difference, optional
+    difference : Played, optional
         The first place found where steps that were made again gave other bits.
     """
 
     def __init__(self, world: World, budget: int) -> None:
         self.world, self.line, self.here = world, Line(), 0
         self.digester = Digester()
-        self.difference: Difference | None = None
+        self.difference: Played | None = None
         self._frames = Keyframes(budget)
         self._whole = True
         self._cost = self._since = self._since_along = 0.0
@@ -186,7 +169,7 @@ class Places:
         """Compare the step that was made again with what came of it once."""
         columns = differing(self.digester.digest(self.world), self.line.digest_before(self.here))
         if columns and self.difference is None:
-            self.difference = Difference(self.line.steps_before(self.here), columns)
+            self.difference = Played(self.line.steps_before(self.here), self.world.time, columns)
 
     def _leave_along(self) -> None:
         self._frames.add_along(self.here, self._take())
