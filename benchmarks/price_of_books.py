@@ -32,6 +32,7 @@ def leave_out_books() -> None:
     import physicslab.stepping.fused_contact  # noqa: F401 (so that all kernels of contacts are there)
     from physicslab import world
     from physicslab.kernels import inlined
+    from physicslab.kernels.constraint.pair import PairVelocity
     from physicslab.kernels.solver import fused_contact, impact_log, impulse, work
     from physicslab.kernels.wide import float64x8, solve
     from physicslab.state.account import Account
@@ -48,7 +49,7 @@ def leave_out_books() -> None:
     @inlined
     def no_motion(*_: Any) -> Any:
         still = float64x8.everywhere(0.0)
-        return still, still, still, still
+        return PairVelocity(still, still, still, still, still, still)
 
     @inlined
     def no_more(along: Any, *_: Any) -> Any:
@@ -64,7 +65,7 @@ def leave_out_books() -> None:
     in_place = {
         work.note_velocities: nothing, work.take_means: nothing, work.book_slots: nothing,
         work.book_gravity: nothing, work.book_damping: nothing, work.book_solved: follow,
-        work.book_relaxed: no_work, solve.work_of: no_more, solve.relative: no_motion,
+        work.book_relaxed: no_work, solve.work_of: no_more, solve.mean_velocities: no_motion,
         impact_log.book_impact: nothing,
         fused_contact._balance: nothing, fused_contact._keep_book: nothing,
     }  # fmt: skip

@@ -16,11 +16,10 @@ from unittest.mock import patch
 import numpy as np
 
 from physicslab.kernels import interpreter, motion, twins
+from physicslab.kernels.constraint import pair
 from physicslab.kernels.events import path
 from physicslab.kernels.interpreter import interpreted
 from physicslab.kernels.rigid import constraints, curve
-from physicslab.kernels.solver import impact, impulse, sweep
-from physicslab.kernels.wide import float64x8
 
 __all__ = ["FAULT", "WRONG_DRIFTS", "WRONG_KICKS", "lost_impulses", "mutated"]
 
@@ -100,37 +99,15 @@ WRONG_DRIFTS: dict[str, tuple[Any, Mutant]] = {
 """The same of places."""
 
 
-def _keeping(*rows: int) -> Callable[[Any, Any], Any]:
-    """Return inverse masses, those of some rows 0: impulses do not move these."""
-
-    def inverse(_: Any, of: Any) -> Any:
-        mass, inertia = of.mass.copy(), of.inertia.copy()
-        mass[list(rows)] = inertia[list(rows)] = 0.0
-        return of._replace(mass=mass, inertia=inertia)
-
-    return inverse
-
-
 @contextmanager
 def lost_impulses(rows: set[int]) -> Iterator[None]:
     """Let no impulse of any contact move the bodies of some rows: B of their pairs.
 
     The impulses are found, and booked, as ever; the bodies that they act on besides these are moved.
     """
-    unmoved = _keeping(*rows)
 
-    def last(twin: Twin, *arguments: Any) -> Any:  # the inverse masses are the last argument
-        return twin(*arguments[:-1], unmoved(None, arguments[-1]))
-
-    def pushed(twin: Twin, v: Any, weights: Any, *impulse: Any) -> Any:
-        return twin(v, weights, *impulse)._replace(bx=v.bx, by=v.by, wb=v.wb)
-
-    def put(twin: Twin, target: Any, which: Any, first: int, *values: Any) -> None:
-        chosen = [int(row) for row in which[first : first + 8]]
-        before = {row: target[row].copy() for row in chosen if row in rows}
-        twin(target, which, first, *values)
-        for row, value in before.items():
-            target[row] = value
+    def pushed(twin: Twin, v: Any, mass: Any, *impulse: Any) -> Any:
+        return twin(v, mass, *impulse)._replace(bx=v.bx, by=v.by, wb=v.wb)
 
     def not_pushed(twin: Twin, paths: Any, i: int, *impulse: Any) -> None:
         if i not in rows:
@@ -143,9 +120,7 @@ def lost_impulses(rows: set[int]) -> Iterator[None]:
         target[places] = before
 
     faults: tuple[tuple[Any, Mutant], ...] = (
-        (impact._strike, last), (impulse.apply_impulse, last), (sweep._pushed, pushed),
-        (float64x8.put_vectors, put), (float64x8.put_numbers, put),
-        (path.push, not_pushed), (constraints.apply, applied),
+        (pair.after_impulse, pushed), (path.push, not_pushed), (constraints.apply, applied),
     )  # fmt: skip
     with ExitStack() as stack:
         for function, mutant in faults:

@@ -16,33 +16,36 @@ from numpy.typing import NDArray
 from physicslab import World
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels import accounts
+from physicslab.kernels.constraint import impact_law
+from physicslab.kernels.constraint.impact_law import LOWERED, NEWTON, ImpactImpulses, PointResponse
+from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity, PointState
 from physicslab.kernels.rigid import motion
 from physicslab.kernels.rigid.features import HEIGHT, RADIUS, REACH, WIDTH
-from physicslab.kernels.solver import blow, impact_log
-from physicslab.kernels.solver.impact_pose import Meeting
+from physicslab.kernels.solver import impact_log
+from physicslab.kernels.solver.impact_log import ImpactPoints, Pose
 from physicslab.prefabs import box, circle
 from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.rigid_motion import MadeStep, _stages_of
 from physicslab.systems.standard import standard_systems
 
-one_blow: Any = compiled(blow.one_blow)
-two_blows: Any = compiled(blow.two_blows)
+point_response: Any = compiled(impact_law.point_response)
+pair_response: Any = compiled(impact_law.pair_response)
+solve_impact: Any = compiled(impact_law.solve_impact)
+solve_impact_of_two: Any = compiled(impact_law.solve_impact_of_two)
 book_impact: Any = compiled(impact_log.book_impact)
 shares_of: Any = compiled(impact_log.shares_of)
-Lever, Weights, Blow = blow.Lever, blow.Weights, blow.Blow
-Masses, Pose, Speeds, Struck = impact_log.Masses, impact_log.Pose, impact_log.Speeds, impact_log.Struck
 
 CIRCLE, FACE, CORNER = range(3)
 MOVABLE, FIXED, KINEMATIC = range(3)
 
 
 @numba.njit(error_model="numpy")
-def _lever(at: Any, speeds: Any) -> Any:
+def _state(at: Any, speeds: Any) -> Any:
     """Return arms and speeds of a point, written down here."""
     nx, ny, ax, ay, bx, by = at
     vx = speeds.bx - speeds.wb * by - speeds.ax + speeds.wa * ay
     vy = speeds.by + speeds.wb * bx - speeds.ay - speeds.wa * ax
-    return Lever(
+    return PointState(
         ax * ny - ay * nx, bx * ny - by * nx, ax * nx + ay * ny, bx * nx + by * ny,
         vx * nx + vy * ny, vy * nx - vx * ny,
     )  # fmt: skip
@@ -66,9 +69,9 @@ def _turn_into(n: Any, at: Any, v: Any, push: float, across: float) -> Any:
     """Return the velocities after an impulse at a point of masses ``n``, by Newton's laws."""
     nx, ny, ax, ay, bx, by = at
     px, py = push * nx - across * ny, push * ny + across * nx
-    return Speeds(
-        v.ax - n.a * px, v.ay - n.a * py, v.wa - n.turn_a * (ax * py - ay * px),
-        v.bx + n.b * px, v.by + n.b * py, v.wb + n.turn_b * (bx * py - by * px),
+    return PairVelocity(
+        v.ax - n.a * px, v.ay - n.a * py, v.wa - n.inertia_a * (ax * py - ay * px),
+        v.bx + n.b * px, v.by + n.b * py, v.wb + n.inertia_b * (bx * py - by * px),
     )  # fmt: skip
 
 
@@ -80,10 +83,10 @@ def _energy(n: Any, v: Any) -> float:
         energy += 0.5 * (v.ax * v.ax + v.ay * v.ay) / n.a
     if n.b > 0.0:
         energy += 0.5 * (v.bx * v.bx + v.by * v.by) / n.b
-    if n.turn_a > 0.0:
-        energy += 0.5 * v.wa * v.wa / n.turn_a
-    if n.turn_b > 0.0:
-        energy += 0.5 * v.wb * v.wb / n.turn_b
+    if n.inertia_a > 0.0:
+        energy += 0.5 * v.wa * v.wa / n.inertia_a
+    if n.inertia_b > 0.0:
+        energy += 0.5 * v.wb * v.wb / n.inertia_b
     return energy
 
 
@@ -108,50 +111,50 @@ def _strike_at_random(random: Any, count: int, laws: Any) -> tuple[float, float,
         far_b, side_b, inertia_b = _body(
             random, kind_b, 10.0 ** random.uniform(-1.0, 1.0), turning[1], mass_b
         )
-        n = Masses(1.0 / mass_a, 1.0 / inertia_a, 1.0 / mass_b, 1.0 / inertia_b)
+        n = PairInverseMass(1.0 / mass_a, 1.0 / inertia_a, 1.0 / mass_b, 1.0 / inertia_b)
         angle = random.uniform(-math.pi, math.pi)
         nx, ny = math.cos(angle), math.sin(angle)
         move = random.normal(0.0, 1.0, 6) * 10.0 ** random.uniform(-3.0, 1.0)
         if other != MOVABLE:
-            n = Masses(0.0, 0.0, n.b, n.turn_b)
+            n = PairInverseMass(0.0, 0.0, n.b, n.inertia_b)
         if other == FIXED:
             move[:3] = 0.0
-        if n.turn_a == 0.0 and other != KINEMATIC:
+        if n.inertia_a == 0.0 and other != KINEMATIC:
             move[2] = 0.0
-        if n.turn_b == 0.0:
+        if n.inertia_b == 0.0:
             move[5] = 0.0
-        before = Speeds(move[0], move[1], move[2], move[3], move[4], move[5])
-        one = Meeting(
+        before = PairVelocity(move[0], move[1], move[2], move[3], move[4], move[5])
+        one = ContactFrame(
             nx, ny, far_a * nx - side_a * ny, far_a * ny + side_a * nx,
             -far_b * nx - side_b * ny, -far_b * ny + side_b * nx,
         )  # fmt: skip
         apart = 10.0 ** random.uniform(-3.0, 0.5)
-        second = Meeting(
+        second = ContactFrame(
             nx, ny, one.arm_ax - apart * ny, one.arm_ay + apart * nx,
             one.arm_bx - apart * ny, one.arm_by + apart * nx,
         )  # fmt: skip
         e = min(max(random.uniform(-0.2, 1.2), 0.0), 1.0)
         mu = max(random.uniform(-0.2, 2.0), 0.0)
-        lever, next_lever = _lever(one, before), _lever(second, before)
-        if lever.v >= 0.0 or (two and next_lever.v >= 0.0):
+        state, next_state = _state(one, before), _state(second, before)
+        if state.v >= 0.0 or (two and next_state.v >= 0.0):
             continue
-        weights = Weights(n.a + n.b, n.turn_a, n.turn_b)
-        struck = Blow(0.0, 0.0, 0.0, 0.0)
+        found = ImpactImpulses(0.0, 0.0, 0.0, 0.0)
         if two:
-            struck, law = two_blows(lever, next_lever, weights, e, mu)
+            found, used = solve_impact_of_two(pair_response(state, next_state, n), e, mu)
+            law = LOWERED if used < e else NEWTON
         else:
-            push, across, law = one_blow(lever, weights, e, mu)
-            struck = Blow(push, across, 0.0, 0.0)
+            push, across, law = solve_impact(point_response(state, n), e, mu)
+            found = ImpactImpulses(push, across, 0.0, 0.0)
         laws[law] += 1
-        after = _turn_into(n, one, before, struck.normal1, struck.tangent1)
-        after = _turn_into(n, second, after, struck.normal2, struck.tangent2)
+        after = _turn_into(n, one, before, found.normal1, found.tangent1)
+        after = _turn_into(n, second, after, found.normal2, found.tangent2)
         centre = random.normal(0.0, 3.0, 2)
         pose = Pose(
             centre[0], centre[1], 0.0, centre[0] + one.arm_ax - one.arm_bx,
             centre[1] + one.arm_ay - one.arm_by, 0.0,
         )  # fmt: skip
         sums = np.zeros((accounts.CAUSES, 4))
-        book_impact(sums, Struck(one, second, struck), pose, before, after, n, accounts.IMPACTS)
+        book_impact(sums, ImpactPoints(one, second, found), pose, before, after, n, accounts.IMPACTS)
         # In the frame of the centre of mass, or in that of the point of the body that nothing moves.
         share = n.b / (n.a + n.b)
         fx, fy = (1.0 - share) * before.bx + share * before.ax, (1.0 - share) * before.by + share * before.ay
@@ -159,7 +162,7 @@ def _strike_at_random(random: Any, count: int, laws: Any) -> tuple[float, float,
         if other != MOVABLE:
             fx, fy, wa = before.ax - wa * one.arm_ay, before.ay + wa * one.arm_ax, 0.0
         there = _energy(
-            n, Speeds(before.ax - fx, before.ay - fy, wa, before.bx - fx, before.by - fy, before.wb)
+            n, PairVelocity(before.ax - fx, before.ay - fy, wa, before.bx - fx, before.by - fy, before.wb)
         )
         restitution, friction = sums[accounts.IMPACTS, 0], sums[accounts.FRICTION, 0]
         given = max(given, (restitution + friction) / there)
@@ -169,7 +172,7 @@ def _strike_at_random(random: Any, count: int, laws: Any) -> tuple[float, float,
         for x in range(2):
             body_a = (after.ax - before.ax, after.ay - before.ay)[x] * (mass_a if n.a > 0.0 else 0.0)
             body_b = (after.bx - before.bx, after.by - before.by)[x] * mass_b
-            scale = abs(struck.normal1) + abs(struck.normal2) + mass_b * (abs(before.bx) + abs(before.by))
+            scale = abs(found.normal1) + abs(found.normal2) + mass_b * (abs(before.bx) + abs(before.by))
             scale += mass_a * (abs(before.ax) + abs(before.ay)) if n.a > 0.0 else 0.0
             unbalanced = max(unbalanced, abs(body_a + body_b - sums[:, 1 + x].sum()) / scale)
     return given, bounced, rubbed, missed, unbalanced
@@ -197,15 +200,14 @@ def test_a_million_random_impacts_give_no_energy() -> None:
 
 def test_an_elastic_impact_that_sticks_a_little_gives_no_energy() -> None:
     """Newton's law made 4e-12 of the energy here: a share that was taken for rounding."""
-    lever = Lever(0.801363701868906, 0.0, 0.0145434434, -0.100360142, -4.373596971356, -5.0103889094e-06)
-    weights = Weights(101.524733, 0.147081430, 86082.2358)
-    normal, tangent, _ = one_blow(lever, weights, 1.0, 1.25968708)
-    kn = weights.both + weights.turn_a * lever.normal_a**2
-    kt = weights.both + weights.turn_a * lever.across_a**2 + weights.turn_b * lever.across_b**2
-    between = weights.turn_a * lever.normal_a * lever.across_a
-    v, sliding = kn * normal + between * tangent, between * normal + kt * tangent
-    work = normal * (lever.v + 0.5 * v) + tangent * (lever.sliding + 0.5 * sliding)
-    assert work <= 2e-13 * lever.v**2 / kn
+    arm, across_a, across_b, turn_a = 0.801363701868906, 0.0145434434, -0.100360142, 0.147081430
+    kn = 101.524733 + turn_a * arm**2
+    kt = 101.524733 + turn_a * across_a**2 + 86082.2358 * across_b**2
+    at = PointResponse(kn, kt, turn_a * arm * across_a, -4.373596971356, -5.0103889094e-06)
+    normal, tangent, _ = solve_impact(at, 1.0, 1.25968708)
+    v, sliding = kn * normal + at.coupling * tangent, at.coupling * normal + kt * tangent
+    work = normal * (at.v + 0.5 * v) + tangent * (at.sliding + 0.5 * sliding)
+    assert work <= 2e-13 * at.v**2 / kn
 
 
 @given(st.floats(-1e3, 1e3), st.floats(-1e3, 1e3))
@@ -219,13 +221,13 @@ def test_shares_add_up_and_neither_gives_what_both_do_not(along: float, across: 
 
 def _bounce_at_moving_floor(e: float, speed: float, floor: float) -> NDArray[np.float64]:
     """Return the accounts of a ball of 2 kg that meets a floor which moves up."""
-    before, masses = Speeds(0.0, floor, 0.0, 0.0, -speed, 0.0), Masses(0.0, 0.0, 0.5, 0.0)
-    at = Meeting(0.0, 1.0, 3.0, 0.0, 0.0, -1.0)
+    before, masses = PairVelocity(0.0, floor, 0.0, 0.0, -speed, 0.0), PairInverseMass(0.0, 0.0, 0.5, 0.0)
+    at = ContactFrame(0.0, 1.0, 3.0, 0.0, 0.0, -1.0)
     impulse = 2.0 * (1.0 + e) * (speed + floor)
-    after = Speeds(0.0, floor, 0.0, 0.0, -speed + 0.5 * impulse, 0.0)
+    after = PairVelocity(0.0, floor, 0.0, 0.0, -speed + 0.5 * impulse, 0.0)
     sums = np.zeros((accounts.CAUSES, 4))
-    struck = Struck(at, at, Blow(impulse, 0.0, 0.0, 0.0))
-    book_impact(sums, struck, Pose(0.0, 0.0, 0.0, 3.0, 1.0, 0.0), before, after, masses, accounts.IMPACTS)
+    points = ImpactPoints(at, at, ImpactImpulses(impulse, 0.0, 0.0, 0.0))
+    book_impact(sums, points, Pose(0.0, 0.0, 0.0, 3.0, 1.0, 0.0), before, after, masses, accounts.IMPACTS)
     return sums
 
 

@@ -21,8 +21,8 @@ from physicslab.diagnostics.account import measure_account
 from physicslab.diagnostics.energy import measure_momentum
 from physicslab.diagnostics.ledger import LedgerWriter, names_of, read_impacts, speeds_at
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.kernels.constraint.impact_law import NEWTON
 from physicslab.kernels.records import IMPACT
-from physicslab.kernels.solver.blow import NEWTON
 from physicslab.prefabs import box, circle
 from physicslab.state.contacts import Contacts
 from physicslab.systems.standard import standard_systems

@@ -15,13 +15,13 @@ from physicslab.components import Mass, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
-from physicslab.kernels import energetic
+from physicslab.kernels.constraint import impact_law
 from physicslab.prefabs import box, circle
 from physicslab.stepping.rigid import Rigid
 from physicslab.systems.standard import standard_systems
 
 G = 9.81
-energetic_blow: Any = compiled(energetic.energetic_blow)
+stronge_impulse: Any = compiled(impact_law.stronge_impulse)
 
 
 def laboratory(*, dt: float = 1 / 60, sleeping: bool = True, **physics: Any) -> World:
@@ -82,7 +82,7 @@ def newton(a: NDArray[np.float64], speeds: NDArray[np.float64], e: float, mu: fl
 
 def stronge(a: NDArray[np.float64], speeds: NDArray[np.float64], e: float, mu: float) -> NDArray[np.float64]:
     """Return the impulses by Stronge's law, which ``test_energetic_impacts.py`` tests."""
-    return np.array(energetic_blow(a[0, 0], a[1, 1], a[0, 1], *speeds, e, mu))
+    return np.array(stronge_impulse(impact_law.PointResponse(a[0, 0], a[1, 1], a[0, 1], *speeds), e, mu))
 
 
 def energy_gained(a: NDArray[np.float64], speeds: NDArray[np.float64], impulse: NDArray[np.float64]) -> float:

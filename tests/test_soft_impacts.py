@@ -15,12 +15,13 @@ from physicslab.components import Mass, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
-from physicslab.kernels import energetic, near_counts
+from physicslab.kernels import near_counts
+from physicslab.kernels.constraint import impact_law
 from physicslab.prefabs import box, circle
 from physicslab.systems.standard import standard_systems
 
 G = 9.81
-energetic_blow: Any = compiled(energetic.energetic_blow)
+stronge_impulse: Any = compiled(impact_law.stronge_impulse)
 
 
 def laboratory(*, dt: float = 1 / 60, substeps: int = 4, **physics: Any) -> World:
@@ -110,7 +111,7 @@ def test_a_rod_that_would_gain_energy_goes_by_the_work_of_the_normal_force(e: fl
     kn, kt, between = each + turn * arm_x**2, each + turn * arm_y**2, -turn * arm_x * arm_y
     # The sliding stops, and turns round, for friction does not hold what would need between / kt.
     assert abs(between) / kt > 0.3
-    normal, tangent = energetic_blow(kn, kt, between, -1.0, 0.8, e, 0.3)
+    normal, tangent = stronge_impulse(impact_law.PointResponse(kn, kt, between, -1.0, 0.8), e, 0.3)
     found, energy, edge = reached(world, rod)
     assert found == pytest.approx(kn * normal + between * tangent - 1.0, abs=1e-9)
     assert edge == pytest.approx(tangent / normal, abs=1e-9)

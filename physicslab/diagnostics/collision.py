@@ -1,39 +1,39 @@
 """One impact taken apart: two bodies, where they touched, and what the law of impact makes of that.
 
 A record of the ledger holds the poses and the velocities of both bodies at the moment, masses, restitution,
-friction, and the impulses of the solver. All else here is worked out from the first of these again, in closed
-form, so that the solver's figures can be compared with it: :func:`resolve` takes no impulse and no velocity
-after the impact from the record.
+friction, and the impulses of the solver. :func:`resolve` finds impulses and motions after it from the first
+of these again, by the functions of :mod:`physicslab.kernels.constraint.impact_law` run as plain Python: it
+takes no impulse and no velocity after the impact from the record.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels.energetic import energetic_blow
+from physicslab.kernels.constraint import impact_law, pair
+from physicslab.kernels.constraint.impact_law import (
+    ENERGETIC,
+    LOWERED,
+    NEWTON,
+    PairResponse,
+    PointResponse,
+)
+from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity, PointState
 from physicslab.kernels.interpreter import twin_of
-from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON
+from physicslab.kernels.solver.impact_log import shares_of
 
-__all__ = ["ENERGETIC", "LOWERED", "NEWTON", "Body", "Collision", "Motion", "Response", "Result", "Spot",
-           "blow_of_one", "read_collision", "resolve"]  # fmt: skip
+__all__ = ["ENERGETIC", "LOWERED", "NEWTON", "Body", "Collision", "Motion", "Result", "Spot",
+           "read_collision", "resolve"]  # fmt: skip
 
-_SINGULAR = 1e-12
-"""Share of the product of two responses below which their determinant counts as none."""
-_HALVINGS = 60
-"""Bisections for the restitution of two points that makes no energy."""
 _STUCK = 1e-9
-"""Share of the speeds before up to which the sliding that is left counts as none."""
-_ROUNDING = 1e-12
-"""Share of the work of the impulses up to which a gain of energy is rounding."""
+"""Share of the speeds before up to which the sliding that is left counts as zero."""
 
 
 class Motion(NamedTuple):
@@ -82,24 +82,6 @@ class Spot(NamedTuple):
     arm_b: Vector2
     normal_impulse: float
     tangent_impulse: float
-
-
-class Response(NamedTuple):
-    """What an impulse of 1 N s at a point changes [1/kg], and the parts of that.
-
-    ``kn`` is how a normal impulse changes the normal velocity, 1 / m_n, ``kt`` how a tangential one changes
-    the sliding, 1 / m_t, and ``coupling`` how each changes the other. ``apart`` is 1/m_a + 1/m_b: what both
-    would be if neither body turned. ``normal_a`` is r_a x n [m], ``across_a`` r_a x t.
-    """
-
-    apart: float
-    kn: float
-    kt: float
-    coupling: float
-    normal_a: float
-    normal_b: float
-    across_a: float
-    across_b: float
 
 
 class Result(NamedTuple):
@@ -168,31 +150,48 @@ class Collision:
         """The impulse on B that the solver gave [N s]."""
         return self.normal_impulse * self.normal + self.tangent_impulse * self.tangent
 
-    @cached_property
-    def responses(self) -> tuple[Response, ...]:
-        """How each point answers impulses."""
-        return tuple(self._response(spot, spot) for spot in self.spots)
-
-    def _response(self, one: Spot, two: Spot) -> Response:
-        n, t, (a, b) = self.normal, self.tangent, (self.a, self.b)
-        na, nb, ta, tb = one.arm_a.cross(n), one.arm_b.cross(n), one.arm_a.cross(t), one.arm_b.cross(t)
-        apart = a.inverse_mass + b.inverse_mass
-        kn = apart + a.inverse_inertia * na * two.arm_a.cross(n) + b.inverse_inertia * nb * two.arm_b.cross(n)
-        kt = apart + a.inverse_inertia * ta * ta + b.inverse_inertia * tb * tb
-        return Response(
-            apart, kn, kt, a.inverse_inertia * na * ta + b.inverse_inertia * nb * tb, na, nb, ta, tb
+    @property
+    def inverse_mass(self) -> PairInverseMass[float]:
+        """The inverse masses and moments of inertia of both."""
+        a, b = self.a, self.b
+        return PairInverseMass(
+            *map(np.float64, (a.inverse_mass, a.inverse_inertia, b.inverse_mass, b.inverse_inertia))
         )
 
+    def velocity(self, *, after: bool = False) -> PairVelocity[float]:
+        """Return how both move."""
+        motions = (self.a.after, self.b.after) if after else (self.a.before, self.b.before)
+        return PairVelocity(*(np.float64(one) for v in motions for one in (*v.linear, v.angular)))
+
+    def frame(self, spot: Spot) -> ContactFrame[float]:
+        """Return the normal, and the arms of a point."""
+        return ContactFrame(*map(np.float64, (*self.normal, *spot.arm_a, *spot.arm_b)))
+
+    def _state(self, spot: Spot, *, after: bool = False) -> PointState[float]:
+        state: PointState[float] = twin_of(pair.point_state)(self.frame(spot), self.velocity(after=after))
+        return state
+
+    @cached_property
+    def states(self) -> tuple[PointState[float], ...]:
+        """The moment arms of each point, and how B moves against A there before."""
+        return tuple(map(self._state, self.spots))
+
+    @cached_property
+    def responses(self) -> tuple[PointResponse, ...]:
+        """How each point answers impulses."""
+        return tuple(twin_of(impact_law.point_response)(state, self.inverse_mass) for state in self.states)
+
     @property
-    def between(self) -> float:
-        """How a normal impulse at the first point changes the normal velocity of the second [1/kg]."""
-        return self._response(self.spots[0], self.spots[-1]).kn
+    def pair_response(self) -> PairResponse:
+        """How both points answer impulses, one and the same twice where there is one."""
+        states, make = self.states, twin_of(impact_law.pair_response)
+        response: PairResponse = make(states[0], states[-1], self.inverse_mass)
+        return response
 
     def approach(self, spot: Spot, *, after: bool = False) -> tuple[float, float]:
         """Return how fast B moves against A at a point, along normal and tangent [m/s]."""
-        a, b = (self.a.after, self.b.after) if after else (self.a.before, self.b.before)
-        relative = b.at(spot.arm_b) - a.at(spot.arm_a)
-        return relative.dot(self.normal), relative.dot(self.tangent)
+        state = self._state(spot, after=after)
+        return float(state.v), float(state.sliding)
 
     @property
     def speed_scale(self) -> float:
@@ -222,14 +221,13 @@ class Collision:
         Of a sliding that turns round within the impact the mean of its speeds is not that at which friction
         acted: neither share is made negative by that.
         """
-        by_normal = by_friction = 0.0
+        along = across = 0.0
         for spot in self.spots:
             (vn, vt), (un, ut) = self.approach(spot), self.approach(spot, after=True)
-            by_normal -= 0.5 * spot.normal_impulse * (vn + un)
-            by_friction -= 0.5 * spot.tangent_impulse * (vt + ut)
-        both = by_normal + by_friction
-        rubbed = max(min(by_friction, both), 0.0) if both >= 0.0 else by_friction
-        return both - rubbed, rubbed
+            along += 0.5 * spot.normal_impulse * (vn + un)
+            across += 0.5 * spot.tangent_impulse * (vt + ut)
+        bounced, friction_work = twin_of(shares_of)(along, across)
+        return float(0.0 - bounced), float(0.0 - friction_work)
 
     @property
     def driven(self) -> float:
@@ -301,186 +299,38 @@ def _body(record: Any, side: str) -> Body:
     )  # fmt: skip
 
 
-# ---- the law -----------------------------------------------------------------------------------------------
-
-
 def resolve(collision: Collision) -> Result:
     """Return what the law of the record gives, from poses, motions before, masses, e and mu alone."""
-    e = collision.restitution
-    found = _blow(collision, e)
-    if collision.law == LOWERED and _gain(collision, found) > _ROUNDING:
-        low, high = 0.0, e
-        for _ in range(_HALVINGS):
-            middle = 0.5 * (low + high)
-            makes_energy = _gain(collision, _blow(collision, middle)) > 0.0
-            low, high = (low, middle) if makes_energy else (middle, high)
-        e = low
-        found = _blow(collision, e)
-    normal, tangent, sticks = found
-    return Result(normal, tangent, *_motions_after(collision, normal, tangent), e, sticks)
-
-
-type _Blow = tuple[tuple[float, ...], tuple[float, ...], bool]
-
-
-def _blow(collision: Collision, restitution: float) -> _Blow:
-    """Return the normal and friction impulse of each point [N s] at a restitution, and whether they stick."""
-    if len(collision.spots) == 2:
-        return _blow_of_two(collision, restitution)
-    response, (vn, vt), mu = (
-        collision.responses[0],
-        collision.approach(collision.spots[0]),
-        collision.friction,
-    )
-    if collision.law != ENERGETIC:
-        normal, tangent, sticks = blow_of_one(response, vn, vt, restitution, mu)
-        return (normal,), (tangent,), sticks
-    numbers = (response.kn, response.kt, response.coupling, vn, vt, restitution, mu)
-    normal, tangent = map(float, twin_of(energetic_blow)(*map(np.float64, numbers)))
-    left = vt + response.coupling * normal + response.kt * tangent
-    return (normal,), (tangent,), abs(left) <= _STUCK * (abs(vt) + abs(vn))
-
-
-def blow_of_one(
-    response: Response, vn: float, vt: float, restitution: float, friction: float
-) -> tuple[float, float, bool]:
-    """Return the normal and the friction impulse at one point by Newton's law, and whether it sticks.
-
-    It leaves with e times its approach ``vn`` [m/s]. Where friction of at most mu times the normal impulse
-    can stop the sliding ``vt`` [m/s], it does; where not, it is mu times that, against the sliding after it.
-    """
-    kn, kt, c, gained = response.kn, response.kt, response.coupling, -(1.0 + restitution) * vn
-    if friction == 0.0:
-        return gained / kn, 0.0, False
-    determinant = kn * kt - c * c
-    if determinant > _SINGULAR * kn * kt:
-        normal, tangent = (kt * gained + c * vt) / determinant, -(kn * vt + c * gained) / determinant
-        if normal >= 0.0 and abs(tangent) <= friction * normal:
-            return normal, tangent, True
-    for sign in (1.0, -1.0):
-        resisted = kn + sign * friction * c
-        if resisted > 1e-9 * kn:
-            normal = gained / resisted
-            if sign * (vt + (c + kt * sign * friction) * normal) <= 0.0:
-                return normal, sign * friction * normal, False
-    return gained / kn, 0.0, False
-
-
-def _blow_of_two(collision: Collision, restitution: float) -> _Blow:
-    """Return the impulses of two points at a restitution: those that break none of the laws.
-
-    Each point that is pressed leaves with e times its approach, the other no slower than that; friction stops
-    its sliding, or is mu times its normal impulse against that. All cases are tried.
-    """
-    matrix, speeds = _matrix_of_two(collision), [collision.approach(spot) for spot in collision.spots]
-    before = np.array(speeds).T.ravel()  # both approaches, both slidings
-    wanted = np.concatenate((-restitution * before[:2], (0.0, 0.0)))
-    mu, worst, best = collision.friction, math.inf, np.zeros(4)
-    states = ("sticks", 1.0, -1.0, None) if mu > 0.0 else (0.0, None)
-    for case in sorted(product(states, repeat=2), key=lambda case: case.count(None)):
-        impulses = _of_case(matrix, wanted - before, case, mu)
-        wrong = max(_broken(matrix, before, wanted, impulses, case, mu))
-        if wrong < worst:
-            worst, best = wrong, impulses
-        if wrong <= _ROUNDING:
-            break
-    left = (matrix @ best + before)[2:][best[:2] > 0.0]
-    sticks = bool(len(left)) and mu > 0.0 and float(abs(left).max()) <= _STUCK * float(abs(before).max())
-    n1, n2, t1, t2 = best.tolist()
-    return (n1, n2), (t1, t2), sticks
-
-
-type _State = str | float | None
-"""What a point does: it ``"sticks"``, slides under friction of that sign, or is not pressed."""
-
-
-def _matrix_of_two(collision: Collision) -> NDArray[np.float64]:
-    """Return how both approaches and both slidings answer impulses at both points (4, 4) [1/kg]."""
-    a, b, (one, two) = collision.a, collision.b, collision.spots
-    ways = (
-        (one, collision.normal),
-        (two, collision.normal),
-        (one, collision.tangent),
-        (two, collision.tangent),
-    )
-    matrix = np.zeros((4, 4))
-    for i, (spot, way) in enumerate(ways):
-        for k, (other, push) in enumerate(ways):
-            turned = a.inverse_inertia * spot.arm_a.cross(way) * other.arm_a.cross(push)
-            turned += b.inverse_inertia * spot.arm_b.cross(way) * other.arm_b.cross(push)
-            matrix[i, k] = (a.inverse_mass + b.inverse_mass) * way.dot(push) + turned
-    return matrix
-
-
-def _of_case(
-    matrix: NDArray[np.float64], gained: NDArray[np.float64], case: Sequence[_State], mu: float
-) -> NDArray[np.float64]:
-    """Return normal and friction impulses of both points (4,) where each does what the case says."""
-    rows, columns = [], []
-    for k, state in enumerate(case):
-        if state is None:
-            continue
-        column = np.zeros(4)
-        column[k] = 1.0
-        if isinstance(state, float):
-            column[2 + k] = state * mu
-        rows.append(k)
-        columns.append(column)
-    for k, state in enumerate(case):
-        if state == "sticks":
-            rows.append(2 + k)
-            columns.append(np.eye(4)[2 + k])
-    if not rows:
-        return np.zeros(4)
-    basis = np.array(columns).T
-    found: NDArray[np.float64] = (
-        basis @ np.linalg.lstsq((matrix @ basis)[rows], gained[rows], rcond=_SINGULAR)[0]
-    )
-    if list(case) == ["sticks", "sticks"] and found[0] + found[1] > 0.0:  # of what both hold each has a share
-        found[2:] = found[2:].sum() * found[:2] / found[:2].sum()
-    return found
-
-
-def _broken(
-    matrix: NDArray[np.float64], before: NDArray[np.float64], wanted: NDArray[np.float64],
-    found: NDArray[np.float64], case: Sequence[_State], mu: float,
-) -> Iterator[float]:  # fmt: skip
-    """Yield by how much impulses break each law, as a share of the largest speed or impulse."""
-    after = matrix @ found + before
-    speed, scale = float(abs(before).max()) or 1.0, float(abs(found).sum()) or 1.0
-    for k, state in enumerate(case):
-        missing = float(wanted[k] - after[k]) / speed
-        normal, tangent, sliding = float(found[k]), float(found[2 + k]), float(after[2 + k])
-        yield -normal / scale
-        yield missing if state is None else abs(missing)
-        if state == "sticks":
-            yield abs(sliding) / speed
-            yield (abs(tangent) - mu * normal) / scale
-        elif isinstance(state, float):
-            yield state * sliding / speed if mu > 0.0 else 0.0
-
-
-def _gain(collision: Collision, found: _Blow) -> float:
-    """Return the energy that impulses of two points make, as a share of the sum of its parts."""
-    a, b = _motions_after(collision, *found[:2])
+    e, mu, impulses = np.float64(collision.restitution), np.float64(collision.friction), (0.0, 0.0, 0.0, 0.0)
+    with np.errstate(all="ignore"):
+        if collision.law == LOWERED:
+            impulses, e = twin_of(impact_law.solve_impact_of_two)(collision.pair_response, e, mu)
+        elif len(collision.spots) == 2:
+            impulses = twin_of(impact_law.newton_impulses)(collision.pair_response, e, mu)
+        else:
+            law = impact_law.stronge_impulse if collision.law == ENERGETIC else impact_law.newton_impulse
+            impulses = *twin_of(law)(collision.responses[0], e, mu), 0.0, 0.0
+    normal, tangent = tuple(map(float, impulses[::2])), tuple(map(float, impulses[1::2]))
+    if len(collision.spots) == 1:
+        normal, tangent = (sum(normal),), (sum(tangent),)
+    a, b = _motions_after(collision, normal, tangent)
     after = replace(collision, a=collision.a._replace(after=a), b=collision.b._replace(after=b))
-    work = scale = 0.0
-    for spot, normal, tangent in zip(collision.spots, *found[:2], strict=True):
-        (vn, vt), (un, ut) = collision.approach(spot), after.approach(spot, after=True)
-        work += normal * (vn + un) + tangent * (vt + ut)
-        scale += abs(normal * vn) + abs(tangent * vt)
-    return work / scale if scale > 0.0 else 0.0
+    left = [
+        abs(after.approach(spot, after=True)[1])
+        for spot, pressed in zip(collision.spots, normal, strict=True)
+        if pressed > 0.0
+    ]
+    speed = max(abs(part) for spot in collision.spots for part in collision.approach(spot))
+    sticks = bool(left) and collision.friction > 0.0 and max(left) <= _STUCK * speed
+    return Result(normal, tangent, a, b, float(e), sticks)
 
 
 def _motions_after(
     collision: Collision, normal: Sequence[float], tangent: Sequence[float]
 ) -> tuple[Motion, Motion]:
     """Return the motions of A and B after impulses at each point."""
-    (linear_a, angular_a), (linear_b, angular_b) = collision.a.before, collision.b.before
-    for spot, pressed, rubbed in zip(collision.spots, normal, tangent, strict=True):
-        impulse = pressed * collision.normal + rubbed * collision.tangent
-        linear_a -= collision.a.inverse_mass * impulse
-        angular_a -= collision.a.inverse_inertia * spot.arm_a.cross(impulse)
-        linear_b += collision.b.inverse_mass * impulse
-        angular_b += collision.b.inverse_inertia * spot.arm_b.cross(impulse)
-    return Motion(linear_a, angular_a), Motion(linear_b, angular_b)
+    v, mass = collision.velocity(), collision.inverse_mass
+    for spot, along, across in zip(collision.spots, normal, tangent, strict=True):
+        v = twin_of(pair.after_impulse_at)(v, mass, collision.frame(spot), along, across)
+    ax, ay, wa, bx, by, wb = map(float, v)
+    return Motion(Vector2(ax, ay), wa), Motion(Vector2(bx, by), wb)

@@ -21,8 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ecs.text import table_cell
+from physicslab.kernels.constraint.impact_law import ENERGETIC, LOWERED, NEWTON
+from physicslab.kernels.constraint.pair import ContactFrame, PairVelocity, point_state
+from physicslab.kernels.interpreter import twin_of
 from physicslab.kernels.records import IMPACT
-from physicslab.kernels.solver.blow import ENERGETIC, LOWERED, NEWTON
 from physicslab.state.state import State
 
 __all__ = [
@@ -33,7 +35,7 @@ __all__ = [
 WALLS = ("bounds left", "bounds bottom", "bounds right", "bounds top")
 """What the world's bounds are called, by the number of the wall."""
 LAWS = {NEWTON: "Newton", ENERGETIC: "Stronge", LOWERED: "Newton, restitution lowered"}
-"""The laws of :mod:`physicslab.kernels.solver.blow` in words."""
+"""The laws of :mod:`physicslab.kernels.constraint.impact_law` in words."""
 NO_IMPACTS = np.zeros(0, IMPACT)
 """An empty log, with all its columns."""
 _STICKS = 1e-9
@@ -100,12 +102,11 @@ def speeds_at(records: NDArray[Any], x: Floats, y: Floats, moment: str) -> tuple
     vn, vt : float64 arrays (n,)
         [m/s].
     """
-    ax, ay, wa = (records[f"{moment}_{part}"] for part in ("ax", "ay", "wa"))
-    bx, by, wb = (records[f"{moment}_{part}"] for part in ("bx", "by", "wb"))
-    ux = bx - wb * (y - records["center_by"]) - ax + wa * (y - records["center_ay"])
-    uy = by + wb * (x - records["center_bx"]) - ay - wa * (x - records["center_ax"])
-    nx, ny = records["normal_x"], records["normal_y"]
-    return ux * nx + uy * ny, uy * nx - ux * ny
+    columns: list[Any] = [records[f"{moment}_{part}"] for part in PairVelocity._fields]
+    at: list[Any] = [records["normal_x"], records["normal_y"]]
+    at += [place - records[f"center_{body}{axis}"] for body in "ab" for axis, place in (("x", x), ("y", y))]
+    state = twin_of(point_state)(ContactFrame(*at), PairVelocity(*columns))
+    return state.v, state.sliding
 
 
 def read_impacts(records: NDArray[Any], last: LastTimes | None = None) -> ImpactColumns:

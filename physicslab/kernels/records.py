@@ -112,7 +112,7 @@ IMPACT = np.dtype(
         ("inverse_inertia_b", np.float64),
         ("restitution", np.float64),  # those that the materials have
         ("friction", np.float64),
-        ("law", np.int64),  # NEWTON, ENERGETIC or LOWERED of physicslab.kernels.solver.blow
+        ("law", np.int64),  # NEWTON, ENERGETIC or LOWERED of physicslab.kernels.constraint.impact_law
         ("alone", np.int64),  # 0 where other pairs acted on one of the bodies at the same moment, else 1
     ]
 )

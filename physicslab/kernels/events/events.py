@@ -24,24 +24,20 @@ from physicslab.kernels.arguments import (
     Sizes,
     SizesTuple,
 )
+from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of
 from physicslab.kernels.events.encounter import gap_of, meeting_of, time_apart, touch_pair
 from physicslab.kernels.events.path import advance_to, begin, place, seen_from
-from physicslab.kernels.events.path_impact import resolve_ballistic_impacts
+from physicslab.kernels.events.path_impact import path_velocity, resolve_ballistic_impacts
 from physicslab.kernels.narrow.contact import effective_masses, mix
 from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.records import Impacts, Manifold, Manifolds, Points
-from physicslab.kernels.solver.blow import NEWTON
 from physicslab.kernels.solver.impact_log import (
-    Masses,
-    Pair,
+    ImpactPoints,
     Pose,
-    Speeds,
-    Struck,
     book_impact,
-    in_order,
+    pair_of,
     write_impact,
 )
-from physicslab.kernels.solver.impact_pose import Meeting
 from physicslab.kernels.twins import endless
 
 __all__ = [
@@ -186,39 +182,21 @@ def _first_step(
 
 
 @inlined
-def _speeds(flight: Flight, a: int, b: int) -> Speeds:
-    """Return how two rows move whose paths begin now."""
-    paths, angular = flight.paths, flight.motion.angular
-    return Speeds(
-        paths[a, 4] + paths[a, 5], paths[a, 6] + paths[a, 7], angular[a],
-        paths[b, 4] + paths[b, 5], paths[b, 6] + paths[b, 7], angular[b],
-    )  # fmt: skip
-
-
-@inlined
 def _bounce(flight: Flight, p: int, log: Impacts, number: int, time: float, approach: float) -> None:
     """Resolve an impact of a pair whose paths begin now, and book it; write it, if they do ``approach``."""
     manifold, one, two = flight.manifolds[p], flight.points[2 * p], flight.points[2 * p + 1]
-    paths, angle, inverse = flight.paths, flight.motion.angle, flight.inverse
-    a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
-    before = _speeds(flight, a, b)
-    blow = resolve_ballistic_impacts(manifold, one, two, paths, flight.motion.angular, inverse)
-    struck = in_order(
-        Struck(
-            Meeting(nx, ny, one.arm_ax, one.arm_ay, one.arm_bx, one.arm_by),
-            Meeting(nx, ny, two.arm_ax, two.arm_ay, two.arm_bx, two.arm_by),
-            blow,
-        )
-    )
-    after = _speeds(flight, a, b)
+    paths, angle, angular = flight.paths, flight.motion.angle, flight.motion.angular
+    a, b = manifold.a, manifold.b
+    mass, before = inverse_mass_of(flight.inverse, a, b), path_velocity(paths, angular, a, b)
+    impulses, law = resolve_ballistic_impacts(manifold, one, two, paths, angular, mass)
+    points = ImpactPoints(frame_of(manifold, one), frame_of(manifold, two), impulses)
+    after = path_velocity(paths, angular, a, b)
     pose = Pose(paths[a, 0], paths[a, 2], angle[a], paths[b, 0], paths[b, 2], angle[b])
-    masses = Masses(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
-    book_impact(flight.account, struck, pose, before, after, masses, IMPACTS)
+    book_impact(flight.account, points, pose, before, after, mass, IMPACTS)
     if approach > 0.0:
-        pair = Pair(
-            manifold.entity_a, manifold.entity_b, manifold.wall, manifold.restitution, manifold.friction
+        write_impact(
+            log, number, pair_of(manifold), time, approach, points, pose, before, after, mass, law, True
         )
-        write_impact(log, number, pair, time, approach, struck, pose, before, after, masses, NEWTON, True)
 
 
 @inlined

@@ -4,6 +4,7 @@ import math
 
 from physicslab.kernels import Rows, Vectors, always_inlined, fused, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near, Sizes
+from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment_arms, response
 from physicslab.kernels.narrow.outline import Way, kept_outline
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Point, Points
@@ -52,19 +53,13 @@ def follow_pose(
 @always_inlined
 def effective_masses(manifold: Manifold, points: Points, p: int, inverse: Inverse) -> None:
     """Compute 1 / (1/m_a + 1/m_b + (r_a x n)^2 / I_a + (r_b x n)^2 / I_b), for normal and tangent."""
-    a, b = manifold.a, manifold.b
-    nx, ny = manifold.normal_x, manifold.normal_y
-    linear = inverse.mass[a] + inverse.mass[b]
+    mass = inverse_mass_of(inverse, manifold.a, manifold.b)
+    both, ia, ib = mass.a + mass.b, mass.inertia_a, mass.inertia_b
     for j in range(2 * p, 2 * p + manifold.count):
         point = points[j]
-        turn_a, turn_b = point.arm_ax * ny - point.arm_ay * nx, point.arm_bx * ny - point.arm_by * nx
-        point.normal_mass = 1.0 / (
-            linear + inverse.inertia[a] * turn_a * turn_a + inverse.inertia[b] * turn_b * turn_b
-        )
-        turn_a, turn_b = point.arm_ax * nx + point.arm_ay * ny, point.arm_bx * nx + point.arm_by * ny
-        point.tangent_mass = 1.0 / (
-            linear + inverse.inertia[a] * turn_a * turn_a + inverse.inertia[b] * turn_b * turn_b
-        )
+        na, nb, ta, tb = moment_arms(frame_of(manifold, point))
+        point.normal_mass = 1.0 / response(both, ia, ib, na, nb, na, nb)
+        point.tangent_mass = 1.0 / response(both, ia, ib, ta, tb, ta, tb)
 
 
 @inlined

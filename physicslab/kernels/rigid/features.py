@@ -15,6 +15,7 @@ from numba import int64
 from numpy.typing import NDArray
 
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
+from physicslab.kernels.constraint.pair import ContactFrame, PairVelocity, along_and_across, point_velocity
 from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Pairs
 
@@ -168,9 +169,9 @@ def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: V
     ax, ay, bx, by = px - one_x, py - one_y, px - q[2 * other], py - q[2 * other + 1]
     out[i, TA], out[i, NA] = nx * ay - ny * ax, nx * ax + ny * ay
     out[i, TB], out[i, NB] = nx * by - ny * bx, nx * bx + ny * by
-    rx = v[2 * other] - spin * by - one_vx + one_spin * ay
-    ry = v[2 * other + 1] + spin * bx - one_vy - one_spin * ax
-    out[i, VN], out[i, VT] = nx * rx + ny * ry, nx * ry - ny * rx
+    moving = PairVelocity(one_vx, one_vy, one_spin, v[2 * other], v[2 * other + 1], spin)
+    rx, ry = point_velocity(ContactFrame(nx, ny, ax, ay, bx, by), moving)
+    out[i, VN], out[i, VT] = along_and_across(nx, ny, rx, ry)
     # The point moves with the vertex, and around it as the normal turns.
     pvx, pvy = cvx + radius * turning * ny, cvy - radius * turning * nx
     out[i, BIAS_T] = (

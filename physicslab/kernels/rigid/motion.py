@@ -13,7 +13,6 @@ from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.records import Impacts
-from physicslab.kernels.rigid.blows import approaches, resolve_blows
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED
 from physicslab.kernels.rigid.constraints import apply, find_loads, measure_all, project
@@ -40,6 +39,7 @@ from physicslab.kernels.rigid.features import (
     SceneTuple,
     named_scene,
 )
+from physicslab.kernels.rigid.impacts import approaches, resolve_simultaneous_impacts
 from physicslab.kernels.rigid.jammed import stop_sliding
 from physicslab.kernels.rigid.passing import longest_piece, share_of_ways
 from physicslab.kernels.rigid.piece_end import ALLOWED, HOLDS, PRESSES, cut_at_first_event, note_start
@@ -186,7 +186,7 @@ def collide(
     ``room``, and the work of all rounds (1 + n^4 / 500 for n points).
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
-    new, solved, by_energy, kept, last, rounds = resolve_blows(
+    new, solved, by_energy, kept, last, rounds = resolve_simultaneous_impacts(
         of, points, count, scratch, q, v, old, acceleration, none, rate, entities, log, logged, time, account
     )
     return new, solved, by_energy, kept, last, rounds * (500 + count * count * count * count) // 500

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
+from physicslab.kernels.constraint.pair import frame_of, point_velocity, velocity_of
 from physicslab.kernels.records import Manifold, Manifolds, Points
 
 __all__ = ["READY", "REST", "SLOW", "count_rest", "find_held", "find_touched", "join_marked", "list_sleeping"]
@@ -103,11 +104,10 @@ def _slips(
     Friction takes v^2 / (2 mu g_n) to stop a speed v, where g_n is the pressure over the mass.
     """
     a, b = manifold.a, manifold.b
-    fastest, friction = 0.0, 0.0
+    v, fastest, friction = velocity_of(linear, angular, a, b), 0.0, 0.0
     for j in range(2 * p, 2 * p + manifold.count):
         point = points[j]
-        vx = linear[b, 0] - angular[b] * point.arm_by - linear[a, 0] + angular[a] * point.arm_ay
-        vy = linear[b, 1] + angular[b] * point.arm_bx - linear[a, 1] - angular[a] * point.arm_ax
+        vx, vy = point_velocity(frame_of(manifold, point), v)
         fastest = max(fastest, abs(manifold.normal_x * vy - manifold.normal_y * vx))
         friction += abs(point.tangent_impulse)
     if fastest <= _STILL * manifold.size:

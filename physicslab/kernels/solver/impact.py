@@ -6,29 +6,37 @@ from typing import NamedTuple
 from physicslab.kernels import always_inlined, fused, inlined
 from physicslab.kernels.accounts import IMPACTS
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion, Sizes
-from physicslab.kernels.records import Manifold, Point
-from physicslab.kernels.solver.blow import (
+from physicslab.kernels.constraint.impact_law import (
     ENERGETIC,
     LOWERED,
     NEWTON,
-    Blow,
-    Lever,
-    Weights,
-    one_blow,
-    two_blows,
+    ImpactImpulses,
+    pair_response,
+    point_response,
+    solve_impact,
+    solve_impact_of_two,
 )
+from physicslab.kernels.constraint.pair import (
+    ContactFrame,
+    PairInverseMass,
+    PairVelocity,
+    after_impulse_at,
+    frame_of,
+    inverse_mass_of,
+    point_state,
+    put_velocity,
+    velocity_of,
+)
+from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.impact_log import (
-    Masses,
-    Pair,
+    ImpactPoints,
     Pose,
-    Speeds,
-    Struck,
     book_impact,
-    in_order,
+    pair_of,
     write_impact,
 )
-from physicslab.kernels.solver.impact_pose import Meeting, is_known, meeting_at
-from physicslab.kernels.solver.impulse import follow_drift, relative_velocity
+from physicslab.kernels.solver.impact_pose import is_known, meeting_at
+from physicslab.kernels.solver.impulse import follow_drift
 
 __all__ = ["resolve_impacts"]
 
@@ -57,19 +65,21 @@ class Approach(NamedTuple):
 
 
 @inlined
-def _shift(a: int, b: int, before: Speeds, motion: Motion, t: float) -> None:
+def _shift(
+    a: int, b: int, old: PairVelocity[float], new: PairVelocity[float], motion: Motion, t: float
+) -> None:
     """Move A and B to where they would be, had their velocities changed at the time t from now, not now.
 
     Each has moved with the old velocity until t and moves with the new one from there on: x -= t (v_new -
     v_old).
     """
-    position, angle, linear, angular = motion
-    position[a, 0] -= t * (linear[a, 0] - before.ax)
-    position[a, 1] -= t * (linear[a, 1] - before.ay)
-    angle[a] -= t * (angular[a] - before.wa)
-    position[b, 0] -= t * (linear[b, 0] - before.bx)
-    position[b, 1] -= t * (linear[b, 1] - before.by)
-    angle[b] -= t * (angular[b] - before.wb)
+    position, angle = motion.position, motion.angle
+    position[a, 0] -= t * (new.ax - old.ax)
+    position[a, 1] -= t * (new.ay - old.ay)
+    angle[a] -= t * (new.wa - old.wa)
+    position[b, 0] -= t * (new.bx - old.bx)
+    position[b, 1] -= t * (new.by - old.by)
+    angle[b] -= t * (new.wb - old.wb)
 
 
 @inlined
@@ -94,33 +104,17 @@ def _meeting_time(separation: float, v: float, pull: float, window: Window, load
 
 
 @inlined
-def _lever(meeting: Meeting, speeds: Speeds) -> Lever:
-    """Return lever arms at a point, and its approach and sliding, for the speeds of both bodies there."""
-    nx, ny, ax, ay, bx, by = meeting
-    vx = speeds.bx - speeds.wb * by - speeds.ax + speeds.wa * ay
-    vy = speeds.by + speeds.wb * bx - speeds.ay - speeds.wa * ax
-    return Lever(
-        ax * ny - ay * nx, bx * ny - by * nx, ax * nx + ay * ny, bx * nx + by * ny,
-        vx * nx + vy * ny, vy * nx - vx * ny,
-    )  # fmt: skip
+def _frame(manifold: Manifold, point: Point, motion: Motion, sizes: Sizes, t: float) -> ContactFrame[float]:
+    """Return the normal and the arms of a point at the time t from now."""
+    if is_known(manifold, motion, sizes):
+        return frame_of(manifold, point)
+    return meeting_at(manifold, point, motion, sizes, t)
 
 
 @inlined
-def _strike(
-    manifold: Manifold, point: Point, meeting: Meeting, lever: Lever, normal: float, tangent: float,
-    motion: Motion, inverse: Inverse,
-) -> None:  # fmt: skip
-    """Apply the impulses of an impact at a point, and note them."""
-    a, b, (nx, ny, ax, ay, bx, by) = manifold.a, manifold.b, meeting
-    px, py = normal * nx - tangent * ny, normal * ny + tangent * nx
-    linear, angular = motion.linear, motion.angular
-    linear[a, 0] -= inverse.mass[a] * px
-    linear[a, 1] -= inverse.mass[a] * py
-    angular[a] -= inverse.inertia[a] * (ax * py - ay * px)
-    linear[b, 0] += inverse.mass[b] * px
-    linear[b, 1] += inverse.mass[b] * py
-    angular[b] += inverse.inertia[b] * (bx * py - by * px)
-    point.approach_speed = max(point.approach_speed, -lever.v)
+def _note_point(point: Point, v: float, normal: float, tangent: float) -> None:
+    """Note the approach at which impulses of an impact act at a point, and add those."""
+    point.approach_speed = max(point.approach_speed, -v)
     point.impact_normal += normal
     point.impact_tangent += tangent
 
@@ -128,40 +122,30 @@ def _strike(
 @always_inlined
 def _exchange(
     manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, motion: Motion, sizes: Sizes,
-    inverse: Inverse, before: Speeds, t: float,
-) -> tuple[Struck, float, int]:  # fmt: skip
-    """Bounce a pair at the time t, with the normal, the arms and the speeds ``before`` of that time.
+    mass: PairInverseMass[float], before: PairVelocity[float], t: float,
+) -> tuple[ImpactPoints, float, int]:  # fmt: skip
+    """Resolve the impact of a pair at the time t, with normal, arms and the speeds ``before`` of that time.
 
     Returns the points with their impulses, all 0 where it turns away until then, the approach speed at the
     first of them [m/s], and which law they obey.
     """
-    a, b = manifold.a, manifold.b
-    weights = Weights(inverse.mass[a] + inverse.mass[b], inverse.inertia[a], inverse.inertia[b])
     e, mu = manifold.restitution, manifold.friction
-    if meets_1 and meets_2:
-        where1, where2 = (
-            meeting_at(manifold, one, motion, sizes, t),
-            meeting_at(manifold, two, motion, sizes, t),
-        )
-        lever1, lever2 = _lever(where1, before), _lever(where2, before)
-        blow, law = two_blows(lever1, lever2, weights, e, mu)
-        _strike(manifold, one, where1, lever1, blow.normal1, blow.tangent1, motion, inverse)
-        _strike(manifold, two, where2, lever2, blow.normal2, blow.tangent2, motion, inverse)
-        v = lever1.v if blow.normal1 >= blow.normal2 else lever2.v
-        return in_order(Struck(where1, where2, blow)), -v, law
     point = one if meets_1 else two
-    if is_known(manifold, motion, sizes):
-        where = Meeting(
-            manifold.normal_x, manifold.normal_y, point.arm_ax, point.arm_ay, point.arm_bx, point.arm_by
-        )
-    else:
-        where = meeting_at(manifold, point, motion, sizes, t)
-    lever = _lever(where, before)
-    if lever.v >= 0.0:  # it turns away until then
-        return Struck(where, where, Blow(0.0, 0.0, 0.0, 0.0)), 0.0, NEWTON
-    normal, tangent, law = one_blow(lever, weights, e, mu)
-    _strike(manifold, point, where, lever, normal, tangent, motion, inverse)
-    return Struck(where, where, Blow(normal, tangent, 0.0, 0.0)), -lever.v, law
+    frame = _frame(manifold, point, motion, sizes, t)
+    at = point_state(frame, before)
+    if meets_1 and meets_2:
+        frame2 = _frame(manifold, two, motion, sizes, t)
+        at2 = point_state(frame2, before)
+        impulses, used = solve_impact_of_two(pair_response(at, at2, mass), e, mu)
+        _note_point(one, at.v, impulses.normal1, impulses.tangent1)
+        _note_point(two, at2.v, impulses.normal2, impulses.tangent2)
+        v = at.v if impulses.normal1 >= impulses.normal2 else at2.v
+        return ImpactPoints(frame, frame2, impulses), -v, LOWERED if used < e else NEWTON
+    if at.v >= 0.0:  # it turns away until then
+        return ImpactPoints(frame, frame, ImpactImpulses(0.0, 0.0, 0.0, 0.0)), 0.0, NEWTON
+    normal, tangent, law = solve_impact(point_response(at, mass), e, mu)
+    _note_point(point, at.v, normal, tangent)
+    return ImpactPoints(frame, frame, ImpactImpulses(normal, tangent, 0.0, 0.0)), -at.v, law
 
 
 @inlined
@@ -190,31 +174,24 @@ def _meeting_times(
 
 
 @inlined
-def _speeds(a: int, b: int, motion: Motion) -> Speeds:
-    """Return how a pair moves now."""
-    linear, angular = motion.linear, motion.angular
-    return Speeds(linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
-
-
-@inlined
-def _gained(speeds: Speeds, a: int, b: int, inverse: Inverse, acting: Acting, t: float) -> Speeds:
-    """Return speeds, with what the forces add to them within the time t."""
+def _gained(
+    v: PairVelocity[float], a: int, b: int, mass: PairInverseMass[float], acting: Acting, t: float
+) -> PairVelocity[float]:
+    """Return velocities, with what the forces add to them within the time t."""
     if not acting.any or t == 0.0:
-        return speeds
-    force, torque = acting.force, acting.torque
-    ma, mb = t * inverse.mass[a], t * inverse.mass[b]
-    return Speeds(
-        speeds.ax + ma * force[a, 0], speeds.ay + ma * force[a, 1],
-        speeds.wa + t * inverse.inertia[a] * torque[a],
-        speeds.bx + mb * force[b, 0], speeds.by + mb * force[b, 1],
-        speeds.wb + t * inverse.inertia[b] * torque[b],
+        return v
+    force, torque, ma, mb = acting.force, acting.torque, t * mass.a, t * mass.b
+    return PairVelocity(
+        v.ax + ma * force[a, 0], v.ay + ma * force[a, 1], v.wa + t * mass.inertia_a * torque[a],
+        v.bx + mb * force[b, 0], v.by + mb * force[b, 1], v.wb + t * mass.inertia_b * torque[b],
     )  # fmt: skip
 
 
 @always_inlined
 def _note(
-    manifold: Manifold, struck: Struck, approach: float, old: Speeds, before: Speeds, after: Speeds,
-    motion: Motion, inverse: Inverse, t: float, law: int, log: Log, number: int,
+    manifold: Manifold, points: ImpactPoints, approach: float, old: PairVelocity[float],
+    before: PairVelocity[float], after: PairVelocity[float], motion: Motion, mass: PairInverseMass[float],
+    t: float, law: int, log: Log, number: int,
 ) -> None:  # fmt: skip
     """Book an impact that has taken place at the time t from now, and write it to the log.
 
@@ -225,15 +202,12 @@ def _note(
         position[a, 0] + t * old.ax, position[a, 1] + t * old.ay, angle[a] + t * old.wa,
         position[b, 0] + t * old.bx, position[b, 1] + t * old.by, angle[b] + t * old.wb,
     )  # fmt: skip
-    masses = Masses(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
-    book_impact(log.account, struck, pose, before, after, masses, IMPACTS)
+    book_impact(log.account, points, pose, before, after, mass, IMPACTS)
     if len(log.impacts) > 0:
-        pair = Pair(
-            manifold.entity_a, manifold.entity_b, manifold.wall, manifold.restitution, manifold.friction
-        )
         write_impact(
-            log.impacts, number, pair, log.time + t, approach, struck, pose, before, after, masses, law, True
-        )
+            log.impacts, number, pair_of(manifold), log.time + t, approach, points, pose, before, after, mass,
+            law, True,
+        )  # fmt: skip
 
 
 @inlined
@@ -249,14 +223,18 @@ def _resolve_pair(
     meets_1, meets_2 = abs(t1) < math.inf, abs(t2) < math.inf
     t = min(t1, t2) if meets_1 and meets_2 else (t1 if meets_1 else t2)
     a, b, since = manifold.a, manifold.b, t if forced else 0.0
-    old = _speeds(a, b, motion)
-    before = _gained(old, a, b, inverse, acting, since)
-    struck, approach, law = _exchange(manifold, one, two, meets_1, meets_2, motion, sizes, inverse, before, t)
-    met = struck.blow.normal1 > 0.0
+    mass, old = inverse_mass_of(inverse, a, b), velocity_of(motion.linear, motion.angular, a, b)
+    before = _gained(old, a, b, mass, acting, since)
+    points, approach, law = _exchange(manifold, one, two, meets_1, meets_2, motion, sizes, mass, before, t)
+    met = points.impulses.normal1 + points.impulses.normal2 > 0.0
     if met:
-        after = _gained(_speeds(a, b, motion), a, b, inverse, acting, since)
-        _note(manifold, struck, approach, old, before, after, motion, inverse, t, law, log, number)
-    _shift(a, b, old, motion, t)
+        new = after_impulse_at(old, mass, points.one, points.impulses.normal1, points.impulses.tangent1)
+        if meets_1 and meets_2:
+            new = after_impulse_at(new, mass, points.two, points.impulses.normal2, points.impulses.tangent2)
+        after = _gained(new, a, b, mass, acting, since)
+        _note(manifold, points, approach, old, before, after, motion, mass, t, law, log, number)
+        put_velocity(motion.linear, motion.angular, a, b, new)
+        _shift(a, b, old, new, motion, t)
     if manifold.swept == 1 and manifold.restitution > 0.0:
         # Its normal is not that of now: the solver must not push along it.
         one.ahead = two.ahead = 1
@@ -306,15 +284,14 @@ def _resolve_once(
             continue
         elastic = elastic or manifold.restitution > 0.0
         # Most pairs rest: these are handled here without a call.
-        a, b, nx, ny = manifold.a, manifold.b, manifold.normal_x, manifold.normal_y
+        a, b = manifold.a, manifold.b
         one, two = contacts.points[2 * p], contacts.points[2 * p + 1]
         one.ahead = two.ahead = 0
-        vx, vy = relative_velocity(one, a, b, motion)
-        v1, v2 = vx * nx + vy * ny, 0.0
+        v = velocity_of(motion.linear, motion.angular, a, b)
+        v1, v2 = point_state(frame_of(manifold, one), v).v, 0.0
         overlap, loaded = one.separation < 0.0, one.normal_impulse > 0.0
         if manifold.count == 2:
-            vx, vy = relative_velocity(two, a, b, motion)
-            v2 = vx * nx + vy * ny
+            v2 = point_state(frame_of(manifold, two), v).v
             overlap, loaded = overlap or two.separation < 0.0, loaded or two.normal_impulse > 0.0
         if v1 >= 0.0 and v2 >= 0.0:
             left += 1 if acting.any or overlap or loaded else 0
@@ -353,7 +330,7 @@ def resolve_impacts(
     """Bounce the pairs that meet in this substep, each at its own time.
 
     The substep spans the times ``start`` to ``end`` from now. An impact at the time t takes normal, arms and
-    speeds of that time, by the law of :mod:`physicslab.kernels.solver.blow`, and leaves the bodies where they
+    speeds of that time, by :mod:`physicslab.kernels.constraint.impact_law`, and leaves the bodies where they
     would be had they bounced then: that is exact for constant forces, and keeps energy (e = 1), momentum and
     angular momentum.
 

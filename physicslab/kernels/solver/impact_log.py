@@ -9,22 +9,21 @@ from typing import NamedTuple
 
 from physicslab.kernels import Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import ENERGY, FRICTION, HAND, IMPACTS, PX, PY, SPIN
-from physicslab.kernels.records import Impacts
-from physicslab.kernels.solver.blow import Blow
-from physicslab.kernels.solver.impact_pose import Meeting
+from physicslab.kernels.constraint.impact_law import ImpactImpulses
+from physicslab.kernels.constraint.pair import (
+    ContactFrame,
+    PairInverseMass,
+    PairVelocity,
+    impulse_at,
+    mean_velocity,
+    moments_of,
+    point_state,
+)
+from physicslab.kernels.records import Impacts, Manifold
 
 __all__ = [
-    "Masses",
-    "Pair",
-    "Pose",
-    "Speeds",
-    "Struck",
-    "book_impact",
-    "book_outside",
-    "in_order",
-    "shares_of",
-    "write_impact",
-]
+    "ImpactPoints", "Pair", "Pose", "book_impact", "book_outside", "pair_of", "shares_of", "write_impact",
+]  # fmt: skip
 
 
 class Pair(NamedTuple):
@@ -48,50 +47,27 @@ class Pose(NamedTuple):
     angle_b: float
 
 
-class Speeds(NamedTuple):
-    """Velocities [m/s] and angular velocities [rad/s] of A and of B."""
-
-    ax: float
-    ay: float
-    wa: float
-    bx: float
-    by: float
-    wb: float
-
-
-class Masses(NamedTuple):
-    """Inverse masses [1/kg] and inverse moments of inertia [1/(kg m^2)] of A and of B."""
-
-    a: float
-    turn_a: float
-    b: float
-    turn_b: float
-
-
-class Struck(NamedTuple):
+class ImpactPoints(NamedTuple):
     """Where a pair meets, and the impulses there; of one point, those of the second are 0."""
 
-    one: Meeting
-    two: Meeting
-    blow: Blow
+    one: ContactFrame[float]
+    two: ContactFrame[float]
+    impulses: ImpactImpulses
 
 
 @inlined
-def in_order(struck: Struck) -> Struck:
+def pair_of(manifold: Manifold) -> Pair:
+    """Return what an impact of a pair is recorded with."""
+    return Pair(manifold.entity_a, manifold.entity_b, manifold.wall, manifold.restitution, manifold.friction)
+
+
+@inlined
+def _in_order(points: ImpactPoints) -> ImpactPoints:
     """Return the points of an impact, that with the larger normal impulse first."""
-    blow = struck.blow
-    if blow.normal2 <= blow.normal1:
-        return struck
-    return Struck(struck.two, struck.one, Blow(blow.normal2, blow.tangent2, blow.normal1, blow.tangent1))
-
-
-@inlined
-def _relative(meeting: Meeting, speeds: Speeds) -> tuple[float, float]:
-    """Return the velocity of B against A at a point, along the normal and the tangent [m/s]."""
-    nx, ny, ax, ay, bx, by = meeting
-    vx = speeds.bx - speeds.wb * by - speeds.ax + speeds.wa * ay
-    vy = speeds.by + speeds.wb * bx - speeds.ay - speeds.wa * ax
-    return vx * nx + vy * ny, vy * nx - vx * ny
+    normal1, tangent1, normal2, tangent2 = points.impulses
+    if normal2 <= normal1:
+        return points
+    return ImpactPoints(points.two, points.one, ImpactImpulses(normal2, tangent2, normal1, tangent1))
 
 
 @inlined
@@ -102,68 +78,66 @@ def shares_of(along: float, across: float) -> tuple[float, float]:
     mean of its speeds is not the speed at which friction acted. Neither gives energy then.
     """
     both = along + across
-    rubbed = min(max(across, min(both, 0.0)), 0.0)
-    return both - rubbed, rubbed
+    friction_work = min(max(across, min(both, 0.0)), 0.0)
+    return both - friction_work, friction_work
 
 
 @always_inlined
 def book_impact(
-    account: Vectors, struck: Struck, pose: Pose, before: Speeds, after: Speeds, masses: Masses, row: int
-) -> None:
+    account: Vectors, points: ImpactPoints, pose: Pose, before: PairVelocity[float],
+    after: PairVelocity[float], mass: PairInverseMass[float], row: int,
+) -> None:  # fmt: skip
     """Add the work of the impulses of an impact to the accounts, and the momentum that comes from outside.
 
     All of it goes to the cause ``row`` where that is IMPACTS; friction of what rests has its own. A body
     without an inverse mass is outside: fixed, or moved by a hand or of itself. What moves so works as well,
     by the impulse times its velocity.
     """
-    one, two, blow = struck
-    mean = Speeds(
-        0.5 * (before.ax + after.ax), 0.5 * (before.ay + after.ay), 0.5 * (before.wa + after.wa),
-        0.5 * (before.bx + after.bx), 0.5 * (before.by + after.by), 0.5 * (before.wb + after.wb),
-    )  # fmt: skip
-    v1, s1 = _relative(one, mean)
-    v2, s2 = _relative(two, mean)
-    bounced, rubbed = blow.normal1 * v1 + blow.normal2 * v2, blow.tangent1 * s1 + blow.tangent2 * s2
+    one, two, (normal1, tangent1, normal2, tangent2) = points
+    mean = mean_velocity(before, after)
+    at1, at2 = point_state(one, mean), point_state(two, mean)
+    bounced = normal1 * at1.v + normal2 * at2.v
+    friction_work = tangent1 * at1.sliding + tangent2 * at2.sliding
     if row != IMPACTS:
-        bounced, rubbed = shares_of(bounced, rubbed)
-        account[FRICTION, ENERGY] += rubbed
-        rubbed = 0.0
-    account[row, ENERGY] += bounced + rubbed
-    if masses.a > 0.0 and masses.b > 0.0 and masses.turn_a > 0.0 and masses.turn_b > 0.0:
+        bounced, friction_work = shares_of(bounced, friction_work)
+        account[FRICTION, ENERGY] += friction_work
+        friction_work = 0.0
+    account[row, ENERGY] += bounced + friction_work
+    if mass.a > 0.0 and mass.b > 0.0 and mass.inertia_a > 0.0 and mass.inertia_b > 0.0:
         return
-    x1, y1 = blow.normal1 * one.nx - blow.tangent1 * one.ny, blow.normal1 * one.ny + blow.tangent1 * one.nx
-    x2, y2 = blow.normal2 * two.nx - blow.tangent2 * two.ny, blow.normal2 * two.ny + blow.tangent2 * two.nx
-    px, py = x1 + x2, y1 + y2
-    turn_a = one.arm_ax * y1 - one.arm_ay * x1 + two.arm_ax * y2 - two.arm_ay * x2
-    turn_b = one.arm_bx * y1 - one.arm_by * x1 + two.arm_bx * y2 - two.arm_by * x2
-    book_outside(account, row, masses, pose, mean, px, py, turn_a, turn_b)
+    x1, y1 = impulse_at(one.nx, one.ny, normal1, tangent1)
+    x2, y2 = impulse_at(two.nx, two.ny, normal2, tangent2)
+    moment_1a, moment_1b = moments_of(one, x1, y1)
+    moment_2a, moment_2b = moments_of(two, x2, y2)
+    book_outside(
+        account, row, mass, pose, mean, x1 + x2, y1 + y2, moment_1a + moment_2a, moment_1b + moment_2b
+    )
 
 
 @inlined
 def book_outside(
-    account: Vectors, row: int, masses: Masses, pose: Pose, mean: Speeds, px: float, py: float, turn_a: float,
-    turn_b: float,
+    account: Vectors, row: int, mass: PairInverseMass[float], pose: Pose, mean: PairVelocity[float],
+    px: float, py: float, moment_a: float, moment_b: float,
 ) -> None:  # fmt: skip
     """Book what comes from outside by the impulse (px, py) [N s] on B and its opposite on A.
 
-    ``turn_a`` and ``turn_b`` are its moments about both centres [N m s]. What drives a body takes the cause
-    HAND, and does the impulse times its ``mean`` velocity.
+    ``moment_a`` and ``moment_b`` are its moments about both centres [N m s]. What drives a body takes the
+    cause HAND, and does the impulse times its ``mean`` velocity.
     """
     # What cannot turn takes a torque from outside.
-    if masses.a > 0.0 and masses.b > 0.0:
-        account[row, SPIN] += (turn_a if masses.turn_a == 0.0 else 0.0) - (
-            turn_b if masses.turn_b == 0.0 else 0.0
-        )
+    if mass.a > 0.0 and mass.b > 0.0:
+        account[row, SPIN] += moment_a if mass.inertia_a == 0.0 else 0.0
+        account[row, SPIN] -= moment_b if mass.inertia_b == 0.0 else 0.0
         return
-    if masses.b > 0.0:
+    if mass.b > 0.0:
         driven = mean.ax != 0.0 or mean.ay != 0.0 or mean.wa != 0.0
-        power = px * mean.ax + py * mean.ay + turn_a * mean.wa
-        turned = pose.bx * py - pose.by * px + (turn_b if masses.turn_b > 0.0 else 0.0)
+        power = px * mean.ax + py * mean.ay + moment_a * mean.wa
+        turned = pose.bx * py - pose.by * px + (moment_b if mass.inertia_b > 0.0 else 0.0)
     else:
         driven = mean.bx != 0.0 or mean.by != 0.0 or mean.wb != 0.0
         px, py = -px, -py
-        power = px * mean.bx + py * mean.by - turn_b * mean.wb
-        turned = pose.ax * py - pose.ay * px - (turn_a if masses.turn_a > 0.0 else 0.0)
+        power = px * mean.bx + py * mean.by - moment_b * mean.wb
+        turned = pose.ax * py - pose.ay * px - (moment_a if mass.inertia_a > 0.0 else 0.0)
     cause = HAND if driven else row
     account[HAND, ENERGY] += power
     account[cause, PX] += px
@@ -173,21 +147,22 @@ def book_outside(
 
 @inlined
 def write_impact(
-    log: Impacts, k: int, pair: Pair, time: float, approach: float, struck: Struck, pose: Pose,
-    before: Speeds, after: Speeds, masses: Masses, law: int, alone: bool,
+    log: Impacts, k: int, pair: Pair, time: float, approach: float, points: ImpactPoints, pose: Pose,
+    before: PairVelocity[float], after: PairVelocity[float], mass: PairInverseMass[float], law: int,
+    alone: bool,
 ) -> None:  # fmt: skip
-    """Write an impact, its points :func:`in_order`, into the log as number ``k``."""
-    record, (one, two, blow) = log[k % len(log)], struck
+    """Write an impact into the log as number ``k``, the point with the larger normal impulse first."""
+    record, (one, two, (normal1, tangent1, normal2, tangent2)) = log[k % len(log)], _in_order(points)
     record.time, record.entity_a, record.entity_b, record.wall = time, pair.entity_a, pair.entity_b, pair.wall
     record.restitution, record.friction = pair.restitution, pair.friction
-    record.law, record.alone, record.points = law, 1 if alone else 0, 2 if blow.normal2 > 0.0 else 1
+    record.law, record.alone, record.points = law, 1 if alone else 0, 2 if normal2 > 0.0 else 1
     record.normal_x, record.normal_y, record.approach_speed = one.nx, one.ny, approach
     record.x, record.y = pose.bx + one.arm_bx, pose.by + one.arm_by
     record.x_2 = record.y_2 = record.normal_impulse_2 = record.tangent_impulse_2 = 0.0
-    if blow.normal2 > 0.0:
+    if normal2 > 0.0:
         record.x_2, record.y_2 = pose.bx + two.arm_bx, pose.by + two.arm_by
-        record.normal_impulse_2, record.tangent_impulse_2 = blow.normal2, blow.tangent2
-    record.normal_impulse, record.tangent_impulse = blow.normal1 + blow.normal2, blow.tangent1 + blow.tangent2
+        record.normal_impulse_2, record.tangent_impulse_2 = normal2, tangent2
+    record.normal_impulse, record.tangent_impulse = normal1 + normal2, tangent1 + tangent2
     # Of a pair that meets late, as when a third body has struck one of them, the surfaces overlap: A is put
     # where both arms lead to one point, so that the record is the impact that was resolved.
     record.center_ax, record.center_ay = record.x - one.arm_ax, record.y - one.arm_ay
@@ -197,5 +172,5 @@ def write_impact(
     record.before_bx, record.before_by, record.before_wb = before.bx, before.by, before.wb
     record.after_ax, record.after_ay, record.after_wa = after.ax, after.ay, after.wa
     record.after_bx, record.after_by, record.after_wb = after.bx, after.by, after.wb
-    record.inverse_mass_a, record.inverse_inertia_a = masses.a, masses.turn_a
-    record.inverse_mass_b, record.inverse_inertia_b = masses.b, masses.turn_b
+    record.inverse_mass_a, record.inverse_inertia_a = mass.a, mass.inertia_a
+    record.inverse_mass_b, record.inverse_inertia_b = mass.b, mass.inertia_b

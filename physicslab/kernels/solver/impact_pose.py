@@ -1,30 +1,19 @@
 """Where two bodies meet at the time of their impact: the normal and the arms of that moment."""
 
 import math
-from typing import NamedTuple
 
 from physicslab.kernels import fused, inlined
 from physicslab.kernels.arguments import Motion, Sizes
+from physicslab.kernels.constraint.pair import ContactFrame
 from physicslab.kernels.narrow.manifold import circle_box
 from physicslab.kernels.narrow.outline import Outline
 from physicslab.kernels.records import Manifold, Point
 
-__all__ = ["Meeting", "is_known", "meeting_at"]
+__all__ = ["is_known", "meeting_at"]
 
 _BOX = 2
 _FLIPPED = 33
 """From this number on the features of two boxes are corners of A on a face of B."""
-
-
-class Meeting(NamedTuple):
-    """The normal from A to B, and the arms from both centres to the one point in which they touch [m]."""
-
-    nx: float
-    ny: float
-    arm_ax: float
-    arm_ay: float
-    arm_bx: float
-    arm_by: float
 
 
 @inlined
@@ -47,7 +36,7 @@ def _apart(a: int, b: int, motion: Motion, t: float) -> tuple[float, float]:
 
 
 @inlined
-def _circle_on_box(circle: int, box: int, motion: Motion, sizes: Sizes, t: float) -> Meeting:
+def _circle_on_box(circle: int, box: int, motion: Motion, sizes: Sizes, t: float) -> ContactFrame[float]:
     """Return where a circle, as B, meets a box, as A, that turns."""
     angle = motion.angle[box] + t * motion.angular[box]
     outline = Outline(
@@ -56,11 +45,11 @@ def _circle_on_box(circle: int, box: int, motion: Motion, sizes: Sizes, t: float
     dx, dy = _apart(box, circle, motion, t)
     nx, ny, _px, _py, _separation = circle_box(dx, dy, outline, sizes.radius[circle])
     arm_x, arm_y = -sizes.radius[circle] * nx, -sizes.radius[circle] * ny
-    return Meeting(nx, ny, dx + arm_x, dy + arm_y, arm_x, arm_y)
+    return ContactFrame(nx, ny, dx + arm_x, dy + arm_y, arm_x, arm_y)
 
 
 @inlined
-def _corner_on_face(manifold: Manifold, point: Point, motion: Motion, t: float) -> Meeting:
+def _corner_on_face(manifold: Manifold, point: Point, motion: Motion, t: float) -> ContactFrame[float]:
     """Return where a corner of a box meets a face: it turns with its body, and the normal with the face's."""
     a, b, angular = manifold.a, manifold.b, motion.angular
     # Points are half-way between the surfaces; a swept pair has its own where these meet.
@@ -70,12 +59,12 @@ def _corner_on_face(manifold: Manifold, point: Point, motion: Motion, t: float) 
         nx, ny = _turned(manifold.normal_x, manifold.normal_y, t * angular[b])
         x, y = point.arm_ax - half * manifold.normal_x, point.arm_ay - half * manifold.normal_y
         x, y = _turned(x, y, t * angular[a])
-        return Meeting(nx, ny, x, y, x - dx, y - dy)
+        return ContactFrame(nx, ny, x, y, x - dx, y - dy)
     nx, ny = _turned(manifold.normal_x, manifold.normal_y, t * angular[a] if manifold.wall < 0 else 0.0)
     half = half if manifold.wall < 0 else 0.0
     x, y = point.arm_bx + half * manifold.normal_x, point.arm_by + half * manifold.normal_y
     x, y = _turned(x, y, t * angular[b])
-    return Meeting(nx, ny, dx + x, dy + y, x, y)
+    return ContactFrame(nx, ny, dx + x, dy + y, x, y)
 
 
 @fused
@@ -91,7 +80,9 @@ def is_known(manifold: Manifold, motion: Motion, sizes: Sizes) -> bool:
 
 
 @inlined
-def meeting_at(manifold: Manifold, point: Point, motion: Motion, sizes: Sizes, t: float) -> Meeting:
+def meeting_at(
+    manifold: Manifold, point: Point, motion: Motion, sizes: Sizes, t: float
+) -> ContactFrame[float]:
     """Return where a pair that is not known meets at the time t from now, each body moving as it does now.
 
     Both arms lead to one point: angular momentum is kept to rounding.
@@ -101,5 +92,5 @@ def meeting_at(manifold: Manifold, point: Point, motion: Motion, sizes: Sizes, t
         return _circle_on_box(b, a, motion, sizes, t)
     if not walled and sizes.kind[a] != _BOX:
         nx, ny, ax, ay, bx, by = _circle_on_box(a, b, motion, sizes, t)
-        return Meeting(-nx, -ny, bx, by, ax, ay)
+        return ContactFrame(-nx, -ny, bx, by, ax, ay)
     return _corner_on_face(manifold, point, motion, t)

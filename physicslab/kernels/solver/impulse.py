@@ -5,14 +5,22 @@ import math
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, fused, inlined, kernel
 from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
+from physicslab.kernels.constraint.pair import (
+    after_impulse_at,
+    frame_of,
+    inverse_mass_of,
+    point_state,
+    put_velocity,
+    velocity_of,
+)
 from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
-from physicslab.kernels.records import Manifolds, Point, Points
+from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.solver.sweep import sweep
 from physicslab.kernels.solver.work import book_relaxed, book_solved, take_means
 from physicslab.kernels.wide.solve import SoftConstraint, sweep_wide, warm_start_wide
 
 __all__ = [
-    "HEAVY_RATIO", "MAX_SUBSTEP_FACTOR", "apply_impulse", "deepest", "follow_drift", "relative_velocity",
+    "HEAVY_RATIO", "MAX_SUBSTEP_FACTOR", "deepest", "follow_drift", 
     "relax", "solve", "sweeps_of", "worst_load_ratio",
 ]  # fmt: skip
 
@@ -27,36 +35,14 @@ MAX_SUBSTEP_FACTOR = 16
 """Largest factor by which substeps are increased for such a pair."""
 
 
-@inlined
-def apply_impulse(
-    point: Point, px: float, py: float, a: int, b: int, motion: Motion, inverse: Inverse
-) -> None:
-    """Change the velocities of A by the impulse -(px, py) [N s] at the point and those of B by (px, py)."""
-    linear, angular = motion.linear, motion.angular
-    linear[a, 0] -= inverse.mass[a] * px
-    linear[a, 1] -= inverse.mass[a] * py
-    angular[a] -= inverse.inertia[a] * (point.arm_ax * py - point.arm_ay * px)
-    linear[b, 0] += inverse.mass[b] * px
-    linear[b, 1] += inverse.mass[b] * py
-    angular[b] += inverse.inertia[b] * (point.arm_bx * py - point.arm_by * px)
-
-
-@inlined
-def relative_velocity(point: Point, a: int, b: int, motion: Motion) -> tuple[float, float]:
-    """Return the velocity of B's contact point against A's [m/s]."""
-    linear, angular = motion.linear, motion.angular
-    vx = linear[b, 0] - angular[b] * point.arm_by - linear[a, 0] + angular[a] * point.arm_ay
-    vy = linear[b, 1] + angular[b] * point.arm_bx - linear[a, 1] - angular[a] * point.arm_ax
-    return vx, vy
-
-
 @fused
 def _warm_start(contacts: Contacts, motion: Motion, inverse: Inverse, warm_start_scale: float) -> None:
     """Apply the impulses of the last substep, ``warm_start_scale`` times as large, at scalar contacts."""
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
-        nx, ny = manifold.normal_x, manifold.normal_y
+        a, b = manifold.a, manifold.b
+        mass, v = inverse_mass_of(inverse, a, b), velocity_of(motion.linear, motion.angular, a, b)
         for j in range(2 * p, 2 * p + manifold.count):
             point = contacts.points[j]
             if point.ahead:
@@ -64,9 +50,9 @@ def _warm_start(contacts: Contacts, motion: Motion, inverse: Inverse, warm_start
                 continue
             point.normal_impulse *= warm_start_scale
             point.tangent_impulse *= warm_start_scale
-            px = point.normal_impulse * nx - point.tangent_impulse * ny
-            py = point.normal_impulse * ny + point.tangent_impulse * nx
-            apply_impulse(point, px, py, manifold.a, manifold.b, motion, inverse)
+            at = frame_of(manifold, point)
+            v = after_impulse_at(v, mass, at, point.normal_impulse, point.tangent_impulse)
+        put_velocity(motion.linear, motion.angular, a, b, v)
 
 
 @inlined
@@ -128,10 +114,10 @@ def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
+        v = velocity_of(motion.linear, motion.angular, manifold.a, manifold.b)
         for j in range(2 * p, 2 * p + manifold.count):
             point = contacts.points[j]
-            vx, vy = relative_velocity(point, manifold.a, manifold.b, motion)
-            point.separation += h * (vx * manifold.normal_x + vy * manifold.normal_y)
+            point.separation += h * point_state(frame_of(manifold, point), v).v
 
 
 @fused
@@ -144,26 +130,26 @@ def relax(
     of the impulses of that is booked, and of those found here: each by the mean velocity of before and after
     all of them, or in a crowd, which has too many points to look at again, of before and after itself.
     """
-    pressed, rubbed = book_solved(contacts, near, motion, inverse, acting, h)
+    pressed, friction_work = book_solved(contacts, near, motion, inverse, acting, h)
     crowd = near.counts[WIDE_COUNT] > 0
     if crowd:
         take_means(near, motion)
     rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0), h
     for n in range(sweeps):
         unsettled, push, rub = sweep(contacts, motion, inverse, rigid, n % 2 == 1, crowd)
-        pressed, rubbed = pressed + push, rubbed + rub
+        pressed, friction_work = pressed + push, friction_work + rub
         if crowd:
             push, rub = sweep_wide(near, motion, drift, rigid, True)
-            pressed, rubbed, drift = pressed + push, rubbed + rub, 0.0
+            pressed, friction_work, drift = pressed + push, friction_work + rub, 0.0
         elif not unsettled:
             break
     push, rub = book_relaxed(contacts, near, motion, inverse)
     if not crowd:
-        pressed, rubbed = pressed + push, rubbed + rub
+        pressed, friction_work = pressed + push, friction_work + rub
     # Friction gives no energy: where sliding turns round within a substep, or friction holds a body that is
     # pushed out of an overlap, the mean speed is not that at which it acts.
-    taken = min(rubbed, 0.0)
-    near.account[CONTACT, ENERGY] += pressed + (rubbed - taken)
+    taken = min(friction_work, 0.0)
+    near.account[CONTACT, ENERGY] += pressed + (friction_work - taken)
     near.account[FRICTION, ENERGY] += taken
 
 

@@ -13,27 +13,31 @@ import numpy as np
 from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, PX, PY, SPIN
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
+from physicslab.kernels.constraint.pair import (
+    along_and_across,
+    frame_of,
+    impulse_at,
+    inverse_mass_of,
+    moments_of,
+    point_state,
+    velocity_of,
+)
 from physicslab.kernels.motion import damped
 from physicslab.kernels.near_counts import DISC_BLOCKS, WIDE_COUNT
-from physicslab.kernels.records import Point
-from physicslab.kernels.solver.impact_log import Masses, Pose, Speeds, book_outside
+from physicslab.kernels.solver.impact_log import Pose, book_outside
 from physicslab.kernels.wide.layout import (
-    ARM_AX,
-    ARM_AY,
-    ARM_BX,
-    ARM_BY,
-    DISC,
+    BOX,
     IMPULSE,
     NORMAL_X,
     NORMAL_Y,
     ONE,
-    RADIUS_A,
-    RADIUS_B,
     TANGENT_IMPULSE,
     TWO,
     WIDE,
+    Slots,
     rows_of,
 )
+from physicslab.kernels.wide.solve import slot_frame
 
 __all__ = [
     "book_damping", "book_gravity", "book_kick", "book_relaxed", "book_slots", "book_solved",
@@ -92,14 +96,6 @@ def take_means(near: Near, motion: Motion) -> None:
 
 
 @always_inlined
-def _relative(point: Point, a: int, b: int, linear: Vectors, angular: Numbers) -> tuple[float, float]:
-    """Return the velocity of B's point against A's [m/s]."""
-    vx = linear[b, 0] - angular[b] * point.arm_by - linear[a, 0] + angular[a] * point.arm_ay
-    vy = linear[b, 1] + angular[b] * point.arm_bx - linear[a, 1] - angular[a] * point.arm_ax
-    return vx, vy
-
-
-@always_inlined
 def _pull(a: int, b: int, inverse: Inverse, acting: Acting) -> tuple[float, float]:
     """Return how uniform forces accelerate B against A [m/s^2]: not at all where both can be moved."""
     force, ma, mb = acting.force, inverse.mass[a], inverse.mass[b]
@@ -131,30 +127,25 @@ def book_solved(
     outside is booked by :func:`book_relaxed`, at the places that bodies have now; that these impulses acted
     before is booked here.
     """
-    pressed, rubbed = 0.0, 0.0
+    pressed, friction_work = 0.0, 0.0
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         a, b, px, py = _unsigned(manifold.a), _unsigned(manifold.b), 0.0, 0.0
-        nx, ny = manifold.normal_x, manifold.normal_y
+        nx, ny, v = manifold.normal_x, manifold.normal_y, velocity_of(motion.linear, motion.angular, a, b)
         for number in range(2 * p, 2 * p + manifold.count):
             j = _unsigned(number)
-            point = contacts.points[j]
-            vx, vy = _relative(point, a, b, motion.linear, motion.angular)
-            push, rub, along, across = (
-                point.normal_impulse,
-                point.tangent_impulse,
-                nx * vx + ny * vy,
-                nx * vy - ny * vx,
-            )
+            point, noted = contacts.points[j], near.noted
+            frame, push, rub = frame_of(manifold, point), point.normal_impulse, point.tangent_impulse
+            at = point_state(frame, v)
             if push != 0.0 or rub != 0.0:  # most that do not touch yet have none
-                ux, uy = _relative(point, a, b, near.linear_before, near.angular_before)
-                pressed += 0.5 * push * (nx * ux + ny * uy + along)
-                rubbed += 0.5 * rub * (nx * uy - ny * ux + across)
-            point.separation += h * along
-            near.noted[j, 0], near.noted[j, 1], near.noted[j, 2], near.noted[j, 3] = push, rub, along, across
-            px += push * nx - rub * ny
-            py += push * ny + rub * nx
+                before = point_state(frame, velocity_of(near.linear_before, near.angular_before, a, b))
+                pressed += 0.5 * push * (before.v + at.v)
+                friction_work += 0.5 * rub * (before.sliding + at.sliding)
+            point.separation += h * at.v
+            noted[j, 0], noted[j, 1], noted[j, 2], noted[j, 3] = push, rub, at.v, at.sliding
+            x, y = impulse_at(nx, ny, push, rub)
+            px, py = px + x, py + y
         if inverse.mass[a] == 0.0 or inverse.mass[b] == 0.0:
             still, sign = (a, 1.0) if inverse.mass[a] == 0.0 else (b, -1.0)
             position, linear = motion.position, motion.linear
@@ -162,10 +153,12 @@ def book_solved(
             y = position[b, 1] - position[a, 1] - manifold.offset_y + sign * h * linear[still, 1]
             if acting.uniform:
                 ax, ay = _pull(a, b, inverse, acting)
-                pressed -= h * (px * nx + py * ny) * (ax * nx + ay * ny)
-                rubbed -= h * (py * nx - px * ny) * (ay * nx - ax * ny)
+                pull, across = along_and_across(nx, ny, ax, ay)
+                push, rub = along_and_across(nx, ny, px, py)
+                pressed -= h * push * pull
+                friction_work -= h * rub * across
             _book_moved(near, motion, inverse, a, b, x, y, px, py)
-    return pressed, rubbed
+    return pressed, friction_work
 
 
 class Given(NamedTuple):
@@ -186,15 +179,14 @@ def _given(
     ``turn_a`` and ``turn_b`` are its moments about both centres. What a driven body gives, or what keeps a
     body from turning, is booked by itself: there is little of that.
     """
-    position, linear, angular, angle = motion.position, motion.linear, motion.angular, motion.angle
+    position, angle = motion.position, motion.angle
     free = inverse.mass[a] > 0.0 and inverse.mass[b] > 0.0
     if free or _is_driven(motion, a if inverse.mass[a] == 0.0 else b):
         book_outside(
             near.account, CONTACT,
-            Masses(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b]),
+            inverse_mass_of(inverse, a, b),
             Pose(position[a, 0], position[a, 1], angle[a], position[b, 0], position[b, 1], angle[b]),
-            Speeds(linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b]),
-            px, py, turn_a, turn_b,
+            velocity_of(motion.linear, motion.angular, a, b), px, py, turn_a, turn_b,
         )  # fmt: skip
         return given
     moved, sign, turn = (b, 1.0, turn_b) if inverse.mass[b] > 0.0 else (a, -1.0, turn_a)
@@ -218,29 +210,38 @@ def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
     Book what comes from outside by the whole of them: momentum, and the work of drivers. Outside is what no
     impulse moves: fixed, held and driven bodies, and what keeps a body from turning.
     """
-    pressed, rubbed, given = 0.0, 0.0, Given(0.0, 0.0, 0.0)
+    pressed, friction_work, given = 0.0, 0.0, Given(0.0, 0.0, 0.0)
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
-        a, b, nx, ny = _unsigned(manifold.a), _unsigned(manifold.b), manifold.normal_x, manifold.normal_y
-        px, py, turn_a, turn_b = 0.0, 0.0, 0.0, 0.0
+        a, b = _unsigned(manifold.a), _unsigned(manifold.b)
+        v, px, py, turn_a, turn_b = velocity_of(motion.linear, motion.angular, a, b), 0.0, 0.0, 0.0, 0.0
         for number in range(2 * p, 2 * p + manifold.count):
             j = _unsigned(number)
             point, noted = contacts.points[j], near.noted
-            push, rub = point.normal_impulse, point.tangent_impulse
+            frame, push, rub = frame_of(manifold, point), point.normal_impulse, point.tangent_impulse
             more, also = push - noted[j, 0], rub - noted[j, 1]
             if more != 0.0 or also != 0.0:
-                vx, vy = _relative(point, a, b, motion.linear, motion.angular)
-                pressed += 0.5 * more * (noted[j, 2] + nx * vx + ny * vy)
-                rubbed += 0.5 * also * (noted[j, 3] + nx * vy - ny * vx)
-            x, y = push * nx - rub * ny, push * ny + rub * nx
-            px, py = px + x, py + y
-            turn_a += point.arm_ax * y - point.arm_ay * x
-            turn_b += point.arm_bx * y - point.arm_by * x
+                at = point_state(frame, v)
+                pressed += 0.5 * more * (noted[j, 2] + at.v)
+                friction_work += 0.5 * also * (noted[j, 3] + at.sliding)
+            x, y = impulse_at(frame.nx, frame.ny, push, rub)
+            moment_a, moment_b = moments_of(frame, x, y)
+            px, py, turn_a, turn_b = px + x, py + y, turn_a + moment_a, turn_b + moment_b
         if inverse.inertia[a] == 0.0 or inverse.inertia[b] == 0.0:
             given = _given(given, near, motion, inverse, a, b, px, py, turn_a, turn_b)
     _book_given(near, given)
-    return pressed, rubbed
+    return pressed, friction_work
+
+
+@always_inlined
+def _slot_impulse(slots: Slots, at: int, point: int) -> tuple[float, float, float, float]:
+    """Return the impulse at a point of a slot [N s], and its moments about both centres [N m s]."""
+    frame, impulses = slot_frame(slots, at, point), at + point
+    normal, tangent = slots.data[impulses + IMPULSE], slots.data[impulses + TANGENT_IMPULSE]
+    px, py = impulse_at(frame.nx, frame.ny, normal, tangent)
+    moment_a, moment_b = moments_of(frame, px, py)
+    return px, py, moment_a, moment_b
 
 
 @inlined
@@ -253,7 +254,7 @@ def book_slots(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: 
     """
     given = Given(0.0, 0.0, 0.0)
     for slots in (near.discs, near.boxes):
-        data, rows = slots.data, rows_of(slots.kind)
+        rows = rows_of(slots.kind)
         for k in range(near.counts[DISC_BLOCKS + slots.kind]):
             if not slots.outside[k]:
                 continue
@@ -261,27 +262,21 @@ def book_slots(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: 
                 a, b, at = _unsigned(slots.a[slot]), _unsigned(slots.b[slot]), k * rows + slot - k * WIDE
                 if slots.pair[slot] < 0 or (inverse.inertia[a] > 0.0 and inverse.inertia[b] > 0.0):
                     continue
-                nx, ny, noted, j = data[at + NORMAL_X], data[at + NORMAL_Y], near.noted, 2 * slots.pair[slot]
-                push, rub = data[at + ONE + IMPULSE], data[at + ONE + TANGENT_IMPULSE]
-                px, py = push * nx - rub * ny, push * ny + rub * nx
-                if slots.kind == DISC:
-                    turn_a, turn_b = data[at + RADIUS_A] * rub, -data[at + RADIUS_B] * rub
-                else:
-                    turn_a = data[at + ONE + ARM_AX] * py - data[at + ONE + ARM_AY] * px
-                    turn_b = data[at + ONE + ARM_BX] * py - data[at + ONE + ARM_BY] * px
-                    push, rub = data[at + TWO + IMPULSE], data[at + TWO + TANGENT_IMPULSE]
-                    x, y = push * nx - rub * ny, push * ny + rub * nx
-                    px, py = px + x, py + y
-                    turn_a += data[at + TWO + ARM_AX] * y - data[at + TWO + ARM_AY] * x
-                    turn_b += data[at + TWO + ARM_BX] * y - data[at + TWO + ARM_BY] * x
+                noted, j = near.noted, 2 * slots.pair[slot]
+                px, py, turn_a, turn_b = _slot_impulse(slots, at, ONE)
+                if slots.kind == BOX:
+                    x, y, moment_a, moment_b = _slot_impulse(slots, at, TWO)
+                    px, py, turn_a, turn_b = px + x, py + y, turn_a + moment_a, turn_b + moment_b
                 moved, sign = (b, 1.0) if inverse.mass[a] == 0.0 else (a, -1.0)
                 here_x, here_y = sign * motion.position[moved, 0], sign * motion.position[moved, 1]
                 if solved:
                     if acting.uniform:
+                        nx, ny = slots.data[at + NORMAL_X], slots.data[at + NORMAL_Y]
                         ax, ay = _pull(a, b, inverse, acting)
-                        along, across = px * nx + py * ny, py * nx - px * ny
-                        near.account[CONTACT, ENERGY] -= 0.5 * h * along * (ax * nx + ay * ny)
-                        near.account[FRICTION, ENERGY] -= 0.5 * h * across * (ay * nx - ax * ny)
+                        pull, across = along_and_across(nx, ny, ax, ay)
+                        push, rub = along_and_across(nx, ny, px, py)
+                        near.account[CONTACT, ENERGY] -= 0.5 * h * push * pull
+                        near.account[FRICTION, ENERGY] -= 0.5 * h * rub * across
                     noted[j, 0], noted[j, 1], noted[j, 2], noted[j, 3] = px, py, here_x, here_y
                     continue
                 given = _given(given, near, motion, inverse, a, b, px, py, turn_a, turn_b)

@@ -6,14 +6,11 @@ import numpy as np
 
 from physicslab.kernels import Flags, Rows, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.arguments import Acting, Inverse, Motion, Near
+from physicslab.kernels.constraint.pair import point_state, velocity_of
 from physicslab.kernels.narrow.contact import AS_FOUND, follow_pose
 from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, SCALAR
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.wide.layout import (
-    ARM_AX,
-    ARM_AY,
-    ARM_BX,
-    ARM_BY,
     DISC,
     FOUND,
     IMPULSE,
@@ -35,6 +32,7 @@ from physicslab.kernels.wide.layout import (
     SlotsTuple,
     rows_of,
 )  # fmt: skip
+from physicslab.kernels.wide.solve import slot_frame
 
 __all__ = [
     "COLOURS", "clear_slot", "empty_slot", "follow_pairs", "list_scalar", "release", "set_scalar", "store",
@@ -181,22 +179,10 @@ def _resting_speed(a: int, b: int, motion: Motion, acting: Acting, inverse: Inve
 @inlined
 def _approach(slots: Slots, slot: int, count: int, motion: Motion) -> float:
     """Return the lowest speed along the normal of the ``count`` points of a slot, or 0 [m/s]."""
-    data, i, j = slots.data, slots.a[slot], slots.b[slot]
     at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
-    nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
-    lowest = 0.0
+    v, lowest = velocity_of(motion.linear, motion.angular, slots.a[slot], slots.b[slot]), 0.0
     for k in range(count):
-        base = at + (ONE if k == 0 else TWO)
-        if slots.kind == DISC:
-            rax, ray = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
-            rbx, rby = -data[at + RADIUS_B] * nx, -data[at + RADIUS_B] * ny
-        else:
-            rax, ray = data[base + ARM_AX], data[base + ARM_AY]
-            rbx, rby = data[base + ARM_BX], data[base + ARM_BY]
-        linear, angular = motion.linear, motion.angular
-        vx = linear[j, 0] - angular[j] * rby - linear[i, 0] + angular[i] * ray
-        vy = linear[j, 1] + angular[j] * rbx - linear[i, 1] - angular[i] * rax
-        lowest = min(lowest, vx * nx + vy * ny)
+        lowest = min(lowest, point_state(slot_frame(slots, at, ONE if k == 0 else TWO), v).v)
     return lowest
 
 

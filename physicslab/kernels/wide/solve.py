@@ -2,8 +2,19 @@
 
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Vectors, fused, inlined
+from physicslab.kernels import Numbers, Vectors, always_inlined, fused, inlined
 from physicslab.kernels.arguments import Motion, Near
+from physicslab.kernels.constraint.pair import (
+    ContactFrame,
+    PairInverseMass,
+    PairVelocity,
+    after_impulse,
+    along_and_across,
+    impulse_at,
+    moment_arms,
+    moments_of,
+    response,
+)
 from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
 from physicslab.kernels.wide.float64x8 import (
     Wide,
@@ -25,6 +36,7 @@ from physicslab.kernels.wide.layout import (
     ARM_BX,
     ARM_BY,
     BOX_ROWS,
+    DISC,
     DISC_ROWS,
     FRICTION,
     IMPULSE,
@@ -48,8 +60,9 @@ from physicslab.kernels.wide.layout import (
 )  # fmt: skip
 
 __all__ = [
-    "DEEPER", "SOFT", "SoftConstraint", "free_change", "held_by_friction", "one_normal", "relative",
-    "sweep_wide", "two_frictions", "two_normals", "warm_start_wide", "work_of",
+    "DEEPER", "SOFT", "SoftConstraint", "free_change", "held_by_friction", "mean_velocities",
+    "one_normal", "slot_frame", "sweep_wide", "two_frictions", "two_normals", "warm_start_wide",
+    "work_of",
 ]  # fmt: skip
 
 SOFT = 0.02
@@ -194,21 +207,27 @@ def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide
 
 
 @fused
-def _velocities(
-    slots: Slots, k: int, linear: Vectors, angular: Numbers
-) -> tuple[Wide, Wide, Wide, Wide, Wide, Wide]:
+def _velocities(slots: Slots, k: int, linear: Vectors, angular: Numbers) -> PairVelocity[Wide]:
     """Return the velocities and angular velocities of A and of B in a block."""
-    vax, vay = take_vectors(linear, slots.a, k * WIDE)
-    vbx, vby = take_vectors(linear, slots.b, k * WIDE)
+    ax, ay = take_vectors(linear, slots.a, k * WIDE)
+    bx, by = take_vectors(linear, slots.b, k * WIDE)
     wa, wb = take_numbers(angular, slots.a, k * WIDE), take_numbers(angular, slots.b, k * WIDE)
-    return vax, vay, wa, vbx, vby, wb
+    return PairVelocity(ax, ay, wa, bx, by, wb)
 
 
 @fused
-def relative(slots: Slots, k: int, mean: Mean) -> tuple[Wide, Wide, Wide, Wide]:
-    """Return the mean velocity of B against A in a block, and the mean angular velocities of A and of B."""
-    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, mean.linear, mean.angular)
-    return vbx - vax, vby - vay, wa, wb
+def mean_velocities(slots: Slots, k: int, mean: Mean) -> PairVelocity[Wide]:
+    """Return the mean velocities in a block, of before and after impulses."""
+    return _velocities(slots, k, mean.linear, mean.angular)
+
+
+@fused
+def _put_velocities(slots: Slots, k: int, motion: Motion, v: PairVelocity[Wide]) -> None:
+    """Write the velocities of A and of B in a block."""
+    put_vectors(motion.linear, slots.a, k * WIDE, v.ax, v.ay)
+    put_vectors(motion.linear, slots.b, k * WIDE, v.bx, v.by)
+    put_numbers(motion.angular, slots.a, k * WIDE, v.wa)
+    put_numbers(motion.angular, slots.b, k * WIDE, v.wb)
 
 
 @fused
@@ -221,43 +240,54 @@ def _sweep_discs(
     of those so far, at the ``mean`` velocities.
     """
     data, at = slots.data, k * DISC_ROWS
-    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion.linear, motion.angular)
+    v = _velocities(slots, k, motion.linear, motion.angular)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     ra, rb = take(data, at + RADIUS_A), take(data, at + RADIUS_B)
-    vx, vy = vbx - vax, vby - vay
     impulse, tangent = take(data, at + ONE + IMPULSE), take(data, at + ONE + TANGENT_IMPULSE)
-    approach, across = nx * vx + ny * vy, nx * vy - ny * vx - rb * wb - ra * wa
+    approach, across = along_and_across(nx, ny, v.bx - v.ax, v.by - v.ay)
+    across = across - rb * v.wb - ra * v.wa
     change, _ = _free_change(data, at + ONE, take(data, at + SIZE), approach, drift, soft)
     push = one_normal(impulse, change)
     put(data, at + ONE + IMPULSE, impulse + push)
     friction_impulse = _update_friction(data, at + ONE, take(data, at + FRICTION), across)
-    px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
+    px, py = impulse_at(nx, ny, push, friction_impulse)
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
     ia, ib = take(data, at + INERTIA_A), take(data, at + INERTIA_B)
-    put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)
-    put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
-    put_numbers(motion.angular, slots.a, k * WIDE, wa - ia * ra * friction_impulse)
-    put_numbers(motion.angular, slots.b, k * WIDE, wb - ib * rb * friction_impulse)
-    pressed, rubbed = everywhere(0.0), everywhere(0.0)
+    answer = PairInverseMass(ma, ia * ra, mb, ib * rb)  # of discs, to a tangential impulse
+    after = after_impulse(v, answer, px, py, friction_impulse, -friction_impulse)
+    _put_velocities(slots, k, motion, after)
+    pressed, friction_work = everywhere(0.0), everywhere(0.0)
     if booked:
         pressed = push * (approach + 0.5 * (ma + mb) * push)
-        rubbed = work_of(
+        friction_work = work_of(
             friction_impulse * across, friction_impulse, ra * friction_impulse, rb * friction_impulse,
             ma + mb, ia, ib,
         )  # fmt: skip
     if drift != 0.0:
-        ux, uy, wa, wb = relative(slots, k, mean)
-        pressed = pressed + impulse * (nx * ux + ny * uy)
-        rubbed = rubbed + tangent * (nx * uy - ny * ux - rb * wb - ra * wa)
-    return pressed, rubbed
+        u = mean_velocities(slots, k, mean)
+        along, across = along_and_across(nx, ny, u.bx - u.ax, u.by - u.ay)
+        pressed = pressed + impulse * along
+        friction_work = friction_work + tangent * (across - rb * u.wb - ra * u.wa)
+    return pressed, friction_work
 
 
 @fused
-def _levers(data: Numbers, point: int, nx: Wide, ny: Wide) -> tuple[Wide, Wide, Wide, Wide]:
-    """Return lever arms of normal and tangent about both centres [m]: r_a x n, r_b x n, r_a x t, r_b x t."""
+def _frame(data: Numbers, point: int, nx: Wide, ny: Wide) -> ContactFrame[Wide]:
+    """Return normals, and the arms of points."""
     ax, ay = take(data, point + ARM_AX), take(data, point + ARM_AY)
-    bx, by = take(data, point + ARM_BX), take(data, point + ARM_BY)
-    return ax * ny - ay * nx, bx * ny - by * nx, ax * nx + ay * ny, bx * nx + by * ny
+    return ContactFrame(nx, ny, ax, ay, take(data, point + ARM_BX), take(data, point + ARM_BY))
+
+
+@always_inlined
+def slot_frame(slots: Slots, at: int, point: int) -> ContactFrame[float]:
+    """Return the normal and the arms of a point, ``ONE`` or ``TWO``, of a single slot that is at ``at``."""
+    data, base = slots.data, at + point
+    nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
+    if slots.kind == DISC:
+        ra, rb = data[at + RADIUS_A], data[at + RADIUS_B]
+        return ContactFrame(nx, ny, ra * nx, ra * ny, -rb * nx, -rb * ny)
+    ax, ay, bx, by = data[base + ARM_AX], data[base + ARM_AY], data[base + ARM_BX], data[base + ARM_BY]
+    return ContactFrame(nx, ny, ax, ay, bx, by)
 
 
 @fused
@@ -271,26 +301,26 @@ def _sweep_boxes(
     Returns what :func:`_sweep_discs` does.
     """
     data, at = slots.data, k * BOX_ROWS
-    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion.linear, motion.angular)
+    v = _velocities(slots, k, motion.linear, motion.angular)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
     ia, ib = take(data, at + INERTIA_A), take(data, at + INERTIA_B)
     size, friction = take(data, at + SIZE), take(data, at + FRICTION)
-    n1a, n1b, t1a, t1b = _levers(data, at + ONE, nx, ny)
-    n2a, n2b, t2a, t2b = _levers(data, at + TWO, nx, ny)
-    vx, vy = vbx - vax, vby - vay
-    along, across = nx * vx + ny * vy, nx * vy - ny * vx
-    approach1, approach2 = along + wb * n1b - wa * n1a, along + wb * n2b - wa * n2a
+    mass = PairInverseMass(ma, ia, mb, ib)
+    n1a, n1b, t1a, t1b = moment_arms(_frame(data, at + ONE, nx, ny))
+    n2a, n2b, t2a, t2b = moment_arms(_frame(data, at + TWO, nx, ny))
+    along, across = along_and_across(nx, ny, v.bx - v.ax, v.by - v.ay)
+    approach1, approach2 = along + v.wb * n1b - v.wa * n1a, along + v.wb * n2b - v.wa * n2a
     change1, mass1 = _free_change(data, at + ONE, size, approach1, drift, soft)
     change2, mass2 = _free_change(data, at + TWO, size, approach2, drift, soft)
     impulse1, impulse2 = take(data, at + ONE + IMPULSE), take(data, at + TWO + IMPULSE)
-    between = ma + mb + ia * n1a * n2a + ib * n1b * n2b
+    between = response(ma + mb, ia, ib, n1a, n1b, n2a, n2b)
     push1, push2 = two_normals(impulse1, impulse2, change1, change2, mass1, mass2, between)
     put(data, at + ONE + IMPULSE, impulse1 + push1)
     put(data, at + TWO + IMPULSE, impulse2 + push2)
     turn_a, turn_b = n1a * push1 + n2a * push2, n1b * push1 + n2b * push2
-    wa, wb = wa - ia * turn_a, wb + ib * turn_b
-    pressed, rubbed = everywhere(0.0), everywhere(0.0)
+    wa, wb = v.wa - ia * turn_a, v.wb + ib * turn_b
+    pressed, friction_work = everywhere(0.0), everywhere(0.0)
     if booked:
         pressed = work_of(
             push1 * approach1 + push2 * approach2, push1 + push2, turn_a, turn_b, ma + mb, ia, ib
@@ -301,29 +331,27 @@ def _sweep_boxes(
         tangent1, tangent2, sliding1, sliding2,
         take(data, at + ONE + TANGENT_MASS), take(data, at + TWO + TANGENT_MASS),
         friction * (impulse1 + push1), friction * (impulse2 + push2),
-        ma + mb + ia * t1a * t2a + ib * t1b * t2b,
+        response(ma + mb, ia, ib, t1a, t1b, t2a, t2b),
     )  # fmt: skip
     put(data, at + ONE + TANGENT_IMPULSE, tangent1 + friction1)
     put(data, at + TWO + TANGENT_IMPULSE, tangent2 + friction2)
     push, friction_impulse = push1 + push2, friction1 + friction2
-    px, py = push * nx - friction_impulse * ny, push * ny + friction_impulse * nx
-    put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)
-    put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
+    px, py = impulse_at(nx, ny, push, friction_impulse)
     turn_a, turn_b = t1a * friction1 + t2a * friction2, t1b * friction1 + t2b * friction2
-    put_numbers(motion.angular, slots.a, k * WIDE, wa - ia * turn_a)
-    put_numbers(motion.angular, slots.b, k * WIDE, wb + ib * turn_b)
+    turned = PairVelocity(v.ax, v.ay, wa, v.bx, v.by, wb)
+    _put_velocities(slots, k, motion, after_impulse(turned, mass, px, py, turn_a, turn_b))
     if booked:
-        rubbed = work_of(
+        friction_work = work_of(
             friction1 * sliding1 + friction2 * sliding2, friction_impulse, turn_a, turn_b, ma + mb, ia, ib
         )
     if drift != 0.0:
-        ux, uy, wa, wb = relative(slots, k, mean)
-        along, across = nx * ux + ny * uy, nx * uy - ny * ux
-        pressed = pressed + impulse1 * (along + wb * n1b - wa * n1a)
-        pressed = pressed + impulse2 * (along + wb * n2b - wa * n2a)
-        rubbed = rubbed + tangent1 * (across + wb * t1b - wa * t1a)
-        rubbed = rubbed + tangent2 * (across + wb * t2b - wa * t2a)
-    return pressed, rubbed
+        u = mean_velocities(slots, k, mean)
+        along, across = along_and_across(nx, ny, u.bx - u.ax, u.by - u.ay)
+        pressed = pressed + impulse1 * (along + u.wb * n1b - u.wa * n1a)
+        pressed = pressed + impulse2 * (along + u.wb * n2b - u.wa * n2a)
+        friction_work = friction_work + tangent1 * (across + u.wb * t1b - u.wa * t1a)
+        friction_work = friction_work + tangent2 * (across + u.wb * t2b - u.wa * t2a)
+    return pressed, friction_work
 
 
 @inlined
@@ -336,15 +364,15 @@ def sweep_wide(
     and where there is a drift that of those before it, at the mean velocities that ``near.linear_before`` and
     the angular ones hold.
     """
-    pressed, rubbed = everywhere(0.0), everywhere(0.0)
+    pressed, friction_work = everywhere(0.0), everywhere(0.0)
     mean = Mean(near.linear_before, near.angular_before)
     for number in range(near.counts[DISC_BLOCKS]):
         one, other = _sweep_discs(near.discs, near.discs.order[number], motion, mean, drift, soft, booked)
-        pressed, rubbed = pressed + one, rubbed + other
+        pressed, friction_work = pressed + one, friction_work + other
     for number in range(near.counts[BOX_BLOCKS]):
         one, other = _sweep_boxes(near.boxes, near.boxes.order[number], motion, mean, drift, soft, booked)
-        pressed, rubbed = pressed + one, rubbed + other
-    return sum_of(pressed), sum_of(rubbed)
+        pressed, friction_work = pressed + one, friction_work + other
+    return sum_of(pressed), sum_of(friction_work)
 
 
 @fused
@@ -357,47 +385,41 @@ def _warm_start(
         impulse, friction_impulse = warm_start_scale * impulse, warm_start_scale * friction_impulse
         put(data, point + IMPULSE, impulse)
         put(data, point + TANGENT_IMPULSE, friction_impulse)
-    return impulse * nx - friction_impulse * ny, impulse * ny + friction_impulse * nx, friction_impulse
+    px, py = impulse_at(nx, ny, impulse, friction_impulse)
+    return px, py, friction_impulse
 
 
 @fused
 def _start_discs(slots: Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
     data, at = slots.data, k * DISC_ROWS
-    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion.linear, motion.angular)
+    v = _velocities(slots, k, motion.linear, motion.angular)
     px, py, friction_impulse = _warm_start(
         data, at + ONE, take(data, at + NORMAL_X), take(data, at + NORMAL_Y), warm_start_scale
     )
     ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
     ra, rb = take(data, at + RADIUS_A), take(data, at + RADIUS_B)
-    put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)
-    put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
-    put_numbers(motion.angular, slots.a, k * WIDE, wa - take(data, at + INERTIA_A) * ra * friction_impulse)
-    put_numbers(motion.angular, slots.b, k * WIDE, wb - take(data, at + INERTIA_B) * rb * friction_impulse)
-
-
-@fused
-def _turning(data: Numbers, point: int, px: Wide, py: Wide) -> tuple[Wide, Wide]:
-    """Return the moments of an impulse about both centres [N m s]."""
-    turn_a = take(data, point + ARM_AX) * py - take(data, point + ARM_AY) * px
-    turn_b = take(data, point + ARM_BX) * py - take(data, point + ARM_BY) * px
-    return turn_a, turn_b
+    answer = PairInverseMass(ma, take(data, at + INERTIA_A) * ra, mb, take(data, at + INERTIA_B) * rb)
+    after = after_impulse(v, answer, px, py, friction_impulse, -friction_impulse)
+    _put_velocities(slots, k, motion, after)
 
 
 @fused
 def _start_boxes(slots: Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
     data, at = slots.data, k * BOX_ROWS
-    vax, vay, wa, vbx, vby, wb = _velocities(slots, k, motion.linear, motion.angular)
+    v = _velocities(slots, k, motion.linear, motion.angular)
     nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
     x1, y1, _ = _warm_start(data, at + ONE, nx, ny, warm_start_scale)
     x2, y2, _ = _warm_start(data, at + TWO, nx, ny, warm_start_scale)
-    turn1_a, turn1_b = _turning(data, at + ONE, x1, y1)
-    turn2_a, turn2_b = _turning(data, at + TWO, x2, y2)
-    px, py = x1 + x2, y1 + y2
-    ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
-    put_vectors(motion.linear, slots.a, k * WIDE, vax - ma * px, vay - ma * py)
-    put_vectors(motion.linear, slots.b, k * WIDE, vbx + mb * px, vby + mb * py)
-    put_numbers(motion.angular, slots.a, k * WIDE, wa - take(data, at + INERTIA_A) * (turn1_a + turn2_a))
-    put_numbers(motion.angular, slots.b, k * WIDE, wb + take(data, at + INERTIA_B) * (turn1_b + turn2_b))
+    turn1_a, turn1_b = moments_of(_frame(data, at + ONE, nx, ny), x1, y1)
+    turn2_a, turn2_b = moments_of(_frame(data, at + TWO, nx, ny), x2, y2)
+    mass = PairInverseMass(
+        take(data, at + MASS_A),
+        take(data, at + INERTIA_A),
+        take(data, at + MASS_B),
+        take(data, at + INERTIA_B),
+    )
+    after = after_impulse(v, mass, x1 + x2, y1 + y2, turn1_a + turn2_a, turn1_b + turn2_b)
+    _put_velocities(slots, k, motion, after)
 
 
 @inlined

@@ -90,7 +90,7 @@ def _bounce(collision: Collision, result: Result, found: float) -> str:
 def _rotation(collision: Collision) -> Iterator[str]:
     """Yield why an impact beside the centre is softer."""
     response = collision.responses[0]
-    plain, turning = 1.0 / response.apart, 1.0 / response.kn
+    plain, turning = 1.0 / (collision.a.inverse_mass + collision.b.inverse_mass), 1.0 / response.kn
     if len(collision.spots) == 2:
         yield (
             f"One point by itself would give way by turning, and act like {quantity(turning, 'kg')} and not "
@@ -163,8 +163,7 @@ def _one_over(inverse: float) -> str:
 
 
 def _masses(collision: Collision) -> Iterator[Step]:
-    a, b = collision.a, collision.b
-    response = collision.responses[0]
+    a, b, state, response = collision.a, collision.b, collision.states[0], collision.responses[0]
     reach = max(arm.magnitude for spot in collision.spots for arm in (spot.arm_a, spot.arm_b))
     both = f"{_one_over(a.inverse_mass)} + {_one_over(b.inverse_mass)}"
 
@@ -178,10 +177,10 @@ def _masses(collision: Collision) -> Iterator[Step]:
 
     yield Step(
         "Mass that the impulse meets if neither body could turn", "1/m = 1/m_A + 1/m_B", both,
-        f"m = {quantity(1.0 / response.apart, 'kg')}",
+        f"m = {quantity(1.0 / (a.inverse_mass + b.inverse_mass), 'kg')}",
     )  # fmt: skip
-    for k, one in enumerate(collision.responses):
-        turned = terms(one.normal_a, one.normal_b)
+    for k, (at, one) in enumerate(zip(collision.states, collision.responses, strict=True)):
+        turned = terms(at.normal_a, at.normal_b)
         of = f" at point {k + 1}" if len(collision.responses) == 2 else ""
         yield Step(
             f"Mass along the normal, with rotation{of}",
@@ -189,7 +188,7 @@ def _masses(collision: Collision) -> Iterator[Step]:
             f"m_n = {quantity(1.0 / one.kn, 'kg')}",
         )  # fmt: skip
     if collision.friction > 0.0:
-        turned = terms(response.across_a, response.across_b)
+        turned = terms(state.tangent_a, state.tangent_b)
         yield Step(
             "Mass along the surface, with rotation",
             "1/m_t = 1/m_A + 1/m_B + (r_A×t)²/I_A + (r_B×t)²/I_B", f"{both} + {turned}",
@@ -202,7 +201,7 @@ def _masses(collision: Collision) -> Iterator[Step]:
                 " + ".join(
                     f"{_number(n)}·{_number(t)}·{_one_over(body.inverse_inertia)}"
                     for n, t, body in (
-                        (response.normal_a, response.across_a, a), (response.normal_b, response.across_b, b),
+                        (state.normal_a, state.tangent_a, a), (state.normal_b, state.tangent_b, b),
                     )
                 ),
                 f"c = {quantity(response.coupling, '1/kg')}",
@@ -260,7 +259,7 @@ def _impulses_of_two(collision: Collision, result: Result) -> list[Step]:
         Step(
             "Each point also moves the other",
             "k = 1/m_A + 1/m_B + (r_A1×n)(r_A2×n)/I_A + (r_B1×n)(r_B2×n)/I_B",
-            "", f"k = {quantity(collision.between, '1/kg')}",
+            "", f"k = {quantity(collision.pair_response.kn_12, '1/kg')}",
         )
     )  # fmt: skip
     e = result.restitution

@@ -1,0 +1,1 @@
+"""Constraints between two bodies: the algebra of a pair, and the law of impact."""
