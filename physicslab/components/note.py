@@ -20,6 +20,6 @@ class Note(Component):
     POINTS: ClassVar[tuple[str, ...]] = ("place",)
     text: str = field(default="", limit=400, lines=8, meaning="what is written there")
     place: Vector = point(
-        0.0, 0.0, "where it is, in the frame of the body that it goes with, or a point of the world"
+        0.0, 0.0, "where it is, in the frame of the body that it is attached to, or a point of the world"
     )
     place_body: int | None = field(default=None, meaning="the body that it goes with; none: it stays")

@@ -15,10 +15,10 @@ class Ruler(Component):
     physical: ClassVar[bool] = False
     POINTS: ClassVar[tuple[str, ...]] = ("start", "end")
     start: Vector = point(
-        0.0, 0.0, "where it begins, in the frame of the body that this end goes with, or of the world"
+        0.0, 0.0, "where it begins, in the frame of the body that this end is attached to, or of the world"
     )
     end: Vector = point(
-        1.0, 0.0, "where it ends, in the frame of the body that this end goes with, or of the world"
+        1.0, 0.0, "where it ends, in the frame of the body that this end is attached to, or of the world"
     )
     start_body: int | None = field(default=None, meaning="the body that its beginning goes with")
     end_body: int | None = field(default=None, meaning="the body that its end goes with")
