@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 
+from physicslab.commands.numbers import stopped_at
 from physicslab.commands.progress import Progress
 from physicslab.diagnostics.account import Accounts
 from physicslab.diagnostics.audit import Audit
@@ -100,6 +101,7 @@ class MeasuredRun:
         """
         world, record, dt = self._world, self.record, self._world.simulation.dt
         length = (steps or 0) * dt if seconds is None else seconds
+        end = self._start + length
         whole = round(length / dt)
         stride = 1 if self._keeper is not None else self._stride(whole)
         patience = math.inf if self._at_most is None else _PATIENCE_S
@@ -115,8 +117,8 @@ class MeasuredRun:
                     self._sample()
                 progress.show((world.time - self._start) / length)
                 self._tiers.foresee(record.steps / max(whole, record.steps))
-                if self._at_most is not None and self._seconds >= self._at_most:
-                    self.stopped = self._where_stopped(self._at_most, self._start + length, whole)
+                if self._at_most is not None and self._seconds >= self._at_most and world.time < end:
+                    self.stopped = stopped_at(self._at_most, world.time, record.steps, whole)
             self._measure()
             if not self._kept_now:
                 self._keep()
@@ -178,14 +180,6 @@ class MeasuredRun:
             self._measure()
             self._keeper(self._world, self.record.audit.account)
             self._kept_at = self._world.time
-
-    def _where_stopped(self, at_most: float, end: float, whole: int) -> str:
-        """Return in words where a run was stopped; nothing where it was at its end."""
-        if self._world.time >= end:
-            return ""
-        steps = f"after {self.record.steps} of {whole} steps"
-        place = f"at t = {self._world.time:.9g} s, {steps}"
-        return f"stopped after {at_most:g} s of wall clock (--at-most) {place}"
 
     def _sample(self) -> None:
         """Measure, and look for warnings, where that is due."""

@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 import math
 
-__all__ = ["STEP_LIMIT", "add_budget", "count", "duration", "positive_count", "positive_duration"]
+__all__ = [
+    "STEP_LIMIT", "add_budget", "count", "duration", "positive_count", "positive_duration", "stopped_at",
+]  # fmt: skip
 
 STEP_LIMIT = 10**15
 """More than any run will do; beyond it, times could no longer be counted exactly."""
@@ -15,6 +17,12 @@ def add_budget(parser: argparse.ArgumentParser) -> None:
     """Declare the wall-clock time after which a command stops."""
     budget = "stop after so many seconds of wall clock, compiling left out: exit 1, with what was reached"
     parser.add_argument("--at-most", metavar="SECONDS", type=positive_duration, help=budget)
+
+
+def stopped_at(budget: float, time: float, done: int, whole: int) -> str:
+    """Return in words where a command was stopped by it."""
+    place = f"at t = {time:.9g} s, after {done} of {whole} steps"
+    return f"stopped after {budget:g} s of wall clock (--at-most) {place}"
 
 
 def duration(text: str) -> float:

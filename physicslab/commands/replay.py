@@ -7,7 +7,7 @@ from argparse import ArgumentParser, Namespace
 from typing import Any
 
 from physicslab.commands.command_error import FAILED, CommandError
-from physicslab.commands.numbers import add_budget
+from physicslab.commands.numbers import add_budget, stopped_at
 from physicslab.commands.output import Output
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.json_text import json_bytes
@@ -48,8 +48,7 @@ def execute(arguments: Namespace) -> int:
                     and seconds >= arguments.at_most
                     and played.step < line.steps
                 ):
-                    place = f"at t = {world.time:.9g} s, after {played.step} of {line.steps} steps"
-                    stopped = f"stopped after {arguments.at_most:g} s of wall clock (--at-most) {place}"
+                    stopped = stopped_at(arguments.at_most, world.time, played.step, line.steps)
                     break
         except Diverged as error:
             raise CommandError(f"{label}: {error}", FAILED) from error
