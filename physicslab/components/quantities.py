@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from physicslab.ecs.fields import InvalidValue
+
 __all__ = [
     "BODY_QUANTITIES", "ENERGY_CAUSES", "MOMENTUM_CAUSES", "QUANTITIES", "UNMEASURED_MOMENTA",
     "WORLD_QUANTITIES", "Quantity",
@@ -105,6 +107,13 @@ BODY_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantit
 """The names of those that a body has."""
 WORLD_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.of_world)
 """The names of those that the world has."""
+
+
+def check_quantity(owner: str, field: str, name: str, body: int | None) -> None:
+    """Raise :class:`InvalidValue` if a body, or the world for ``None``, has no such quantity."""
+    allowed = why_not_of(name, body)
+    if allowed is not None:
+        raise InvalidValue(owner, field, name, allowed)
 
 
 def why_not_of(name: str, body: int | None) -> str | None:

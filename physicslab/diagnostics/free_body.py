@@ -28,7 +28,7 @@ _NAMES = {"GravitySystem": "weight", "SpringSystem": "springs", "DragSystem": "a
 """Names of forces, by their system."""
 _LONGEST = 1.5
 """How long the last step may have been, in steps of the scene: what is longer was not one step."""
-_ROUNDING = 1e-12
+_LEAST_SHARE = 1e-12
 """Forces below this share of the largest are rounding, and left out."""
 
 
@@ -94,7 +94,7 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
         found.append(NamedForce(f"normal, from {other}", sign * total_n * normal, place, "normal", pair))
         found.append(NamedForce(f"friction, from {other}", sign * total_t * tangent, place, "friction"))
     largest = max((one.force.magnitude for one in found), default=0.0)
-    return tuple(one for one in found if one.force.magnitude > _ROUNDING * largest)
+    return tuple(one for one in found if one.force.magnitude > _LEAST_SHARE * largest)
 
 
 @dataclass(frozen=True, slots=True)

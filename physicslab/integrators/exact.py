@@ -20,7 +20,8 @@ __all__ = ["EXACT"]
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     form = closed_form(state, ode.forces)
-    position, velocity = form.advanced(state, steps * h)
+    position, velocity = form.motion(state)
+    form.advance(position, velocity, steps * h)
     for cause, given in given_in_closed_form(state, form, steps * h).items():
         slot = ode.slots.get(cause)
         if slot is not None:

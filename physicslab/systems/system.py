@@ -189,8 +189,9 @@ class ForceSystem(System):
         return 0.0
 
     def strongest_rate(self, state: State) -> float:
-        """Return the fastest angular frequency [rad/s] that this force gives any body; 0 if it gives none."""
-        return 0.0
+        """Return the largest of :meth:`rates` [rad/s]; 0 where there are none."""
+        rates = self.rates(state)
+        return 0.0 if rates is None else float(rates.max(initial=0.0))
 
     def summation(self, state: State) -> str:
         """Return how the force is summed, where its accuracy depends on that; shown beside the figures."""
