@@ -1,4 +1,4 @@
-"""What the commands of the labs have in common: names of cases, progress, tables, documents and plots."""
+"""Shared parts of the commands of the labs: names of cases, progress, tables, documents and plots."""
 
 from __future__ import annotations
 

@@ -151,7 +151,7 @@ class MeasuredRun:
         if self._tiers.interpreted_s > interpreted:
             record.interpreted_steps += made
             record.interpreted_s += self._tiers.interpreted_s - interpreted
-            taken = 0.0  # what is slow as Python need not be slow
+            taken = 0.0  # a body that is slow in Python need not be slow compiled
         for line in (self._watch.note(made, taken), self._watch.note_impacts()):
             if line and sys.stderr is not None:
                 progress.clear()

@@ -15,7 +15,7 @@ STEP_LIMIT = 10**15
 
 def add_budget(parser: argparse.ArgumentParser) -> None:
     """Declare the wall-clock time after which a command stops."""
-    budget = "stop after so many seconds of wall clock, compiling left out: exit 1, with what was reached"
+    budget = "stop after so many seconds of wall clock, compiling left out: exit 1, with the results so far"
     parser.add_argument("--at-most", metavar="SECONDS", type=positive_duration, help=budget)
 
 

@@ -1,4 +1,4 @@
-"""Where a command's documents go: a file, or stdout for ``-``."""
+"""Destinations of a command's documents: a file, or stdout for ``-``."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class Output:
     def stream(self) -> Iterator[TextIO]:
         """Open for text that is written bit by bit; what was written stays, however the run ends.
 
-        A file takes the place of an older one at the end. Where writing fails, or the process is killed, the
+        A file takes the place of an older one at the end. If writing fails, or the process is killed, the
         older one is still there.
         """
         if self.to_stdout:

@@ -25,7 +25,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
     parser.add_argument("file", metavar="FILE", help="a recording, as the window or History.save writes it")
     add_budget(parser)
-    parser.add_argument("--json", metavar="FILE", help="write what came of it (- for stdout)")
+    parser.add_argument("--json", metavar="FILE", help="write the result (- for stdout)")
 
 
 def execute(arguments: Namespace) -> int:

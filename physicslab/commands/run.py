@@ -61,13 +61,13 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--every", metavar="S", type=positive_duration, help=spacing)
     words = "compute the run in other ways too: how many digits of motion and energy agree, and until when"
     add("--trust", action="store_true", help=words)
-    impacts = "write every impact of the run: when, where, how fast before and after, what it took (-)"
+    impacts = "write every impact of the run: time, place, speeds before and after, energy lost (-)"
     add("--ledger", metavar="FILE", help=impacts)
     add("--png", metavar="FILE", help="draw the final state, without a window (- for stdout)")
 
 
 def execute(arguments: Namespace) -> int:
-    """Run the scene and write what was asked for; a summary on stdout if nothing else goes there."""
+    """Run the scene and write the chosen outputs; a summary on stdout if nothing else goes there."""
     outputs = _outputs(arguments)
     if arguments.every is not None and "csv" not in outputs:
         raise CommandError("--every: must go with --csv, whose rows it spaces")
@@ -77,7 +77,7 @@ def execute(arguments: Namespace) -> int:
 
 
 def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], tiers: Tiers) -> int:
-    """Run a world, and write what was asked for."""
+    """Run a world, and write the chosen outputs."""
     _configure(world, arguments)
     start = world.time
     name = name_of(world, arguments)
@@ -123,7 +123,7 @@ def _stream(outputs: Mapping[str, Output], kind: str) -> AbstractContextManager[
 
 
 def _trust(arguments: Namespace, label: str, seconds: float) -> dict[str, object]:
-    """Compute the run in other ways, and return what can be relied on."""
+    """Compute the run in other ways, and return its reliable digits."""
     from physicslab.lab.accuracy.trust import assess, trust_report  # the lab is needed here alone
     from physicslab.lab.jobs import result_of
 
@@ -140,7 +140,7 @@ def _trust(arguments: Namespace, label: str, seconds: float) -> dict[str, object
 
 
 def _rescue(world: World, name: str, outputs: Mapping[str, Output]) -> str:
-    """Save the last good state beside the document that was asked for, or here; return what came of it."""
+    """Save the last good state beside the JSON document, or here; return the message."""
     json = outputs.get("json")
     directory = Path() if json is None or json.to_stdout else Path(json.path).parent
     try:
@@ -151,7 +151,7 @@ def _rescue(world: World, name: str, outputs: Mapping[str, Output]) -> str:
 
 
 def _outputs(arguments: Namespace) -> dict[str, Output]:
-    """Return the outputs that were asked for, all of them writable and none in the way of another."""
+    """Return the chosen outputs, all of them writable and none in the way of another."""
     wanted = {kind: getattr(arguments, kind) for kind in ("json", "csv", "ledger", "png")}
     outputs = {kind: Output(f"--{kind}", path) for kind, path in wanted.items() if path is not None}
     for kind, output in outputs.items():

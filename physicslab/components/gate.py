@@ -16,5 +16,5 @@ class Gate(Component):
     POINTS: ClassVar[tuple[str, ...]] = ("start", "end")
     start: Vector = point(0.0, 0.0, "one end, in its body's frame")
     end: Vector = point(0.0, 1.0, "the other end, in its body's frame")
-    start_body: int | None = field(default=None, meaning="the body that one end goes with")
-    end_body: int | None = field(default=None, meaning="the body that the other end goes with")
+    start_body: int | None = field(default=None, meaning="the body that one end is attached to")
+    end_body: int | None = field(default=None, meaning="the body that the other end is attached to")

@@ -1,4 +1,4 @@
-"""What a hand does to a body."""
+"""A body held by the hand."""
 
 from physicslab.components.lengths import point
 from physicslab.ecs.component import Component, Vector, component

@@ -6,7 +6,7 @@ from physicslab.components.quantities import QUANTITIES, check_quantity
 from physicslab.ecs.component import Component, component, field
 
 CORNERS = ("bottom left", "top left", "bottom right", "top right")
-"""Where in the window a small panel may be."""
+"""The corners of the window for a small panel."""
 
 
 @component

@@ -1,6 +1,6 @@
-"""Words at a place of the world.
+"""A text at a point of the world.
 
-Instruments have points. Each is two fields: where it is, and the body that it goes with, ``place`` and
+Instruments have points. Each is two fields: where it is, and the body that it is attached to, ``place`` and
 ``place_body``; without a body it is a point of the world.
 """
 
@@ -22,4 +22,4 @@ class Note(Component):
     place: Vector = point(
         0.0, 0.0, "where it is, in the frame of the body that it is attached to, or a point of the world"
     )
-    place_body: int | None = field(default=None, meaning="the body that it goes with; none: it stays")
+    place_body: int | None = field(default=None, meaning="the body that it is attached to; none: it stays")

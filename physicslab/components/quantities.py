@@ -1,4 +1,4 @@
-"""What can be measured of a body and of the world: names and units, the one list of them."""
+"""Quantities of a body and of the world: names and units, the one list of them."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Quantity:
 
     @property
     def heading(self) -> str:
-        """What stands over its column in a table."""
+        """The heading of its column in a table."""
         return f"{self.column} [{self.unit}]"
 
 
@@ -48,9 +48,9 @@ ENERGY_CAUSES = (
     "edits", "hand", "thrust", "motors", "fields", "impacts", "friction", "contact", "overlap", "damping",
     "joints",
 )  # fmt: skip
-"""What can change the energy of a world; what each gave is an account."""
+"""Causes that change the energy of a world; each has an account."""
 MOMENTUM_CAUSES = (*ENERGY_CAUSES, "gravity", "springs")
-"""What can change its momentum, from outside."""
+"""Causes from outside that change its momentum."""
 UNMEASURED_MOMENTA = ("friction",)
 """The causes whose momentum is not measured by itself: that of friction is part of that of contacts."""
 

@@ -10,7 +10,7 @@ from physicslab.ecs.component import Component, Vector, component, field
 
 @component
 class Ruler(Component):
-    """Measures from one point to another; an end that goes with a body follows it."""
+    """Measures from one point to another; an end attached to a body follows it."""
 
     physical: ClassVar[bool] = False
     POINTS: ClassVar[tuple[str, ...]] = ("start", "end")
@@ -20,5 +20,5 @@ class Ruler(Component):
     end: Vector = point(
         1.0, 0.0, "where it ends, in the frame of the body that this end is attached to, or of the world"
     )
-    start_body: int | None = field(default=None, meaning="the body that its beginning goes with")
-    end_body: int | None = field(default=None, meaning="the body that its end goes with")
+    start_body: int | None = field(default=None, meaning="the body that its beginning is attached to")
+    end_body: int | None = field(default=None, meaning="the body that its end is attached to")

@@ -1,4 +1,4 @@
-"""What of a body can touch."""
+"""The shape of a body, with which it touches others."""
 
 from __future__ import annotations
 

@@ -1,10 +1,10 @@
-"""What pulls two points together."""
+"""A spring, which pulls two points together."""
 
 from physicslab.components.lengths import extent, point
 from physicslab.ecs.component import Component, Vector, component, field
 
 OTHER_END = "another entity than a"
-"""What ``b`` must be: a pull between two points of one body moves nothing."""
+"""The allowed ``b``: a pull between two points of one body moves nothing."""
 
 
 @component

@@ -27,7 +27,7 @@ MOMENTUM_ACCOUNTS: dict[str, int] = {
 
 @dataclass(frozen=True, slots=True)
 class Accounts:
-    """What changed energy and momentum since the accounts began.
+    """Changes of energy and momentum by cause since the accounts began.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What springs do now, and how long an oscillation takes, where one body swings on one spring."""
+"""Present forces of springs, and the period of one body on one spring."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from physicslab.world import World
 __all__ = ["Period", "SpringState", "gives_way", "period_of", "spring_state"]
 
 _STRING = 0.005
-"""Share of its length by which weight stretches a spring that is a string: what hangs on it is a pendulum."""
+"""Share of its length by which weight stretches a spring that serves as a string of a pendulum."""
 _MAX_MEANS = 60
-"""Means that are taken at most; each doubles the number of digits."""
+"""Largest number of means; each doubles the number of digits."""
 _AT_REST = 1e-12
-"""Share of its length by which a spring may be longer or shorter and count as at rest."""
+"""Share of its length by which a spring may be longer or shorter and still be treated as at rest."""
 
 
 @dataclass(frozen=True, slots=True)
 class SpringState:
-    """What a spring does at this moment.
+    """The present state of a spring.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Period:
 
 
 def spring_state(world: World, entity: int) -> SpringState | None:
-    """Return what a spring does; of an entity without one, or one that is held by nothing, ``None``."""
+    """Return the state of a spring; ``None`` for an entity without one, or a spring without ends."""
     if not world.has(entity, Spring):
         return None
     spring = world.component(entity, Spring)
@@ -100,7 +100,7 @@ def period_of(world: World, entity: int) -> Period | None:
 
 
 def _pendulum(world: World, number: int, body: int, mass: float) -> Period | None:
-    """Return the period of a pendulum; 0 s where it turns over; ``None`` where the body is none."""
+    """Return the period of a pendulum; 0 s if it turns over; ``None`` for any other body."""
     physics, state = world.physics, spring_state(world, number)
     spring, pull = world.component(number, Spring), world.physics.gravity.magnitude
     if physics.gravity_mode != "linear" or not pull or state is None:
@@ -118,7 +118,7 @@ def _pendulum(world: World, number: int, body: int, mass: float) -> Period | Non
     length, give = spring.rest_length, stretch / spring.rest_length
     c, swept = arm.dot(physics.gravity) / (arm.magnitude * pull), arm.cross(velocity)
     u = length * (swept / arm.dot(arm)) ** 2 / pull
-    # Where it rings about that length, the angular momentum does not: w is that without the ringing.
+    # If it rings about that length, the angular momentum does not: w is that without the ringing.
     u = length * (swept / (length * (1.0 + give * (c + u))) ** 2) ** 2 / pull
     energy = 0.5 * u - c + give * (1.5 * u * u + u * c - 0.5 * c * c)
     highest = -2.0 * energy / (1.0 + math.sqrt(1.0 - 2.0 * give * energy))

@@ -29,7 +29,7 @@ _NAN = math.nan
 
 
 class Reading:
-    """The quantities of a world as it is now. What several of them need is measured once.
+    """The quantities of a world as it is now. Measurements that several of them need are made once.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class Reading:
 
     @cached_property
     def account(self) -> Accounts:
-        """What changed energy and momentum of the world, and what they are now."""
+        """Changes of energy and momentum of the world by cause, and their present values."""
         return measure_account(self._world)
 
     @property

@@ -30,7 +30,7 @@ PHASE_LIMIT = 0.05
 _AUTO_RATE_LIMIT = 500.0
 """omega dt up to which ``auto`` divides a step until it follows an oscillation."""
 SUBSTEPS_LIMIT = 10_000
-"""Of a scene's configuration."""
+"""From a scene's configuration."""
 
 
 def step_warnings(world: World) -> Iterator[ModelWarning]:
@@ -133,7 +133,7 @@ def _phase(world: World, integrator: Integrator) -> Iterator[ModelWarning]:
 
 
 def _order(world: World) -> Iterator[ModelWarning]:
-    """Yield a force that depends on velocities, where the method that was asked for is made for positions."""
+    """Yield a force that depends on velocities, if the chosen method is made for positions."""
     plan = world.plan
     method = plan.integrator if plan.smooth else plan.stages
     if world.simulation.integrator == "auto" or plan.collisions == "exact" or not method.positions_only:

@@ -205,7 +205,7 @@ def _check_references(component: Component, entities: Sequence[Mapping[str, Any]
 
 
 def _check_points(part: Component, entities: Sequence[Mapping[str, Any]], where: str) -> None:
-    """Refuse a point of an instrument that goes with what has no place."""
+    """Refuse a point of an instrument that is attached to an entity without a position."""
     for name in type(part).POINTS:  # type: ignore[attr-defined]
         body = getattr(part, f"{name}_body")
         if body is not None and "Transform" not in entities[body - 1]:

@@ -30,7 +30,7 @@ def file_stem(name: str) -> str:
 def save_new_scene(world: World, paths: Iterable[Path]) -> Path:
     """Save a world under the first of some names that nothing has, and return it: nothing is overwritten.
 
-    Of several programs that save at once under the same names, each gets a name of its own.
+    Several programs that save at once under the same names get names of their own.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a scene file keeps of the remainders of compensated sums: a loaded world goes on bit for bit."""
+"""The remainders of compensated sums in scene files: a loaded world goes on bit for bit."""
 
 from __future__ import annotations
 

@@ -91,7 +91,7 @@ def save_scene(world: World, path: str | bytes | os.PathLike[str]) -> None:
 
 
 def _path(given: object) -> str:
-    """Return a path as text; what is none is a TypeError that says what makes a world of a document."""
+    """Return a path as text; any other value is a TypeError that names the function for documents."""
     if isinstance(given, dict):
         raise TypeError(
             "a scene is opened by its name or its path; physicslab.files.scene.read_scene(document, source) "
@@ -191,7 +191,7 @@ def open_plain(path: str | os.PathLike[str], source: str, what: str = "a scene f
 
 
 def parse_json(text: str, source: str) -> object:
-    """Return what a JSON text holds; one that is none, or holds more than a scene may, is a SceneError."""
+    """Return the content of a JSON text; an invalid one, or more than a scene may hold, is a SceneError."""
     # Counted before it is parsed: every one becomes a Python object, many times its size in the file.
     brackets = text.count("{") + text.count("[")
     if brackets > BRACKET_LIMIT:

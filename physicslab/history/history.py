@@ -164,7 +164,7 @@ class History:
     # ---- going through -------------------------------------------------------------------------------------
 
     def undo(self) -> str | None:
-        """Take back the last edit or run before the present place; return its words, ``None`` if none is.
+        """Undo the last edit or run before the present place; return its words, ``None`` if none is.
 
         Of a run in the middle of which the place is, the beginning is taken back.
         """
@@ -178,7 +178,7 @@ class History:
         return line.entries[entry].words
 
     def redo(self) -> str | None:
-        """Put back the edit or run after the present place; return its words, ``None`` if there is none."""
+        """Redo the edit or run after the present place; return its words, ``None`` if there is none."""
         places, line = self._places, self._places.line
         places.mend()
         if places.here >= line.ticks:

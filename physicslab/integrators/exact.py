@@ -1,6 +1,6 @@
 """The solution in closed form, where there is one.
 
-What each cause gives is measured in another way than beside other methods: no power is integrated, but
+The contribution of each cause is measured in another way than in other methods: no power is integrated, but
 the solution has its own energy, of which dampers and drag take what is lost
 (:mod:`physicslab.ode.closed_form_account`).
 """

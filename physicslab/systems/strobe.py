@@ -1,4 +1,4 @@
-"""Where bodies were at regular moments."""
+"""Positions of bodies at regular moments."""
 
 from __future__ import annotations
 

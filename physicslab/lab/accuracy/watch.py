@@ -1,4 +1,4 @@
-"""What is measured of a run; energy and momenta at random times of one more run, which is not timed."""
+"""Measurements of a run; energy and momenta at random times of one more run, which is not timed."""
 
 from __future__ import annotations
 
