@@ -104,7 +104,6 @@ def _open(arguments: list[str]) -> int:
         from physicslab.files.scene import load_scene
 
         load_scene(scene)  # a bad file is refused before a window flickers up
-    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
     from physicslab.desktop.app import NoScreen, open_window  # no command without a window imports pygame
 
     try:

@@ -62,7 +62,7 @@ def test_a_film_of_what_was_run_shows_it_without_panels(
     tap(desk, "f9")
     choose(desk, "Film of", f"Film of: {what}")
     click(desk, "Make the film")
-    assert desk.window.filming.running and desk.window.filming.words.endswith("F9 gives it up")
+    assert desk.window.filming.running and desk.window.filming.words.endswith("F9 cancels it")
     wait(desk)
     assert bits(desk.world) == before and desk.sandbox.history.step_count == 30
     assert "Saved" in desk.window.notice and not desk.window.notice_failed
@@ -172,7 +172,7 @@ def test_where_nothing_was_run_there_is_nothing_to_film(desk: Desk) -> None:
     toggle_film(fresh.world, fresh.window)
     fresh.frames(SETTLED)
     click(fresh, "Make the film")
-    assert fresh.window.filming.refused.startswith("Nothing was run there")
+    assert fresh.window.filming.refused.startswith("There are no steps to film")
     assert list(Path.cwd().iterdir()) == []
 
 

@@ -129,7 +129,7 @@ def test_a_share_is_honest_up_to_three_and_counts_what_is_far_too_large() -> Non
     assert found.known == 100 and found.honest == [99, 100, 100, 0] and found.holds and found.worst == 3.1
     assert not share_of(rows[-99:]).holds
     table = honest_text(rows)
-    assert "99 of 100 positions (99.0%)" in table and "as it is to be" in table
+    assert "99 of 100 positions (99.0%)" in table and "wanted 99 of 100: met" in table
 
 
 def advice(path: Path, capsys: pytest.CaptureFixture[str], document: Document, *options: str) -> str:

@@ -86,7 +86,7 @@ def test_the_table_shows_impacts_of_what_is_selected_alone() -> None:
     desk.frames(200)
     late = desk.world.entity("late")
     desk.window.selection.take(late)
-    click(desk, "Only what is selected")
+    click(desk, "Only the selection")
     rows = desk.window.impacts.records[desk.window.impacts.order((late,))]
     assert len(rows) and (rows["entity_b"] == late).all()
     desk.window.selection.take(desk.world.entity("floor"))
@@ -308,7 +308,7 @@ def test_the_formula_is_one_click_away_and_open_for_engineers() -> None:
     looking(desk)
     assert "1/m_n = " not in words(desk)
     click(desk, "The law with its numbers")
-    assert "1/m_n = " in words(desk) and "solver did what the law gives" in words(desk)
+    assert "1/m_n = " in words(desk) and "solver agrees with the law" in words(desk)
     desk.window.microscope.shows_formula = None
     desk.window.level = "Engineer"
     desk.frames(4)

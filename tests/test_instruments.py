@@ -212,7 +212,7 @@ def test_between_two_bodies_that_are_selected(desk: Desk) -> None:
     tap(desk, "d")
     part = desk.world.component(only(desk, Ruler), Ruler)
     assert (part.start_body, part.end_body) == (one, two)
-    assert desk.ui.rows["Length"] == "5.000 m" and desk.ui.rows["End goes with"] == f"circle {two}"
+    assert desk.ui.rows["Length"] == "5.000 m" and desk.ui.rows["End attached to"] == f"circle {two}"
     desk.world.component(two, Transform).position = (0.0, 2.0)
     desk.window.pace.paused = False
     desk.frames(20)

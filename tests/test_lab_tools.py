@@ -432,7 +432,7 @@ def test_an_edited_scene_that_another_one_replaced_comes_back_with_its_history()
     assert len(desk.sandbox.history.entries) == entries
     assert desk.window.has_unsaved(edited)
     tap(desk, "z", CTRL)
-    assert "Taken back: made" in desk.window.notice
+    assert "Undone: made" in desk.window.notice
 
 
 def test_a_scene_that_was_left_alone_is_not_kept() -> None:

@@ -16,7 +16,7 @@ __all__ = ["COMMANDS", "Command", "CommandError", "command"]
 
 
 class Command(Protocol):
-    """What the module of a command offers; its docstring is the help."""
+    """The interface of a command's module; its docstring is the help."""
 
     def add_arguments(self, parser: ArgumentParser) -> None:
         """Declare what the command takes."""

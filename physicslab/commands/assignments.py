@@ -164,7 +164,7 @@ def _place(name: str, kind: type[Component], spec: Field) -> str:
 
 
 def _known(word: str, known: Mapping[str, object]) -> str:
-    """Return what there is in place of a word, as the end of a message."""
+    """Return the known names in place of a word, as the end of a message."""
     listed = list(known)
     first = ", ".join(map(_shown, listed[:20])) + (", ..." if len(listed) > 20 else "")
     return f"; must be one of {first or 'none'}{suggestion(word, known)}"

@@ -1,4 +1,4 @@
-"""How a command ends that cannot do what it was asked."""
+"""The end of a command that fails."""
 
 from __future__ import annotations
 

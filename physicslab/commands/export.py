@@ -4,20 +4,18 @@ from __future__ import annotations
 
 import argparse
 from argparse import ArgumentParser, Namespace
-from pathlib import Path
 
-from physicslab.commands.assignments import add_assignments, assign
+from physicslab.commands.assignments import add_assignments
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.films import film_size, make_film
 from physicslab.commands.measured_run import MeasuredRun
-from physicslab.commands.numbers import STEP_LIMIT, add_budget, positive_duration
+from physicslab.commands.numbers import add_budget, positive_duration
 from physicslab.commands.output import Output
+from physicslab.commands.scene_argument import check_output, check_seconds, name_of, opened
 from physicslab.ecs.text import printable, shortened
 from physicslab.export.page import page
 from physicslab.export.recording import NotShown, RunRecorder
-from physicslab.files.scene import load_scene
 from physicslab.kernels.tiers import Tiers
-from physicslab.scenes import SCENES
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
@@ -82,10 +80,8 @@ def execute(arguments: Namespace) -> int:
             )
     arguments.every = arguments.every or _EVERY_S
     output = Output("--html", arguments.html)
-    if arguments.scene not in SCENES and output.is_same_as(arguments.scene):
-        raise CommandError(f"--html {output.path}: is the scene itself")
-    world = load_scene(arguments.scene)
-    assign(world, arguments.set)
+    check_output(output, arguments)
+    world = opened(arguments)
     with Tiers(is_small(world)) as tiers:
         content, recorder, stopped = _recorded(world, arguments, tiers)
     output.write(content)
@@ -101,12 +97,12 @@ def execute(arguments: Namespace) -> int:
 
 def _recorded(world: World, arguments: Namespace, tiers: Tiers) -> tuple[bytes, RunRecorder, str]:
     """Return the page of a run of the world, what was recorded, and where it was stopped, if it was."""
-    name = world.name or Path(arguments.scene).stem
+    name = name_of(world, arguments)
     label = shortened(printable(name))
     recorder = RunRecorder(world)
     _check_size(world, recorder, arguments)
     try:
-        run = MeasuredRun(world, name, tiers, arguments.at_most, recorder, arguments.every)
+        run = MeasuredRun(world, name, tiers, arguments.at_most, recorder.write, arguments.every)
         run.go(arguments.seconds, None)
     except (Diverged, NotShown) as error:
         raise CommandError(f"{label}: {error}; no page was written", FAILED) from error
@@ -117,8 +113,7 @@ def _recorded(world: World, arguments: Namespace, tiers: Tiers) -> tuple[bytes, 
 def _check_size(world: World, recorder: RunRecorder, arguments: Namespace) -> None:
     """Refuse a run of which no browser would show a page."""
     dt, seconds = world.simulation.dt, arguments.seconds
-    if seconds / dt > STEP_LIMIT:
-        raise CommandError(f"--seconds {seconds:g}: must be at most {STEP_LIMIT:g} steps of dt")
+    check_seconds(seconds, dt)
     instants = seconds / max(arguments.every, dt)
     bodies = max(recorder.moving, 1)
     if instants * bodies > _LIMIT:

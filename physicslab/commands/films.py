@@ -5,29 +5,20 @@ from __future__ import annotations
 import argparse
 import os
 from argparse import Namespace
-from pathlib import Path
-from typing import TYPE_CHECKING
 
-from physicslab.commands.assignments import assign
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.measured_run import MeasuredRun
-from physicslab.commands.numbers import STEP_LIMIT
-from physicslab.commands.output import Output
-from physicslab.diagnostics.account import Accounts
+from physicslab.commands.output import Output, reason_of
+from physicslab.commands.scene_argument import check_output, check_seconds, name_of, opened
 from physicslab.ecs.text import printable, shortened
 from physicslab.export.film import Film
 from physicslab.export.framing import Box, extent_of_run
 from physicslab.export.mp4 import NoEncoder
 from physicslab.export.recording import NotShown, RunRecorder
-from physicslab.files.scene import load_scene
 from physicslab.kernels.tiers import Tiers
-from physicslab.scenes import SCENES
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
-
-if TYPE_CHECKING:
-    from physicslab.view.overlay.moving import MovingPicture
 
 __all__ = ["film_size", "make_film"]
 
@@ -47,17 +38,6 @@ def film_size(text: str) -> tuple[int, int]:
     return width, height
 
 
-class _Filming:
-    """Adds a picture of the world to a film whenever a run is to be kept."""
-
-    def __init__(self, film: Film, picture: MovingPicture) -> None:
-        self._film, self._picture = film, picture
-
-    def write(self, world: World, account: Accounts) -> None:
-        """Add the world as it is now."""
-        self._film.write(self._picture.pixels(world))
-
-
 def make_film(option: str, path: str, arguments: Namespace) -> None:
     """Run the scene, and write the film of it.
 
@@ -67,15 +47,12 @@ def make_film(option: str, path: str, arguments: Namespace) -> None:
         If it cannot be written, or the run fails; no file is left then.
     """
     output = Output(option, path)
-    label = f"{option} {shortened(printable(path), 200)}"
     if output.to_stdout:
         raise CommandError(f"{option} -: must be a path: a film does not go to stdout")
-    if arguments.scene not in SCENES and output.is_same_as(arguments.scene):
-        raise CommandError(f"{label}: is the scene itself")
-    world = _world(arguments)
+    check_output(output, arguments)
+    world = opened(arguments)
     dt, seconds = world.simulation.dt, arguments.seconds
-    if seconds / dt > STEP_LIMIT:
-        raise CommandError(f"--seconds {seconds:g}: must be at most {STEP_LIMIT:g} steps of dt")
+    check_seconds(seconds, dt)
     every = max(arguments.every or _EVERY_S, dt)
     rate = arguments.fps or 1.0 / every
     try:
@@ -83,8 +60,8 @@ def make_film(option: str, path: str, arguments: Namespace) -> None:
     except NoEncoder as error:
         raise CommandError(f"{option}: {error}") from error
     except ValueError as error:
-        raise CommandError(f"{label}: {error}") from error
-    name = world.name or Path(arguments.scene).stem
+        raise CommandError(f"{output.label}: {error}") from error
+    name = name_of(world, arguments)
     count, stopped = _run(world, name, output, every, rate, arguments)
     if stopped:
         raise CommandError(f"{shortened(printable(name))}: {stopped}: the film ends there", FAILED)
@@ -94,17 +71,10 @@ def make_film(option: str, path: str, arguments: Namespace) -> None:
     print(f"{printable(path)}: {seconds:g} s of the scene, {shown}, {size}")
 
 
-def _world(arguments: Namespace) -> World:
-    world = load_scene(arguments.scene)
-    assign(world, arguments.set)
-    return world
-
-
 def _run(
     world: World, name: str, output: Output, every: float, rate: float, arguments: Namespace
 ) -> tuple[int, str]:
     """Make the film; return how many pictures it has, and where the run was stopped, if it was."""
-    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # its greeting goes to stdout
     from physicslab.view.overlay.moving import MovingPicture
 
     try:
@@ -112,15 +82,16 @@ def _run(
             extent = world.view or _extent(name, every, arguments, tiers)
             picture = MovingPicture(arguments.size, extent)
             with Film(output.path, arguments.size, rate) as film:
-                filming = _Filming(film, picture)
-                run = MeasuredRun(world, name, tiers, arguments.at_most, filming, every)
+                run = MeasuredRun(
+                    world, name, tiers, arguments.at_most,
+                    lambda now, _: film.write(picture.pixels(now)), every,
+                )  # fmt: skip
                 run.go(arguments.seconds, None)
     except (Diverged, NotShown) as error:
         raise CommandError(f"{shortened(printable(name))}: {error}; no film was written", FAILED) from error
     except OSError as error:
-        reason = error.strerror or str(error)
         label = shortened(printable(output.path), 200)
-        raise CommandError(f"{label}: cannot be written: {reason}", FAILED) from error
+        raise CommandError(f"{label}: cannot be written: {reason_of(error)}", FAILED) from error
     return film.count, run.stopped
 
 
@@ -129,8 +100,8 @@ def _extent(name: str, every: float, arguments: Namespace, tiers: Tiers) -> Box:
 
     Each of the two has the time that one may take.
     """
-    world = _world(arguments)
+    world = opened(arguments)
     recorder = RunRecorder(world)
-    run = MeasuredRun(world, name, tiers, arguments.at_most, recorder, every)
+    run = MeasuredRun(world, name, tiers, arguments.at_most, recorder.write, every)
     run.go(arguments.seconds, None)
     return extent_of_run(world, recorder)

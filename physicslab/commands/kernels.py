@@ -7,7 +7,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from physicslab.commands.command_error import FAILED, CommandError
-from physicslab.commands.output import Output
+from physicslab.commands.output import Output, reason_of
 from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable
 from physicslab.kernels import cache_directory
@@ -80,10 +80,8 @@ def _import(file: str) -> int:
         unpack(Path(file))
     except ArchiveError as error:
         raise CommandError(f"{file}: {error}") from error
-    except OSError as error:
-        raise CommandError(f"{file}: {error.strerror or error}") from error
-    except ValueError as error:  # a null character in the name
-        raise CommandError(f"{file}: {error}") from error
+    except (OSError, ValueError) as error:  # ValueError: a null character in the name
+        raise CommandError(f"{file}: {reason_of(error)}") from error
     mark_warm()
     complete = "all kernels are there" if is_warm() else "some kernels are missing: those will be compiled"
     print(f"imported; {complete}")

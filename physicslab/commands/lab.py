@@ -1,4 +1,4 @@
-"""What the commands of the labs have in common: names of cases, progress, tables, documents and plots."""
+"""Shared parts of the commands of the labs: names of cases, progress, tables, documents and plots."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TextIO
 
 from physicslab.commands.command_error import CommandError
-from physicslab.commands.output import Output
-from physicslab.commands.pictures import picture_directory
+from physicslab.commands.output import Output, picture_directory
 from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable, suggestion
 from physicslab.files.checks import shown

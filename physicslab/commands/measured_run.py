@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Iterator
-from typing import Protocol
+from collections.abc import Callable, Iterator
 
+from physicslab.commands.numbers import stopped_at
 from physicslab.commands.progress import Progress
 from physicslab.diagnostics.account import Accounts
 from physicslab.diagnostics.audit import Audit
@@ -21,7 +21,7 @@ from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.world import World
 
-__all__ = ["MeasuredRun", "Recorder"]
+__all__ = ["MeasuredRun"]
 
 _SAMPLES = 500
 """How often a run without contacts is measured: what lies between is one compiled loop."""
@@ -37,11 +37,8 @@ _ON_TIME = 1e-6
 """Share of a step by which an instant may be late that is due: the clock is a sum of rounded steps."""
 
 
-class Recorder(Protocol):
-    """What keeps the state of a world at one instant after the other."""
-
-    def write(self, world: World, account: Accounts) -> None:
-        """Keep the state as it is now."""
+type Keep = Callable[[World, Accounts], None]
+"""Keeps the state of a world as it is now, with its accounts."""
 
 
 class MeasuredRun:
@@ -57,7 +54,7 @@ class MeasuredRun:
         What decides whether kernels are compiled or interpreted.
     at_most : float, optional
         Wall-clock time [s] after which the run is stopped, compiling left out.
-    recorder : Recorder, optional
+    keep : callable, optional
         What keeps the start, the end, and the steps between.
     every : float, optional
         The time [s] between what is kept: the first step that ends at or after each multiple of it, counted
@@ -79,13 +76,13 @@ class MeasuredRun:
         name: str,
         tiers: Tiers,
         at_most: float | None = None,
-        recorder: Recorder | None = None,
+        keep: Keep | None = None,
         every: float = 0.0,
         ledger: LedgerWriter | None = None,
     ) -> None:
         self.record, self.stopped = RunRecord(name, Audit(world)), ""
         self._world, self._tiers, self._at_most = world, tiers, at_most
-        self._recorder, self._every, self._kept_at = recorder, every, -math.inf
+        self._keeper, self._every, self._kept_at = keep, every, -math.inf
         self._ledger = ledger
         self._watch = StepWatch(world)
         self._label = shortened(printable(name))
@@ -104,8 +101,9 @@ class MeasuredRun:
         """
         world, record, dt = self._world, self.record, self._world.simulation.dt
         length = (steps or 0) * dt if seconds is None else seconds
+        end = self._start + length
         whole = round(length / dt)
-        stride = 1 if self._recorder is not None else self._stride(whole)
+        stride = 1 if self._keeper is not None else self._stride(whole)
         patience = math.inf if self._at_most is None else _PATIENCE_S
         stepping = world.stepping(seconds=seconds, steps=steps, stride=stride, patience=patience)
         self._measure_every, self._look_every = (max(1, whole // (stride * n)) for n in (_SAMPLES, _LOOKS))
@@ -119,8 +117,8 @@ class MeasuredRun:
                     self._sample()
                 progress.show((world.time - self._start) / length)
                 self._tiers.foresee(record.steps / max(whole, record.steps))
-                if self._at_most is not None and self._seconds >= self._at_most:
-                    self.stopped = self._where_stopped(self._at_most, self._start + length, whole)
+                if self._at_most is not None and self._seconds >= self._at_most and world.time < end:
+                    self.stopped = stopped_at(self._at_most, world.time, record.steps, whole)
             self._measure()
             if not self._kept_now:
                 self._keep()
@@ -153,7 +151,7 @@ class MeasuredRun:
         if self._tiers.interpreted_s > interpreted:
             record.interpreted_steps += made
             record.interpreted_s += self._tiers.interpreted_s - interpreted
-            taken = 0.0  # what is slow as Python need not be slow
+            taken = 0.0  # a body that is slow in Python need not be slow compiled
         for line in (self._watch.note(made, taken), self._watch.note_impacts()):
             if line and sys.stderr is not None:
                 progress.clear()
@@ -163,8 +161,8 @@ class MeasuredRun:
 
     def _is_due(self, dt: float) -> bool:
         """Whether a multiple of the time between what is kept lies after the last that was, up to now."""
-        if self._recorder is None or self._every <= dt:
-            return self._recorder is not None
+        if self._keeper is None or self._every <= dt:
+            return self._keeper is not None
         late = _ON_TIME * dt
         now, before = (
             math.floor((t - self._start + late) / self._every) for t in (self._world.time, self._kept_at)
@@ -173,23 +171,15 @@ class MeasuredRun:
 
     @property
     def _kept_now(self) -> bool:
-        """Whether the recorder has the state as it is now, which was measured for it."""
+        """Whether the state as it is now was measured and kept."""
         return self._kept_at == self._world.time
 
     def _keep(self) -> None:
-        """Measure, and hand the state as it is now to the recorder, if there is one."""
-        if self._recorder is not None:
+        """Measure, and keep the state as it is now, if it is to be kept."""
+        if self._keeper is not None:
             self._measure()
-            self._recorder.write(self._world, self.record.audit.account)
+            self._keeper(self._world, self.record.audit.account)
             self._kept_at = self._world.time
-
-    def _where_stopped(self, at_most: float, end: float, whole: int) -> str:
-        """Return in words where a run was stopped; nothing where it was at its end."""
-        if self._world.time >= end:
-            return ""
-        steps = f"after {self.record.steps} of {whole} steps"
-        place = f"at t = {self._world.time:.9g} s, {steps}"
-        return f"stopped after {at_most:g} s of wall clock (--at-most) {place}"
 
     def _sample(self) -> None:
         """Measure, and look for warnings, where that is due."""

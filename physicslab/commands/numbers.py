@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 import math
 
-__all__ = ["STEP_LIMIT", "add_budget", "count", "duration", "positive_count", "positive_duration"]
+__all__ = [
+    "STEP_LIMIT", "add_budget", "count", "duration", "positive_count", "positive_duration", "stopped_at",
+]  # fmt: skip
 
 STEP_LIMIT = 10**15
 """More than any run will do; beyond it, times could no longer be counted exactly."""
@@ -13,24 +15,24 @@ STEP_LIMIT = 10**15
 
 def add_budget(parser: argparse.ArgumentParser) -> None:
     """Declare the wall-clock time after which a command stops."""
-    budget = "stop after so many seconds of wall clock, compiling left out: exit 1, with what was reached"
+    budget = "stop after so many seconds of wall clock, compiling left out: exit 1, with the results so far"
     parser.add_argument("--at-most", metavar="SECONDS", type=positive_duration, help=budget)
+
+
+def stopped_at(budget: float, time: float, done: int, whole: int) -> str:
+    """Return in words where a command was stopped by it."""
+    place = f"at t = {time:.9g} s, after {done} of {whole} steps"
+    return f"stopped after {budget:g} s of wall clock (--at-most) {place}"
 
 
 def duration(text: str) -> float:
     """Return a time [s] that is finite and not negative."""
-    seconds = _number(text)
-    if not (math.isfinite(seconds) and seconds >= 0.0):
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a finite number >= 0 s")
-    return seconds
+    return _seconds(text, 0.0, ">= 0")
 
 
 def positive_duration(text: str) -> float:
     """Return a time [s] that is finite and greater than 0."""
-    seconds = _number(text)
-    if not (math.isfinite(seconds) and seconds > 0.0):
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a finite number > 0 s")
-    return seconds
+    return _seconds(text, math.ulp(0.0), "> 0")
 
 
 def count(text: str) -> int:
@@ -43,11 +45,14 @@ def positive_count(text: str) -> int:
     return _whole(text, 1)
 
 
-def _number(text: str) -> float:
+def _seconds(text: str, least: float, range_: str) -> float:
     try:
-        return float(text)
+        seconds = float(text)
     except ValueError:
-        return math.nan
+        seconds = math.nan
+    if not least <= seconds < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a finite number {range_} s")
+    return seconds
 
 
 def _whole(text: str, least: int) -> int:

@@ -1,19 +1,22 @@
-"""Where a command's documents go: a file, or stdout for ``-``."""
+"""Destinations of a command's documents: a file, or stdout for ``-``."""
 
 from __future__ import annotations
 
+import importlib.util
 import io
 import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import BinaryIO, TextIO
 
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.ecs.text import printable, shortened
+from physicslab.files.checks import shown
 from physicslab.files.replace import check_writable, replace_file, replacing
 
-__all__ = ["Output"]
+__all__ = ["Output", "picture_directory", "reason_of"]
 
 
 class Output:
@@ -28,6 +31,11 @@ class Output:
     path : str
         A path, or ``-`` for stdout.
 
+    Attributes
+    ----------
+    label : str
+        Option and path, for messages.
+
     Raises
     ------
     CommandError
@@ -37,7 +45,7 @@ class Output:
     def __init__(self, option: str, path: str) -> None:
         self.path = path
         self.to_stdout = path == "-"
-        self._label = f"{option} {shortened(printable(path), 200)}"
+        self.label = f"{option} {shortened(printable(path), 200)}"
         if self.to_stdout:
             return
         if not path:
@@ -45,7 +53,7 @@ class Output:
         try:
             check_writable(path)
         except (OSError, ValueError) as error:  # ValueError: a null character in the name
-            raise CommandError(f"{self._label}: cannot be written: {_reason(error)}") from error
+            raise CommandError(f"{self.label}: cannot be written: {reason_of(error)}") from error
 
     def is_same_as(self, path: str) -> bool:
         """Whether this is the same file as ``path``, under whatever name; ``-`` is stdout."""
@@ -57,6 +65,11 @@ class Output:
         if own is None or other is None or not os.path.samestat(own, other):
             return False
         return nowhere is None or not os.path.samestat(own, nowhere)
+
+    def refuse_same(self, path: str, what: str) -> None:
+        """Raise :class:`CommandError` where this is the file that is read, ``what`` in words."""
+        if self.is_same_as(path):
+            raise CommandError(f"{self.label}: is {what} itself")
 
     def write(self, content: bytes) -> None:
         """Write all of a document: a file is replaced whole, or left as it was.
@@ -76,13 +89,13 @@ class Output:
         except BrokenPipeError:
             raise
         except OSError as error:
-            raise CommandError(f"{self._label}: cannot be written: {_reason(error)}", FAILED) from error
+            raise CommandError(f"{self.label}: cannot be written: {reason_of(error)}", FAILED) from error
 
     @contextmanager
     def stream(self) -> Iterator[TextIO]:
         """Open for text that is written bit by bit; what was written stays, however the run ends.
 
-        A file takes the place of an older one at the end. Where writing fails, or the process is killed, the
+        A file takes the place of an older one at the end. If writing fails, or the process is killed, the
         older one is still there.
         """
         if self.to_stdout:
@@ -105,9 +118,35 @@ class Output:
         except BrokenPipeError:
             raise
         except OSError as error:
-            raise CommandError(f"{self._label}: cannot be written: {_reason(error)}", FAILED) from error
+            raise CommandError(f"{self.label}: cannot be written: {reason_of(error)}", FAILED) from error
         if ended is not None:
             raise ended
+
+
+def picture_directory(path: str, example: str) -> Path:
+    """Return where pictures go, made if it was not there; refuse it if nothing can draw or write them.
+
+    Parameters
+    ----------
+    path : str
+        What the user named with ``--plot``.
+    example : str
+        A name that a picture may have, to try whether files can be written there.
+
+    Raises
+    ------
+    CommandError
+        If it cannot be written, or there is no matplotlib.
+    """
+    if importlib.util.find_spec("matplotlib") is None:
+        raise CommandError("--plot: needs matplotlib, which is not installed: pip install 'physicslab[plot]'")
+    directory = Path(path)
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        raise CommandError(f"--plot {shown(path)}: cannot be written: {reason_of(error)}") from error
+    Output("--plot", str(directory / example))  # whether files can be written there
+    return directory
 
 
 def _identity(path: str) -> os.stat_result | None:
@@ -125,5 +164,6 @@ def _stdout() -> BinaryIO:
     return sys.stdout.buffer
 
 
-def _reason(error: Exception) -> str:
+def reason_of(error: Exception) -> str:
+    """Return in a few words why a file could not be read or written."""
     return (error.strerror if isinstance(error, OSError) else None) or str(error)

@@ -7,7 +7,7 @@ from argparse import ArgumentParser, Namespace
 from typing import Any
 
 from physicslab.commands.command_error import FAILED, CommandError
-from physicslab.commands.numbers import add_budget
+from physicslab.commands.numbers import add_budget, stopped_at
 from physicslab.commands.output import Output
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.json_text import json_bytes
@@ -25,15 +25,15 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
     parser.add_argument("file", metavar="FILE", help="a recording, as the window or History.save writes it")
     add_budget(parser)
-    parser.add_argument("--json", metavar="FILE", help="write what came of it (- for stdout)")
+    parser.add_argument("--json", metavar="FILE", help="write the result (- for stdout)")
 
 
 def execute(arguments: Namespace) -> int:
     """Play the recording to its end; exit 1 where a column of a step has other bits than in the recording."""
     label = shortened(printable(arguments.file), 200)
     output = None if arguments.json is None else Output("--json", arguments.json)
-    if output is not None and output.is_same_as(arguments.file):
-        raise CommandError(f"--json {shortened(printable(arguments.json), 200)}: is the recording itself")
+    if output is not None:
+        output.refuse_same(arguments.file, "the recording")
     world, line = load(arguments.file)
     first: Played | None = None
     stopped, began = "", time.perf_counter() - world.compile_s
@@ -48,8 +48,7 @@ def execute(arguments: Namespace) -> int:
                     and seconds >= arguments.at_most
                     and played.step < line.steps
                 ):
-                    place = f"at t = {world.time:.9g} s, after {played.step} of {line.steps} steps"
-                    stopped = f"stopped after {arguments.at_most:g} s of wall clock (--at-most) {place}"
+                    stopped = stopped_at(arguments.at_most, world.time, played.step, line.steps)
                     break
         except Diverged as error:
             raise CommandError(f"{label}: {error}", FAILED) from error

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import io
 import math
-import os
 import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Mapping
@@ -13,19 +12,13 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TextIO
 
-from physicslab.commands.assignments import add_assignments, assign
+from physicslab.commands.assignments import add_assignments
 from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.measured_run import MeasuredRun
-from physicslab.commands.numbers import (
-    STEP_LIMIT,
-    add_budget,
-    count,
-    duration,
-    positive_count,
-    positive_duration,
-)
+from physicslab.commands.numbers import add_budget, count, duration, positive_count, positive_duration
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
+from physicslab.commands.scene_argument import check_output, check_seconds, name_of, opened
 from physicslab.diagnostics.ledger import LedgerWriter
 from physicslab.diagnostics.precision import find_imprecise, words_of_digits
 from physicslab.diagnostics.run_report import advice_of, find_not_finite, run_report, run_summary
@@ -35,10 +28,9 @@ from physicslab.ecs.config import CONTACTS, INTEGRATORS
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
 from physicslab.files.json_text import json_bytes
-from physicslab.files.rescue import save_last_good
-from physicslab.files.scene import SceneError, load_scene
+from physicslab.files.new_scene import save_last_good
+from physicslab.files.scene import SceneError
 from physicslab.kernels.tiers import Tiers
-from physicslab.scenes import SCENES
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
@@ -69,34 +61,33 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--every", metavar="S", type=positive_duration, help=spacing)
     words = "compute the run in other ways too: how many digits of motion and energy agree, and until when"
     add("--trust", action="store_true", help=words)
-    impacts = "write every impact of the run: when, where, how fast before and after, what it took (-)"
+    impacts = "write every impact of the run: time, place, speeds before and after, energy lost (-)"
     add("--ledger", metavar="FILE", help=impacts)
     add("--png", metavar="FILE", help="draw the final state, without a window (- for stdout)")
 
 
 def execute(arguments: Namespace) -> int:
-    """Run the scene and write what was asked for; a summary on stdout if nothing else goes there."""
+    """Run the scene and write the chosen outputs; a summary on stdout if nothing else goes there."""
     outputs = _outputs(arguments)
     if arguments.every is not None and "csv" not in outputs:
         raise CommandError("--every: must go with --csv, whose rows it spaces")
-    world = load_scene(arguments.scene)
-    assign(world, arguments.set)
+    world = opened(arguments)
     with Tiers(is_small(world)) as tiers:
         return _execute(world, arguments, outputs, tiers)
 
 
 def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], tiers: Tiers) -> int:
-    """Run a world, and write what was asked for."""
+    """Run a world, and write the chosen outputs."""
     _configure(world, arguments)
     start = world.time
-    name = world.name or Path(arguments.scene).stem
+    name = name_of(world, arguments)
     label = shortened(printable(name))
     seconds = _DEFAULT_S if arguments.seconds is None and arguments.steps is None else arguments.seconds
     with _stream(outputs, "csv") as stream, _stream(outputs, "ledger") as impacts:
-        table = None if stream is None else TrajectoryWriter(stream, world)
+        keep = None if stream is None else TrajectoryWriter(stream, world).write
         ledger = None if impacts is None else LedgerWriter(impacts, world)
         try:
-            run = MeasuredRun(world, name, tiers, arguments.at_most, table, arguments.every or 0.0, ledger)
+            run = MeasuredRun(world, name, tiers, arguments.at_most, keep, arguments.every or 0.0, ledger)
             run.go(seconds, arguments.steps)
         except Diverged as error:
             raise CommandError(f"{label}: {error}; {_rescue(world, name, outputs)}", FAILED) from error
@@ -132,13 +123,12 @@ def _stream(outputs: Mapping[str, Output], kind: str) -> AbstractContextManager[
 
 
 def _trust(arguments: Namespace, label: str, seconds: float) -> dict[str, object]:
-    """Compute the run in other ways, and return what can be relied on."""
+    """Compute the run in other ways, and return its reliable digits."""
     from physicslab.lab.accuracy.trust import assess, trust_report  # the lab is needed here alone
     from physicslab.lab.jobs import result_of
 
     def load() -> World:
-        world = load_scene(arguments.scene)
-        assign(world, arguments.set)
+        world = opened(arguments)
         _configure(world, arguments)
         return world
 
@@ -150,7 +140,7 @@ def _trust(arguments: Namespace, label: str, seconds: float) -> dict[str, object
 
 
 def _rescue(world: World, name: str, outputs: Mapping[str, Output]) -> str:
-    """Save the last good state beside the document that was asked for, or here; return what came of it."""
+    """Save the last good state beside the JSON document, or here; return the message."""
     json = outputs.get("json")
     directory = Path() if json is None or json.to_stdout else Path(json.path).parent
     try:
@@ -161,12 +151,11 @@ def _rescue(world: World, name: str, outputs: Mapping[str, Output]) -> str:
 
 
 def _outputs(arguments: Namespace) -> dict[str, Output]:
-    """Return the outputs that were asked for, all of them writable and none in the way of another."""
+    """Return the chosen outputs, all of them writable and none in the way of another."""
     wanted = {kind: getattr(arguments, kind) for kind in ("json", "csv", "ledger", "png")}
     outputs = {kind: Output(f"--{kind}", path) for kind, path in wanted.items() if path is not None}
     for kind, output in outputs.items():
-        if arguments.scene not in SCENES and output.is_same_as(arguments.scene):
-            raise CommandError(f"--{kind} {output.path}: is the scene itself")
+        check_output(output, arguments)
         for other, second in outputs.items():
             if other != kind and ((output.to_stdout and second.to_stdout) or output.is_same_as(second.path)):
                 raise CommandError(f"--{kind} and --{other} cannot both go to {output.path}")
@@ -194,13 +183,12 @@ def _configure(world: World, arguments: Namespace) -> None:
             f"--steps {arguments.steps}: must take a finite time at {world.simulation.dt:g} s each"
         )
     seconds = _DEFAULT_S if arguments.seconds is None else arguments.seconds
-    if arguments.steps is None and seconds / world.simulation.dt > STEP_LIMIT:
-        raise CommandError(f"--seconds {seconds:g}: must be at most {STEP_LIMIT:g} steps of dt")
+    if arguments.steps is None:
+        check_seconds(seconds, world.simulation.dt)
 
 
 def _picture(world: World) -> bytes:
     """Return a PNG of the world as it is now; pygame draws it, without a display."""
-    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # its greeting goes to stdout
     from physicslab.view.picture.picture import save_png
 
     picture = io.BytesIO()

@@ -21,23 +21,6 @@ from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 
 __all__ = [
-    "Drag",
-    "Gate",
-    "Graph",
-    "GraphLine",
-    "Held",
-    "Mass",
-    "Material",
-    "Meter",
-    "Name",
-    "Note",
-    "Protractor",
-    "Ruler",
-    "Shape",
-    "Slider",
-    "Spring",
-    "Strobe",
-    "Trail",
-    "Transform",
-    "Velocity",
-]
+    "Drag", "Gate", "Graph", "GraphLine", "Held", "Mass", "Material", "Meter", "Name", "Note",
+    "Protractor", "Ruler", "Shape", "Slider", "Spring", "Strobe", "Trail", "Transform", "Velocity",
+]  # fmt: skip

@@ -6,7 +6,7 @@ from physicslab.components.quantities import QUANTITIES, why_not_of
 from physicslab.ecs.component import Component, InvalidValue, component, field
 
 TIME = "time"
-"""What stands on the horizontal axis of most graphs."""
+"""The quantity on the horizontal axis of most graphs."""
 
 
 @component

@@ -2,7 +2,7 @@
 
 from typing import ClassVar
 
-from physicslab.components.quantities import QUANTITIES, why_not_of
+from physicslab.components.quantities import QUANTITIES, check_quantity
 from physicslab.ecs.component import Component, InvalidValue, component, field
 
 
@@ -23,6 +23,4 @@ class GraphLine(Component):
         """Check that there is a graph, and that the body, or the world, has the quantity."""
         if self.graph is None:
             raise InvalidValue("GraphLine", "graph", None, "an entity with a Graph")
-        allowed = why_not_of(self.quantity, self.body)
-        if allowed is not None:
-            raise InvalidValue("GraphLine", "quantity", self.quantity, allowed)
+        check_quantity("GraphLine", "quantity", self.quantity, self.body)

@@ -1,4 +1,4 @@
-"""What a body's surface is like."""
+"""The surface of a body: restitution and friction."""
 
 from physicslab.ecs.component import Component, component, field
 

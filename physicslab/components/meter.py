@@ -2,11 +2,11 @@
 
 from typing import ClassVar
 
-from physicslab.components.quantities import QUANTITIES, why_not_of
-from physicslab.ecs.component import Component, InvalidValue, component, field
+from physicslab.components.quantities import QUANTITIES, check_quantity
+from physicslab.ecs.component import Component, component, field
 
 CORNERS = ("bottom left", "top left", "bottom right", "top right")
-"""Where in the window a small panel may be."""
+"""The corners of the window for a small panel."""
 
 
 @component
@@ -24,6 +24,4 @@ class Meter(Component):
 
     def validate(self) -> None:
         """Check that the body, or the world, has the quantity."""
-        allowed = why_not_of(self.quantity, self.body)
-        if allowed is not None:
-            raise InvalidValue("Meter", "quantity", self.quantity, allowed)
+        check_quantity("Meter", "quantity", self.quantity, self.body)

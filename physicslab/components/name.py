@@ -1,4 +1,4 @@
-"""What an entity is called."""
+"""The name of an entity."""
 
 from dataclasses import dataclass
 from typing import ClassVar

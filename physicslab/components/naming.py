@@ -1,4 +1,4 @@
-"""What an entity without an id is called: by what it is, in plain words, and its number."""
+"""Names of entities without an id: their kind, in plain words, and their number."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Words at a place of the world.
+"""A text at a point of the world.
 
-Instruments have points. Each is two fields: where it is, and the body that it goes with, ``place`` and
+Instruments have points. Each is two fields: where it is, and the body that it is attached to, ``place`` and
 ``place_body``; without a body it is a point of the world.
 """
 
@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from physicslab.components.lengths import point
 from physicslab.ecs.component import Component, Vector, component, field
-from physicslab.ecs.fields import LENGTH_LIMIT
 
 
 @component
@@ -19,10 +19,7 @@ class Note(Component):
     physical: ClassVar[bool] = False
     POINTS: ClassVar[tuple[str, ...]] = ("place",)
     text: str = field(default="", limit=400, lines=8, meaning="what is written there")
-    place: Vector = field(
-        default=(0.0, 0.0),
-        unit="m",
-        limit=LENGTH_LIMIT,
-        meaning="where it is, in the frame of the body that it goes with, or a point of the world",
+    place: Vector = point(
+        0.0, 0.0, "where it is, in the frame of the body that it is attached to, or a point of the world"
     )
-    place_body: int | None = field(default=None, meaning="the body that it goes with; none: it stays")
+    place_body: int | None = field(default=None, meaning="the body that it is attached to; none: it stays")

@@ -4,25 +4,19 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from physicslab.components.lengths import point
 from physicslab.ecs.component import Component, Vector, component, field
-from physicslab.ecs.fields import LENGTH_LIMIT
 
 
 @component
 class Protractor(Component):
-    """Measures the angle between two arms from one vertex; a point that goes with a body follows it."""
+    """Measures the angle between two arms from one vertex; a point attached to a body follows it."""
 
     physical: ClassVar[bool] = False
     POINTS: ClassVar[tuple[str, ...]] = ("vertex", "first", "second")
-    vertex: Vector = field(
-        default=(0.0, 0.0), unit="m", limit=LENGTH_LIMIT, meaning="where the arms meet, in its body's frame"
-    )
-    first: Vector = field(
-        default=(1.0, 0.0), unit="m", limit=LENGTH_LIMIT, meaning="end of the first arm, in its body's frame"
-    )
-    second: Vector = field(
-        default=(0.0, 1.0), unit="m", limit=LENGTH_LIMIT, meaning="end of the second arm, in its body's frame"
-    )
-    vertex_body: int | None = field(default=None, meaning="the body that the vertex goes with")
-    first_body: int | None = field(default=None, meaning="the body that the first arm's end goes with")
-    second_body: int | None = field(default=None, meaning="the body that the second arm's end goes with")
+    vertex: Vector = point(0.0, 0.0, "where the arms meet, in its body's frame")
+    first: Vector = point(1.0, 0.0, "end of the first arm, in its body's frame")
+    second: Vector = point(0.0, 1.0, "end of the second arm, in its body's frame")
+    vertex_body: int | None = field(default=None, meaning="the body that the vertex is attached to")
+    first_body: int | None = field(default=None, meaning="the body that the first arm's end is attached to")
+    second_body: int | None = field(default=None, meaning="the body that the second arm's end is attached to")

@@ -1,9 +1,11 @@
-"""What can be measured of a body and of the world: names and units, the one list of them."""
+"""Quantities of a body and of the world: names and units, the one list of them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+
+from physicslab.ecs.fields import InvalidValue
 
 __all__ = [
     "BODY_QUANTITIES", "ENERGY_CAUSES", "MOMENTUM_CAUSES", "QUANTITIES", "UNMEASURED_MOMENTA",
@@ -38,7 +40,7 @@ class Quantity:
 
     @property
     def heading(self) -> str:
-        """What stands over its column in a table."""
+        """The heading of its column in a table."""
         return f"{self.column} [{self.unit}]"
 
 
@@ -46,9 +48,9 @@ ENERGY_CAUSES = (
     "edits", "hand", "thrust", "motors", "fields", "impacts", "friction", "contact", "overlap", "damping",
     "joints",
 )  # fmt: skip
-"""What can change the energy of a world; what each gave is an account."""
+"""Causes that change the energy of a world; each has an account."""
 MOMENTUM_CAUSES = (*ENERGY_CAUSES, "gravity", "springs")
-"""What can change its momentum, from outside."""
+"""Causes from outside that change its momentum."""
 UNMEASURED_MOMENTA = ("friction",)
 """The causes whose momentum is not measured by itself: that of friction is part of that of contacts."""
 
@@ -105,6 +107,13 @@ BODY_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantit
 """The names of those that a body has."""
 WORLD_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.of_world)
 """The names of those that the world has."""
+
+
+def check_quantity(owner: str, field: str, name: str, body: int | None) -> None:
+    """Raise :class:`InvalidValue` if a body, or the world for ``None``, has no such quantity."""
+    allowed = why_not_of(name, body)
+    if allowed is not None:
+        raise InvalidValue(owner, field, name, allowed)
 
 
 def why_not_of(name: str, body: int | None) -> str | None:

@@ -1,9 +1,9 @@
-"""What of a body can touch."""
+"""The shape of a body, with which it touches others."""
 
 from __future__ import annotations
 
+from physicslab.components.lengths import extent
 from physicslab.ecs.component import Component, InvalidValue, component, field
-from physicslab.ecs.fields import LENGTH_LIMIT
 
 CIRCLE = 1
 """Code of a circle in the ``kind`` column; 0 is no shape."""
@@ -16,23 +16,9 @@ class Shape(Component):
     """The outline of a body, centred on its Transform. An entity without it cannot touch anything."""
 
     kind: str = field(choices=("circle", "box"), fixed=True, meaning="what sort of outline")
-    radius: float = field(
-        default=0.0, unit="m", minimum=0.0, limit=LENGTH_LIMIT, meaning="radius of a circle"
-    )
-    width: float = field(
-        default=0.0,
-        unit="m",
-        minimum=0.0,
-        limit=LENGTH_LIMIT,
-        meaning="extent of a box along its own x axis",
-    )
-    height: float = field(
-        default=0.0,
-        unit="m",
-        minimum=0.0,
-        limit=LENGTH_LIMIT,
-        meaning="extent of a box along its own y axis",
-    )
+    radius: float = extent(0.0, "radius of a circle")
+    width: float = extent(0.0, "extent of a box along its own x axis")
+    height: float = extent(0.0, "extent of a box along its own y axis")
 
     SIZES = {"circle": ("radius",), "box": ("width", "height")}  # noqa: RUF012
 

@@ -1,10 +1,10 @@
-"""What pulls two points together."""
+"""A spring, which pulls two points together."""
 
+from physicslab.components.lengths import extent, point
 from physicslab.ecs.component import Component, Vector, component, field
-from physicslab.ecs.fields import LENGTH_LIMIT
 
 OTHER_END = "another entity than a"
-"""What ``b`` must be: a pull between two points of one body moves nothing."""
+"""The allowed ``b``: a pull between two points of one body moves nothing."""
 
 
 @component
@@ -21,17 +21,8 @@ class Spring(Component):
     b: int | None = field(
         default=None, fixed=True, meaning="second body; a fixed point of the world where absent"
     )
-    anchor_a: Vector = field(
-        default=(0.0, 0.0), unit="m", limit=LENGTH_LIMIT, meaning="where it holds A, in A's own frame"
-    )
-    anchor_b: Vector = field(
-        default=(0.0, 0.0),
-        unit="m",
-        limit=LENGTH_LIMIT,
-        meaning="where it holds B, in B's own frame, or a point of the world",
-    )
-    rest_length: float = field(
-        default=1.0, unit="m", minimum=0.0, limit=LENGTH_LIMIT, meaning="length without force"
-    )
+    anchor_a: Vector = point(0.0, 0.0, "where it holds A, in A's own frame")
+    anchor_b: Vector = point(0.0, 0.0, "where it holds B, in B's own frame, or a point of the world")
+    rest_length: float = extent(1.0, "length without force")
     stiffness: float = field(default=100.0, unit="N/m", minimum=0.0, meaning="force per metre of extension")
     damping: float = field(default=0.0, unit="N s/m", minimum=0.0, meaning="force per speed of lengthening")

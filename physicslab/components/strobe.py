@@ -1,4 +1,4 @@
-"""Where a body was at regular moments, as pictures by a strobe light show it."""
+"""Positions of a body at regular moments, as pictures by a strobe light show it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a body is."""
+"""The position and angle of a body."""
 
 from physicslab.ecs.component import Component, Vector, component, field
 from physicslab.ecs.fields import COORDINATE_LIMIT

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,7 +27,7 @@ MOMENTUM_ACCOUNTS: dict[str, int] = {
 
 @dataclass(frozen=True, slots=True)
 class Accounts:
-    """What changed energy and momentum since the accounts began.
+    """Changes of energy and momentum by cause since the accounts began.
 
     Attributes
     ----------
@@ -60,19 +61,19 @@ class Accounts:
     @np.errstate(all="ignore")
     def after(self, begin: Accounts) -> Accounts:
         """Return the accounts of what happened after an earlier moment, at which they were ``begin``."""
-        energy = {name: value - begin.energy[name] for name, value in self.energy.items()}
-        momentum = {name: value - begin.momentum[name] for name, value in self.momentum.items()}
-        angular = {
-            name: value - begin.angular_momentum[name] for name, value in self.angular_momentum.items()
-        }
-        for found in (energy, momentum, angular):
-            del found["numerical"]
+        energy, momentum = _given(self.energy, begin.energy), _given(self.momentum, begin.momentum)
+        angular = _given(self.angular_momentum, begin.angular_momentum)
         now, start = self.now, begin.now
         energy["numerical"] = now.energy - start.energy - sum(energy.values())
         change = Vector2(now.px - start.px, now.py - start.py)
         momentum["numerical"] = change - sum(momentum.values(), Vector2())
         angular["numerical"] = now.spin - start.spin - sum(angular.values())
         return replace(self, start=start, energy=energy, momentum=momentum, angular_momentum=angular)
+
+
+def _given[V: (float, Vector2)](now: Mapping[str, V], before: Mapping[str, V]) -> dict[str, V]:
+    """Return what each cause has given since an earlier moment, without the error."""
+    return {name: value - before[name] for name, value in now.items() if name != "numerical"}
 
 
 @np.errstate(all="ignore")  # an energy may be infinite: what is left is then not a number

@@ -1,4 +1,4 @@
-"""Where the energy went, in plain words."""
+"""Changes of the energy, in plain words."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ ACCOUNT_WORDS: dict[str, str] = {
     "springs": "springs",
     "numerical": "error",
 }
-"""What each account is called where there is room for words."""
+"""The name of each account in plain words."""
 
 
 def flows(booked: Mapping[str, float]) -> list[tuple[str, float]]:
-    """Return what gave energy, the largest first, then what took some, the largest first [J].
+    """Return the causes that gave energy, then those that took some, the largest first of each [J].
 
     Parameters
     ----------

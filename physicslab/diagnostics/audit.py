@@ -12,9 +12,9 @@ from physicslab.world import World
 
 __all__ = ["Audit"]
 
-_NEGLIGIBLE = 1e-12
+_LEAST_OF_EXCHANGED = 1e-12
 """Share of the energy exchanged below which an account is rounding."""
-_ROUNDING = 1e-15
+_LEAST_OF_ENERGY = 1e-15
 """Share of the largest energy below which it is so, where hardly any is exchanged."""
 _OUTSIDE = ("edits", "hand", "numerical")
 """The accounts whose size is no measure of what is exchanged: a body that comes, goes or is taken into a hand
@@ -78,7 +78,7 @@ class Audit:
     def notable(self) -> dict[str, float]:
         """The accounts of energy at the last sample [J] that are more than rounding, without the error."""
         ends = self.account.start.energy, self.account.now.energy
-        least = max(_NEGLIGIBLE * self.exchanged, _ROUNDING * max(map(abs, ends)))
+        least = max(_LEAST_OF_EXCHANGED * self.exchanged, _LEAST_OF_ENERGY * max(map(abs, ends)))
         booked = self.account.energy.items()
         return {name: value for name, value in booked if name != "numerical" and not abs(value) <= least}
 

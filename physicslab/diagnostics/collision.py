@@ -1,4 +1,4 @@
-"""One impact taken apart: two bodies, where they touched, and what the law of impact makes of that.
+"""One impact taken apart: two bodies, where they touched, and the result of the law of impact.
 
 A record of the ledger holds the poses and the velocities of both bodies at the moment, masses, restitution,
 friction, and the impulses of the solver. :func:`resolve` finds impulses and motions after it from the first
@@ -85,7 +85,7 @@ class Spot(NamedTuple):
 
 
 class Result(NamedTuple):
-    """What the law gives: normal and tangential impulses of each point [N s], and the motions after."""
+    """The result of the law: normal and tangential impulses of each point [N s], and the motions after."""
 
     normal: tuple[float, ...]
     tangent: tuple[float, ...]
@@ -216,10 +216,10 @@ class Collision:
 
     @property
     def lost(self) -> tuple[float, float]:
-        """What restitution and friction took of the kinetic energy [J]; any observer finds it so.
+        """The kinetic energy lost by restitution and by friction [J], the same for every observer.
 
-        Of a sliding that turns round within the impact the mean of its speeds is not that at which friction
-        acted: neither share is made negative by that.
+        If the sliding reverses within the impact, the mean of its speeds is not that at which friction
+        acted: neither share becomes negative by that.
         """
         along = across = 0.0
         for spot in self.spots:
@@ -242,7 +242,7 @@ class Collision:
         return work
 
     def seen_by(self, velocity: Vector2) -> Collision:
-        """Return what an observer who moves at a constant velocity sees of it."""
+        """Return the impact in the frame of an observer who moves at a constant velocity."""
         return replace(self, a=_seen(self.a, velocity), b=_seen(self.b, velocity))
 
     @property
@@ -300,7 +300,7 @@ def _body(record: Any, side: str) -> Body:
 
 
 def resolve(collision: Collision) -> Result:
-    """Return what the law of the record gives, from poses, motions before, masses, e and mu alone."""
+    """Return the result of the record's law, from poses, motions before, masses, e and mu alone."""
     e, mu, impulses = np.float64(collision.restitution), np.float64(collision.friction), (0.0, 0.0, 0.0, 0.0)
     with np.errstate(all="ignore"):
         if collision.law == LOWERED:

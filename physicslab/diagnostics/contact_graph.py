@@ -43,16 +43,16 @@ class ContactGraph:
 
     def lighter(self, world: World, pair: int) -> int:
         """Return the lighter body of a pair."""
-        inverse = world.bodies.inverse_mass
-        row = self.a[pair] if inverse[self.a[pair]] > inverse[self.b[pair]] else self.b[pair]
-        return int(world.entity_index.entities[row])
+        return self._larger(world, pair, world.bodies.inverse_mass)
 
     def faster(self, world: World, pair: int) -> int:
         """Return the faster body of a pair."""
-        linear = world.table(Velocity)["linear"]
-        a, b = int(self.a[pair]), int(self.b[pair])
-        row = a if np.hypot(*linear[a]) > np.hypot(*linear[b]) else b
-        return int(world.entity_index.entities[row])
+        return self._larger(world, pair, np.hypot(*world.table(Velocity)["linear"].T))
+
+    def _larger(self, world: World, pair: int, values: NDArray[np.float64]) -> int:
+        """Return the body of a pair whose value (rows,) is larger; B where they are equal."""
+        a, b = self.a[pair], self.b[pair]
+        return int(world.entity_index.entities[a if values[a] > values[b] else b])
 
     def sharing_a_body(self, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Return which of the ``chosen`` pairs have a body in common with another of them (pairs,)."""

@@ -40,7 +40,7 @@ def rigid_setting(world: World, touching: int) -> str:
 
 
 def _softness(world: World, rigid: Rigid | None) -> Iterator[ModelWarning]:
-    """Yield how far soft contacts may be off, where they were not asked for.
+    """Yield the possible error of soft contacts, if they were not chosen.
 
     A contact that closes is found with the error of a fall within a substep, and under a load it gives way.
     """
@@ -53,7 +53,7 @@ def _softness(world: World, rigid: Rigid | None) -> Iterator[ModelWarning]:
     forces = np.hypot(*world.bodies.force.T) * world.bodies.inverse_mass
     h = simulation.dt / simulation.substeps
     off = max(float(forces.max(initial=0.0)) * h * h, float(graph.depth.max(initial=0.0)))
-    what = "contacts are soft; what barely stands may fall, and what touches is off by about so much"
+    what = "contacts are soft; a stack that barely stands may fall, and contacts are off by about so much"
     setting = rigid_setting(world, len(graph.touching)) or _BETTER
     if off > 0.0:  # why steps were left to them has a line of its own
         why = "" if left else plan.contact_reason

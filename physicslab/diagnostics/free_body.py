@@ -25,15 +25,15 @@ type Kind = Literal["field", "normal", "friction"]
 
 _DAMPING = "damping"
 _NAMES = {"GravitySystem": "weight", "SpringSystem": "springs", "DragSystem": "air"}
-"""What forces are called, by the system that they come from."""
+"""Names of forces, by their system."""
 _LONGEST = 1.5
 """How long the last step may have been, in steps of the scene: what is longer was not one step."""
-_ROUNDING = 1e-12
+_LEAST_SHARE = 1e-12
 """Forces below this share of the largest are rounding, and left out."""
 
 
 class Pair(NamedTuple):
-    """What a body touches, in words, and the friction and restitution of both surfaces together."""
+    """A contact of a body: the other body in words, and the friction and restitution of the pair."""
 
     other: str
     friction: float
@@ -94,12 +94,12 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
         found.append(NamedForce(f"normal, from {other}", sign * total_n * normal, place, "normal", pair))
         found.append(NamedForce(f"friction, from {other}", sign * total_t * tangent, place, "friction"))
     largest = max((one.force.magnitude for one in found), default=0.0)
-    return tuple(one for one in found if one.force.magnitude > _ROUNDING * largest)
+    return tuple(one for one in found if one.force.magnitude > _LEAST_SHARE * largest)
 
 
 @dataclass(frozen=True, slots=True)
 class LastStep:
-    """What changed the momentum of a body in the last step.
+    """Changes of the momentum of a body in the last step, by cause.
 
     Attributes
     ----------
@@ -134,7 +134,7 @@ class LastStep:
 
 
 def last_step(world: World, entity: int) -> LastStep | None:
-    """Return what changed the momentum of a body in the last step; ``None`` where that is not known.
+    """Return the changes of the momentum of a body in the last step; ``None`` if they are not known.
 
     It is not of what cannot move, after a longer run than one step, and after going to another place of the
     history. Impacts are those of the world's log (``contacts.read``).
@@ -178,7 +178,7 @@ def _fields_before(world: World) -> dict[str, NDArray[np.float64]]:
 
 
 def _impacts(world: World, entity: int) -> dict[str, Vector2]:
-    """Return the impulses of the impacts of the last step on a body [N s], by what it struck."""
+    """Return the impulses of the impacts of the last step on a body [N s], by the other body."""
     contacts, found = world.contacts, dict[str, Vector2]()
     first = max(world.checkpoint.counts[2], contacts.logged - len(contacts.log))
     for record in contacts.log[np.arange(first, contacts.logged) % len(contacts.log)]:
@@ -206,7 +206,7 @@ def applied_forces(world: World) -> NDArray[np.float64]:
 
 
 def contact_forces(world: World) -> NDArray[np.float64]:
-    """Return what contacts and bounds exert on each row (n, 2) [N], as :func:`forces_on` has it."""
+    """Return the forces of contacts and bounds on each row (n, 2) [N], as in :func:`forces_on`."""
     contacts = world.contacts
     contacts.sync()
     total = np.zeros_like(world.bodies.force)

@@ -33,13 +33,13 @@ __all__ = [
 ]  # fmt: skip
 
 WALLS = ("bounds left", "bounds bottom", "bounds right", "bounds top")
-"""What the world's bounds are called, by the number of the wall."""
+"""Names of the world's bounds, by the number of the wall."""
 LAWS = {NEWTON: "Newton", ENERGETIC: "Stronge", LOWERED: "Newton, restitution lowered"}
 """The laws of :mod:`physicslab.kernels.constraint.impact_law` in words."""
 NO_IMPACTS = np.zeros(0, IMPACT)
 """An empty log, with all its columns."""
 _STICKS = 1e-9
-"""Share of the speeds before an impact up to which the sliding after it is none."""
+"""Share of the speeds before an impact up to which the sliding after it is treated as zero."""
 _GROWS_FROM = 0.25
 """Share of the ring that is filled between two readings from which on it is doubled."""
 _MAX_RING = 1_600_000
@@ -54,7 +54,7 @@ type LastTimes = dict[tuple[int, int, int], float]
 
 @dataclass(frozen=True, slots=True)
 class ImpactColumns:
-    """What follows from the records of impacts, an array of each (n,).
+    """Figures derived from the records of impacts, arrays (n,).
 
     Speeds are those of B's point against A's, at the point with the larger impulse.
 
@@ -67,10 +67,10 @@ class ImpactColumns:
     e_found : float64 array
         -vn_after / vn_before; NaN where the point did not approach.
     sticks : bool array
-        Whether the surfaces leave without sliding, held by friction: vt_after is none.
+        Whether the surfaces leave without sliding, held by friction: vt_after is zero.
     energy_lost : float64 array
         -J . (u- + u+) / 2 of all points [J]: the kinetic energy of both bodies before minus after, by the
-        impulses of this pair alone. What a kinematic or held body gives by its motion is not part of it.
+        impulses of this pair alone. The work of a kinematic or held body by its motion is not part of it.
     since : float64 array
         Seconds since the last impact of the same pair; NaN for the first.
     """

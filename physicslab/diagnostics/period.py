@@ -1,4 +1,4 @@
-"""What springs do now, and how long an oscillation takes, where one body swings on one spring."""
+"""Present forces of springs, and the period of one body on one spring."""
 
 from __future__ import annotations
 
@@ -7,20 +7,22 @@ from dataclasses import dataclass
 
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
+from physicslab.state.attached import motion_of_point
 from physicslab.world import World
 
 __all__ = ["Period", "SpringState", "gives_way", "period_of", "spring_state"]
 
 _STRING = 0.005
-"""Share of its length by which weight stretches a spring that is a string: what hangs on it is a pendulum."""
-_HALVES = 60
-_ROUNDING = 1e-12
-"""Share of its length by which a spring is no longer than at rest."""
+"""Share of its length by which weight stretches a spring that serves as a string of a pendulum."""
+_MAX_MEANS = 60
+"""Largest number of means; each doubles the number of digits."""
+_AT_REST = 1e-12
+"""Share of its length by which a spring may be longer or shorter and still be treated as at rest."""
 
 
 @dataclass(frozen=True, slots=True)
 class SpringState:
-    """What a spring does at this moment.
+    """The present state of a spring.
 
     Attributes
     ----------
@@ -51,19 +53,19 @@ class Period:
 
 
 def spring_state(world: World, entity: int) -> SpringState | None:
-    """Return what a spring does; of an entity without one, or one that is held by nothing, ``None``."""
+    """Return the state of a spring; ``None`` for an entity without one, or a spring without ends."""
     if not world.has(entity, Spring):
         return None
     spring = world.component(entity, Spring)
     first = spring.a or entity
     if not world.has(first, Transform):
         return None
-    start, start_speed = _end(world, first, spring.anchor_a)
-    end, end_speed = _end(world, spring.b, spring.anchor_b)
+    start, start_speed = motion_of_point(world, first, spring.anchor_a)
+    end, end_speed = motion_of_point(world, spring.b, spring.anchor_b)
     way = end - start
     length = way.magnitude
     extension = length - spring.rest_length
-    if abs(extension) < _ROUNDING * length:
+    if abs(extension) < _AT_REST * length:
         extension = 0.0
     apart = end_speed - start_speed
     lengthening = apart.dot(way / length) if length > 0.0 else 0.0
@@ -98,7 +100,7 @@ def period_of(world: World, entity: int) -> Period | None:
 
 
 def _pendulum(world: World, number: int, body: int, mass: float) -> Period | None:
-    """Return the period of a pendulum; 0 s where it turns over; ``None`` where the body is none."""
+    """Return the period of a pendulum; 0 s if it turns over; ``None`` for any other body."""
     physics, state = world.physics, spring_state(world, number)
     spring, pull = world.component(number, Spring), world.physics.gravity.magnitude
     if physics.gravity_mode != "linear" or not pull or state is None:
@@ -116,7 +118,7 @@ def _pendulum(world: World, number: int, body: int, mass: float) -> Period | Non
     length, give = spring.rest_length, stretch / spring.rest_length
     c, swept = arm.dot(physics.gravity) / (arm.magnitude * pull), arm.cross(velocity)
     u = length * (swept / arm.dot(arm)) ** 2 / pull
-    # Where it rings about that length, the angular momentum does not: w is that without the ringing.
+    # If it rings about that length, the angular momentum does not: w is that without the ringing.
     u = length * (swept / (length * (1.0 + give * (c + u))) ** 2) ** 2 / pull
     energy = 0.5 * u - c + give * (1.5 * u * u + u * c - 0.5 * c * c)
     highest = -2.0 * energy / (1.0 + math.sqrt(1.0 - 2.0 * give * energy))
@@ -136,7 +138,7 @@ def _elliptic(m: float) -> tuple[float, float]:
     [1.854074677301, 1.350643881048]
     """
     a, b, taken, power = 1.0, math.sqrt(1.0 - m), 0.5 * m, 0.5
-    for _ in range(_HALVES):
+    for _ in range(_MAX_MEANS):
         if abs(a - b) <= 1e-15 * a:
             break
         a, b, power = 0.5 * (a + b), math.sqrt(a * b), 2.0 * power
@@ -173,16 +175,3 @@ def _springs_at(world: World, body: int) -> list[int]:
     held = (a == body) | ((a == 0) & (own == body)) | (b == body)
     found: list[int] = own[held].tolist()
     return found
-
-
-def _end(world: World, body: int | None, anchor: Vector2) -> tuple[Vector2, Vector2]:
-    """Return where an end of a spring is [m], and how it moves [m/s]."""
-    if body is None or not world.has(body, Transform):
-        return anchor, Vector2()
-    transform = world.component(body, Transform)
-    arm = anchor.rotated(transform.angle)
-    speed = Vector2()
-    if world.has(body, Velocity):
-        velocity = world.component(body, Velocity)
-        speed = velocity.linear + velocity.angular * arm.perpendicular
-    return transform.position + arm, speed

@@ -1,7 +1,7 @@
-"""To how many digits a run is right: what is known of that at its end, as lines of its advice.
+"""Known errors of a run at its end, in digits, as lines of its advice.
 
-What :mod:`physicslab.diagnostics.warnings` finds is wrong to the eye; what is found here is
-small, and matters to who reads figures.
+:mod:`physicslab.diagnostics.warnings` finds errors that are visible; those found here are
+small, and matter to readers of figures.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from physicslab.world import World
 __all__ = ["DIGITS_LIMIT", "EXACT_PHASE", "find_imprecise", "words_of_digits"]
 
 EXACT_PHASE = 1e-9
-"""Phase [rad] that oscillations may lose without a word."""
+"""Phase [rad] that oscillations may lose without a warning."""
 _EXACT_ENERGY = 1e-11
-"""Share of the energy exchanged that a method which follows the motion may leave as an error."""
+"""Share of the energy exchanged that may be an error of an adaptive method."""
 DIGITS_LIMIT = 6.0
-"""Fewer digits than this are told, where they were counted."""
+"""Fewer digits than this are reported, if they were counted."""
 _CAUSES = {
     "other steps": "it depends on when steps end, so events are not found at their own times",
     "half step": "it changes with the length of the step",
@@ -40,7 +40,7 @@ _CAUSES = {
 
 
 def find_imprecise(world: World, audit: Audit) -> tuple[ModelWarning, ...]:
-    """Return what is known of the error of a run that was not computed in other ways."""
+    """Return the known errors of a run that was not computed in other ways."""
     return tuple(warning for rule in _RULES for warning in rule(world, audit))
 
 

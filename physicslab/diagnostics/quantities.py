@@ -29,7 +29,7 @@ _NAN = math.nan
 
 
 class Reading:
-    """The quantities of a world as it is now. What several of them need is measured once.
+    """The quantities of a world as it is now. Measurements that several of them need are made once.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class Reading:
 
     @cached_property
     def account(self) -> Accounts:
-        """What changed energy and momentum of the world, and what they are now."""
+        """Changes of energy and momentum of the world by cause, and their present values."""
         return measure_account(self._world)
 
     @property
@@ -95,17 +95,20 @@ class Reading:
 
     # ---- of a body -----------------------------------------------------------------------------------------
 
-    def _transform(self, body: int) -> Transform:
-        return self._world.component(body, Transform)
+    def _place(self, body: int) -> Vector2:
+        return self._world.component(body, Transform).position
 
-    def _velocity(self, body: int) -> Velocity:
-        return self._world.component(body, Velocity)
+    def _velocity(self, body: int) -> Vector2:
+        return self._world.component(body, Velocity).linear
+
+    def _spin(self, body: int) -> float:
+        return self._world.component(body, Velocity).angular
 
     def _mass(self, body: int) -> float:
         return self._world.component(body, Mass).mass
 
     def _momentum(self, body: int) -> Vector2:
-        return self._mass(body) * self._velocity(body).linear
+        return self._mass(body) * self._velocity(body)
 
     def _inertia(self, body: int) -> float:
         """Return the moment of inertia [kg m^2]; 0 of what does not turn, and of points."""
@@ -113,16 +116,13 @@ class Reading:
         return 1.0 / inverse if inverse > 0.0 else 0.0
 
     def _angular_momentum(self, body: int) -> float:
-        place, momentum = self._transform(body).position, self._momentum(body)
-        turning = self._inertia(body) * self._velocity(body).angular
-        return place.x * momentum.y - place.y * momentum.x + turning
+        return self._place(body).cross(self._momentum(body)) + self._inertia(body) * self._spin(body)
 
     def _translation(self, body: int) -> float:
-        velocity = self._velocity(body).linear
-        return 0.5 * self._mass(body) * (velocity.x * velocity.x + velocity.y * velocity.y)
+        return 0.5 * self._mass(body) * self._velocity(body).magnitude_squared
 
     def _rotation(self, body: int) -> float:
-        return 0.5 * self._inertia(body) * self._velocity(body).angular ** 2
+        return 0.5 * self._inertia(body) * self._spin(body) ** 2
 
     def _kinetic(self, body: int) -> float:
         return self._translation(body) + self._rotation(body)
@@ -140,8 +140,7 @@ class Reading:
         """Return that of weight, zero at the origin, and of the springs that hold it to what cannot move."""
         world, total = self._world, 0.0
         if any(force.potential == "gravity" for force in world.schedule.forces):
-            gravity, place = world.physics.gravity, self._transform(body).position
-            total -= self._mass(body) * (gravity.x * place.x + gravity.y * place.y)
+            total -= self._mass(body) * world.physics.gravity.dot(self._place(body))
         rows, a, b = spring_ends(world)
         own = (a == self._rows[body]) | (b == self._rows[body])
         if own.any():
@@ -205,10 +204,17 @@ def _readers(
     return {f"{kind}: {cause}": reader(cause) for cause in causes} | {error: reader("numerical")}
 
 
+def _parts[**Of](name: str, size: str, read: Callable[Of, Vector2]) -> dict[str, Callable[Of, float]]:
+    """Return what reads the parts and the size of a vector, by the names of the quantities."""
+    return {
+        f"{name} x": lambda *of, **more: read(*of, **more).x,
+        f"{name} y": lambda *of, **more: read(*of, **more).y,
+        size: lambda *of, **more: read(*of, **more).magnitude,
+    }
+
+
 _OF_WORLD: dict[str, Callable[[Reading], float]] = {
-    "momentum x": lambda now: now.momentum.linear.x,
-    "momentum y": lambda now: now.momentum.linear.y,
-    "momentum": lambda now: now.momentum.linear.magnitude,
+    **_parts("momentum", "momentum", lambda now: now.momentum.linear),
     "angular momentum": lambda now: now.momentum.angular,
     "kinetic energy": lambda now: now.energy.kinetic,
     "kinetic energy of translation": lambda now: now.energy.kinetic_linear,
@@ -230,26 +236,18 @@ _OF_WORLD: dict[str, Callable[[Reading], float]] = {
     ),
 }  # fmt: skip
 _OF_BODY: dict[str, Callable[[Reading, int], float]] = {
-    "x": lambda now, body: now._transform(body).position.x,
-    "y": lambda now, body: now._transform(body).position.y,
-    "angle": lambda now, body: now._transform(body).angle,
-    "velocity x": lambda now, body: now._velocity(body).linear.x,
-    "velocity y": lambda now, body: now._velocity(body).linear.y,
-    "speed": lambda now, body: now._velocity(body).linear.magnitude,
-    "angular velocity": lambda now, body: now._velocity(body).angular,
-    "acceleration x": lambda now, body: now._acceleration(body).x,
-    "acceleration y": lambda now, body: now._acceleration(body).y,
-    "acceleration": lambda now, body: now._acceleration(body).magnitude,
-    "force x": lambda now, body: now._net(body).x,
-    "force y": lambda now, body: now._net(body).y,
-    "net force": lambda now, body: now._net(body).magnitude,
-    "momentum x": lambda now, body: now._momentum(body).x,
-    "momentum y": lambda now, body: now._momentum(body).y,
-    "momentum": lambda now, body: now._momentum(body).magnitude,
-    "angular momentum": lambda now, body: now._angular_momentum(body),
-    "kinetic energy": lambda now, body: now._kinetic(body),
-    "kinetic energy of translation": lambda now, body: now._translation(body),
-    "kinetic energy of rotation": lambda now, body: now._rotation(body),
-    "potential energy": lambda now, body: now._potential(body),
+    "x": lambda now, body: now._place(body).x,
+    "y": lambda now, body: now._place(body).y,
+    "angle": lambda now, body: now._world.component(body, Transform).angle,
+    **_parts("velocity", "speed", Reading._velocity),
+    "angular velocity": Reading._spin,
+    **_parts("acceleration", "acceleration", Reading._acceleration),
+    **_parts("force", "net force", Reading._net),
+    **_parts("momentum", "momentum", Reading._momentum),
+    "angular momentum": Reading._angular_momentum,
+    "kinetic energy": Reading._kinetic,
+    "kinetic energy of translation": Reading._translation,
+    "kinetic energy of rotation": Reading._rotation,
+    "potential energy": Reading._potential,
     "total energy": lambda now, body: now._kinetic(body) + now._potential(body),
 }

@@ -58,15 +58,12 @@ def reference_solution(world: World) -> ReferenceSolution | None:
         form = closed_form(world, world.schedule.forces)
     except NoClosedForm:
         return _two_bodies(world)
-    x = world.table(Transform)["position"][form.rows].copy()
-    v = world.table(Velocity)["linear"][form.rows].copy()
+    x, v = form.motion(world)
     world.compile((propagate,))
 
     def positions_after(t: float) -> NDArray[np.float64]:
-        positions, velocities = x.copy(), v.copy()
-        propagate(
-            positions, velocities, form.direction, form.rate2, form.drag, form.centre, form.acceleration, t
-        )
+        positions = x.copy()
+        form.advance(positions, v.copy(), t)
         return positions
 
     return ReferenceSolution(form.what, world.time, form.rows, positions_after)

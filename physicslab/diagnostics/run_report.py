@@ -82,7 +82,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
     """Return the document of a run, as the contract of ``run --json`` has it; SI units."""
     world.synchronise()
     momentum, stepper = measure_momentum(world), world.steppers.main(world)
-    # What has run and is not needed any more has run: it is not among what was left out.
+    # A system that ran and is not needed any more is not among those left out.
     timings = {name: timing for name, timing in world.schedule.timings.items() if timing.calls}
     return {
         "scene": record.scene,
@@ -132,7 +132,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
 
 
 def _account(booked: Mapping[str, float | Vector2]) -> dict[str, Any]:
-    """Return what each cause gave; ``None`` where that was not measured, or is no number."""
+    """Return the contribution of each cause; ``None`` if it was not measured, or is no number."""
 
     def shown(value: float) -> float | None:
         return value if math.isfinite(value) else None
@@ -266,7 +266,7 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
 
 
 def _trust_words(report: Mapping[str, Any]) -> str:
-    """Return what can be relied on, on a line."""
+    """Return the reliable digits, on a line."""
     if report["digits"] is None:
         return f"cannot be measured: {report['failure']}"
     fewest = [

@@ -6,17 +6,18 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.components import Spring
-from physicslab.diagnostics.forces import fastest_force
 from physicslab.diagnostics.warning_records import ModelWarning
 from physicslab.integrators import Integrator
 from physicslab.state.packed import spring_ends
+from physicslab.systems.system import ForceSystem
 from physicslab.world import World
 
 __all__ = [
-    "EXPLICIT_RATE_LIMIT", "IMPLICIT_RATE_LIMIT", "PHASE_LIMIT", "SUBSTEPS_LIMIT", "lost_phase",
-    "step_warnings",
+    "EXPLICIT_RATE_LIMIT", "IMPLICIT_RATE_LIMIT", "PHASE_LIMIT", "SUBSTEPS_LIMIT", "fastest_force",
+    "lost_phase", "step_warnings",
 ]  # fmt: skip
 
 EXPLICIT_RATE_LIMIT = 0.3
@@ -29,7 +30,7 @@ PHASE_LIMIT = 0.05
 _AUTO_RATE_LIMIT = 500.0
 """omega dt up to which ``auto`` divides a step until it follows an oscillation."""
 SUBSTEPS_LIMIT = 10_000
-"""Of a scene's configuration."""
+"""From a scene's configuration."""
 
 
 def step_warnings(world: World) -> Iterator[ModelWarning]:
@@ -70,28 +71,39 @@ def _rates(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarn
     yield ModelWarning.about(world, entity, source + what, value, "", limit, setting)
 
 
+def fastest_force(world: World) -> tuple[float, ForceSystem | None]:
+    """Return the fastest rate of any force [rad/s] and which; 0 and ``None`` if there is none.
+
+    It is the one of the present state, or the fastest within steps since the motion was last edited, where
+    the force measures that: a close passage between two looks counts.
+    """
+    met = world.fastest_rates
+    with world.active():
+        rates = [
+            (max(system.strongest_rate(world), met.get(system.name, 0.0)), system)
+            for system in world.schedule.forces
+        ]
+    return max(rates, key=lambda pair: pair[0], default=(0.0, None))
+
+
 def lost_phase(world: World) -> tuple[int, float, float] | None:
     """Return the spring whose oscillation has lost most phase by the method, how much [rad], and its omega h.
 
     A method loses a share of omega t that depends on omega h alone; what is damped counts while it lasts.
     ``None`` where no method of fixed steps follows springs, or what it loses is not known.
     """
-    rows, a, b = spring_ends(world)
+    springs, rate, damping = _spring_rates(world)
     followed = _fixed_steps(world)
-    if followed is None or not (followed[0].phase_share and len(rows) and math.isfinite(world.time)):
+    if followed is None or not (followed[0].phase_share and len(springs) and math.isfinite(world.time)):
         return None
     integrator, h = followed
-    spring, inverse = world.table(Spring), world.bodies.inverse_mass
-    give = inverse[a] + inverse[b]
-    rate = np.sqrt(spring["stiffness"][rows] * give)
-    decay = 0.5 * (spring["damping"][rows] * give + world.physics.linear_damping)
+    decay = 0.5 * (damping + world.physics.linear_damping)
     lasting = np.where(
         decay > 0.0, -np.expm1(-decay * world.time) / np.where(decay > 0.0, decay, 1.0), world.time
     )
     lost = integrator.phase_share * (rate * h) ** integrator.phase_order * rate * lasting
     worst = int(np.argmax(lost))
-    late = int(world.entity_index.entities[rows[worst]])
-    return late, float(lost[worst]), float(rate[worst] * h)
+    return int(springs[worst]), float(lost[worst]), float(rate[worst] * h)
 
 
 def _fixed_steps(world: World) -> tuple[Integrator, float] | None:
@@ -121,7 +133,7 @@ def _phase(world: World, integrator: Integrator) -> Iterator[ModelWarning]:
 
 
 def _order(world: World) -> Iterator[ModelWarning]:
-    """Yield a force that depends on velocities, where the method that was asked for is made for positions."""
+    """Yield a force that depends on velocities, if the chosen method is made for positions."""
     plan = world.plan
     method = plan.integrator if plan.smooth else plan.stages
     if world.simulation.integrator == "auto" or plan.collisions == "exact" or not method.positions_only:
@@ -153,10 +165,14 @@ def _below(value: float) -> float:
 
 def _stiffest(world: World) -> int | None:
     """Return the spring with the fastest oscillation or decay."""
+    springs, rate, damping = _spring_rates(world)
+    return int(springs[np.argmax(np.maximum(rate, damping))]) if len(springs) else None
+
+
+def _spring_rates(world: World) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return the entities of all springs (n,), and how fast each oscillates [rad/s] and is damped [1/s]."""
     rows, a, b = spring_ends(world)
-    if not len(rows):
-        return None
     spring, inverse = world.table(Spring), world.bodies.inverse_mass
     give = inverse[a] + inverse[b]
-    rates = np.maximum(np.sqrt(spring["stiffness"][rows] * give), spring["damping"][rows] * give)
-    return int(world.entity_index.entities[rows[np.argmax(rates)]])
+    rates = np.sqrt(spring["stiffness"][rows] * give), spring["damping"][rows] * give
+    return world.entity_index.entities[rows], *rates

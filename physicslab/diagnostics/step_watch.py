@@ -45,7 +45,7 @@ class StepWatch:
 
     @property
     def warnings(self) -> tuple[ModelWarning, ...]:
-        """What was found so far, one of each kind."""
+        """The warnings so far, one of each kind."""
         return tuple(warning for warning in (self._slow, self._storm) if warning is not None)
 
     def note(self, steps: int, seconds: float) -> str:

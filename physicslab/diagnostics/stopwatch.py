@@ -1,4 +1,4 @@
-"""What a stopwatch shows that light gates start and stop."""
+"""The display of a stopwatch that light gates start and stop."""
 
 from __future__ import annotations
 

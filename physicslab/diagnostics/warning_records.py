@@ -53,13 +53,13 @@ class ModelWarning:
 
     @property
     def excess(self) -> tuple[float, float]:
-        """The value in units of the limit, infinite where there is none; of two such the value decides."""
+        """The value in units of the limit, infinite without one; two such are compared by their values."""
         value = 0.0 if self.value is None else self.value
         return value / self.limit if self.limit and self.value is not None else math.inf, value
 
     @property
     def told(self) -> str:
-        """What is wrong with which entity, and by how much."""
+        """A warning: the entity, the fault and its size."""
         words = f"{self.entity}: {self.what}" if self.entity else self.what
         if self.value is not None and self.limit is not None:
             unit = f" {self.unit}" if self.unit else ""

@@ -199,7 +199,7 @@ def _spins(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     angles = np.abs(world.table(Velocity)["angular"][rows]) * h
     if len(angles) and angles.max() > SPIN_LIMIT:
         setting = _more_substeps(world, float(angles.max()) / SPIN_LIMIT)
-        what = "turns so far in a substep that chance decides where its corners strike"
+        what = "turns so far in a substep that its corners may hit anywhere"
         spinning = int(world.entity_index.entities[rows[np.argmax(angles)]])
         yield ModelWarning.about(world, spinning, what, float(angles.max()), "rad", SPIN_LIMIT, setting)
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import FrozenInstanceError, dataclass, fields, replace
 from typing import Any, ClassVar, Literal
 
-from physicslab.ecs.fields import COORDINATE_LIMIT, Field, InvalidValue
+from physicslab.ecs.fields import COORDINATE_LIMIT, Field, InvalidValue, Kind
 from physicslab.ecs.vector import Vector2
 
 __all__ = [
@@ -33,13 +34,18 @@ MAX_TIME = 1e100
 """The longest step [s]: what falls for a longer one, and its square, would soon be infinite."""
 
 
+def _setting(default: object, kind: Kind, meaning: str, **ranges: Any) -> Any:
+    """Describe a setting where it is declared; ``ranges`` are those of :class:`Field`."""
+    return dataclasses.field(default=default, metadata={"spec": Field("", kind, meaning=meaning, **ranges)})
+
+
 def _settle(config: PhysicsConfig | SimulationConfig) -> None:
     """Check every field by its description and store it as the type it is read as."""
     for spec in config.FIELDS:
         value: Any = getattr(config, spec.name)
         if value is None and spec.derived:
             continue
-        stored = replace(spec, owner=config.section).check(value)
+        stored = spec.check(value)
         if spec.kind == "vector":
             stored = Vector2(*stored)
         elif spec.kind == "choice":
@@ -69,29 +75,21 @@ class PhysicsConfig:
         The walls' material.
     """
 
-    gravity_mode: str = "linear"
-    gravity: Vector2 = Vector2(0.0, -9.81)
-    G: float = 1.0
-    softening: float = 0.0
-    softening_law: str = "clamp"
-    linear_damping: float = 0.0
-    angular_damping: float = 0.0
+    gravity_mode: str = _setting("linear", "choice", "which law of gravity", choices=GRAVITY_MODES)
+    gravity: Vector2 = _setting(
+        Vector2(0.0, -9.81), "vector", "acceleration of the linear mode", unit="m/s^2"
+    )
+    G: float = _setting(1.0, "number", "constant of the planet mode", unit="N m^2/kg^2")
+    softening: float = _setting(0.0, "number", "where the inverse square is softened", unit="m", minimum=0.0)
+    softening_law: str = _setting("clamp", "choice", "how it is softened", choices=SOFTENING_LAWS)
+    linear_damping: float = _setting(0.0, "number", "rate at which velocities decay", unit="1/s", minimum=0.0)
+    angular_damping: float = _setting(0.0, "number", "rate at which spins decay", unit="1/s", minimum=0.0)
     bounds: tuple[float, float, float, float] | None = None
-    bounds_restitution: float = 0.5
-    bounds_friction: float = 0.3
+    bounds_restitution: float = _setting(0.5, "number", "restitution of the walls", minimum=0.0, maximum=1.0)
+    bounds_friction: float = _setting(0.3, "number", "Coulomb friction coefficient of the walls", minimum=0.0)
 
     section: ClassVar[str] = "physics"
-    FIELDS: ClassVar[tuple[Field, ...]] = (
-        Field("gravity_mode", "choice", choices=GRAVITY_MODES, meaning="which law of gravity"),
-        Field("gravity", "vector", unit="m/s^2", meaning="acceleration of the linear mode"),
-        Field("G", "number", unit="N m^2/kg^2", meaning="constant of the planet mode"),
-        Field("softening", "number", unit="m", minimum=0.0, meaning="where the inverse square is softened"),
-        Field("softening_law", "choice", choices=SOFTENING_LAWS, meaning="how it is softened"),
-        Field("linear_damping", "number", unit="1/s", minimum=0.0, meaning="rate at which velocities decay"),
-        Field("angular_damping", "number", unit="1/s", minimum=0.0, meaning="rate at which spins decay"),
-        Field("bounds_restitution", "number", minimum=0.0, maximum=1.0, meaning="restitution of the walls"),
-        Field("bounds_friction", "number", minimum=0.0, meaning="Coulomb friction coefficient of the walls"),
-    )
+    FIELDS: ClassVar[tuple[Field, ...]]
 
     def __post_init__(self) -> None:
         _settle(self)
@@ -152,26 +150,25 @@ class SimulationConfig:
         stiff springs are damped, ``auto`` takes 1e-13 in place of the default.
     """
 
-    dt: float = 1.0 / 60.0
-    substeps: int = 4
-    iterations: int | None = None
-    integrator: str = "auto"
-    sleeping: bool | Literal["auto"] = "auto"
-    collisions: str = "auto"
-    contacts: str = "auto"
-    tolerance: float = 1e-17
+    dt: float = _setting(
+        1.0 / 60.0, "number", "length of a step", unit="s", minimum=MIN_TIME, maximum=MAX_TIME
+    )
+    substeps: int = _setting(4, "whole", "parts that a step is divided into", minimum=1, maximum=10_000)
+    iterations: int | None = _setting(
+        None, "whole", "sweeps", minimum=1, maximum=1_000, derived="from the solver"
+    )
+    integrator: str = _setting("auto", "choice", "how forces and velocities act", choices=INTEGRATORS)
+    sleeping: bool | Literal["auto"] = _setting(
+        "auto", "flag", "whether bodies at rest are not simulated", choices=("auto",)
+    )
+    collisions: str = _setting("auto", "choice", "how contacts are found", choices=COLLISIONS)
+    contacts: str = _setting("auto", "choice", "how bodies that touch are held apart", choices=CONTACTS)
+    tolerance: float = _setting(
+        1e-17, "number", "error a step of adaptive methods", minimum=1e-20, maximum=1e-2
+    )
 
     section: ClassVar[str] = "simulation"
-    FIELDS: ClassVar[tuple[Field, ...]] = (
-        Field("dt", "number", unit="s", minimum=MIN_TIME, maximum=MAX_TIME, meaning="length of a step"),
-        Field("substeps", "whole", minimum=1, maximum=10_000, meaning="parts that a step is divided into"),
-        Field("iterations", "whole", minimum=1, maximum=1_000, derived="from the solver", meaning="sweeps"),
-        Field("integrator", "choice", choices=INTEGRATORS, meaning="how forces and velocities act"),
-        Field("sleeping", "flag", choices=("auto",), meaning="whether bodies at rest are not simulated"),
-        Field("collisions", "choice", choices=COLLISIONS, meaning="how contacts are found"),
-        Field("contacts", "choice", choices=CONTACTS, meaning="how bodies that touch are held apart"),
-        Field("tolerance", "number", minimum=1e-20, maximum=1e-2, meaning="error a step of adaptive methods"),
-    )
+    FIELDS: ClassVar[tuple[Field, ...]]
 
     def __post_init__(self) -> None:
         _settle(self)
@@ -210,6 +207,9 @@ class WindowConfig:
 
 for _kind in (PhysicsConfig, SimulationConfig):
     setattr(_kind, "__setattr__", _refuse)  # noqa: B010
+    _kind.FIELDS = tuple(
+        replace(f.metadata["spec"], name=f.name, owner=_kind.section) for f in fields(_kind) if f.metadata
+    )
 
 
 def field_names(config: type[PhysicsConfig] | type[SimulationConfig]) -> tuple[str, ...]:

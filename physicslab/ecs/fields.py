@@ -109,7 +109,7 @@ class Field:
 
     @property
     def allowed(self) -> str:
-        """What the field may hold, in words."""
+        """The allowed values, in words."""
         unit = f" {self.unit}" if self.unit not in ("", "1") else ""
         match self.kind:
             case "choice":

@@ -74,7 +74,7 @@ _UNCLEAR = (
     (re.compile(r"(?<![\w.])(?:\d+[.,]?\d*|[.,]\d+)[eE](?![\w+-])"), "has an exponent without digits; "
      "2.718... times a number is 2*e"),
 )  # fmt: skip
-"""What some would read as one number and some as another."""
+"""Texts that can be read as different numbers."""
 _SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
 
 

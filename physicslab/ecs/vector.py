@@ -8,7 +8,10 @@ from dataclasses import FrozenInstanceError, dataclass
 from numbers import Real
 from typing import ClassVar
 
-__all__ = ["Vector2"]
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Vector2", "rotated"]
 
 
 @dataclass(frozen=True, slots=True, init=False)
@@ -192,6 +195,12 @@ def _refuse(vector: Vector2, name: str, value: object) -> None:
     raise FrozenInstanceError(
         f"a vector's {name} cannot be changed by itself: assign a whole one, transform.position = {whole}"
     )
+
+
+def rotated(vectors: NDArray[np.float64], angles: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    """Return vectors (..., 2), each turned by its angle (...) [rad] counter-clockwise."""
+    c, s, x, y = np.cos(angles), np.sin(angles), vectors[..., 0], vectors[..., 1]
+    return np.stack((c * x - s * y, s * x + c * y), axis=-1)
 
 
 setattr(Vector2, "__setattr__", _refuse)  # noqa: B010

@@ -22,7 +22,7 @@ ENDINGS = (".gif", ".mp4")
 
 
 class _Given(Exception):
-    """The film was given up."""
+    """The film was cancelled."""
 
 
 class Film:

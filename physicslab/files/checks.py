@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from physicslab.ecs.text import SHORT, has_width, is_line, printable, shortened, suggestion
@@ -15,6 +15,7 @@ __all__ = [
     "SceneError",
     "checked_keys",
     "checked_object",
+    "checked_rows",
     "checked_text",
     "checked_title",
     "is_number",
@@ -96,6 +97,14 @@ def checked_object(value: object, where: str, allowed: str) -> Mapping[str, Any]
     if isinstance(value, JsonObject) and value.repeated is not None:
         raise SceneError(f"{where}: the key {shown(value.repeated)} is given twice; must be given once")
     return value
+
+
+def checked_rows(value: object, where: str, allowed: str) -> Iterator[tuple[str, Any]]:
+    """Yield the place, as a message names it, and the value of each item of a list."""
+    if not isinstance(value, list):
+        raise refusal(where, value, allowed)
+    for index, row in enumerate(value):
+        yield f"{where}[{index}]", row
 
 
 def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequence[str]) -> None:

@@ -19,6 +19,7 @@ from physicslab.files.checks import (
     SceneError,
     checked_keys,
     checked_object,
+    checked_rows,
     is_number,
     refusal,
     shown,
@@ -85,11 +86,8 @@ def check_contacts(
     rows: object, entities: Sequence[Mapping[str, Any]], ids: Mapping[str, int], source: str
 ) -> list[list[Any]]:
     """Return the rows of the contact solver's memory with places, from 1, for ids, and 0 for the bounds."""
-    if not isinstance(rows, list):
-        raise refusal(f"{source}: contacts", rows, "a list of lists")
     mapped: list[list[Any]] = []
-    for index, row in enumerate(rows):
-        where = f"{source}: contacts[{index}]"
+    for where, row in checked_rows(rows, f"{source}: contacts", "a list of lists"):
         if not isinstance(row, list) or len(row) < 2:
             raise refusal(where, row, "a list of two ids (null for the bounds) and numbers")
         pair: list[int] = []
@@ -111,12 +109,9 @@ def check_rests(
     rows: object, entities: Sequence[Mapping[str, Any]], ids: Mapping[str, int], source: str
 ) -> list[list[Any]]:
     """Return which bodies sleep, and how long and how slowly others rest, with places, from 1, for ids."""
-    if not isinstance(rows, list):
-        raise refusal(f"{source}: rests", rows, "a list of lists")
     mapped: list[list[Any]] = []
     seen: set[int] = set()
-    for index, row in enumerate(rows):
-        where = f"{source}: rests[{index}]"
+    for where, row in checked_rows(rows, f"{source}: rests", "a list of lists"):
         if not isinstance(row, list) or len(row) not in (1, 3, 4):
             allowed = "an id for a sleeper, which a force of x and y N and a torque N m may follow; "
             raise refusal(where, row, allowed + "or an id, a time s and a speed m/s; in a list")
@@ -210,7 +205,7 @@ def _check_references(component: Component, entities: Sequence[Mapping[str, Any]
 
 
 def _check_points(part: Component, entities: Sequence[Mapping[str, Any]], where: str) -> None:
-    """Refuse a point of an instrument that goes with what has no place."""
+    """Refuse a point of an instrument that is attached to an entity without a position."""
     for name in type(part).POINTS:  # type: ignore[attr-defined]
         body = getattr(part, f"{name}_body")
         if body is not None and "Transform" not in entities[body - 1]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -10,7 +11,7 @@ from physicslab.files.replace import create_file
 from physicslab.files.scene import scene_bytes
 from physicslab.world import World
 
-__all__ = ["file_stem", "save_new_scene"]
+__all__ = ["file_stem", "save_last_good", "save_new_scene"]
 
 _NAME_LIMIT = 100
 """Bytes of the part of a file name that comes from a scene's name: systems allow 143 to 255 for the whole."""
@@ -29,7 +30,7 @@ def file_stem(name: str) -> str:
 def save_new_scene(world: World, paths: Iterable[Path]) -> Path:
     """Save a world under the first of some names that nothing has, and return it: nothing is overwritten.
 
-    Of several programs that save at once under the same names, each gets a name of its own.
+    Several programs that save at once under the same names get names of their own.
 
     Parameters
     ----------
@@ -55,3 +56,21 @@ def save_new_scene(world: World, paths: Iterable[Path]) -> Path:
             continue
         return path
     raise FileExistsError("every name is taken")
+
+
+def save_last_good(world: World, name: str, directory: Path) -> Path:
+    """Save a world that stands before a step that diverged, and return the path of the scene file.
+
+    It is ``<name>-before-divergence.json``, numbered where that is there already, with the name shortened
+    where it is long: nothing is overwritten, even by runs that diverge at the same time.
+
+    Raises
+    ------
+    SceneError
+        If the world holds what no scene may.
+    OSError
+        If the file cannot be written.
+    """
+    stem = f"{file_stem(name)}-before-divergence"
+    numbered = (directory / f"{stem}-{number}.json" for number in itertools.count(2))
+    return save_new_scene(world, itertools.chain([directory / f"{stem}.json"], numbered))

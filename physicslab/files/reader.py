@@ -42,7 +42,7 @@ from physicslab.world import World
 __all__ = ["FORMAT", "SceneDraft", "check_scene", "read_scene"]
 
 FORMAT = "physicslab-scene/1"
-"""What the key ``format`` of a scene holds."""
+"""The value of the key ``format`` of a scene."""
 
 NAME_LIMIT = 1_000
 """Characters that the name of a scene may have."""
@@ -174,7 +174,7 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
 
 
 def _view(value: object, source: str) -> View | None:
-    """Return what a window shows of the scene at first [m]."""
+    """Return the part of the scene that a window shows at first [m]."""
     if value is None:
         return None
     try:
@@ -190,7 +190,7 @@ _FINER = Field("finer", "whole", minimum=1, maximum=MAX_SUBSTEP_FACTOR, owner="s
 def _solver(
     value: Any, simulation: SimulationConfig, where: str
 ) -> tuple[float, int, tuple[str, str, int] | None]:
-    """Return what the solver takes from the last step; what is left out is as configured."""
+    """Return the values that the solver takes from the last step; those left out are as configured."""
     found = checked_object(value, where, 'an object {"span": ..., "finer": ...}')
     checked_keys(found, f"{where}: ", "key", ("span", "finer", "chosen"))
     given: dict[str, Any] = {"span": simulation.dt / simulation.substeps, "finer": 1, **found}

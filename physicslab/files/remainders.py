@@ -1,4 +1,4 @@
-"""What a scene file keeps of the remainders of compensated sums: a loaded world goes on bit for bit."""
+"""The remainders of compensated sums in scene files: a loaded world goes on bit for bit."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from physicslab.components import Transform, Velocity
 from physicslab.ecs.component import Component
-from physicslab.files.checks import is_number, refusal
+from physicslab.files.checks import checked_rows, is_number, refusal
 from physicslab.state.remainders import coordinate_keys
 from physicslab.state.state import State
 
@@ -48,11 +48,8 @@ def check_remainders(
     source: str,
 ) -> dict[int, tuple[list[float], list[float]]]:
     """Return of each entity the numbers that have remainders, and these; refuse what is no rounding."""
-    if not isinstance(value, list):
-        raise refusal(f"{source}: remainders", value, f"a list of {_ROW}")
     found: dict[int, tuple[list[float], list[float]]] = {}
-    for index, row in enumerate(value):
-        where = f"{source}: remainders[{index}]"
+    for where, row in checked_rows(value, f"{source}: remainders", f"a list of {_ROW}"):
         if not (isinstance(row, list) and len(row) == 7 and all(map(is_number, row[1:]))):
             raise refusal(where, row, f"{_ROW}, six finite numbers")
         number = ids.get(row[0], 0) if isinstance(row[0], str) else 0

@@ -107,7 +107,7 @@ def _beside(target: Path) -> Iterator[Path]:
 
 
 def remove_leftovers(path: Path) -> None:
-    """Remove what killed processes left behind that were writing this file."""
+    """Remove the remains of killed processes that were writing this file."""
     _remove(path.parent, glob.escape(_beginning(path)), 0.0)
 
 
@@ -120,7 +120,7 @@ def _remove(folder: Path, beginning: str, age: float) -> None:
 
 
 def _beginning(path: Path) -> str:
-    # Of a long name a part will do: the system has a limit, in bytes, and a letter may take four.
+    # A part of a long name suffices: the system has a limit, in bytes, and a letter may take four.
     return f".{path.name[:40]}."
 
 

@@ -22,8 +22,8 @@ from physicslab.scenes import SCENES
 from physicslab.world import World
 
 __all__ = [
-    "SceneError", "load_scene", "open_plain", "parse_json", "read_bytes", "read_scene", "save_scene",
-    "scene_bytes", "write_scene",
+    "SceneError", "load_scene", "open_plain", "parse_json", "read_bytes", "read_scene", "read_text",
+    "save_scene", "scene_bytes", "write_scene",
 ]  # fmt: skip
 
 FILE_LIMIT = 100 * 2**20
@@ -63,8 +63,15 @@ def load_scene(name_or_path: str | bytes | os.PathLike[str]) -> World:
         return SCENES[name_or_path].build()
     path = _path(name_or_path)
     source = printable(path)
+    try:
+        text = read_text(path, source)
+    except SceneError as error:
+        if not isinstance(error.__cause__, FileNotFoundError):
+            raise
+        likely = suggestion(path, SCENES) or f"; the built-in scenes are {', '.join(SCENES)}"
+        raise SceneError(f"{source}: no such file, and no built-in scene{likely}") from error.__cause__
     with _uncollected():
-        return read_scene(parse_json(_read_text(path, source), source), source)
+        return read_scene(parse_json(text, source), source)
 
 
 def save_scene(world: World, path: str | bytes | os.PathLike[str]) -> None:
@@ -84,7 +91,7 @@ def save_scene(world: World, path: str | bytes | os.PathLike[str]) -> None:
 
 
 def _path(given: object) -> str:
-    """Return a path as text; what is none is a TypeError that says what makes a world of a document."""
+    """Return a path as text; any other value is a TypeError that names the function for documents."""
     if isinstance(given, dict):
         raise TypeError(
             "a scene is opened by its name or its path; physicslab.files.scene.read_scene(document, source) "
@@ -134,15 +141,10 @@ def _uncollected() -> Iterator[None]:
             gc.enable()
 
 
-def _read_text(path: str | os.PathLike[str], source: str) -> str:
+def read_text(path: str | os.PathLike[str], source: str) -> str:
+    """Read a file of JSON, called ``source`` in messages; one that cannot be read is a SceneError."""
     try:
         return read_bytes(path, source).decode("utf-8-sig")
-    except FileNotFoundError as error:
-        names = ", ".join(SCENES)
-        likely = suggestion(os.fspath(path), SCENES)
-        raise SceneError(
-            f"{source}: no such file, and no built-in scene{likely or f'; the built-in scenes are {names}'}"
-        ) from error
     except UnicodeDecodeError as error:
         raise SceneError(
             f"{source}: is not UTF-8: byte {error.start} cannot be read; must be JSON in UTF-8"
@@ -189,7 +191,7 @@ def open_plain(path: str | os.PathLike[str], source: str, what: str = "a scene f
 
 
 def parse_json(text: str, source: str) -> object:
-    """Return what a JSON text holds; one that is none, or holds more than a scene may, is a SceneError."""
+    """Return the content of a JSON text; an invalid one, or more than a scene may hold, is a SceneError."""
     # Counted before it is parsed: every one becomes a Python object, many times its size in the file.
     brackets = text.count("{") + text.count("[")
     if brackets > BRACKET_LIMIT:

@@ -28,7 +28,7 @@ def write_scene(world: World) -> dict[str, Any]:
     """Return the scene document of a world, from which :func:`read_scene` makes the same world, bit for bit.
 
     Fields at their default are left out. An entity that others refer to and that has no id gets one in the
-    document, not in the world. What is held is written as if it had been let go. Plain esper components, for
+    document, not in the world. A held body is written as if it had been released. Plain esper components, for
     which there are no columns, have no place in a scene.
 
     Raises

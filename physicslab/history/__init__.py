@@ -17,10 +17,10 @@ from physicslab.history.commands import (
     SetSimulation,
     Spawn,
 )
-from physicslab.history.history import History
-from physicslab.history.seen import Difference, HistoryEntry
+from physicslab.history.history import History, HistoryEntry
+from physicslab.history.replay import Played
 
 __all__ = [
-    "AddComponent", "Branch", "Command", "Difference", "Group", "History", "HistoryEntry", "Remove",
+    "AddComponent", "Branch", "Command", "Group", "History", "HistoryEntry", "Played", "Remove",
     "RemoveComponent", "SetField", "SetPhysics", "SetSimulation", "Spawn",
 ]  # fmt: skip

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, ClassVar, Protocol, Self, runtime_checkable
 
 from physicslab.components import Name
 from physicslab.ecs.component import COMPONENTS, Component, Field
@@ -16,7 +16,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
 __all__ = [
-    "AddComponent", "Command", "Group", "Remove", "RemoveComponent", "SetField", "SetPhysics",
+    "AddComponent", "Command", "Configure", "Group", "Remove", "RemoveComponent", "SetField", "SetPhysics",
     "SetSimulation", "Spawn",
 ]  # fmt: skip
 
@@ -173,41 +173,40 @@ class RemoveComponent:
 
 
 @dataclass(frozen=True, slots=True)
-class SetPhysics:
+class Configure:
+    """Change fields of one of the world's two records, by their names."""
+
+    changes: Mapping[str, Any]
+    CONFIG: ClassVar[type[PhysicsConfig | SimulationConfig]]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "changes", MappingProxyType(dict(self.changes)))
+
+    def words(self, world: World) -> str:
+        """Return what it does, in plain English."""
+        units = {spec.name: f" {spec.unit}" for spec in self.CONFIG.FIELDS if spec.unit != "1"}
+        shown = ((name, shown_value(value) + units.get(name, "")) for name, value in self.changes.items())
+        return ", ".join(f"{name.replace('_', ' ')}: {value}" for name, value in shown)
+
+    def carry_out(self, world: World) -> Self:
+        """Change the record."""
+        section = self.CONFIG.section
+        setattr(world, section, replace(getattr(world, section), **self.changes))
+        return self
+
+
+class SetPhysics(Configure):
     """Change laws of the world: ``SetPhysics({"gravity": (0, -1.62)})``, by names of ``PhysicsConfig``."""
 
-    changes: Mapping[str, Any]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "changes", MappingProxyType(dict(self.changes)))
-
-    def words(self, world: World) -> str:
-        """Return what it does, in plain English."""
-        return _changed(PhysicsConfig, self.changes)
-
-    def carry_out(self, world: World) -> SetPhysics:
-        """Change the laws."""
-        world.physics = replace(world.physics, **self.changes)
-        return self
+    __slots__ = ()
+    CONFIG = PhysicsConfig
 
 
-@dataclass(frozen=True, slots=True)
-class SetSimulation:
+class SetSimulation(Configure):
     """Change how the world is stepped: ``SetSimulation({"dt": 0.01})``, by names of ``SimulationConfig``."""
 
-    changes: Mapping[str, Any]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "changes", MappingProxyType(dict(self.changes)))
-
-    def words(self, world: World) -> str:
-        """Return what it does, in plain English."""
-        return _changed(SimulationConfig, self.changes)
-
-    def carry_out(self, world: World) -> SetSimulation:
-        """Change the settings."""
-        world.simulation = replace(world.simulation, **self.changes)
-        return self
+    __slots__ = ()
+    CONFIG = SimulationConfig
 
 
 @dataclass(frozen=True, slots=True)
@@ -253,14 +252,6 @@ def _field(kind: Any, name: str) -> Field:
         names = ", ".join(spec.name for spec in fields)
         raise TypeError(f"{kind.__name__} has no field {name!r}; it has {names or 'none'}")
     return found
-
-
-def _changed(config: type[PhysicsConfig] | type[SimulationConfig], changes: Mapping[str, Any]) -> str:
-    units = {spec.name: spec.unit for spec in config.FIELDS}
-    unit_of: Callable[[str], str] = lambda name: f" {units[name]}" if units.get(name, "1") != "1" else ""  # noqa: E731
-    return ", ".join(
-        f"{name.replace('_', ' ')}: {shown_value(value)}{unit_of(name)}" for name, value in changes.items()
-    )
 
 
 def shown_value(value: Any) -> str:

@@ -14,10 +14,19 @@ from physicslab.components import Name
 from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
 from physicslab.ecs.config import MAX_TIME, MIN_TIME
 from physicslab.ecs.vector import Vector2
-from physicslab.files.checks import SceneError, checked_keys, checked_object, is_number, refusal, shown
+from physicslab.files.checks import (
+    SceneError,
+    checked_keys,
+    checked_object,
+    checked_rows,
+    is_number,
+    refusal,
+    shown,
+)
 from physicslab.history.commands import (
     AddComponent,
     Command,
+    Configure,
     Group,
     Remove,
     RemoveComponent,
@@ -86,9 +95,9 @@ def _written(command: Command, numbers: _Numbers) -> dict[str, Any]:
             return {"do": "add", "entity": number(entity), "component": kind_name, "values": given}
         case RemoveComponent():
             return {"do": "take", "entity": number(command.entity), "component": command.component}
-        case SetPhysics() | SetSimulation():
-            which = "physics" if isinstance(command, SetPhysics) else "simulation"
-            return {"do": which, "changes": {key: _plain(value) for key, value in command.changes.items()}}
+        case Configure(changes):
+            changed = {key: _plain(value) for key, value in changes.items()}
+            return {"do": command.CONFIG.section, "changes": changed}
         case Group():
             parts_of = [_written(part, numbers) for part in command.commands]
             return {"do": "group", "words": command.text, "commands": parts_of}
@@ -105,11 +114,8 @@ def _plain(value: Any) -> Any:
 
 def read_line(value: object, source: str) -> Line:
     """Return the line that :func:`line_document` wrote; the first thing not allowed is a SceneError."""
-    if not isinstance(value, list):
-        raise refusal(f"{source}: entries", value, "a list of edits and runs")
     line = Line()
-    for index, entry in enumerate(value):
-        where = f"{source}: entries[{index}]"
+    for where, entry in checked_rows(value, f"{source}: entries", "a list of edits and runs"):
         found = checked_object(entry, where, 'an object {"edit": ...} or {"run": ...}')
         if "edit" in found:
             checked_keys(found, f"{where}: ", "key", ("edit", "command"))
@@ -122,18 +128,16 @@ def read_line(value: object, source: str) -> Line:
 
 def _read_run(found: Mapping[str, Any], where: str) -> Run:
     checked_keys(found, f"{where}: ", "key", ("run", "digests"))
-    pieces = found.get("run")
-    if not isinstance(pieces, list):
-        raise refusal(f"{where}: run", pieces, "a list of [dt, steps] and of commands")
+    pieces = [*checked_rows(found.get("run"), f"{where}: run", "a list of [dt, steps] and of commands")]
     digests = _digests(found.get("digests"), f"{where}: digests")
     run, left = Run(), len(digests) // 4
-    for place, piece in enumerate(pieces):
+    for place, piece in pieces:
         if isinstance(piece, list):
-            dt, count = _steps(piece, f"{where}: run[{place}]", left)
+            dt, count = _steps(piece, place, left)
             run.add_steps(dt, count)
             left -= count
         else:
-            run.add_write(_command(piece, f"{where}: run[{place}]", 0))
+            run.add_write(_command(piece, place, 0))
     if left:
         raise SceneError(f"{where}: digests are of {len(digests) // 4} steps, and there are {run.steps}")
     run.digests = digests
@@ -197,10 +201,6 @@ def _spawn(found: Mapping[str, Any], where: str, depth: int) -> Command:
     return Spawn(components, named, _entity(found, where))
 
 
-def _remove(found: Mapping[str, Any], where: str, depth: int) -> Command:
-    return Remove(_entity(found, where))
-
-
 def _set(found: Mapping[str, Any], where: str, depth: int) -> Command:
     name = _text(found.get("field"), f"{where}: field")
     return SetField(_entity(found, where), _component(found, where), name, found.get("value"))
@@ -210,16 +210,8 @@ def _add(found: Mapping[str, Any], where: str, depth: int) -> Command:
     return AddComponent(_entity(found, where), _part(found.get("component"), found.get("values"), where))
 
 
-def _take(found: Mapping[str, Any], where: str, depth: int) -> Command:
-    return RemoveComponent(_entity(found, where), _component(found, where))
-
-
-def _physics(found: Mapping[str, Any], where: str, depth: int) -> Command:
-    return SetPhysics(checked_object(found.get("changes"), f"{where}: changes", "an object of settings"))
-
-
-def _simulation(found: Mapping[str, Any], where: str, depth: int) -> Command:
-    return SetSimulation(checked_object(found.get("changes"), f"{where}: changes", "an object of settings"))
+def _changes(found: Mapping[str, Any], where: str) -> Mapping[str, Any]:
+    return checked_object(found.get("changes"), f"{where}: changes", "an object of settings")
 
 
 def _group(found: Mapping[str, Any], where: str, depth: int) -> Command:
@@ -231,9 +223,15 @@ def _group(found: Mapping[str, Any], where: str, depth: int) -> Command:
 
 
 _READERS: Mapping[str, Callable[[Mapping[str, Any], str, int], Command]] = {
-    "spawn": _spawn, "remove": _remove, "set": _set, "add": _add, "take": _take, "physics": _physics,
-    "simulation": _simulation, "group": _group,
-}  # fmt: skip
+    "spawn": _spawn,
+    "remove": lambda found, where, _: Remove(_entity(found, where)),
+    "set": _set,
+    "add": _add,
+    "take": lambda found, where, _: RemoveComponent(_entity(found, where), _component(found, where)),
+    "physics": lambda found, where, _: SetPhysics(_changes(found, where)),
+    "simulation": lambda found, where, _: SetSimulation(_changes(found, where)),
+    "group": _group,
+}
 
 
 def _entity(found: Mapping[str, Any], where: str) -> int:

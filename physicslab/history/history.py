@@ -6,6 +6,7 @@ import math
 import os
 import time
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Self
 
 from physicslab.history.branches import Branch, Branches
@@ -14,14 +15,33 @@ from physicslab.history.keyframe import Keyframe
 from physicslab.history.line import Edit, Run, Steps
 from physicslab.history.places import Places
 from physicslab.history.recording import load, save
-from physicslab.history.replay import Played, edit, play
-from physicslab.history.seen import Difference, HistoryEntry
+from physicslab.history.replay import Played, edit, play, write
 from physicslab.world import World
 
-__all__ = ["History"]
+__all__ = ["History", "HistoryEntry"]
 
 _LATE = 1e-6
 """Share of a step that a time may be after its end and count as within it: sums of steps are rounded."""
+
+
+@dataclass(frozen=True, slots=True)
+class HistoryEntry:
+    """An edit or a run.
+
+    Attributes
+    ----------
+    words : str
+        What it was, in plain English: "made a circle", "mass of ball: 2 kg", "ran 3.2 s".
+    done : bool
+        Whether it, or the beginning of it, lies before the present place.
+    first_step, steps : int
+        How many steps the line has before it, and how many it is.
+    """
+
+    words: str
+    done: bool
+    first_step: int
+    steps: int
 
 
 class History:
@@ -110,8 +130,7 @@ class History:
         self._places.mend()
         began = time.perf_counter()
         with self._places.all_or_nothing():
-            done = command.carry_out(self.world)
-            self.world.synchronise()
+            done = write(self.world, command)
         self._run().add_write(done)
         self._advance(began)
 
@@ -145,7 +164,7 @@ class History:
     # ---- going through -------------------------------------------------------------------------------------
 
     def undo(self) -> str | None:
-        """Take back the last edit or run before the present place; return its words, ``None`` if none is.
+        """Undo the last edit or run before the present place; return its words, ``None`` if none is.
 
         Of a run in the middle of which the place is, the beginning is taken back.
         """
@@ -159,7 +178,7 @@ class History:
         return line.entries[entry].words
 
     def redo(self) -> str | None:
-        """Put back the edit or run after the present place; return its words, ``None`` if there is none."""
+        """Redo the edit or run after the present place; return its words, ``None`` if there is none."""
         places, line = self._places, self._places.line
         places.mend()
         if places.here >= line.ticks:
@@ -257,7 +276,7 @@ class History:
         return self.world.next_entity
 
     @property
-    def difference(self) -> Difference | None:
+    def difference(self) -> Played | None:
         """The first place found where steps that were made again gave other bits; ``None`` as it should be.
 
         Those of a system that goes on from numbers of its own, and does not keep them, do.

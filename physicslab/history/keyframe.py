@@ -118,18 +118,8 @@ class Keyframe:
     """
 
     __slots__ = (
-        "_account",
-        "_columns",
-        "_contacts",
-        "_counts",
-        "_forces",
-        "_laws",
-        "_own",
-        "_plan",
-        "_rates",
-        "_remainders",
-        "_sleep",
-        "_structure",
+        "_account", "_columns", "_contacts", "_counts", "_forces", "_laws", "_own", "_plan", "_rates",
+        "_remainders", "_sleep", "_structure",
     )  # fmt: skip
 
     def __init__(self, world: World, last: Keyframe | None = None) -> None:

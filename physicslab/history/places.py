@@ -9,9 +9,8 @@ from contextlib import contextmanager
 from physicslab.history.digest import Digester, differing
 from physicslab.history.keyframe import Keyframe
 from physicslab.history.keyframes import Keyframes
-from physicslab.history.line import Edit, Line, Steps
-from physicslab.history.replay import edit
-from physicslab.history.seen import Difference
+from physicslab.history.line import Line, Steps
+from physicslab.history.replay import Played, make_again
 from physicslab.world import World
 
 __all__ = ["Places"]
@@ -48,14 +47,14 @@ class Places:
         The present place [ticks].
     digester : Digester
         Makes the digests of the world.
-    difference : Difference, optional
+    difference : Played, optional
         The first place found where steps that were made again gave other bits.
     """
 
     def __init__(self, world: World, budget: int) -> None:
         self.world, self.line, self.here = world, Line(), 0
         self.digester = Digester()
-        self.difference: Difference | None = None
+        self.difference: Played | None = None
         self._frames = Keyframes(budget)
         self._whole = True
         self._cost = self._since = self._since_along = 0.0
@@ -83,10 +82,7 @@ class Places:
         began : float
             When it was begun [s], by ``time.perf_counter``.
         """
-        self.here += 1
-        spent = time.perf_counter() - began
-        self._since += spent
-        self._since_along += spent
+        self._count(began)
         if self._since_along >= self._interval and self._frames.takes(self.here):
             self._leave_along()
 
@@ -139,10 +135,8 @@ class Places:
         self._last = self._frames[base]
         self._last.restore(self.world)
         self.here, self._since, self._whole = base, 0.0, True
-        if not self._frames.is_along(base):  # how far the last one along the line is was not noted
-            self._since_along = float("inf")
-        else:
-            self._since_along = 0.0
+        # Of one nearby it was not noted how far the last one along the line is.
+        self._since_along = 0.0 if self._frames.is_along(base) else float("inf")
 
     def _make_again(self, place: int) -> None:
         """Go on to a place along the line, and leave key frames on the way: others nearby will follow."""
@@ -155,20 +149,19 @@ class Places:
                     self._compare()
                 continue
             began = time.perf_counter()
-            command = piece.command if isinstance(piece, Edit) else piece
-            if isinstance(piece, Edit):
-                edit(self.world, command)
-            else:
-                command.carry_out(self.world)
-                self.world.synchronise()
+            make_again(self.world, piece)
             self._pass(began, place)
 
-    def _pass(self, began: float, target: int) -> None:
-        """Note that a tick was made again."""
+    def _count(self, began: float) -> None:
+        """Go on by a tick that was begun at ``began`` [s]."""
         self.here += 1
         spent = time.perf_counter() - began
         self._since += spent
         self._since_along += spent
+
+    def _pass(self, began: float, target: int) -> None:
+        """Note that a tick was made again."""
+        self._count(began)
         if self._since >= _SEEKING * self._cost:
             self._leave_nearby(target)
 
@@ -176,7 +169,7 @@ class Places:
         """Compare the step that was made again with what came of it once."""
         columns = differing(self.digester.digest(self.world), self.line.digest_before(self.here))
         if columns and self.difference is None:
-            self.difference = Difference(self.line.steps_before(self.here), columns)
+            self.difference = Played(self.line.steps_before(self.here), self.world.time, columns)
 
     def _leave_along(self) -> None:
         self._frames.add_along(self.here, self._take())

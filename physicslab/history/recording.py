@@ -9,11 +9,11 @@ from __future__ import annotations
 import os
 
 from physicslab.ecs.text import printable
-from physicslab.files.checks import SceneError, checked_keys, checked_object, refusal, shown
+from physicslab.files.checks import checked_keys, checked_object, refusal, shown
 from physicslab.files.json_text import json_bytes
 from physicslab.files.reader import check_scene, read_scene
 from physicslab.files.replace import replace_file
-from physicslab.files.scene import parse_json, read_bytes
+from physicslab.files.scene import parse_json, read_text
 from physicslab.files.writer import write_scene
 from physicslab.history.document import line_document, read_line
 from physicslab.history.line import Line
@@ -51,17 +51,7 @@ def load(path: str | os.PathLike[str]) -> tuple[World, Line]:
         If the file cannot be read or is no recording: one line that names the place.
     """
     source = printable(os.fspath(path))
-    try:
-        text = read_bytes(path, source).decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise SceneError(f"{source}: is not UTF-8: byte {error.start} cannot be read") from error
-    except OSError as error:
-        raise SceneError(f"{source}: cannot be read: {error.strerror}") from error
-    except SceneError:
-        raise
-    except ValueError as error:  # a null character or half a surrogate pair in the name
-        raise SceneError(f"{source}: is no file name: {error}") from error
-    document = parse_json(text, source)
+    document = parse_json(read_text(path, source), source)
     found = checked_object(document, source, 'a recording {"format": ..., "scene": ..., "entries": [...]}')
     if found.get("format") != FORMAT:
         raise refusal(f"{source}: format", found.get("format"), f"{shown(FORMAT)}, for a recording")

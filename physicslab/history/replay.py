@@ -12,7 +12,7 @@ from physicslab.history.digest import Digester, differing
 from physicslab.history.line import Edit, Line, Steps
 from physicslab.world import World
 
-__all__ = ["Played", "edit", "play"]
+__all__ = ["Played", "edit", "make_again", "play", "write"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +46,21 @@ def edit(world: World, command: Command) -> Command:
     return done
 
 
+def write(world: World, command: Command) -> Command:
+    """Carry out what a hand does between two steps."""
+    done = command.carry_out(world)
+    world.synchronise()
+    return done
+
+
+def make_again(world: World, piece: Edit | Command) -> None:
+    """Carry out an edit or a write of a line once more."""
+    if isinstance(piece, Edit):
+        edit(world, piece.command)
+    else:
+        write(world, piece)
+
+
 def play(world: World, line: Line, source: str) -> Iterator[Played]:
     """Go along a line from its beginning, yielding after every step.
 
@@ -67,15 +82,10 @@ def play(world: World, line: Line, source: str) -> Iterator[Played]:
                 made, place = made + 1, place + 1
                 yield Played(made, world.time, differing(digester.digest(world), line.digest_before(place)))
             continue
-        command = piece.command if isinstance(piece, Edit) else piece
         try:
-            if isinstance(piece, Edit):
-                edit(world, command)
-            else:
-                command.carry_out(world)
-                world.synchronise()
+            make_again(world, piece)
         except (InvalidValue, KeyError, TypeError, ValueError, AttributeError) as error:
             message = error.args[0] if isinstance(error, KeyError) else error
-            name = type(command).__name__
+            name = type(piece.command if isinstance(piece, Edit) else piece).__name__
             raise SceneError(f"{source}: after step {made}: {name} is refused: {message}") from error
         place += 1

@@ -18,25 +18,12 @@ _MAX_IN_PYTHON = 100_000
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
-    eq, tolerance = ode, ode.tolerance
-    q_low, v_low = eq.remainders(state)
-    most = _MAX_IN_PYTHON if eq.interpreted else _MAX_EVALUATIONS
+    q_low, v_low = ode.remainders(state)
+    tolerance, most = ode.tolerance, _MAX_IN_PYTHON if ode.interpreted else _MAX_EVALUATIONS
     made = dop853(
-        eq.q,
-        eq.v,
-        q_low,
-        v_low,
-        eq.inverse_mass,
-        eq.damping,
-        eq.damped_calls,
-        eq.places,
-        steps * h,
-        tolerance,
-        state.simulation.dt,
-        most,
-        eq.free_bodies,
-        eq.steepness,
-    )
+        ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.damped_calls, ode.places,
+        steps * h, tolerance, state.simulation.dt, most, ode.free_bodies, ode.steepness,
+    )  # fmt: skip
     if made == NOT_FINITE:
         raise StepTooSmall(f"forces are no longer finite at t = {state.time:.9g} s")
     if made == EXHAUSTED:

@@ -1,6 +1,6 @@
 """The solution in closed form, where there is one.
 
-What each cause gives is measured in another way than beside other methods: no power is integrated, but
+The contribution of each cause is measured in another way than in other methods: no power is integrated, but
 the solution has its own energy, of which dampers and drag take what is lost
 (:mod:`physicslab.ode.closed_form_account`).
 """
@@ -20,7 +20,8 @@ __all__ = ["EXACT"]
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     form = closed_form(state, ode.forces)
-    position, velocity = form.advanced(state, steps * h)
+    position, velocity = form.motion(state)
+    form.advance(position, velocity, steps * h)
     for cause, given in given_in_closed_form(state, form, steps * h).items():
         slot = ode.slots.get(cause)
         if slot is not None:

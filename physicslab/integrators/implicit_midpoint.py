@@ -21,17 +21,16 @@ __all__ = ["IMPLICIT_MIDPOINT"]
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
-    eq = ode
-    q_low, v_low = eq.remainders(state)
-    if eq.near is None:
-        eq.near = _banded(state, ode)
-    order, band = eq.near
-    if len(eq.damping) or len(eq.resistances):
+    q_low, v_low = ode.remainders(state)
+    if ode.near is None:
+        ode.near = _banded(state, ode)
+    order, band = ode.near
+    if len(ode.damping) or len(ode.resistances):
         # Each coordinate of the mean velocity is next to the same one of the end velocity less the mean.
         order, band = np.stack((order, order + len(order)), axis=1).ravel(), 2 * band + 1
     made = implicit_midpoint(
-        eq.q, eq.v, q_low, v_low, eq.inverse_mass, eq.damping, eq.damped_calls, eq.resistances, eq.places,
-        order, band, h, steps,
+        ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.damped_calls, ode.resistances,
+        ode.places, order, band, h, steps,
     )  # fmt: skip
     if made < 0:
         raise StepTooSmall(

@@ -41,8 +41,8 @@ LEAPFROG = Integrator(
 
 _PREDICTED = ((Stage.PREDICT, 0.5), (Stage.SOLVE, 1.0), (Stage.PREDICT, -0.5))
 
-# What is sub-integrated (see physicslab.stepping.split_forces) is not kicked: the contact solver is
-# given its predicted velocity.
+# Sub-integrated bodies (see physicslab.stepping.split_forces) are not kicked: the contact solver
+# gets their predicted velocity.
 LEAPFROG_WITH_SPLIT_FORCES = replace(
     LEAPFROG,
     substep=tuple(

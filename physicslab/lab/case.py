@@ -1,4 +1,4 @@
-"""What the labs have in common: cases in a catalogue, and what is measured of them."""
+"""Shared parts of the labs: cases in a catalogue, and their measurements."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def attempt[Found](measure: Callable[[], Found]) -> tuple[Found | None, str]:
     (None, 'float division by zero')
     """
     try:
-        with np.errstate(all="ignore"):  # what overflows is not finite, and is reported as that
+        with np.errstate(all="ignore"):  # an overflow is not finite, and is reported as that
             found = measure()
     except (Diverged, ArithmeticError) as error:
         return None, str(error)

@@ -88,7 +88,7 @@ def stopped_by_friction(start: float, rate: float, held: float, t: float) -> flo
 def corner_impact(
     arm: tuple[float, float], inertia: float, fall: float, e: float, mu: float
 ) -> tuple[float, float, float]:
-    """Return vx, vy [m/s] and spin [rad/s] of 1 kg after its corner struck a floor.
+    """Return vx, vy [m/s] and spin [rad/s] of 1 kg after the impact of its corner on a floor.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a lab found, as a JSON document: format, machine, versions; figures are finite or ``null``, in SI."""
+"""The results of a lab, as a JSON document: format, machine, versions; figures in SI, finite or ``null``."""
 
 from __future__ import annotations
 

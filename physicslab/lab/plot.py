@@ -1,4 +1,4 @@
-"""What the plots of the labs have in common; matplotlib is imported when a plot is drawn."""
+"""Shared parts of the plots of the labs; matplotlib is imported when a plot is drawn."""
 
 from __future__ import annotations
 

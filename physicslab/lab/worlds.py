@@ -26,7 +26,7 @@ __all__ = [
 ]  # fmt: skip
 
 GRAVITY = 9.81
-"""Of the built-in scenes, downwards [m/s^2]."""
+"""Gravity of the built-in scenes, downwards [m/s^2]."""
 PLANETS = PhysicsConfig(gravity_mode="planet", softening_law="plummer")
 """Bodies attract each other with G = 1."""
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
+from physicslab.ecs.vector import rotated
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.state.packed import spring_ends
 from physicslab.state.state import State
@@ -53,14 +54,15 @@ class ClosedForm:
     acceleration: NDArray[np.float64]
     what: str
 
-    def advanced(self, state: State, t: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the positions [m] and velocities [m/s] (n, 2) a time t [s] from now."""
-        position = state.table(Transform)["position"][self.rows]
-        velocity = state.table(Velocity)["linear"][self.rows]
+    def motion(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return copies of the present positions [m] and velocities [m/s] (n, 2)."""
+        return state.table(Transform)["position"][self.rows], state.table(Velocity)["linear"][self.rows]
+
+    def advance(self, position: NDArray[np.float64], velocity: NDArray[np.float64], t: float) -> None:
+        """Change positions [m] and velocities [m/s] (n, 2) to those a time t [s] later."""
         propagate(
             position, velocity, self.direction, self.rate2, self.drag, self.centre, self.acceleration, t
         )
-        return position, velocity
 
 
 def closed_form(state: State, forces: Sequence[ForceSystem]) -> ClosedForm:
@@ -146,9 +148,7 @@ def _fixed_point(state: State, spring: int, side: str, other: int) -> NDArray[np
     """Return where the end that does not move is [m]."""
     transform = state.table(Transform)
     anchor = state.table(Spring)["anchor_b" if side == "a" else "anchor_a"][spring]
-    c, s = np.cos(transform["angle"][other]), np.sin(transform["angle"][other])
-    turned = np.array((c * anchor[0] - s * anchor[1], s * anchor[0] + c * anchor[1]))
-    place: NDArray[np.float64] = transform["position"][other] + turned
+    place: NDArray[np.float64] = transform["position"][other] + rotated(anchor, transform["angle"][other])
     return place
 
 

@@ -163,14 +163,8 @@ class OdeSystem:
         moving, turning, fixed = self.layout.moving, self.layout.turning, self.layout.fixed
         position, linear = transform["position"], velocity["linear"]
         self._clock[0] = state.time
-        self.q = np.concatenate(
-            (
-                position[moving].ravel(),
-                transform["angle"][turning],
-                position[fixed].ravel(),
-                *self._behind,
-            )
-        )
+        places = position[moving].ravel(), transform["angle"][turning], position[fixed].ravel()
+        self.q = np.concatenate((*places, *self._behind))
         self.v = np.concatenate((linear[moving].ravel(), velocity["angular"][turning], self._still))
         self._low = None
         self._start = (self.q.copy(), self.v.copy()) if self.interpreted else None

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 from physicslab.ecs.vector import Vector2
-from physicslab.prefabs.body import Pair
+from physicslab.prefabs.body import BodyOptions, Pair
 from physicslab.prefabs.box import box
 from physicslab.world import World
 
@@ -17,8 +19,7 @@ def container(
     width: float,
     height: float,
     thickness: float = 1.0,
-    restitution: float = 0.0,
-    friction: float = 0.5,
+    **options: Unpack[BodyOptions],
 ) -> list[int]:
     """Spawn a static floor and two walls, open at the top; return their entities: floor, left, right.
 
@@ -30,25 +31,16 @@ def container(
         Of the space inside [m].
     thickness : float
         Of floor and walls [m].
-    restitution, friction : float
-        Their material.
+    **options
+        Of each, as :class:`BodyOptions` has them; all are static.
     """
     middle = Vector2(*position)
     aside, up = (width + thickness) / 2.0, height / 2.0
-    floor = box(
-        world, middle - Vector2(0.0, thickness / 2.0), width=width + 2.0 * thickness, height=thickness,
-        restitution=restitution, friction=friction, static=True,
-    )  # fmt: skip
+    options["static"] = True
+    below, across = middle - Vector2(0.0, thickness / 2.0), width + 2.0 * thickness
+    floor = box(world, below, width=across, height=thickness, **options)
     walls = [
-        box(
-            world,
-            middle + Vector2(x, up),
-            width=thickness,
-            height=height,
-            restitution=restitution,
-            friction=friction,
-            static=True,
-        )
+        box(world, middle + Vector2(x, up), width=thickness, height=height, **options)
         for x in (-aside, aside)
     ]
     return [floor, *walls]

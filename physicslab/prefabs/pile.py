@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 import numpy as np
 
 from physicslab.ecs.vector import Vector2
-from physicslab.prefabs.body import Pair
+from physicslab.prefabs.body import BodyOptions, Pair
 from physicslab.prefabs.circle import circle
 from physicslab.world import World
 
@@ -21,9 +23,8 @@ def pile(
     radius: float = 0.1,
     gap: float = 0.05,
     density: float = 1.0,
-    restitution: float = 0.0,
-    friction: float = 0.5,
     seed: int = 1,
+    **options: Unpack[BodyOptions],
 ) -> list[int]:
     """Spawn ``count`` discs in spaced rows that will fall into a pile; return their entities, row by row.
 
@@ -39,20 +40,17 @@ def pile(
         Mean distance between neighbours [m]; each is off its place by up to half of that, so that they do not
         come to rest on each other's tops.
     density : float
-        Mass of each by its area [kg/m^2].
-    restitution, friction : float
-        The numbers of their surface.
+        Mass of each by its area [kg/m^2], where ``mass`` is not given.
     seed : int
         Of the places.
+    **options
+        Of each disc, as :class:`BodyOptions` has them.
     """
     corner, pitch = Vector2(*foot), 2.0 * radius + gap
     offsets = np.random.default_rng(seed).uniform(-gap / 2.0, gap / 2.0, (count, 2)).tolist()
-    mass = density * float(np.pi) * radius * radius
+    options.setdefault("mass", density * float(np.pi) * radius * radius)
     discs: list[int] = []
     for i, (dx, dy) in enumerate(offsets):
         cell = Vector2((i % columns - (columns - 1) / 2.0) * pitch, (i // columns + 0.5) * pitch)
-        place = corner + cell + Vector2(dx, dy)
-        discs.append(
-            circle(world, place, radius=radius, mass=mass, restitution=restitution, friction=friction)
-        )
+        discs.append(circle(world, corner + cell + Vector2(dx, dy), radius=radius, **options))
     return discs

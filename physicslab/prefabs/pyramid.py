@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 from physicslab.ecs.vector import Vector2
-from physicslab.prefabs.body import Pair
+from physicslab.prefabs.body import BodyOptions, Pair
 from physicslab.prefabs.box import box
 from physicslab.world import World
 
@@ -17,9 +19,7 @@ def pyramid(
     *,
     size: float = 1.0,
     gap: float = 0.1,
-    mass: float = 1.0,
-    restitution: float = 0.0,
-    friction: float = 0.6,
+    **options: Unpack[BodyOptions],
 ) -> list[int]:
     """Spawn rows of ``base``, ``base - 1``, ..., 1 square boxes; return their entities, row by row.
 
@@ -33,20 +33,14 @@ def pyramid(
         Side of a box [m].
     gap : float
         Between neighbours of a row [m]; the rows rest on each other.
-    mass, restitution, friction : float
-        Of each box: [kg], and the numbers of its surface.
+    **options
+        Of each box, as :class:`BodyOptions` has them, with a friction of 0.6.
     """
+    options.setdefault("friction", 0.6)
     middle, pitch = Vector2(*foot), size + gap
-    return [
-        box(
-            world,
-            middle + Vector2((i - (base - row - 1) / 2.0) * pitch, (row + 0.5) * size),
-            width=size,
-            height=size,
-            mass=mass,
-            restitution=restitution,
-            friction=friction,
-        )
+    places = (
+        middle + Vector2((i - (base - row - 1) / 2.0) * pitch, (row + 0.5) * size)
         for row in range(base)
         for i in range(base - row)
-    ]
+    )
+    return [box(world, place, width=size, height=size, **options) for place in places]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 from physicslab.ecs.vector import Vector2
-from physicslab.prefabs.body import Pair
+from physicslab.prefabs.body import BodyOptions, Pair
 from physicslab.prefabs.box import box
 from physicslab.world import World
 
@@ -18,9 +20,7 @@ def stack(
     width: float = 1.0,
     height: float = 1.0,
     gap: float = 0.0,
-    mass: float = 1.0,
-    restitution: float = 0.0,
-    friction: float = 0.6,
+    **options: Unpack[BodyOptions],
 ) -> list[int]:
     """Spawn ``count`` boxes on top of each other; return their entities from the lowest up.
 
@@ -32,19 +32,10 @@ def stack(
         Of each box [m].
     gap : float
         Left between each and the next at the start [m].
-    mass, restitution, friction : float
-        Of each box: [kg], and the numbers of its surface.
+    **options
+        Of each box, as :class:`BodyOptions` has them, with a friction of 0.6.
     """
+    options.setdefault("friction", 0.6)
     foot = Vector2(*base)
-    return [
-        box(
-            world,
-            foot + Vector2(0.0, height / 2.0 + i * (height + gap)),
-            width=width,
-            height=height,
-            mass=mass,
-            restitution=restitution,
-            friction=friction,
-        )
-        for i in range(count)
-    ]
+    places = (foot + Vector2(0.0, height / 2.0 + i * (height + gap)) for i in range(count))
+    return [box(world, place, width=width, height=height, **options) for place in places]

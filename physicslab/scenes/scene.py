@@ -1,4 +1,4 @@
-"""What a built-in scene is."""
+"""The record of a built-in scene."""
 
 from __future__ import annotations
 

@@ -8,10 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Gate, Note, Protractor, Ruler, Transform, Velocity
-from physicslab.ecs.vector import Vector2
+from physicslab.ecs.vector import Vector2, rotated
 from physicslab.state.state import State
 
-__all__ = ["INSTRUMENTS", "attached_to", "let_go_of_removed", "local_point", "place_of", "points_of"]
+__all__ = [
+    "INSTRUMENTS", "attached_to", "let_go_of_removed", "local_point", "motion_of_point", "place_of",
+    "points_of",
+]  # fmt: skip
 
 INSTRUMENTS: tuple[type[Any], ...] = (Note, Ruler, Protractor, Gate)
 """The components whose ``POINTS`` may go with bodies."""
@@ -24,9 +27,7 @@ def points_of(state: State, kind: type[Any], name: str, rows: NDArray[np.int64])
     table, transform, velocity = state.table(kind), state.table(Transform), state.table(Velocity)
     # Without a body, or where it is gone, a point goes with row 0: the world, at rest in its origin.
     body = np.maximum(state.entity_index.rows_of(table[f"{name}_body"][rows]), 0)
-    point, angle = table[name][rows], transform["angle"][body]
-    c, s = np.cos(angle), np.sin(angle)
-    arm = np.stack((c * point[:, 0] - s * point[:, 1], s * point[:, 0] + c * point[:, 1]), axis=1)
+    arm = rotated(table[name][rows], transform["angle"][body])
     turning = velocity["angular"][body][:, None] * np.stack((-arm[:, 1], arm[:, 0]), axis=1)
     return transform["position"][body] + arm, velocity["linear"][body] + turning
 
@@ -40,11 +41,19 @@ def place_of(state: State, entity: int, kind: type[Any], name: str) -> Vector2:
         If there is no such instrument.
     """
     part = state.component(entity, kind)
-    body, point = getattr(part, f"{name}_body"), getattr(part, name)
+    return motion_of_point(state, getattr(part, f"{name}_body"), getattr(part, name))[0]
+
+
+def motion_of_point(state: State, body: int | None, point: Vector2) -> tuple[Vector2, Vector2]:
+    """Return where a point in the frame of a body is [m] and how it moves [m/s]; without a body it stays."""
     if body is None or not state.has(body, Transform):
-        return Vector2(*point)
+        return point, Vector2()
     transform = state.component(body, Transform)
-    return transform.position + Vector2(*point).rotated(transform.angle)
+    arm, speed = point.rotated(transform.angle), Vector2()
+    if state.has(body, Velocity):
+        velocity = state.component(body, Velocity)
+        speed = velocity.linear + velocity.angular * arm.perpendicular
+    return transform.position + arm, speed
 
 
 def local_point(state: State, body: int | None, place: Vector2) -> Vector2:

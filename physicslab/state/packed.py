@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Spring, Transform, Velocity
+from physicslab.ecs.vector import rotated
 from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.force_calls import ForceKernel
 from physicslab.state.state import State
@@ -161,6 +162,4 @@ def turned_anchors(
     state: State, end: NDArray[np.int64], springs: NDArray[np.int64], anchors: str
 ) -> NDArray[np.float64]:
     """Return the column ``anchors`` of springs, turned with the bodies at their ends (n, 2) [m]."""
-    angle, anchor = state.table(Transform)["angle"][end], state.table(Spring)[anchors][springs]
-    c, s = np.cos(angle), np.sin(angle)
-    return np.stack((c * anchor[:, 0] - s * anchor[:, 1], s * anchor[:, 0] + c * anchor[:, 1]), axis=1)
+    return rotated(state.table(Spring)[anchors][springs], state.table(Transform)["angle"][end])

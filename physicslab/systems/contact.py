@@ -1,4 +1,4 @@
-"""Where near bodies touch."""
+"""Contact points of near bodies."""
 
 from __future__ import annotations
 

@@ -53,10 +53,6 @@ class DragSystem(ForceSystem):
         rates[rows] = table["linear"][rows] + 2.0 * table["quadratic"][rows] * speed
         return rates * state.bodies.inverse_mass
 
-    def strongest_rate(self, state: State) -> float:
-        """Return the largest of :meth:`rates`."""
-        return float(self.rates(state).max())
-
     def settings(self, state: State) -> bytes:
         """Return both coefficients of every body."""
         table, rows = state.table(Drag), state.batch(*self.needs).rows

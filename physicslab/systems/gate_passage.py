@@ -27,7 +27,7 @@ type _Whole = NDArray[np.int64]
 
 @dataclass(slots=True)
 class Moment:
-    """Where bodies and gates are at the beginning or the end of a step, and how fast they are.
+    """Positions and velocities of bodies and gates at the beginning or the end of a step.
 
     Attributes
     ----------

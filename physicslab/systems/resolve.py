@@ -40,7 +40,7 @@ class ResolveSystem(System):
         return nothing_to_touch(state)
 
     def substep_factor(self, state: State) -> int:
-        """Where bodies carry far heavier ones, the contact spring must be stiffer, and substeps shorter.
+        """Return the factor for far heavier loads, which need a stiffer contact spring and shorter substeps.
 
         Its stiffness is that for the lighter body: one that carries a hundred times its weight sinks in a
         hundred times as deep. Stiffness grows with the square of how much shorter substeps are.

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Name, Spring, Transform, Velocity
 from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import InvalidValue
+from physicslab.ecs.vector import rotated
 from physicslab.kernels import accounts, direct_entry
 from physicslab.kernels.forces import bookings, packed_forces, springs
 from physicslab.kernels.forces.resistance import damper_resistance
@@ -79,9 +80,7 @@ class SpringSystem(ForceSystem):
         parameters = np.empty((len(rows), 7))
         for column, end, anchors in ((0, ends[0], "anchor_a"), (2, ends[1], "anchor_b")):
             steady = np.where(layout.turn[end] < 0, angle[end], 0.0)
-            cosine, sine, anchor = np.cos(steady), np.sin(steady), spring[anchors][rows]
-            parameters[:, column] = cosine * anchor[:, 0] - sine * anchor[:, 1]
-            parameters[:, column + 1] = sine * anchor[:, 0] + cosine * anchor[:, 1]
+            parameters[:, column : column + 2] = rotated(spring[anchors][rows], steady)
         for column, name in enumerate(("rest_length", "stiffness", "damping"), 4):
             parameters[:, column] = spring[name][rows]
         resistance = damper_resistance if self.sees_velocity(state) else None
@@ -145,10 +144,6 @@ class SpringSystem(ForceSystem):
         fixed = (bodies.inverse_mass[self._a] == 0.0) | (bodies.inverse_mass[self._b] == 0.0)
         share = 0.5 if fixed.all() else 1.0  # no pair of bodies moves against each other
         return np.maximum(np.sqrt(share * stiff), share * damped)
-
-    def strongest_rate(self, state: State) -> float:
-        """Return the largest of :meth:`rates`."""
-        return float(self.rates(state).max())
 
     def why_singular(self, state: State) -> str | None:
         """Return a reason if the energy could compress a spring to length zero, where it has no direction.

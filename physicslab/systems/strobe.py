@@ -1,4 +1,4 @@
-"""Where bodies were at regular moments."""
+"""Positions of bodies at regular moments."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["StrobeSystem"]
 
 _LIMIT = 200_000
 """Pictures that are kept of all bodies together; the oldest go first."""
-_ROUNDING = 1e-9
+_CLOCK_ERROR = 1e-9
 """Share of the interval by which a moment may be missed, as the clock rounds."""
 
 type _Rows = NDArray[np.int64]
@@ -72,8 +72,8 @@ class StrobeSystem(System):
             return
         interval = state.table(Strobe)["interval"][self._rows]
         start, end = state.time, state.time + h
-        first = np.ceil(start / interval - _ROUNDING).astype(np.int64)
-        behind = np.ceil(end / interval - _ROUNDING).astype(np.int64)
+        first = np.ceil(start / interval - _CLOCK_ERROR).astype(np.int64)
+        behind = np.ceil(end / interval - _CLOCK_ERROR).astype(np.int64)
         first = np.maximum(first, behind - state.table(Strobe)["count"][self._rows])
         self._until = end
         many = np.maximum(behind - first, 0)
@@ -117,6 +117,6 @@ class StrobeSystem(System):
         strobe, present = state.table(Strobe), rows > 0
         every, rows = every[present], rows[present]
         age = self._until - every[:, 1]
-        shown = age <= (1.0 + _ROUNDING) * strobe["interval"][rows] * strobe["count"][rows]
+        shown = age <= (1.0 + _CLOCK_ERROR) * strobe["interval"][rows] * strobe["count"][rows]
         order = np.argsort(every[shown, 1], kind="stable")
         return rows[shown][order], every[shown][order][:, [2, 3, 4, 1]]

@@ -1,4 +1,4 @@
-"""What a system is: one thing that happens to a world, at which stage, and what it declares of itself."""
+"""The interface of a system: its work, at its stages, and its declarations."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ __all__ = ["AROUND", "OF_FRAMES", "ForceSystem", "Stage", "System", "at"]
 class Stage(Enum):
     """The moments at which systems run. An integrator's ``substep`` puts those of a substep in order."""
 
-    INPUT = "once a frame: what the user did"
-    PREPARE = "once a step: what holds for all of it"
+    INPUT = "once a frame: input of the user"
+    PREPARE = "once a step: values that hold for all of it"
     FORCE = "forces and torques are added up"
     KICK = "forces change velocities"
     DRIFT = "velocities change positions"
-    BROAD_PHASE = "which bodies are near each other"
-    CONTACT = "where they touch"
+    BROAD_PHASE = "near pairs of bodies are found"
+    CONTACT = "contact points are found"
     IMPACT = "approaching bodies bounce"
     PREDICT = "velocities of sub-integrated bodies are predicted for the contacts, and restored"
     SOLVE = "contact impulses keep bodies apart, correcting overlap"
     RELAX = "contact impulses again, so that the correction leaves no velocity behind"
-    FINISH = "once a step: what is recorded of it"
+    FINISH = "once a step: records of it"
     RENDER = "once a frame: the world is drawn"
     HUD = "once a frame: the figures are drawn over it"
 
@@ -121,7 +121,7 @@ class System:
     def keep(self) -> tuple[NDArray[Any], ...]:
         """Return copies of the arrays that the system goes on from, if it keeps any from step to step.
 
-        So a world can go back to a moment (:mod:`physicslab.history`). What the columns of components hold is
+        So a world can go back to a moment (:mod:`physicslab.history`). The columns of components are
         kept in any case.
         """
         return ()
@@ -178,7 +178,7 @@ class ForceSystem(System):
     """
 
     account: ClassVar[int] = FIELDS
-    """Where the work of a force that stores no energy is booked (:mod:`physicslab.kernels.accounts`)."""
+    """The account of the work of a force that stores no energy (:mod:`physicslab.kernels.accounts`)."""
     potential: ClassVar[str | None] = None
     """The name under which the energy is reported; ``None`` for a force that stores none."""
     turns: ClassVar[bool] = False
@@ -189,8 +189,9 @@ class ForceSystem(System):
         return 0.0
 
     def strongest_rate(self, state: State) -> float:
-        """Return the fastest angular frequency [rad/s] that this force gives any body; 0 if it gives none."""
-        return 0.0
+        """Return the largest of :meth:`rates` [rad/s]; 0 where there are none."""
+        rates = self.rates(state)
+        return 0.0 if rates is None else float(rates.max(initial=0.0))
 
     def summation(self, state: State) -> str:
         """Return how the force is summed, where its accuracy depends on that; shown beside the figures."""
@@ -235,7 +236,7 @@ class ForceSystem(System):
     def settings(self, state: State) -> bytes:
         """Return the numbers, bit by bit, that the force has apart from the state of motion.
 
-        Where they change, the method that moves the bodies is chosen again.
+        If they change, the method that moves the bodies is chosen again.
         """
         return b""
 

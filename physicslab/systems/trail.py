@@ -1,4 +1,4 @@
-"""Where bodies have been."""
+"""Trails: past positions of bodies."""
 
 from __future__ import annotations
 

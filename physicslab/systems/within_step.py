@@ -1,4 +1,4 @@
-"""Where something was between the beginning and the end of a step."""
+"""Paths of points between the beginning and the end of a step."""
 
 from __future__ import annotations
 

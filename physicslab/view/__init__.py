@@ -1,4 +1,4 @@
-"""What the window's systems draw with; some modules import pygame, the others must not."""
+"""Drawing and controls of the window; some modules import pygame, the others must not."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""What the accuracy lab found, as a document."""
+"""The results of the accuracy lab, as a document."""
 
 from __future__ import annotations
 

@@ -226,7 +226,7 @@ def _order(found: Estimate, scene: World, quarter: Callable[[], Path]) -> tuple[
     half = half_path.end
     coarse = _spread(own, half).position
     if coarse < _LIMITED_BY_STEP * error:
-        return math.log2(error / (error - coarse)), f'the step matters less than the twin "{found.worst}"'
+        return math.log2(error / (error - coarse)), f'the step matters less than the variant "{found.worst}"'
     path, failure = attempt(quarter)
     if path is None:
         return None, f"a quarter of the step fails: {failure}"

@@ -64,7 +64,7 @@ def _slide_energy(t: float) -> float:
 def _roll(kind: str, share: float, *, way: bool = False) -> Problem:
     """Return the problem of a body thrown flat that comes to roll; its inertia is ``share`` m r^2.
 
-    What is compared is the speed, or with ``way`` the place, which shows when it began to roll.
+    The speed is compared, or with ``way`` the place, which shows when it began to roll.
     """
     start, stop = number("slip_to_roll", kind, "t"), 1.0
 

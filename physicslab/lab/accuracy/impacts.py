@@ -1,4 +1,4 @@
-"""Bodies that bounce. What is compared are states at given times, which show when the impacts took place."""
+"""Bodies that bounce. States at given times are compared, which show when the impacts took place."""
 
 from __future__ import annotations
 

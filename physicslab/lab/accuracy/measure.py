@@ -1,4 +1,4 @@
-"""What a method does on a problem: error, cost, and how well it conserves what is conserved."""
+"""The results of a method on a problem: error, cost, and errors of conserved quantities."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the bodies of a world come, and its energy and momentum, at some moments of a run."""
+"""Paths of the bodies of a world, and its energy and momentum, at some moments of a run."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class Path:
 
     @property
     def places(self) -> NDArray[np.float64]:
-        """Where bodies are [m] (k, n, 2)."""
+        """Positions of bodies [m] (k, n, 2)."""
         return self.states[:, :, :2]
 
     def mirrored(self) -> Path:

@@ -44,7 +44,7 @@ _CHOSEN: dict[str, dict[str, Any]] = {
 }
 """The marks of what the engine chooses, in the order of :attr:`Study.chosen`: the first goes round others."""
 _LOWEST, _HIGHEST = 1e-17, 1e1
-"""Where an error of zero is drawn, and the largest of contacts."""
+"""The value at which an error of zero is drawn, and the largest of contacts."""
 _ROUNDING_COLOUR, _WORDS = "#f3ead9", "#444444"
 _LIMIT: dict[str, Any] = {"color": _WORDS, "linewidth": 0.8, "linestyle": (0, (1, 2))}
 _COLUMNS = 4

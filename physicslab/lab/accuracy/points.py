@@ -22,7 +22,7 @@ __all__ = ["POINTS"]
 _STEP = 0.01
 _RESTS = "its steps shrink without end as the weight comes to rest: they are measured by the present speed"
 _DAMPED_RATE = 10.0
-"""Of the damped oscillators without their damper [1/s]."""
+"""The rate of the damped oscillators without their damper [1/s]."""
 
 _ballistic = partial(Problem, group="ballistic")
 _damped_ladder = Ladder(16, 9)

@@ -1,4 +1,4 @@
-"""What a problem with a known answer is, and how far bodies are from it."""
+"""The record of a problem with a known answer, and the distance of bodies from it."""
 
 from __future__ import annotations
 

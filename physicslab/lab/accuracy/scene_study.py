@@ -29,9 +29,9 @@ __all__ = ["DEFAULT_S", "ESTIMATE", "SceneRow", "SceneStudy", "study_scene"]
 
 ESTIMATE = "an estimate: there is no reference, runs are compared with each other"
 DEFAULT_S = 5.0
-"""How long a scene is run, where nothing else is asked for."""
+"""The default length of a run of a scene [s]."""
 _ESTIMATE_SHARE, _HORIZON_SHARE = 0.3, 0.4
-"""Of the work of a study, roughly, that is done after the estimate, and after the horizon was looked for."""
+"""Rough shares of the work of a study that are done after the estimate, and after the horizon."""
 _HORIZON_TIMES = 6.0
 """How many times as long the horizon is looked for: it is often later than errors are compared."""
 _TIGHTEST = 1e-17
@@ -42,7 +42,7 @@ _NO_BETTER = 2.0
 _SUBSTEP_FACTORS = (0.5, 1.0, 2.0, 4.0)
 """The rungs of a ladder of steps: so many times the scene's own substeps."""
 _SUBSTEPS_LIMIT = 10_000
-"""Of a scene's configuration."""
+"""From a scene's configuration."""
 _REPEATS = 4
 _REPEATED_BELOW_S = 2.0
 """A run that takes longer is not repeated to be timed."""
@@ -103,7 +103,7 @@ class SceneRow:
 
 @dataclass(slots=True)
 class SceneStudy:
-    """What was found of a scene.
+    """The results of a scene.
 
     Attributes
     ----------

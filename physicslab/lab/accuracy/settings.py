@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from physicslab.diagnostics.forces import fastest_force
+from physicslab.diagnostics.step_warnings import fastest_force
 from physicslab.ecs.config import SimulationConfig
 from physicslab.integrators import Integrator
 from physicslab.lab.accuracy.problem import Problem

@@ -90,7 +90,7 @@ class Study:
 def study(problem: Problem, *, sparse: bool = False) -> Job[Study]:
     """Compute a problem with every method; yield the share of the work that is done.
 
-    Where ``sparse``, every second rung of a ladder is left out, and never the finest.
+    With ``sparse``, every second rung of a ladder is left out, and never the finest.
     """
     plan = []
     for method in INTEGRATORS.values():

@@ -1,4 +1,4 @@
-"""What the accuracy lab found, as tables for the terminal."""
+"""The results of the accuracy lab, as tables for the terminal."""
 
 from __future__ import annotations
 
@@ -181,13 +181,13 @@ def _estimate_lines(study: SceneStudy) -> list[str]:
     """Return how far the scene as it is configured is from its twins."""
     found = study.estimate
     if found.error is None:
-        return [f"  no estimate: {found.failure or 'no twin of the scene could be run'}"]
-    head = ("twin", "place [m]", "angle [rad]", "velocity [m/s]", "spin [rad/s]", "")
+        return [f"  no estimate: {found.failure or 'no variant of the scene could be run'}"]
+    head = ("variant", "place [m]", "angle [rad]", "velocity [m/s]", "spin [rad/s]", "")
     rows = [("largest: the error", *_spread_cells(found.error), "")]
     rows += [(twin.name, *_spread_cells(twin.spread), twin.failure or twin.what) for twin in found.twins]
     order = "none" if found.order is None else f"{found.order:.1f}"
     return [
-        f"  as it is configured, and how far its twins end from it after {study.seconds:g} s, of any body",
+        f"  as it is configured, and how far its variants end from it after {study.seconds:g} s, of any body",
         table([head, *rows], words=(0, 5), indent="  "),
         f"  order of the error in the step: {order} ({found.order_reason})",
         f"  horizon: {_horizon_words(study.horizon_s)}",
@@ -263,7 +263,7 @@ def trust_rows_text(rows: Sequence[TrustRow]) -> str:
         f"within a factor of 10: {found.near} of {found.known} ({found.near / found.known:.0%}), "
         f"with {found.cautious} estimates of rounding (up to 1e-12) that are more than 10 times too large; "
         f"the true error is at most {found.largest:.2g} times the estimate: "
-        f"{'as it is to be' if found.holds else 'NOT AS IT IS TO BE'} (95 %, and at most 100)"
+        f"{'met' if found.holds else 'NOT MET'} (95 %, and at most 100)"
     )
     return "\n".join([table([head, *lines], words=(0, 1, 5)), "", closing])
 
@@ -281,7 +281,7 @@ def honest_text(rows: Sequence[HonestRow]) -> str:
     closing = (
         f"honest, the true error at most 3 times the estimate: {share.honest[0]} of {share.known} "
         f"positions ({share.honest[0] / max(share.known, 1):.1%}), wanted 99 of 100: "
-        f"{'as it is to be' if share.holds else 'NOT AS IT IS TO BE'}; more than 100 times too large "
+        f"{'met' if share.holds else 'NOT MET'}; more than 100 times too large "
         f"(and not of rounding): {share.too_large}"
     )
     return "\n".join([table([head, *lines], words=(0,)), "", closing])

@@ -41,7 +41,7 @@ _WAYS = [twin for twin in TWINS if twin.name != "nudged"]
 _IN_STEPS = {twin.name for twin in TWINS if twin.differs_in_step}
 _NUDGED_NAME = "rounding"
 _OVERLAP_NAME = "overlap"
-"""Of what no other way to compute it shows: bodies that came to rest in each other, by the limit of a gap."""
+"""The name of an error that no variant shows: bodies at rest overlap, by the limit of a gap."""
 
 type _Errors = NDArray[np.float64]
 type _Compare = Callable[[Path], _Errors]
@@ -50,7 +50,7 @@ type _Compare = Callable[[Path], _Errors]
 
 @dataclass(frozen=True, slots=True)
 class Look:
-    """What can be relied on from the start to one moment of a run.
+    """The reliable digits from the start to one moment of a run.
 
     Attributes
     ----------
@@ -75,7 +75,7 @@ class Look:
 
 @dataclass(slots=True)
 class Trust:
-    """What can be relied on at the end of a run.
+    """The reliable digits at the end of a run.
 
     Attributes
     ----------
@@ -205,11 +205,11 @@ def _looks(times: Sequence[float], each: Sequence[_Errors], whole: Sequence[_Err
 def scales(
     world: World, path: Path, bodies: Sequence[str], times: Sequence[float]
 ) -> tuple[_Errors, _Errors, _Errors, _Errors]:
-    """Return of what digits are shares, at each moment and of each body (k, n).
+    """Return the scales of digits, at each moment and of each body (k, n).
 
-    Of a position it is that or the size of the body [m], of a velocity the largest since the start or that
-    size in the time since then [m/s], of an angle that or a radian, of a spin the largest since the start or
-    a radian in that time [rad/s].
+    For a position it is that or the size of the body [m], for a velocity the largest since the start or that
+    size in the time since then [m/s], for an angle that or a radian, for a spin the largest since the
+    start or a radian in that time [rad/s].
     """
     sizes, elapsed = sizes_of(world, bodies), np.array(times)[:, None]
     reach = np.hypot(path.places[..., 0], path.places[..., 1])

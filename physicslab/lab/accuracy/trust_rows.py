@@ -76,7 +76,7 @@ class TrustRow:
 
 @dataclass(frozen=True, slots=True)
 class TrustSummary:
-    """What rows come to.
+    """The summary of rows.
 
     Attributes
     ----------

@@ -33,7 +33,7 @@ type Document = dict[str, Any]
 """A scene as :func:`physicslab.files.writer.write_scene` returns it, in which every entity has an id."""
 
 _PAST = ("contacts", "rests", "solver")
-"""What a scene keeps of the steps before it; a mirrored or permuted one begins without."""
+"""The keys of a scene that hold the steps before it; a mirrored or permuted one begins without."""
 _MIRRORED: dict[str, tuple[str, ...]] = {
     "Transform": ("position", "angle"),
     "Velocity": ("linear", "angular"),
@@ -52,7 +52,7 @@ GOLDEN = 0.5 * (1.0 + math.sqrt(5.0))
 _FINE = 8.0
 """How many times shorter steps are where half a step misses the events that a step does."""
 _LEAST_TOLERANCE = 1e-20
-"""Of a scene's configuration."""
+"""From a scene's configuration."""
 _ULP_SCALE = 1e-2
 """Coordinates [m], [m/s], [rad] smaller than this are moved by a rounding of this."""
 NUDGES = 6
@@ -248,7 +248,7 @@ def _moved(value: float, ways: Iterator[float]) -> float:
 def nudged(document: Document, seed: int) -> Document:
     """Return a scene whose numbers are moved by one rounding each, up or down.
 
-    These are places, velocities and masses of what can move, and gravity. What is zero stays: it is
+    These are positions, velocities and masses of bodies that can move, and gravity. Zeros stay: they are
     not rounded, and with it a symmetry that no rounding breaks.
     """
     twin, order = copy.deepcopy(document), random.Random(seed)

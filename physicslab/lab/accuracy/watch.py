@@ -1,4 +1,4 @@
-"""What is measured of a run; energy and momenta at random times of one more run, which is not timed."""
+"""Measurements of a run; energy and momenta at random times of one more run, which is not timed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.diagnostics.audit import Audit
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
-from physicslab.diagnostics.forces import fastest_force
+from physicslab.diagnostics.step_warnings import fastest_force
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
 from physicslab.lab.case import Verdict

@@ -51,7 +51,7 @@ class Spread:
 
 @dataclass(slots=True)
 class Times:
-    """What each step of an engine took.
+    """The time of each step of an engine.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a body takes of memory, and what a step costs more for systems that the scene does not use."""
+"""Memory of a body, and the extra cost of a step for systems that the scene does not use."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ UNUSED: dict[str, tuple[Callable[[tuple[System, ...]], World], int]] = {
     "circles_10": (ten_discs, 3_000),
     "pile_1000": (partial(discs, 1_000), 600),
 }
-"""What returns a scene of discs with some systems, and how many steps are timed: a small scene, most of whose
-step is dispatch, and a large one."""
+"""Functions that make a scene of discs with some systems, and the number of timed steps: a small scene,
+most of whose step is dispatch, and a large one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """What one more disc of a pile takes, of all that Python and numpy hold.
+    """The memory of one more disc of a pile, of all that Python and numpy hold.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class Memory:
 
 def measure_memory(sizes: tuple[int, int] = _SIZES, steps: int = _STEPS) -> Memory:
     """Return what a body takes: the difference of two piles, so that what every world has does not count."""
-    _held(min(sizes[0], 100), 2)  # what is allocated only once is allocated now
+    _held(min(sizes[0], 100), 2)  # objects that are allocated only once are allocated now
     (few, small), (many, large) = ((size, _held(size, steps)) for size in sizes)
     return Memory(*((high - low) / (many - few) for low, high in zip(small, large, strict=True)))
 

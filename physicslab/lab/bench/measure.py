@@ -142,8 +142,8 @@ class Judge:
     Parameters
     ----------
     result : SceneResult
-        Whose scene it is, and where figures are written: ``None`` where one is not finite. What diverged has
-        that as its failure.
+        Whose scene it is, and where figures are written: ``None`` where one is not finite. A run that
+        diverged has that as its failure.
     """
 
     def __init__(self, result: SceneResult) -> None:

@@ -124,7 +124,7 @@ def _in_funnel(places: Places, *, count: int, floored: bool) -> NDArray[np.bool_
     scale, steep = math.sqrt(count / 3_000), math.radians(35.0)
     x, y = np.abs(places[:, 0]), places[:, 1]
     behind = (y > 0.0) & (x > scale + y / math.tan(steep) + 1.0 / math.sin(steep))
-    outside = (y > 0.0) & (x > 0.5 * _columns(50, scale) * _PITCH + scale)  # what fell out may fly anywhere
+    outside = (y > 0.0) & (x > 0.5 * _columns(50, scale) * _PITCH + scale)  # lost bodies may fly anywhere
     if floored:
         outside |= (y < -12.0 * scale) | ((y < -4.0 * scale) & (x > 30.0 * scale))
     return ~(behind | outside)

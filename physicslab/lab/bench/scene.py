@@ -1,4 +1,4 @@
-"""What a scene of the benchmark is, and figures of quality: speed without them does not count."""
+"""The record of a scene of the benchmark, and figures of quality: speed without them does not count."""
 
 from __future__ import annotations
 

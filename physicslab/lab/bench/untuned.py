@@ -1,6 +1,6 @@
 """Scenes that the engine was not tuned for: made after the work on moving scenes was done, and left so.
 
-A speed that holds for the scenes that were looked at while the engine was made, and for no others, is none.
+A speed must also hold for scenes that were not used while the engine was made.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def stairs(count: int, steps: int = 30) -> World:
 
 
 def dominoes(count: int) -> World:
-    """Return dominoes in a row, the first of which is struck by a ball."""
+    """Return dominoes in a row, the first of which a ball hits."""
     world = soft_space()
     floor(world, width=0.4 * count + 40.0)
     for n in range(count):
@@ -97,7 +97,7 @@ UNTUNED = (
         build=partial(stairs, 1_500), quality=_quality,
     ),
     _scene(
-        name="dominoes_400", title="400 dominoes, the first of them struck", size=400,
+        name="dominoes_400", title="400 dominoes, a ball hits the first", size=400,
         build=partial(dominoes, 400), quality=_quality,
     ),
     _scene(

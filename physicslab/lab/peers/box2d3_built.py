@@ -114,7 +114,7 @@ class BuiltBox2D(Peer):
 def built_box2d(sources: Path, folder: Path) -> type[BuiltBox2D]:
     """Compile Box2D and return it as an engine.
 
-    The compiler is ``cc``, or what the environment's ``CC`` is. Where this processor has AVX2, Box2D's
+    The compiler is ``cc``, or what the environment's ``CC`` is. If this processor has AVX2, Box2D's
     vectors of eight are used.
 
     Parameters

@@ -58,7 +58,7 @@ class PymunkMirror(Peer):
     def add_shape(self, body: Any, shape: Shape, material: Material) -> None:
         """Add a body's outline.
 
-        Of the values of a pair pymunk takes the product; the world takes the smaller restitution, which is
+        pymunk takes the product of a pair's values; the world takes the smaller restitution, which is
         the product where one is 0 or 1, and the root of the product of frictions.
         """
         if shape.kind == "circle":
@@ -181,7 +181,7 @@ class Box2DMirror(Peer):
 class Box2D3Mirror(Peer):
     """A world in one of Box2D 3's, each step in its usual 4 substeps, with its usual contact stiffness.
 
-    Of a pair's restitutions Box2D takes the larger, the world the smaller: they must all be alike.
+    Box2D takes the larger restitution of a pair, the world the smaller: they must all be alike.
     """
 
     title, module = "Box2D 3", "pyb2d3"

@@ -149,7 +149,7 @@ class Peer(ABC):
     @property
     @abstractmethod
     def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
-        """What a program calls with the step [s] to advance, and the settings that come after the step."""
+        """The function that a program calls with the step [s], and the settings that follow the step."""
 
     def step(self, dt: float) -> None:
         """Advance by one step [s]."""

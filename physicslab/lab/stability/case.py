@@ -13,7 +13,7 @@ from physicslab.lab.worlds import open_space
 __all__ = ["MODELS", "Outcome", "StabilityCase", "part_of", "run_case", "touching_space"]
 
 MODELS = {"soft": "soft contacts", "rigid": "rigid contacts"}
-"""What both models of contacts are called, by the word in a scene's ``simulation``."""
+"""Names of both models of contacts, by the word in a scene's ``simulation``."""
 touching_space = partial(open_space, collisions="step")
 """Returns an empty world for a model of contacts, to which impacts belong as well."""
 
@@ -45,7 +45,7 @@ class StabilityCase(Case):
 
     @property
     def run(self) -> Hashable:
-        """What is alike for cases that look at one run from several sides."""
+        """The shared fields of cases with several figures of one run."""
         measure = self.measure
         return measure.args[1:] if isinstance(measure, partial) and measure.func is part_of else self.name
 

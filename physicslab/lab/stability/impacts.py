@@ -144,7 +144,7 @@ def _against(name: str, collisions: str) -> StabilityCase:
 
 
 _SUFFIX = {"auto": "", "step": "_step"}
-"""Of the names of cases, by how collisions are found."""
+"""Suffixes of the names of cases, by how collisions are found."""
 _bounces = partial(StabilityCase, group="bounces")
 _amplitude = partial(
     _bounces, right="the outer balls swing as far as at the start, within 1 %",

@@ -29,7 +29,7 @@ def _lost(world: World, bodies: list[int], steps: int) -> float:
 def _masses() -> float:
     """Return what is lost of bodies from 1e-9 to 1e9 kg that fall on a floor and on each other."""
     world = open_space()
-    floor(world, width=1e5)  # what is squeezed out is flung far
+    floor(world, width=1e5)  # a body that is squeezed out is flung far
     exponents = range(-9, 10)
     made = [
         circle(world, (0.6 * (e % 5), 0.3 + 0.6 * n), radius=0.25, mass=10.0**e)
@@ -101,7 +101,7 @@ def _endured(steps: int) -> tuple[float, float, float]:
         )
         blocks.append(_blocks())
     last, _ = cpu_time(lambda: world.run(steps=tenth))
-    # What leaks grows in every quarter; what is built at its first use, or by a thread of the tests, in one.
+    # A leak grows in every quarter; objects built at their first use, or by a thread of the tests, in one.
     kept = min(after - before for before, after in pairwise(blocks)) * 40 / (7 * steps)
     return max(0.0, kept), max(drifts), last / first
 

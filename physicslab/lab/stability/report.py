@@ -1,4 +1,4 @@
-"""What the stability lab found: lines for the terminal, and a document."""
+"""The results of the stability lab: lines for the terminal, and a document."""
 
 from __future__ import annotations
 

@@ -24,14 +24,14 @@ _STIFFNESS = {
     **{f"{rate:g}": (rate / _DT) ** 2 for rate in (0.1, 1.0, 1.9, 10.0, 100.0)},
     "k_1e12": 1e12,
 }  # fmt: skip
-"""Of each spring [N/m] on 1 kg, by omega dt or its own name."""
+"""The stiffness of each spring [N/m] on 1 kg, by omega dt or its own name."""
 _SCENES = {False: "alone", True: "in a scene with contacts"}
 
 
 def _hung(stiffness: float, below: float, *, gravity: float | None, touches: bool) -> tuple[World, int]:
     """Return a world with a body of 1 kg on a spring of 1 m, so far below its rest length [m]."""
     world = open_space(gravity=gravity, dt=_DT, contacts="soft")
-    # What oscillates swings sideways as well: along one line, the motion would be solved in closed form.
+    # The body swings sideways as well: along one line, the motion would be solved in closed form.
     swing = (0.0, 0.0) if gravity else (_ASIDE, 0.0)
     spring = Spring(rest_length=1.0, stiffness=stiffness)
     return world, spawn_bob(world, (0.0, -1.0 - below), swing, touches=touches, part=spring)

@@ -1,4 +1,4 @@
-"""What rests, slides and rolls: at the edge of sliding, in steps and gravity of any size, and far away."""
+"""Rest, sliding and rolling: at the edge of sliding, in steps and gravity of any size, and far away."""
 
 from __future__ import annotations
 

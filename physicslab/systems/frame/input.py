@@ -1,4 +1,4 @@
-"""What the user does to the world and to the window."""
+"""Input of the user to the world and to the window."""
 
 from __future__ import annotations
 

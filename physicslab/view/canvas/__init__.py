@@ -1,1 +1,1 @@
-"""What is drawn on, and from where it is seen."""
+"""The canvas and the camera."""

@@ -1,4 +1,4 @@
-"""What can be drawn, on whatever surface."""
+"""Drawing on any surface."""
 
 from __future__ import annotations
 

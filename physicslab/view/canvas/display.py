@@ -76,7 +76,7 @@ class Display:
 
     @property
     def title(self) -> str:
-        """What the window is called."""
+        """The caption of the window."""
         return pygame.display.get_caption()[0]
 
     @title.setter

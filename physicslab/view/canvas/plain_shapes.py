@@ -23,7 +23,7 @@ _CORNERS = 256
 _SPOKE_FROM, _NOTCH_FROM = 3.0, 8.0
 """Radius, and half extent [px], from which a body shows how far it has turned."""
 _MARGIN = 8.0
-"""What is drawn of outlines beyond the edge of the picture [px]."""
+"""The margin around the picture within which outlines are drawn [px]."""
 
 type _Place = tuple[float, float]
 type _Colour = tuple[int, int, int]

@@ -10,7 +10,7 @@ __all__ = ["DARK", "HIGH_CONTRAST", "NOTHING", "PROJECTOR", "THEMES", "Colour", 
 type Colour = tuple[int, int, int]
 """Red, green and blue, 0 to 255."""
 NOTHING = (0, 0, 0, 0)
-"""What covers nothing, multiplied by its opacity of none."""
+"""A transparent colour, multiplied by its opacity of 0."""
 
 
 def mixed(under: Colour, over: Colour, share: float) -> Colour:

@@ -1,1 +1,1 @@
-"""What the user does with mouse and keys."""
+"""Controls by mouse and keys."""

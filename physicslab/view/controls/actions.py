@@ -1,4 +1,4 @@
-"""What the user can do, one function each, whichever key or button calls it."""
+"""Actions of the user, one function each, for all keys and buttons."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def clear(world: World, window: Window) -> None:
     removed = [Remove(entity) for entity in world.entities()]
     if removed:
         window.edits.do(Group("cleared everything", removed))
-        window.notify("Cleared: Ctrl+Z brings it back")
+        window.notify("Cleared: Ctrl+Z undoes it")
     window.overlays.forget()
     window.sparks.clear()
     window.error = ""
@@ -229,7 +229,7 @@ def reset_layout(world: World, window: Window) -> None:
 
 
 def leave(world: World, window: Window) -> None:
-    """Leave the help, the plot, what is selected or the tool if there is one, else the window."""
+    """Leave the help, the plot, the selection or the tool if there is one, else the window."""
     if window.measuring.cancel() or _close_panel(window):
         return
     if window.picking is not None:
@@ -271,14 +271,14 @@ def duplicate_selected(world: World, window: Window) -> None:
 
 
 def copy_selected(world: World, window: Window) -> None:
-    """Keep copies of what is selected, to be pasted."""
+    """Keep copies of the selection, to be pasted."""
     bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
     window.copied = [_parts(world, entity) for entity in bodies]
     window.notify(f"Copied: {len(bodies)}" if bodies else "Nothing is selected to be copied")
 
 
 def paste(world: World, window: Window) -> None:
-    """Put what was copied where the cursor is, and select it."""
+    """Paste the copy at the cursor, and select it."""
     if not window.copied:
         window.notify("Nothing was copied")
         return
@@ -363,20 +363,20 @@ def turner(sign: int) -> Action:
 
 
 def undo(world: World, window: Window) -> None:
-    """Take back the last edit or run."""
+    """Undo the last edit or run."""
     window.pause_for_history(world)
     words = window.edits.history.undo()
     if words is None and window.left is not None:
         window.next_world = window.left.history.world
         words = "opened another scene"
-    window.notify(f"Taken back: {words}" if words else "There is nothing to take back")
+    window.notify(f"Undone: {words}" if words else "There is nothing to undo")
 
 
 def redo(world: World, window: Window) -> None:
-    """Put back what was taken back last."""
+    """Redo the last edit or run that was undone."""
     window.pause_for_history(world)
     words = window.edits.history.redo()
-    window.notify(f"Put back: {words}" if words else "There is nothing to put back")
+    window.notify(f"Redone: {words}" if words else "There is nothing to redo")
 
 
 def seek(world: World, window: Window, step: int) -> None:

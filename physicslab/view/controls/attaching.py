@@ -19,22 +19,22 @@ __all__ = ["attachments"]
 _ABOVE = 1.5
 """How far above a body the point is that it is hung from [m]."""
 _WAYS = {"spring": False, "rod": True}
-"""What two ends can be joined by, and whether that is stiff."""
+"""Ways to join two ends, and whether each is stiff."""
 
 
 def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, Action]]:
-    """Return how what is selected can be attached: the words on a button, its tip, and what it does."""
+    """Return how the selection can be attached: the words on a button, its tip, and what it does."""
     if not entities or len(entities) > 2 or not all(world.has(entity, Transform) for entity in entities):
         return {}
     if len(entities) == 2:
         return {
             f"Join by a {way}": (
-                f"A {way} between these two, as long at rest as they are apart now",
+                f"A {way} between these two, its rest length their present distance",
                 partial(_join, entities[0], entities[1], stiff),
             )
             for way, stiff in _WAYS.items()
         }
-    words = {"spring": "Hang on a spring", "rod": "Hang on a rod"}
+    words = {"spring": "Hang from a spring", "rod": "Hang from a rod"}
     return {
         words[way]: (f"A {way} to a point above it, which can be dragged", partial(_hang, entities[0], stiff))
         for way, stiff in _WAYS.items()

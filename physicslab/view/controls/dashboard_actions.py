@@ -1,4 +1,4 @@
-"""What the user can do with graphs, meters and sliders: each is an edit, so that it is saved and undone."""
+"""Actions on graphs, meters and sliders: each is an edit, so that it is saved and undone."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _USUAL = {
 
 
 def plot_selected(world: World, window: Window) -> None:
-    """Plot what is selected against time; where nothing is, the energies of the world."""
+    """Plot the selection against time; without one, the energies of the world."""
     bodies = _selected(world, window)
     if not bodies:
         _plot(window, "plotted energies", Graph(), [(None, name) for name in _ENERGIES])
@@ -60,7 +60,7 @@ def plot_selected(world: World, window: Window) -> None:
 
 
 def plot_phase(world: World, window: Window) -> None:
-    """Plot the velocity of what is selected against its place."""
+    """Plot the velocity of the selection against its place."""
     bodies = [body for body in _selected(world, window) if world.has(body, Velocity)]
     if not bodies:
         window.notify("Select a body that moves: its velocity is plotted against its place")
@@ -87,7 +87,7 @@ def add_meter(world: World, window: Window) -> None:
 
 
 def add_slider(world: World, window: Window) -> None:
-    """Make a slider for what is selected: its mass or its stiffness; where nothing is, for gravity."""
+    """Make a slider for the selection: its mass or its stiffness; without one, for gravity."""
     for entity in window.selection.entities:
         for kind, changes in ((Spring, "Spring.stiffness"), (Mass, "Mass.mass")):
             if world.has(entity, kind):
@@ -171,7 +171,7 @@ def _sliding(world: World, slider: SliderShown, value: float) -> Command | str:
         return SetPhysics({"gravity": Vector2(world.physics.gravity.x, -value)})
     kind, spec = SLIDER_FIELDS[slider.changes]
     if slider.target is None or slider.target not in world.entity_index.row_of:
-        return "What the slider changes is gone"
+        return "The entity of the slider was removed"
     if not world.has(slider.target, kind):
         return f"{world.label(slider.target)} has no {kind.__name__}"
     refused = refused_change(world, slider.target, kind, spec.name, value) if kind in _IN_SPACE else ""

@@ -1,4 +1,4 @@
-"""What the user can do with scene files and films, and what is written of the window."""
+"""Actions on scene files, films and pictures of the window."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the user can do with the history: switch branches, save all of it in a file."""
+"""Actions on the history: switch branches, save all of it in a file."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from physicslab.world import World
 __all__ = ["ENDING", "branch_words", "next_branch", "save_recording", "switch"]
 
 ENDING = ".replay"
-"""What the names of recordings end with: they are not offered as scenes."""
+"""The suffix of recordings: they are not offered as scenes."""
 _WORDS_LIMIT = 2
 """How much of what was done in a branch is written out."""
 

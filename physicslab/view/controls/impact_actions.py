@@ -1,4 +1,4 @@
-"""What the user can do with impacts: list them, look at one closely, stand still at the next."""
+"""Actions on impacts: list them, look at one closely, pause at the next."""
 
 from __future__ import annotations
 
@@ -44,19 +44,17 @@ def go_beside(world: World, window: Window, by: int) -> None:
 
 
 def pause_at_next(world: World, window: Window) -> None:
-    """Let time run until what is selected strikes something, and stand still there; or no longer wait."""
+    """Run until the next impact of the selection, and pause there; or no longer wait."""
     microscope = window.microscope
     if microscope.waits_for is not None:
         microscope.waits_for = None
-        window.notify("Time no longer stands still at the next impact")
+        window.notify("No pause at the next impact")
         return
     chosen = tuple(entity for entity in window.selection.entities if world.has(entity, Velocity))
     microscope.waits_for = chosen
     window.error, window.pace.paused = "", False
-    names = (
-        " or ".join(world.label(entity) for entity in chosen[:2]) if len(chosen) < 3 else "what is selected"
-    )
-    window.notify(f"Time stands still at the next impact{' of ' + names if chosen else ''}")
+    names = " or ".join(world.label(entity) for entity in chosen[:2]) if len(chosen) < 3 else "the selection"
+    window.notify(f"Pause at the next impact{' of ' + names if chosen else ''}")
 
 
 def run_slowly(world: World, window: Window) -> None:
@@ -81,7 +79,7 @@ def save_table(world: World, window: Window) -> None:
 def clicked_impact(world: World, window: Window, pixel: tuple[float, float]) -> Any | None:
     """Return the impact whose mark or sparks are at a place on the screen [px], if a click there means it.
 
-    Where bodies move and impulses (E) are not shown, a click on a body is for the body.
+    While bodies move and impulses (E) are hidden, a click on a body selects the body.
     """
     camera = window.camera
     record = window.microscope.near(camera.to_world(pixel), _REACH / camera.scale, world.time)

@@ -29,7 +29,7 @@ def walk(world: World, window: Window) -> None:
 
 
 def enter(world: World, window: Window) -> None:
-    """Go to the first field of what is selected; where nothing is, click with the tool at the cursor.
+    """Go to the first field of the selection; without one, click with the tool at the cursor.
 
     A tool that is dragged is pressed by one Enter and let go by the next.
     """
@@ -57,9 +57,9 @@ def _post(kind: int, place: tuple[int, int], **more: Any) -> None:
 
 
 def _arrow(across: int, down: int, step: int) -> Action:
-    """Return what moves all that is selected by a pixel; where nothing is, the cursor by a step.
+    """Return what moves all that is selected by a pixel; without one, the cursor by a step.
 
-    With Shift held, an arrow to the side turns what is selected.
+    With Shift held, an arrow to the side turns the selection.
     """
     nudge = turner(-across) if step == 1 and across else nudger(across, -down)
 
@@ -81,4 +81,4 @@ ARROWS = {
     for name, across, down in (("left", -1, 0), ("right", 1, 0), ("up", 0, -1), ("down", 0, 1))
     for held, step in (("", _STEP), ("shift+", 1))
 }
-"""What each arrow does, alone and with Shift held, by its name in SDL."""
+"""The action of each arrow, alone and with Shift held, by its name in SDL."""

@@ -28,7 +28,7 @@ __all__ = [
 _CLICK = 4.0
 """How far apart a press and a release are at most that are a click [px]."""
 _SNAP = math.pi / 12.0
-"""What directions go in steps of while Shift is held [rad]."""
+"""The step of directions while Shift is held [rad]."""
 _NEARLY = math.radians(1.5)
 """How far from a direction an arm may be drawn to be meant to have it [rad]."""
 _SHARE = 0.3
@@ -152,7 +152,7 @@ def _nothing(world: World, window: Window) -> None:
 
 RULER = Tool(
     "ruler", "Ruler",
-    "Ruler: drag from point to point; an end in the middle of a body goes with it. Shift: round angles.",
+    "Ruler: drag from point to point; an end in the middle of a body moves with it. Shift: round angles.",
     _placing(Ruler), _end_placing, prompts=("Drag from one point to another", "... to where it ends"),
 )  # fmt: skip
 PROTRACTOR = Tool(
@@ -161,12 +161,12 @@ PROTRACTOR = Tool(
     prompts=("Drag from the vertex along one arm", "... to the end of it", "Click: the end of the other arm"),
 )  # fmt: skip
 GATE = Tool(
-    "gate", "Gate", "Gate: drag a line; what crosses it is timed by the stopwatch.",
+    "gate", "Gate", "Gate: drag a line; the stopwatch times bodies that cross it.",
     _placing(Gate), _end_placing, prompts=("Drag a line for bodies to cross", "... to its other end"),
 )  # fmt: skip
 NOTE = Tool(
-    "note", "Note", "Note: click where it shall stand, and write. Enter keeps it.", _begin_note, _nothing,
-    prompts=("Click where the note shall stand",),
+    "note", "Note", "Note: click a point, and write. Enter keeps it.", _begin_note, _nothing,
+    prompts=("Click a point for the note",),
 )  # fmt: skip
 MEASURING_TOOLS = (RULER, PROTRACTOR, GATE, NOTE)
 _KINDS: dict[str, Any] = {RULER.name: Ruler, PROTRACTOR.name: Protractor, GATE.name: Gate, NOTE.name: Note}
@@ -175,7 +175,7 @@ _KINDS: dict[str, Any] = {RULER.name: Ruler, PROTRACTOR.name: Protractor, GATE.n
 def measuring(tool: Tool, choose: Callable[[World, Window, Tool], None]) -> Action:
     """Return what the key of a tool does.
 
-    Where as many bodies are selected as it has points, it measures between them; else it is taken in hand.
+    If as many bodies are selected as it has points, it measures between them; else it is taken in hand.
     Where that is so already, an instrument is put into the middle of the picture.
     """
     kind = _KINDS[tool.name]

@@ -35,7 +35,7 @@ _ON_LINE, _ON_POINT = 5.0, 9.0
 def body_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
     """Return the body that is drawn on top at a place on the screen [px], or ``None``.
 
-    Where there is none, the nearest whose middle is within a few pixels is taken.
+    Otherwise the nearest whose middle is within a few pixels is taken.
     """
     place, rows = camera.to_world(pixel), body_rows(world)
     entities = world.entity_index.entities

@@ -1,4 +1,4 @@
-"""Where the window saves scenes, and which of them it opens."""
+"""Scene files of the window: where it saves them, and which it opens."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from physicslab.files.scene import SceneError, open_plain
 __all__ = ["is_recording", "new_paths", "new_scene_paths", "newest_scene", "scene_files"]
 
 _MARK = b"physicslab-scene/"
-"""What the format of a scene file begins with."""
+"""The beginning of the format of a scene file."""
 _HEAD = 4096
 """Bytes at the beginning of a file in which it says what it is."""
 _RECORDING = b"physicslab-recording/"
@@ -51,7 +51,7 @@ def scene_files(directory: Path) -> list[Path]:
 def newest_scene(directory: Path) -> Path | None:
     """Return the scene file that was written last, or ``None`` if there is none.
 
-    Where no file is marked as a scene, it is the newest JSON file: opening it shows what is wrong.
+    If no file is marked as a scene, it is the newest JSON file: opening it shows its error.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a person can put into the world at the cursor."""
+"""Bodies that can be put into the world at the cursor."""
 
 from __future__ import annotations
 
@@ -161,18 +161,18 @@ def _outlines(make: Make, turn: int, recipe: Recipe) -> Outlines:
 
 CIRCLE = Spawnable("circle", "Circle", "on empty space for a circle", _circle)
 _BOX = Spawnable("box", "Box", "on empty space for a box", _box)
-_PENDULUM = Spawnable("pendulum", "Pendulum", "where it shall hang from", _pendulum)
+_PENDULUM = Spawnable("pendulum", "Pendulum", "at its upper end", _pendulum)
 SPAWNS = (
     CIRCLE,
     _BOX,
-    Spawnable("block", "Plank", "where its middle shall be", _plank),
+    Spawnable("block", "Plank", "at its middle", _plank),
     _PENDULUM,
-    Spawnable("chain", "Chain", "where it shall hang from", _chain),
-    Spawnable("stack", "Stack", "where its foot shall be", _stack),
-    Spawnable("pyramid", "Pyramid", "where its foot shall be", _pyramid),
-    Spawnable("heap", "Heap of discs", "where it shall fall", _heap),
-    Spawnable("pit", "Open box", "where the middle of its floor shall be", _pit),
-    Spawnable("binary", "Planets", "where they shall circle each other", _binary,
+    Spawnable("chain", "Chain", "at its upper end", _chain),
+    Spawnable("stack", "Stack", "at its foot", _stack),
+    Spawnable("pyramid", "Pyramid", "at its foot", _pyramid),
+    Spawnable("heap", "Heap of discs", "where it falls", _heap),
+    Spawnable("pit", "Open box", "at the middle of its floor", _pit),
+    Spawnable("binary", "Planets", "at the centre of their orbit", _binary,
           "These two circle each other in planet mode: O turns it on"),
 )  # fmt: skip
 """All there is to spawn, in the order of the chooser."""

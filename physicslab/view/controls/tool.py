@@ -1,4 +1,4 @@
-"""What a tool is: what a press and a release of the left button do in the world."""
+"""The interface of a tool: the actions of a press and a release of the left button in the world."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["Tool"]
 
 @dataclass(frozen=True, slots=True)
 class Tool:
-    """What a press and a release of the left button do.
+    """The actions of a press and a release of the left button.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the left mouse button does in the world: one tool at a time, named in the window."""
+"""Tools, the actions of the left mouse button in the world: one at a time, named in the window."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def remove(world: World, window: Window) -> None:
 
 
 def remove_selected(world: World, window: Window) -> None:
-    """Remove what is selected; where nothing is, the body under the cursor."""
+    """Remove the selection; without one, the body under the cursor."""
     if window.selection.entities:
         remove_entities(world, window, window.selection.entities)
     else:
@@ -117,11 +117,9 @@ def begin_spring(world: World, window: Window) -> None:
     if entity is not None:
         window.spring_tool.begin(world, entity, window.place)
     elif window.tool == SPRING.name:
-        window.notify("A spring begins on a body: press on one, and drag to where it shall end")
+        window.notify("A spring begins on a body: press on one, and drag to its end")
     else:
-        window.notify(
-            "A spring begins on a body: put the cursor on one, hold S, and drag to where it shall end"
-        )
+        window.notify("A spring begins on a body: put the cursor on one, hold S, and drag to its end")
 
 
 def end_spring(world: World, window: Window) -> None:
@@ -154,7 +152,7 @@ SPRING = Tool(
     "spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring, drags=True
 )
 REMOVE = Tool(
-    "remove", "Erase", "Erase: click a body, whose springs go with it, or a spring.", remove, _nothing
+    "remove", "Erase", "Erase: click a body to remove it with its springs, or a spring.", remove, _nothing
 )
 _USAGE = "Select: click a body to see its numbers; drag to move or throw it."
 SELECT = Tool("select", "Select", _USAGE, select, end_select)

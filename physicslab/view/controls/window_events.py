@@ -80,7 +80,7 @@ class WindowEvents:
         """Do what an event calls for."""
         window = self._window
         taken = self._take(event)
-        self._do_pending(world)  # what was written in a field is done before the click beside it
+        self._do_pending(world)  # an entry in a field is done before the click beside it
         self._follow_alt(world, event)
         handler = self._handlers.get(event.type)
         if taken:
@@ -169,7 +169,7 @@ class WindowEvents:
             self._panning = event.button
 
     def _takes_handle(self, world: World, pixel: tuple[float, float]) -> bool:
-        """Take the handle of what is selected that lies under the cursor; return whether there is one."""
+        """Take the handle of the selection that lies under the cursor; return whether there is one."""
         window = self._window
         if take_end(world, window):
             return True

@@ -1,1 +1,1 @@
-"""What is drawn over the world to explain it."""
+"""Overlays that explain the world."""

@@ -55,7 +55,7 @@ _CUT: Strokes = (((-0.3, -0.55), (0.1, 0.55)), ((0.1, -0.55), (0.5, 0.55)))
 
 @dataclass(frozen=True, slots=True)
 class ArrowKind:
-    """What an arrow stands for, and how it looks.
+    """The meaning of an arrow, and its look.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Where bodies are that are out of sight: no body that was thrown away is lost silently."""
+"""Directions to bodies out of sight: no body that was thrown away is lost silently."""
 
 from __future__ import annotations
 

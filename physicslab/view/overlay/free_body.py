@@ -1,4 +1,4 @@
-"""The free-body diagram of what is selected: every force by name, in newtons."""
+"""The free-body diagram of the selection: every force by name, in newtons."""
 
 from __future__ import annotations
 

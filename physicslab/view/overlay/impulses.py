@@ -25,7 +25,7 @@ __all__ = ["CROWD", "IMPACT_WIDTH", "LABELLED", "LABELLED_IN_CROWD", "REST_WIDTH
 LABELLED = 12
 """How many contacts have their numbers written beside them: the strongest."""
 CROWD, LABELLED_IN_CROWD = 30, 4
-"""Where there are more impacts than this at a time, only so many have theirs: more would hide the bodies."""
+"""The largest number of impacts drawn at a time: more would hide the bodies."""
 IMPACT_WIDTH, REST_WIDTH = 3.0, 1.6
 """How thick arrows are drawn [px]: an impact's, and those of resting contact."""
 _KEEP_RATIO = 1.5

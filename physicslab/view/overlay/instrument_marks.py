@@ -24,7 +24,7 @@ from physicslab.world import World
 __all__ = ["draw_instruments"]
 
 _WIDTH, _CHOSEN_WIDTH = 1.8, 2.8
-"""Width of lines, and of what is selected [px]."""
+"""Width of lines, and of the selection [px]."""
 _TICK, _APART = 5.0, 9.0
 """Length of the strokes on a ruler, and how far apart they are at least [px]."""
 _MAX_TICKS = 400
@@ -33,7 +33,7 @@ _POST = 4.0
 _ARC, _ARC_SHARE = 58.0, 0.55
 """Radius of a protractor's arc at most [px], and as a share of its shorter arm."""
 _FAR = 1e6
-"""What is farther out of the picture than this is not drawn [px]."""
+"""Lines farther out of the picture than this are not drawn [px]."""
 _LETTERS = 44
 """Letters in a line of a note."""
 _PAD = 6

@@ -95,5 +95,5 @@ def readings_of(world: World, entity: int) -> list[tuple[str, str]]:
         return []
     part = world.component(entity, one.kind)
     bodies = ((name, getattr(part, f"{name}_body")) for name in one.kind.POINTS)
-    attached = [(f"{name.capitalize()} goes with", world.label(body)) for name, body in bodies if body]
+    attached = [(f"{name.capitalize()} attached to", world.label(body)) for name, body in bodies if body]
     return [*reading_of(one), *attached]

@@ -29,7 +29,7 @@ def _cost(slot: Slot) -> float:
 _SLOTS: list[Slot] = sorted(
     ((side, column, row) for column in range(2) for row in range(-3, 4) for side in (1, -1)), key=_cost
 )
-"""Where a label may be: right (1) or left (-1) of its place, and widths aside, heights down."""
+"""Positions of a label: right (1) or left (-1) of its place, and widths aside, heights down."""
 _BETTER = 2.0
 """By how much a free slot must be nearer for a label to move there."""
 _POINT = 7

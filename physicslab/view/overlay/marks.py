@@ -1,4 +1,4 @@
-"""Marks of what is selected and of tools: outlines, handles, the cursor, what would be made, snapping."""
+"""Marks of the selection and of tools: outlines, handles, the cursor, what would be made, snapping."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ _WIDTH = 2.0
 _SPRING_WIDTH = 9.0
 """Width of the band along a spring [px]."""
 _FAR = 1e6
-"""What is farther out of the picture than this is not drawn [px]."""
+"""Lines farther out of the picture than this are not drawn [px]."""
 
 
 def draw_selection(
@@ -77,7 +77,7 @@ def draw_selection(
     canvas: Canvas,
     colour: Colour | None = None,
 ) -> None:
-    """Draw a line around each body, or along a spring; in a colour, or that of what is selected."""
+    """Draw a line around each body, or along a spring; in a colour, or that of the selection."""
     for entity in entities:
         if world.has(entity, Transform):
             corners = camera.project(_outline(world, entity, _GAP / camera.scale))

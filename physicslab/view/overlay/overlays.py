@@ -36,7 +36,7 @@ class Overlays:
     velocity, force, impact, rest : Gauge
         The scales: of velocities, forces, impulses of impacts, and impulses that hold bodies apart.
     body_force : Gauge
-        The scale of the forces on what is selected.
+        The scale of the forces on the selection.
     force_labels : Labels
         Where their names stand.
     impacts : RecentImpacts

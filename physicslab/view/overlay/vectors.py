@@ -29,7 +29,7 @@ def draw_vectors(world: World, overlays: Overlays, camera: Camera, theme: Theme,
     linear = world.table(Velocity)["linear"][rows]
     pulled = rows[world.bodies.inverse_mass[rows] > 0.0]
     force, applied = force[pulled], applied[pulled]
-    # What contacts take away again is a measure for what is left: a rest of it is no force, and no motion.
+    # The velocity that contacts remove is the scale of the rest: a rounding of it is no force, and no motion.
     strength = np.hypot(applied[:, 0], applied[:, 1])
     sizes = np.concatenate((np.hypot(force[:, 0], force[:, 1]), strength))
     overlays.force.follow(sizes, overlays.reach, world.time)

@@ -70,7 +70,7 @@ def draw_banners(
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """What went wrong or was just done: its lines, its colour, how wide it is and how high [px]."""
+    """A message of an error or an action: its lines, its colour, its width and height [px]."""
 
     lines: list[str]
     colour: Colour

@@ -66,7 +66,7 @@ def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[
     left, slides = collision.approach(spot, after=True)
     told = [f"B ({names[1]}) met A ({names[0]}) at {quantity(-vn, 'm/s')} along the normal n."]
     if len(collision.spots) == 2:
-        told.append("Two points met at once, as where a box lands flat: both impulses are found together.")
+        told.append("Two points met at once, as when a box lands flat: both impulses are found together.")
     told.append(_bounce(collision, result, -left / vn if vn else 0.0))
     told += list(_rotation(collision))
     told.append(_friction(collision, result, vt, slides))
@@ -109,10 +109,10 @@ def _rotation(collision: Collision) -> Iterator[str]:
 
 def _friction(collision: Collision, result: Result, before: float, after: float) -> str:
     if collision.friction == 0.0:
-        return "There is no friction: what slides goes on as it did."
+        return "There is no friction: the sliding goes on as before."
     none = AGREES * collision.speed_scale
     if abs(before) < none and abs(after) < none:
-        return "Nothing slides, so there is no friction impulse to speak of."
+        return "There is no sliding, so there is hardly any friction impulse."
     if result.sticks:
         return "It sticks: friction is strong enough to stop the sliding at the contact."
     return (
@@ -125,13 +125,13 @@ def _law(collision: Collision, result: Result) -> Iterator[str]:
     """Yield which law holds where it is not Newton's with the e of the materials."""
     if collision.law == ENERGETIC:
         yield (
-            "Newton's law would make energy here, since friction reverses the sliding during the impact. "
+            "Newton's law would create energy here, since friction reverses the sliding during the impact. "
             "Stronge's law holds: the normal force gives back e² of the work that it took."
         )
     elif collision.law == LOWERED:
         yield (
-            f"With e = {collision.restitution:.3g} this impact would make energy, so restitution was lowered "
-            f"to {result.restitution:.4g}: the largest that makes none."
+            f"With e = {collision.restitution:.3g} this impact would create energy, so restitution was "
+            f"lowered to {result.restitution:.4g}: the largest that creates none."
         )
 
 
@@ -196,7 +196,7 @@ def _masses(collision: Collision) -> Iterator[Step]:
         )  # fmt: skip
         if without_rounding(response.coupling, response.kn):
             yield Step(
-                "Coupling: how a push along n makes the contact slide",
+                "Coupling: sliding of the contact by an impulse along n",
                 "c = (r_A×n)(r_A×t)/I_A + (r_B×n)(r_B×t)/I_B",
                 " + ".join(
                     f"{_number(n)}·{_number(t)}·{_one_over(body.inverse_inertia)}"

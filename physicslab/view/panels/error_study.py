@@ -56,7 +56,7 @@ class Sample:
 
     @property
     def name(self) -> str:
-        """What runs of one line of the plot have in common: the method that was chosen."""
+        """The key of a line of the plot: the chosen method."""
         return f"auto: {self.integrator}" if self.asked == "auto" else self.integrator
 
     @property

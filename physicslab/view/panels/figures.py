@@ -23,7 +23,7 @@ _SMOOTHING = 0.5
 
 @dataclass(frozen=True, slots=True)
 class WorldFigures:
-    """What there is to say of a world at one moment.
+    """The figures of a world at one moment.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the arrows of the overlays mean: colour, head and scale of each."""
+"""The legend of the overlays' arrows: colour, head and scale of each."""
 
 from __future__ import annotations
 

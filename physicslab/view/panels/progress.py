@@ -1,4 +1,4 @@
-"""What the window shows while it loads, and while kernels are compiled."""
+"""The window while it loads, and while kernels are compiled."""
 
 from __future__ import annotations
 

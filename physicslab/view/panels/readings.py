@@ -1,4 +1,4 @@
-"""What the HUD shows of a world, line by line."""
+"""The lines of the HUD."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ _WRITING_S = 0.001
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """What can be relied on from the last edit to a moment.
+    """The reliable digits from the last edit to a moment.
 
     Attributes
     ----------
@@ -107,7 +107,7 @@ class TrustWatch(LabProcess):
 
     @property
     def state(self) -> tuple[object, ...]:
-        """What differs where something else is to be shown of it."""
+        """A key that differs if the display must change."""
         return (
             self.wanted, self.running, self.share, self.since, self.left_out, self.failure,
             id(self._findings), self.horizon,

@@ -1,4 +1,4 @@
-"""What lies behind the bodies: a grid, and the walls of the world."""
+"""The backdrop: a grid, and the walls of the world."""
 
 from __future__ import annotations
 

@@ -110,7 +110,7 @@ class Sparks:
 def _sources(impacts: NDArray[Any], scale: float) -> tuple[NDArray[Any], NDArray[np.int64], Numbers]:
     """Return for each new spark its impact, its number among those of that impact, and its strength.
 
-    Where there are more impacts than there is room for sparks, the strongest make some.
+    With more impacts than there is room for sparks, the strongest make some.
     """
     finite = np.isfinite(impacts["x"]) & np.isfinite(impacts["y"])
     impacts = impacts[finite & (impacts["approach_speed"] * scale > _MIN_APPROACH)]

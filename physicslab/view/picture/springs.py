@@ -28,7 +28,7 @@ _MAX_COILS = 500
 _SAG = 0.005
 """Share of its length that the weight of a body stretches a spring by which is drawn as a string."""
 _EARTH = 9.81
-"""What a weight is here, whatever gravity is on [m/s^2]."""
+"""The acceleration of a weight here, for any gravity [m/s^2]."""
 _PIN = 4.0
 """Radius of a pin [px]."""
 

@@ -21,7 +21,7 @@ __all__ = ["Pictures"]
 _VERTEX_BYTES = 20
 """Place, place in the texture and colour: what ``ImDrawVert`` takes."""
 _MASKS = (0x00FF0000, 0x0000FF00, 0x000000FF, 0xFF000000)
-"""Where red, green, blue and alpha are in a pixel."""
+"""The places of red, green, blue and alpha in a pixel."""
 
 
 type Clip = tuple[float, float, float, float]
@@ -29,7 +29,7 @@ type Clip = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class _Sheet:
-    """What is to be painted: a draw list, and which part of the display it takes [px]."""
+    """A job to paint: a draw list, and its part of the display [px]."""
 
     vertices: bytes
     indices: bytes
@@ -39,7 +39,7 @@ class _Sheet:
 
 @dataclass(frozen=True, slots=True)
 class _Picture:
-    """What was painted, the surface that shows it, and how many were painted before."""
+    """A painted picture, its surface, and the number painted before."""
 
     sheet: _Sheet
     surface: pygame.Surface

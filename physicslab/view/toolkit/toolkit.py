@@ -39,7 +39,7 @@ _ONLY_WHERE_TAKEN = (
 _FOR_WINDOWS = (pygame.K_F6, pygame.K_F10, pygame.K_LALT)
 """Keys that go from panel to panel: they are never for the one that has the others."""
 _NOWHERE = -3.0e38
-"""Where the mouse is said to be while it is not for panels."""
+"""The reported position of the mouse while it is not for panels."""
 
 
 class Toolkit:

@@ -1,4 +1,4 @@
-"""What panels are made of: buttons, rows, bars and menus, each found again by its words."""
+"""Elements of panels: buttons, rows, bars and menus, each identified by its label."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _ONLY_SIDES = (
     imgui.DockNodeFlags_.passthru_central_node | imgui.DockNodeFlags_.no_docking_over_central_node
     | imgui.internal.DockNodeFlagsPrivate_.no_close_button
 )  # fmt: skip
-"""What is in the middle stays in sight, and takes the mouse."""
+"""The middle stays in sight, and takes the mouse."""
 _APART = _FLAGS.no_saved_settings | _FLAGS.no_docking
 _TITLE = 6.0
 """Height of what a floating window has above what fills it, at most, in heights of the text."""
@@ -180,7 +180,7 @@ class Ui:
     # ---- words ---------------------------------------------------------------------------------------------
 
     def text(self, words: str, colour: Colour | None = None, *, wrapped: bool = False) -> None:
-        """Write words in a colour of the theme, broken to the panel's width if asked for."""
+        """Write words in a colour of the theme, broken to the panel's width if ``wrapped``."""
         words = drawable(words)
         self.words.append(words)
         imgui.push_style_color(imgui.Col_.text, packed(colour or self.theme.text))

@@ -1,4 +1,4 @@
-"""Edits of what is selected: one command for all of it, or one sentence that says why it is refused."""
+"""Edits of the selection: one command for all of it, or one sentence that says why it is refused."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _BY_TOOLS: tuple[type[Component], ...] = (Held,)
 
 
 def change_fields(world: World, window: Window, changes: Sequence[SetField]) -> None:
-    """Make one edit of a change to each of what is selected, or say why it is refused."""
+    """Make one edit of a change to each of the selection, or say why it is refused."""
     for change in changes:
         refused = _refused_place(world, change)
         if refused:
@@ -104,7 +104,7 @@ def give(world: World, window: Window, entities: Sequence[int], make: Callable[[
 def take(world: World, window: Window, entities: Sequence[int], kind: type[Component]) -> None:
     """Take a component from each of some entities that has it, or say why that cannot be."""
     if kind is Transform:
-        window.notify("A body has a place as long as it is there: delete the body instead", 6.0, failed=True)
+        window.notify("Every body has a position: delete the body instead", 6.0, failed=True)
         return
     _do(window, [RemoveComponent(entity, kind.__name__) for entity in entities if world.has(entity, kind)])
 
@@ -157,19 +157,19 @@ def _spring_above(world: World, entity: int) -> Spring:
 _PLAIN: dict[type[Component], str] = {
     Transform: "place", Velocity: "motion", Material: "surface", Drag: "air resistance",
 }  # fmt: skip
-"""What components are called that a plainer name fits."""
+"""Plainer names of components."""
 _MEANINGS: dict[type[Component], str] = {
-    Transform: "where it is, and how far it is turned",
-    Velocity: "it can move; without it, it stays where it is",
-    Mass: "forces move it; what moves without mass is infinitely heavy",
+    Transform: "its position and angle",
+    Velocity: "it can move; without it, it is fixed",
+    Mass: "forces move it; without mass, a moving body is infinitely heavy",
     Shape: "it can touch others",
-    Material: "how much it bounces, and how rough it is",
-    Drag: "it is slowed by what it moves through, as by air",
-    Spring: "it hangs on a point that can be dragged",
-    Strobe: "pictures of where it was stay",
-    Trail: "where it was is shown",
+    Material: "its restitution and friction",
+    Drag: "a medium slows it, as air does",
+    Spring: "it hangs from a point that can be dragged",
+    Strobe: "it leaves pictures of its past positions",
+    Trail: "its past path is shown",
 }
-"""What components mean to the body that has them."""
+"""Meanings of components for their body."""
 
 
 # ---- names, and ends of springs ------------------------------------------------------------------------

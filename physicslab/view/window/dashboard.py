@@ -82,7 +82,7 @@ class SliderShown:
 
 
 class Dashboard:
-    """What is measured in a window: the instruments of its world, and the samples for their lines.
+    """Measurements in a window: the instruments of its world, and the samples for their lines.
 
     Samples belong to the window: they are in no scene file, and no undo takes them back. While the place of
     the history lies in the past, the instruments stay that were there at its end.
@@ -133,7 +133,7 @@ class Dashboard:
 
     @property
     def state(self) -> tuple[object, ...]:
-        """What panels are built from, but for the samples."""
+        """The state that panels are built from, but for the samples."""
         panels = self.graphs, self.meters, self.sliders, self.active
         filled = None if self.past is None else round(self.past.share, 2)
         return *panels, self.pointed, *self.marks, len(self.free_axes), filled
@@ -141,7 +141,7 @@ class Dashboard:
     def begin(self, world: World, before: World | None, *, is_new: bool) -> None:
         """Follow another world; ``before`` is the one that showed the same scene until now, if one did.
 
-        What was recorded of it stays as the run before. In a world that is new the instruments are made again
+        Its samples stay as the run before. In a world that is new the instruments are made again
         that were added to the one before.
         """
         if is_new:

@@ -18,7 +18,7 @@ __all__ = ["ALL", "BACK", "FORWARD", "FROM_NOW", "Filming"]
 
 ALL, BACK = "All that was run", "From the start to here"
 FORWARD, FROM_NOW = "From here to the end", "From now on, until F9"
-"""What a film can be of."""
+"""The parts of a run that a film can show."""
 _RATE = 30.0
 """Pictures a second."""
 _WIDTHS = {".gif": 800, ".mp4": 1920}
@@ -33,7 +33,7 @@ class Filming:
     """Takes pictures of the world as it is shown, panels left out, and puts them in a file.
 
     A film of what was run is made by going through the time line, a picture a frame; it plays at the speed at
-    which time runs in the window. Where the file cannot be written, it is as it was before.
+    which time runs in the window. If the file cannot be written, it stays as it was.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class Filming:
         if self._end is None:
             return f"FILM: {self._run * _RATE * self._spacing:.1f} s, F9 ends it"
         share = (self._step - self._start) / max(self._end - self._start, 1)
-        return f"FILM: {100.0 * share:.0f} %, F9 gives it up"
+        return f"FILM: {100.0 * share:.0f} %, F9 cancels it"
 
     def begin(self, path: Path, what: str, history: History, room: Rect, speed: float) -> None:
         """Begin a film.
@@ -99,7 +99,7 @@ class Filming:
         here = history.step_count
         start, end = {ALL: (first, last), BACK: (first, here), FORWARD: (here, last)}.get(what, (here, None))
         if end is not None and end <= start:
-            raise ValueError("Nothing was run there: let time run first, or film from now on")
+            raise ValueError("There are no steps to film: run first, or film from now on")
         scale = min(_WIDTHS.get(path.suffix.lower(), room[2]) / room[2], 1.0)
         self._size = max(round(scale * room[2]), 2), max(round(scale * room[3]), 2)
         self._film = Film(path, self._size, _RATE)
@@ -114,7 +114,7 @@ class Filming:
         if self._film is None or self._end is None or self._film.count == 0:
             return
         if history.step_count != self._step:
-            self.give_up("The film was given up: time was moved by hand meanwhile")
+            self.give_up("The film was cancelled: the time line was moved meanwhile")
             return
         if self._step == self._end:
             self.finish()
@@ -146,7 +146,7 @@ class Filming:
         try:
             canvas.paint(grab)
         except OSError as error:
-            self.give_up(f"The film could not be kept: {error.strerror or error}")
+            self.give_up(f"The film could not be saved: {error.strerror or error}")
 
     def finish(self) -> None:
         """End the film, and keep it."""
@@ -156,11 +156,11 @@ class Filming:
         try:
             film.finish()
         except OSError as error:
-            self._notify(f"The film could not be kept: {error.strerror or error}", True)
+            self._notify(f"The film could not be saved: {error.strerror or error}", True)
         else:
             self._notify(f"Saved {film.path.name}: {film.count / _RATE:.1f} s", False)
 
-    def give_up(self, words: str = "The film was given up") -> None:
+    def give_up(self, words: str = "The film was cancelled") -> None:
         """End the film, and leave the file as it was."""
         film, self._film = self._film, None
         if film is not None:

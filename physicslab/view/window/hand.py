@@ -76,7 +76,7 @@ def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vect
     A body in the hand is infinitely heavy, and would press others through a floor. Towards each it goes no
     faster than it comes there in the time that is coming, and gives it in that time the velocity that the
     hand's strength gives to it and to what lies behind it: none to a box on a floor that is pressed down.
-    Where contacts push back harder than the hand is strong all the same, it comes out again.
+    If contacts push back harder than the hand is strong all the same, it comes out again.
     """
     if not world.has(entity, Shape):
         return wanted

@@ -1,4 +1,4 @@
-"""The handles of what is selected: size, angle and velocity, to be dragged while time stands still."""
+"""The handles of the selection: size, angle and velocity, to be dragged while paused."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _VELOCITY = 3.0
 _MIN_ARROW = 22.0
 """Length of the arrow of a body at rest, so that it can be caught [px]."""
 _SNAP_ANGLE, _SNAP_SIZE = math.pi / 12.0, 0.1
-"""What angles [rad] and sizes [m] go in steps of while Shift is held."""
+"""Steps of angles [rad] and sizes [m] while Shift is held."""
 _MIN_SIZE = 0.01
 """The smallest size that a handle gives [m]."""
 

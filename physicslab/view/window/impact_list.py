@@ -22,14 +22,14 @@ LIMIT = 100_000
 _DROPPED = 0.1
 """Share of them that is forgotten at once."""
 _SAME = ["time", "entity_a", "entity_b", "wall", "normal_impulse"]
-"""What two records of one impact have in common: one that was made again, in a step that was made again."""
+"""The key of an impact, equal for its records in a repeated step."""
 _DERIVED = ("sticks", "e_found", "energy_lost")
 """Columns that follow from a record, and that rows are sorted by."""
 COLUMNS = (
     "time", "entity_a", "entity_b", "approach_speed", "normal_impulse", "tangent_impulse",
     "sticks", "friction", "restitution", "e_found", "energy_lost",
 )  # fmt: skip
-"""What rows can be sorted by."""
+"""Columns by which rows can be sorted."""
 
 
 class ImpactList:
@@ -43,7 +43,7 @@ class ImpactList:
     shown : bool
         Whether the table is shown.
     only_selected : bool
-        Whether it shows impacts of what is selected alone.
+        Whether it shows impacts of the selection alone.
     sorted_by : str
         One of ``COLUMNS``.
     falling : bool

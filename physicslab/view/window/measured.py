@@ -1,4 +1,4 @@
-"""The forces on what is selected, measured now and then: arrows and figures show those of the same step."""
+"""The forces on the selection, measured now and then: arrows and figures show those of the same step."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _PERIOD = 0.2
 
 
 class Measured:
-    """What was measured of one body.
+    """The measurements of one body.
 
     Attributes
     ----------

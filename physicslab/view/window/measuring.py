@@ -1,4 +1,4 @@
-"""What is being placed, dragged or written of instruments; it is in the world once it is done."""
+"""Instruments that are being placed, dragged or written; they are in the world once that is done."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class Writing:
 
 @dataclass(slots=True)
 class _Drag:
-    """What is dragged: some points of an instrument, from where they were, and from where it was pressed."""
+    """A drag: some points of an instrument, their positions before, and the place of the press."""
 
     one: Instrument
     names: tuple[str, ...]
@@ -57,7 +57,7 @@ class _Drag:
 
     @property
     def places(self) -> dict[str, Spot]:
-        """Where the points are now: one alone goes to the cursor, several move as it does."""
+        """The present places of the points: one alone goes to the cursor, several move as it does."""
         if len(self.names) == 1 and self.one.kind is not Note:
             return {self.names[0]: self.spot}
         by = self.spot.place - self.begin
@@ -133,7 +133,7 @@ class Measuring:
 
     @property
     def kind_in_hand(self) -> type[Any] | None:
-        """What is being placed or dragged."""
+        """The instrument being placed or dragged."""
         return self.kind if self._drag is None else self._drag.one.kind
 
     @property
@@ -153,7 +153,7 @@ class Measuring:
 
     @property
     def overrides(self) -> Overrides:
-        """Where points are to be drawn that are being dragged."""
+        """The places at which dragged points are drawn."""
         if self._drag is None or not self._drag.moved:
             return {}
         entity = self._drag.one.entity

@@ -39,7 +39,7 @@ class SlowRun:
 
 
 class Microscope:
-    """What the microscope shows of one impact.
+    """The content of the microscope for one impact.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Microscope:
 
     @property
     def state(self) -> tuple[object, ...]:
-        """What panels show of it."""
+        """The state that panels show."""
         return self.number, self.is_open, self.waits_for, self.slow is None, self.frame
 
     def show(self, record: Any) -> None:

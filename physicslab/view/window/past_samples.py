@@ -1,4 +1,4 @@
-"""What lines of graphs were before they were made: the steps of the history made again, a slice a frame."""
+"""Samples of graphs from before they were made: the steps of the history repeated, a slice a frame."""
 
 from __future__ import annotations
 
@@ -59,11 +59,11 @@ class PastSamples:
                 if played.step % self._stride == 0:
                     reading = Reading(world)
                     values = {key: reading.value(key[1], key[0]) for key in self.keys}
-                    if not all(map(math.isnan, values.values())):  # what did not exist yet has no moments
+                    if not all(map(math.isnan, values.values())):  # no body yet, no moments
                         self.record.add(played.time, played.step, values)
                 self.share = played.step / self._steps
                 if time.perf_counter() >= until:
                     return False
         except (Diverged, SceneError):
-            pass  # what was measured until then is what there is
+            pass  # only the samples until then exist
         return True

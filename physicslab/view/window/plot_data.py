@@ -20,7 +20,7 @@ def line_to_show(x: Numbers, y: Numbers, low: float, high: float, width: int) ->
     """Return the points of a line that can be seen in a plot.
 
     In each pixel the first, the lowest, the highest and the last point stay, so that the line covers the same
-    pixels as that of all points. Where a value is NaN the line is broken.
+    pixels as that of all points. The line is broken at NaN.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What bodies that are made with the mouse are like."""
+"""Properties of bodies that are made with the mouse."""
 
 from __future__ import annotations
 

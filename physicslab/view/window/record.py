@@ -1,4 +1,4 @@
-"""What was measured while it was shown: a table with a row for each moment and a column for each quantity."""
+"""Recorded samples: a table with a row for each moment and a column for each quantity."""
 
 from __future__ import annotations
 

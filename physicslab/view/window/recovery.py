@@ -1,4 +1,4 @@
-"""What a session that ended without closing has left."""
+"""Sessions that ended without closing."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Recovery:
 
     @property
     def words(self) -> str:
-        """What to say of the session on offer."""
+        """The message about the session on offer."""
         try:
             saved = time.localtime(self._left[0].path.stat().st_mtime)
         except (IndexError, OSError):

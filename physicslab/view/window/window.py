@@ -1,4 +1,4 @@
-"""What the systems of a frame share: camera, canvas, clock and hand."""
+"""The shared state of the systems of a frame: camera, canvas, clock and hand."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ from physicslab.world import World
 __all__ = ["LEVELS", "Action", "Left", "Picking", "Window"]
 
 type Action = Callable[[World, Window], object]
-"""What a click or a key does."""
+"""The action of a click or a key."""
 
 _PATIENCE = 3.0
 """How long [s] after Esc a second one closes the window though there are unsaved edits."""
 LEVELS = {
     "Explore": "The world first, few figures",
-    "Measure": "Energies, momenta and what they do",
-    "Engineer": "Methods, systems and what they cost",
+    "Measure": "Energies, momenta and their changes",
+    "Engineer": "Methods, systems and their cost",
 }
 """How much the panel at the right shows, with what each level is for."""
 _AROUND = 0.04
@@ -143,17 +143,17 @@ class Window:
     points_by_key, presses_by_key : bool
         Whether the cursor was moved by keys, and whether the tool was pressed by one and is to be let go.
     adding : bool
-        Whether a click adds to what is selected: Shift or Ctrl is held.
+        Whether a click adds to the selection: Shift or Ctrl is held.
     selection : Selection
         Which bodies are selected.
     edits : Edits
         How the world that is shown is changed.
     handles : Handles
-        Those of what is selected.
+        Those of the selection.
     recipe : Recipe
         What the next body is like.
     measured : Measured
-        The forces on what is selected.
+        The forces on the selection.
     snapping : Snapping
         Whether places, sizes and angles snap, and where to.
     pins : Pins
@@ -288,7 +288,7 @@ class Window:
 
     @property
     def target(self) -> Vector2:
-        """Where what the cursor moves or makes goes [m]: its place, or where that has snapped to."""
+        """The point at which the cursor moves or makes bodies [m]: its place, or that to which it snaps."""
         return self.place if self.snapping.place is None else self.snapping.place
 
     @property
@@ -330,19 +330,17 @@ class Window:
 
     @property
     def handled(self) -> int | None:
-        """The body whose handles are shown: the one that is selected, while time stands still."""
+        """The body whose handles are shown: the one that is selected, while paused."""
         chosen = self.selection.entities
         return chosen[0] if self.pace.paused and len(chosen) == 1 and self.hand.entity is None else None
 
     def ask_to_close(self, world: World) -> None:
-        """Close the window; where there are unsaved edits, only if it was asked for twice within a while."""
+        """Close the window; with unsaved edits, only at the second request within a while."""
         if not self.has_unsaved(world) or self.now < self._may_close_until:
             self.closing = True
             return
         self._may_close_until = self.now + _PATIENCE
-        self.notify(
-            "Esc again closes the window; what is in it is kept and offered at the next start", _PATIENCE
-        )
+        self.notify("Esc again closes the window; its scene is kept and offered at the next start", _PATIENCE)
 
     def coming(self, world: World) -> float:
         """Return the time [s] that is about to be simulated in this frame."""

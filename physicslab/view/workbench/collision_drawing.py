@@ -17,7 +17,7 @@ from physicslab.world import World
 __all__ = ["draw_bodies", "draw_contact", "draw_energies", "draw_momenta"]
 
 type Projection = Callable[[Vector2], Place]
-"""Where a place or a momentum is in a drawing."""
+"""The map from places or momenta to a drawing."""
 
 _REACH = 0.36
 """Length of the longest arrow of the bodies, as a share of the smaller side of the drawing."""
@@ -161,7 +161,7 @@ type _Chain = tuple[list[Vector2], tuple[str, ...], tuple[Colour, ...], bool]
 def draw_momenta(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
     """Draw momenta tip to tail: the sum of both is the same arrow before and after.
 
-    Where nothing moves one of them, the momentum of the other changes by the impulse.
+    If impulses do not move one of them, the momentum of the other changes by the impulse.
     """
     theme, (a_colour, b_colour) = ui.theme, colours_of(ui.theme, seen)
     before, after = ([b.momentum(m) for b, m in zip((seen.a, seen.b), ms, strict=True)]
@@ -303,5 +303,5 @@ def _write_losses(ui: Ui, seen: Collision, full: float) -> None:
     ui.row("Lost to friction", quantity(friction, "J"), "Taken by the friction impulse")
     driven = without_rounding(seen.driven, full)
     if driven:
-        tip = "A body that nothing moves, but that moves as this observer sees it, does work on the other"
-        ui.row("Given by the one that nothing moves", quantity(driven, "J"), tip)
+        tip = "A body that no impulse moves, but that moves for this observer, does work on the other"
+        ui.row("Given by the body that no impulse moves", quantity(driven, "J"), tip)

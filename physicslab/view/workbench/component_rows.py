@@ -46,7 +46,7 @@ class ComponentRows:
         self._numbers = numbers
 
     def build(self, ui: Ui, world: World, window: Window, kind: Kind) -> None:
-        """Build a row for each field of a component that all of what is selected has."""
+        """Build a row for each field of a component that all of the selection has."""
         held = [world.component(entity, kind) for entity in window.selection.entities]
         rows = [spec for spec in kind.FIELDS if all(_is_shown(spec, part) for part in held)]
         scales = scales_of(world) if kind in (Transform, Velocity) else {}
@@ -190,4 +190,4 @@ _NAMES = {
 }  # fmt: skip
 """Plainer names for the labels, by component and field."""
 _ABSENT = {"Spring.a": "itself", "Spring.b": "a fixed point"}
-"""What the absence of an entity means, by component and field."""
+"""The meaning of an absent entity, by component and field."""

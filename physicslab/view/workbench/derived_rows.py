@@ -1,4 +1,4 @@
-"""What follows from the fields of an entity: it is shown and cannot be changed."""
+"""Values derived from the fields of an entity: they are shown and cannot be changed."""
 
 from __future__ import annotations
 
@@ -23,17 +23,15 @@ _ROUNDING = 1e-9
 
 
 def build_derived(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
-    """Write the speed, momentum, energies and period of a body, or what a spring does.
+    """Write the speed, momentum, energies and period of a body, or the state of a spring.
 
-    Where it is brief, parts are left out.
+    Parts are left out if ``is_brief``.
     """
     if world.has(entity, Spring):
         _build_spring(ui, spring_state(world, entity))
         give = gives_way(world, entity)
         if give is not None:
-            tip = (
-                "It serves as a rod and is a stiff spring: weight makes it so much longer, a wide swing more"
-            )
+            tip = "This rod is a stiff spring: weight lengthens it by this much, a wide swing by more"
             ui.row("Gives way", quantity(1e3 * give, "mm"), tip)
     if world.has(entity, Velocity):
         _build_motion(ui, world, entity, is_brief=is_brief)
@@ -77,7 +75,7 @@ def _build_spring(ui: Ui, state: SpringState | None) -> None:
     ui.row(
         "Longer by",
         quantity(without_rounding(state.extension, state.length), "m"),
-        "than at rest; negative where it is shorter",
+        "than at rest; negative if it is shorter",
     )
     pulls = "pulls its ends together" if state.force >= 0.0 else "pushes its ends apart"
     ui.row("Spring force", quantity(abs(state.force), "N"), pulls)
@@ -99,7 +97,7 @@ def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
         ui.row(one.name.capitalize(), quantity(one.force.magnitude, "N"), vector_quantity(one.force, "N"))
     total = measured.net
     largest = max((one.force.magnitude for one in measured.forces), default=0.0)
-    _vector_row(ui, "Sum", total, largest, "N", "Of all forces")
+    _vector_row(ui, "Sum", total, largest, "N", "The sum of all forces")
     if step is None:
         return
     largest = max(largest, step.inertia.magnitude)
@@ -117,7 +115,7 @@ def build_pairs(ui: Ui, measured: Measured) -> None:
         if one.pair is not None:
             other, friction, restitution = one.pair
             ui.faint(f"With {other}: mu = {friction:.4g}, e = {restitution:.4g}")
-            ui.tip("Of this pair: mu is the root of both frictions multiplied, e the smaller restitution")
+            ui.tip("For this pair mu is the root of both frictions multiplied, e the smaller restitution")
 
 
 def _build_impulses(ui: Ui, step: LastStep) -> None:
@@ -129,9 +127,9 @@ def _build_impulses(ui: Ui, step: LastStep) -> None:
     largest = max(largest, step.change.magnitude)
     for name, impulse in parts.items():
         _vector_row(ui, name.capitalize(), impulse, largest, "N s", "")
-    _vector_row(ui, "Sum of impulses", sum(parts.values(), Vector2()), largest, "N s", "Of all of them")
+    _vector_row(ui, "Sum of impulses", sum(parts.values(), Vector2()), largest, "N s", "All of the above")
     _vector_row(ui, "Change of momentum", step.change, largest, "kg m/s", "From before the step to after it")
-    tip = "What the impulses leave: forces of contacts and springs are not the same all through a step"
+    tip = "The difference: forces of contacts and springs are not the same all through a step"
     _vector_row(ui, "Not accounted for", step.difference, largest, "N s", tip)
 
 

@@ -1,4 +1,4 @@
-"""Where the energy came from and where it went: a line of words, and a bar of parts with their names."""
+"""Sources and sinks of the energy: a line of words, and a bar of parts with their names."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _ZERO_TIP = (
     "infinitely far apart, that of a spring zero at its rest length: here, in graphs and in files"
 )
 _ERROR_TIP = (
-    "What no cause explains. It comes from computing in steps, not from physics: "
+    "The change without a cause. It comes from computing in steps, not from physics: "
     "shorter steps make it smaller"
 )
 _COLOURS = {"impacts": 4, "friction": 5, "damping": 6, "contact": 2, "overlap": 3, "fields": 1}

@@ -132,7 +132,7 @@ class GraphPanels:
                 self._build_across(ui, world, window, graph)
         ui.same_line_if_room("Follow")
         follows = graph.entity not in dashboard.free_axes
-        tip = "Let the axes follow what is recorded; scroll or drag in the plot to look closer"
+        tip = "Let the axes follow the recording; scroll or drag in the plot to look closer"
         if ui.button(f"Follow graph {number}", tip, shown="Follow", on=follows):
             dashboard.free_axes ^= {graph.entity}
         ui.same_line_if_room("More")

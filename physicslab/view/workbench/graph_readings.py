@@ -1,4 +1,4 @@
-"""What is written beside a plot: each line with its value, slopes and areas between two moments."""
+"""Readings beside a plot: each line with its value, slopes and areas between two moments."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ def _entry(ui: Ui, colour: Colour | None, name: str, value: str, *, wrapped: boo
 
 
 def _value(world: World, window: Window, key: Key, row: int | None) -> str:
-    """Return a value in words: why there is none, where there is none."""
+    """Return a value in words, or the reason why it is missing."""
     value = np.nan if row is None else float(window.dashboard.record.values(key)[row])
     why = why_undefined(world, key[1], key[0])
     if np.isnan(value):
@@ -144,7 +144,7 @@ def build_cursors(ui: Ui, window: Window, graph: GraphShown) -> None:
         elif ui.button(f"Go to {name} in graph {graph.number}", "Pause, and go to this moment", shown=words):
             window.do_next(dashboard_actions.go_to, time)
     ui.same_line_if_room("Clear")
-    if ui.button(f"Clear cursors in graph {graph.number}", "Take the cursors A and B away", shown="Clear"):
+    if ui.button(f"Clear cursors in graph {graph.number}", "Remove the cursors A and B", shown="Clear"):
         marks[:] = [None, None]
     a, b = marks
     if a is not None and b is not None:

@@ -27,10 +27,10 @@ def build_history(ui: Ui, window: Window) -> None:
     width, height = ui.fitted(_WIDTH * ui.size, _HEIGHT * ui.size)
     place = left + 0.5 * width + ui.size, top + 0.5 * height + 4.0 * ui.size
     with ui.floating("History", place, docks=True) as stays:
-        if ui.button("Undo", "Take back the last edit or run (Ctrl+Z)", enabled=done > 0):
+        if ui.button("Undo", "Undo the last edit or run (Ctrl+Z)", enabled=done > 0):
             window.do_next(actions.undo)
         imgui.same_line()
-        if ui.button("Redo", "Put back what was taken back (Ctrl+Y)", enabled=done < len(entries)):
+        if ui.button("Redo", "Redo what was undone (Ctrl+Y)", enabled=done < len(entries)):
             window.do_next(actions.redo)
         below = _LINE * (len(history.branches) + 2) * ui.size if history.branches else 0.0
         room = ui.extent(width, height)
@@ -53,7 +53,7 @@ def _build_branches(ui: Ui, window: Window) -> None:
         return
     ui.rule()
     ui.heading("Other branches")
-    ui.tip("Edits and runs from before the past was changed; Ctrl+B switches from one to the next")
+    ui.tip("Edits and runs that a change in the past replaced; Ctrl+B switches from one to the next")
     for n, branch in enumerate(history.branches, start=1):
         words = branch_words(branch, history.start)
         if ui.selectable(f"{n}. {shortened(words, _LETTERS)}"):

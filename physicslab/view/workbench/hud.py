@@ -145,7 +145,7 @@ class Hud:
     def _draw_over_world(self, world: World) -> list[Rect]:
         """Draw banners, advice, messages, scale and legend, none over another; return where they are.
 
-        Where there is no room for all of them, messages come first, then banners, then advice.
+        If there is no room for all of them, messages come first, then banners, then advice.
         """
         window, size = self._window, self._text_size
         canvas, theme, room = window.canvas, window.theme, self._interface.visible

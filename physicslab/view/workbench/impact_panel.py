@@ -26,7 +26,7 @@ _TIPS = (
     "How fast they approached, along the normal", "Impulse along the normal: it keeps them apart",
     "Impulse along the surface", "Whether friction stopped the sliding",
     "Friction of the pair: the root of both multiplied", "Restitution of the pair: the smaller one",
-    "Speed along the normal after the impact, as a share of the approach", "Kinetic energy that it took",
+    "Speed along the normal after the impact, as a share of the approach", "Kinetic energy lost",
 )  # fmt: skip
 _HEIGHT = 11.0
 """Height of the table, in heights of the text."""
@@ -59,20 +59,18 @@ def _nothing(window: Window) -> str:
     """Return why there are no rows."""
     impacts = window.impacts
     if len(impacts.records):
-        return "None of the listed impacts is of what is selected."
-    return "There was no impact so far: let time run (Space)."
+        return "None of the listed impacts is of the selection."
+    return "There was no impact so far: run (Space)."
 
 
 def _build_head(ui: Ui, world: World, window: Window) -> None:
     """Build how many there are, and what can be done with them."""
     impacts, count = window.impacts, len(window.impacts.records)
-    if ui.checkbox("Only what is selected", impacts.only_selected, "Impacts of the selected bodies alone"):
+    if ui.checkbox("Only the selection", impacts.only_selected, "Impacts of the selected bodies alone"):
         impacts.only_selected = not impacts.only_selected
     ui.same_line_if_room("Pause at the next")
     waits = window.microscope.waits_for is not None
-    tip = (
-        "Let time run until what is selected (or anything) strikes something, and stand still there (Shift+Z)"
-    )
+    tip = "Run until the next impact of the selection, or of any body, and pause there (Shift+Z)"
     if ui.button("Pause at the next", tip, on=waits):
         window.do_next(impact_actions.pause_at_next)
     ui.same_line_if_room("CSV")

@@ -1,4 +1,4 @@
-"""What is selected, in numbers that can be changed: made from the fields of its components."""
+"""The selection, in numbers that can be changed: made from the fields of its components."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ __all__ = ["Inspector"]
 _LABELS = 0.36
 """Share of the panel's width that labels take."""
 _SECOND_COLUMN = 0.52
-"""Where the second column of boxes to tick begins, as a share of the panel's width."""
-_NAME = Field("id", "text", owner="Name", meaning="what it is called; without a name by what it is")
+"""The begin of the second column of boxes to tick, as a share of the panel's width."""
+_NAME = Field("id", "text", owner="Name", meaning="its name; without one it is called by its kind")
 _SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
-    (Velocity, "Can move", "Without it the body stays where it is"),
+    (Velocity, "Can move", "Without it the body is fixed"),
     (Mass, "Has mass", "A body that can move and has none is infinitely heavy"),
     (Drag, "Air resistance", "A force against its motion"),
     (Trail, "Leaves a trail", "Shows where it was"),
-    (Strobe, "Strobe pictures", "Its outline stays where it was every 0.1 s"),
+    (Strobe, "Strobe pictures", "Its outline every 0.1 s stays in the picture"),
 )
 """Components that are one click away; all others are in a list."""
 
 
 class Inspector:
-    """The rows of what is selected. One body: all its fields; several: what they have in common."""
+    """The rows of the selection. One body: all its fields; several: what they have in common."""
 
     def __init__(self) -> None:
         self._numbers = NumberFields(_LABELS)
@@ -50,7 +50,7 @@ class Inspector:
         self._shown: tuple[object, ...] = ()
 
     def build(self, ui: Ui, world: World, window: Window) -> None:
-        """Build it for what is selected."""
+        """Build it for the selection."""
         chosen = window.selection.entities
         if self._shown != (world, chosen):
             self._shown = world, chosen
@@ -119,7 +119,7 @@ class Inspector:
                     window.do_next(changing.take, chosen, kind)
                 else:
                     window.do_next(changing.give, chosen, partial(_made, kind))
-        with ui.list("Add ...", "Properties that it may have and has not") as shown:
+        with ui.list("Add ...", "Properties that can be added") as shown:
             for words, (meaning, make) in (changing.addable(world, chosen) if shown else {}).items():
                 if ui.item(f"add {words}", tip=meaning, shown=f"{words}: {meaning}"):
                     window.do_next(changing.give, chosen, make)
@@ -129,7 +129,7 @@ class Inspector:
                 if ui.item(f"no {words}", tip=meaning, shown=f"{words}: {meaning}"):
                     window.do_next(changing.take, chosen, kind)
         ui.same_line_if_room("Plot")
-        if ui.button("Plot", "Its speed and place against time"):
+        if ui.button("Plot", "Its speed and position against time"):
             window.do_next(plot_selected)
 
     @staticmethod
@@ -141,10 +141,10 @@ class Inspector:
                 ui.same_line_if_room(words)
             if ui.button(words, tip):
                 window.do_next(action)
-        if ui.button("Duplicate", "Another one beside it (Ctrl+D)"):
+        if ui.button("Duplicate", "A copy beside it (Ctrl+D)"):
             window.do_next(duplicate_selected)
         imgui.same_line()
-        if ui.button("Delete", "Remove what is selected (Del)"):
+        if ui.button("Delete", "Remove the selection (Del)"):
             window.do_next(remove_selected)
         ui.same_line_if_room("Done")
         if ui.button("Done", "Select nothing (Esc)"):
@@ -165,7 +165,7 @@ def _check_name(world: World, entity: int, name: str) -> None:
             return
         if other == entity:
             return
-        allowed = "a name of its own: another one has this one"
+        allowed = "a unique name: another entity has this one"
     raise InvalidValue("Name", "id", name, allowed)
 
 

@@ -1,4 +1,4 @@
-"""The panels around the world: menus, tools, transport, and what is selected or the world in figures."""
+"""The panels around the world: menus, tools, transport, and the selection or the world in figures."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class Interface:
 
     @property
     def layout(self) -> Layout:
-        """Where everything is."""
+        """The layout."""
         return Layout.of(self._window.canvas.size, self.text, side=self._window.figures)
 
     def room(self) -> Rect:
@@ -105,7 +105,7 @@ class Interface:
 
     @property
     def visible(self) -> Rect:
-        """Where words can be drawn over the world: no panel covers it [px]."""
+        """The part of the window where words can be drawn over the world: no panel covers it [px]."""
         left, top, width, height = self.layout.visible if self._free is None else self._free
         taken = min(self._offer_height, height - 1) if self._window.recovery.offered else 0
         return left, top + taken, width, height - taken
@@ -269,5 +269,5 @@ class Interface:
 
     @property
     def covered(self) -> list[Rect]:
-        """Where panels lie [px]."""
+        """The rectangles of panels [px]."""
         return self.toolkit.covered

@@ -1,4 +1,4 @@
-"""Where the parts of the window are: the world first, panels around it."""
+"""The layout of the window: the world first, panels around it."""
 
 from __future__ import annotations
 

@@ -83,10 +83,10 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
         ("Earlier", "The impact before this one; time goes back to it",
          partial(impact_actions.go_beside, by=-1), False),
         ("Later", "The impact after this one", partial(impact_actions.go_beside, by=1), False),
-        ("Slowly through it", "Go to shortly before it, and let time run slowly (Shift+Tab)",
+        ("Slowly through it", "Go to shortly before it, and run slowly through it (Shift+Tab)",
          impact_actions.run_slowly, microscope.slow is not None),
-        ("Pause at the next impact", "Let time run until what is selected (or anything) strikes something "
-         "(Shift+Z)", impact_actions.pause_at_next, microscope.waits_for is not None),
+        ("Pause at the next impact", "Run until the next impact of the selection, or of any body (Shift+Z)",
+         impact_actions.pause_at_next, microscope.waits_for is not None),
         ("All impacts", "The table of impacts (Z)", _toggle_table, window.impacts.shown),
     )  # fmt: skip
     for n, (label, tip, action, on) in enumerate(buttons):
@@ -145,7 +145,7 @@ def _build_words(ui: Ui, world: World, window: Window) -> None:
     ui.gap(0.3)
     shown = window.level == "Engineer" if microscope.shows_formula is None else microscope.shows_formula
     if ui.button(
-        "The law with its numbers", "The formula line by line, beside what the solver did", on=shown
+        "The law with its numbers", "The formula line by line, beside the result of the solver", on=shown
     ):
         microscope.shows_formula = shown = not shown
     if not shown:
@@ -180,13 +180,13 @@ def _build_momentum(ui: Ui, seen: Collision) -> None:
         for a, b in ((seen.a.before, seen.b.before), (seen.a.after, seen.b.after))
     )
     scale = max(body.momentum(m).magnitude for body in (seen.a, seen.b) for m in (body.before, body.after))
-    ui.row("Momentum before", _vector(before, scale), "Of all that impulses move of the two")
+    ui.row("Momentum before", _vector(before, scale), "The sum over the bodies that impulses move")
     ui.row("Momentum after", _vector(after, scale))
     if not (seen.a.is_free and seen.b.is_free):
         ui.row(
             "Impulse on it",
             quantity(seen.impulse.magnitude, "N s"),
-            "What the other one, that nothing moves, gave",
+            "Given by the other one, which no impulse moves",
         )
 
 
@@ -198,10 +198,10 @@ def _vector(value: Vector2, scale: float) -> str:
 def _build_verdict(ui: Ui, steps: list[Step], *, is_alone: bool, is_slow: bool) -> None:
     """Write whether the solver did what the law says."""
     worst = max(step.difference for step in steps)
-    slow = "What approaches as slowly as this may count as resting, and is not let bounce."
+    slow = "An approach as slow as this may be treated as rest, and does not bounce."
     if worst <= AGREES:
         ui.text(
-            f"The solver did what the law gives: they differ by {worst:.1e} at most.",
+            f"The solver agrees with the law: they differ by {worst:.1e} at most.",
             ui.theme.heading,
             wrapped=True,
         )

@@ -21,7 +21,7 @@ __all__ = ["NumberFields", "shown_number", "shown_vector_part"]
 _DRAG = 0.005
 """Share of its size by which a number changes a pixel; of numbers below one, share of one."""
 _FINER, _COARSER = 0.1, 10.0
-"""What Shift and Ctrl make of that."""
+"""Factors of that with Shift and Ctrl held."""
 _ONLY_MOUSE = imgui.ItemFlags_.no_nav | imgui.ItemFlags_.no_tab_stop
 _FIGURES = 6
 """Figures to which a number is shown where there is room."""
@@ -30,7 +30,7 @@ _PART = 6
 _SMALL = 1e-3
 """One figure may be enough for smaller numbers than this."""
 _VARIOUS = "various"
-"""What a field shows of several bodies whose numbers differ."""
+"""The text of a field for several bodies whose numbers differ."""
 _LARGEST_ANGLE = 1e5
 """Larger angles are not shown in degrees as well [°]."""
 _HALF_TURN = 180.0
@@ -65,7 +65,7 @@ def shown_vector_part(value: float) -> str:
 
 @dataclass(slots=True)
 class _Draft:
-    """What is being written in a field, and why it was refused."""
+    """The text being written in a field, and why it was refused."""
 
     text: str
     refusal: str = ""
@@ -197,7 +197,7 @@ class NumberFields:
     ) -> None:  # fmt: skip
         """Build the label of a row, and stay in its line.
 
-        Where there is a number, dragging the label to the side changes it, Shift finer, Ctrl coarser.
+        Dragging the label of a number to the side changes it, Shift finer, Ctrl coarser.
         """
         width, corner = self._share * imgui.get_content_region_avail().x, imgui.get_cursor_screen_pos()
         imgui.push_item_flag(_ONLY_MOUSE, True)

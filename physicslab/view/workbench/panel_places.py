@@ -1,4 +1,4 @@
-"""Where graphs, meters and sliders are put: beside each other, in what the other panels leave."""
+"""Places of graphs, meters and sliders: beside each other, in the room that the other panels leave."""
 
 from __future__ import annotations
 

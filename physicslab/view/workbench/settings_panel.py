@@ -18,7 +18,7 @@ __all__ = ["RecipePanel", "SettingsPanel"]
 _SLEEPING = {"auto": "auto", "yes": True, "no": False}
 _NUMBERS: tuple[tuple[str, str, str], ...] = (
     ("linear_damping", "Damping", "Share of the velocity that is lost a second"),
-    ("angular_damping", "Damping of turns", "Share of the turning that is lost a second"),
+    ("angular_damping", "Damping of turns", "Share of the spin that is lost a second"),
 )
 
 type Config = PhysicsConfig | SimulationConfig

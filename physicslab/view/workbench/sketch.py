@@ -27,7 +27,7 @@ _DOT = 3.0
 
 
 class Sketch:
-    """What is drawn on; ``width`` and ``height`` are its size [px]."""
+    """The surface; ``width`` and ``height`` are its size [px]."""
 
     def __init__(self, ui: Ui, corner: Place, width: float, height: float) -> None:
         self.ui, self.width, self.height = ui, width, height

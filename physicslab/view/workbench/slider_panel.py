@@ -117,7 +117,7 @@ class SliderPanels:
 
 
 def _build_choice(ui: Ui, world: World, window: Window, slider: SliderShown, change: Any) -> None:
-    """Build the menus of what a slider can change: of its entity, of what is selected, and gravity."""
+    """Build the menus of what a slider can change: of its entity, of the selection, and gravity."""
     if ui.item("Gravity", on=slider.changes == GRAVITY):
         low, high = dashboard_actions.usual_range(world, GRAVITY, None)
         change(changes=GRAVITY, entity=None, low=low, high=high)

@@ -1,4 +1,4 @@
-"""What meters and sliders have in common: a title with a menu behind it, and the corner they are in."""
+"""Shared parts of meters and sliders: a title with a menu behind it, and their corner."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ _COLUMNS = (("Gate", 5.0), ("Body", 5.4), ("", 1.3), ("Time", 4.4), ("Since", 4.
 _NARROW = 2
 """Columns that are left out where there is little room for the world."""
 _MARGIN = 4.0
-"""What the window is wider than its columns, in heights of the text."""
+"""The margin of the window around its columns, in heights of the text."""
 _LETTERS = 11
 _MEAN = 10
 """How many of the last times are taken together."""

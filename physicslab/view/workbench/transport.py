@@ -22,7 +22,7 @@ _HINT = "Drag: throw  ·  Left: circle  ·  Right: box  ·  Space: pause  ·  F1
 _HEIGHT, _NARROW, _WIDE = 1.9, 2.4, 5.2
 """Height of the buttons, and their widths, in heights of the text."""
 _GRAB_PADDING = 2.0
-"""What Dear ImGui leaves on each side of a slider's grab [px]."""
+"""The margin of Dear ImGui on each side of a slider's grab [px]."""
 _MIN_LINE = 12.0
 """Width of the time line below which the hint makes room, in heights of the text."""
 
@@ -33,9 +33,7 @@ def build_transport(ui: Ui, rect: Rect, world: World, window: Window) -> None:
         pace, size, icons = window.pace, ui.size, ICONS
         height, narrow = _HEIGHT * size, _NARROW * size
         imgui.set_cursor_pos_y(max(0.5 * (rect[3] - height), 0.0))
-        if ui.button(
-            "Restart", "Start this scene again (Ctrl+R)", shown=icons["restart"], size=(narrow, height)
-        ):
+        if ui.button("Restart", "Restart this scene (Ctrl+R)", shown=icons["restart"], size=(narrow, height)):
             window.do_next(file_actions.restart)
         imgui.same_line()
         if ui.button(
@@ -96,8 +94,8 @@ def _build_line(ui: Ui, world: World, window: Window) -> None:
         f"{world.time:.2f} s", width,
     )  # fmt: skip
     ui.tip(
-        "Drag to go back in time, and forward again; what is changed there begins another branch. "
-        "A mark is where one leaves (Ctrl+B goes there)"
+        "Drag to go back in time, and forward again; a change there begins another branch. "
+        "A mark shows where one begins (Ctrl+B goes there)"
     )
     _mark_branches(ui, [branch.step for branch in history.branches], first, max(last, first + 1))
     _mark_moments(ui, window, first, max(last, first + 1))

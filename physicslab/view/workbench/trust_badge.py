@@ -183,7 +183,7 @@ def _build_details(ui: Ui, world: World, window: Window) -> None:
         ui.gap(0.2)
         bar(ui, "Checking", f"{trust.share:.0%}", trust.share, ui.theme.accent)
     elif not trust.wanted:
-        ui.faint(f"It computes the scene about {RUNS} times over, beside the window: frames go first.")
+        ui.faint(f"It computes the scene about {RUNS} times over, beside the window: frames have priority.")
     ui.rule()
-    if ui.item("Check digits", on=trust.wanted, tip="In a process of its own, again as time goes on"):
+    if ui.item("Check digits", on=trust.wanted, tip="In a separate process, again as time goes on"):
         window.do_next(lambda _, window: window.trust.toggle())

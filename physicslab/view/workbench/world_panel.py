@@ -62,7 +62,7 @@ def _build_gravity(ui: Ui, world: World, window: Window) -> None:
     imgui.align_text_to_frame_padding()
     ui.faint("Gravity", wrapped=False)
     imgui.same_line()
-    chosen = ui.choice("Gravity", now, [*_PLANETS, "between bodies"], "What pulls: choose a planet")
+    chosen = ui.choice("Gravity", now, [*_PLANETS, "between bodies"], "Gravity: choose a planet")
     ui.rows["Gravity"] = gravity_in_words(world)
     if chosen != now:
         window.do_next(_pull, chosen)

@@ -85,7 +85,7 @@ class WorldView:
             draw_snap_marks(marks, snapping.place, window.camera, theme, canvas)
 
     def _draw_forces(self, world: World) -> None:
-        """Measure the forces on what is selected where its panel is shown, and draw them with the arrows."""
+        """Measure the forces on the selection where its panel is shown, and draw them with the arrows."""
         window, overlays = self._window, self._window.overlays
         chosen = window.selection.entities
         shown = len(chosen) == 1 and (overlays.arrows or window.figures)
@@ -128,7 +128,7 @@ class WorldView:
             draw_reading(words, window.pointer, size, theme, canvas, window.room())
 
     def _draw_handles(self, world: World) -> None:
-        """Draw the handles of what is selected while time stands still, and the number that one has given."""
+        """Draw the handles of the selection while paused, and the number that one has given."""
         window, entity = self._window, self._window.handled
         if entity is None or not world.has(entity, Transform):
             return

@@ -19,7 +19,7 @@ _SPEED, _MU, _THICK = 5.0, 0.3, 0.1
 _HEAP = (
     (0.0, 0.55, 0.02), (0.15, 1.7, -0.05), (-0.2, 2.85, 0.1), (1.35, 0.55, 0.0), (1.5, 1.75, 0.07),
 )  # fmt: skip
-"""Where the boxes of the heap begin: x, y [m] and angle [rad]."""
+"""The initial poses of the boxes of the heap: x, y [m] and angle [rad]."""
 _PAIR = ((0.1, 0.57, 0.02), (-0.1, 1.62, 0.04))
 
 

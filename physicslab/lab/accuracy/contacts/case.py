@@ -1,4 +1,4 @@
-"""What a contact case with a known answer is."""
+"""The record of a contact case with a known answer."""
 
 from __future__ import annotations
 

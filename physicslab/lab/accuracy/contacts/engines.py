@@ -1,4 +1,4 @@
-"""What advances the worlds of a contact case: rigid and soft contacts, and other engines where installed."""
+"""The engines of a contact case: rigid and soft contacts, and other engines if installed."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def _leaves(shape: str, tilt: float, e: float, mu: float, t: float) -> dict[str,
 def _corner(shape: str, degrees: float, e: float, mu: float, title: str) -> ContactCase:
     with_these = (shape, math.radians(degrees), e, mu)
     return _impact(
-        f"corner_{shape}", title, "where it is, and its angle, after 0.4 s: 0.08 s after its corner struck",
+        f"corner_{shape}", title, "where it is, and its angle, after 0.4 s: 0.08 s after its impact",
         partial(_dropped, *with_these), (24,), partial(_leaves, *with_these),
     )  # fmt: skip
 

@@ -121,7 +121,7 @@ def fitted_order(steps: Sequence[float], errors: Sequence[float | None]) -> floa
 def study_case(case: ContactCase, *, sparse: bool = False) -> Job[ContactStudy]:
     """Compute a case with every engine; yield the share of the work that is done.
 
-    Where ``sparse``, with our own engines alone, and three steps in place of seven.
+    With ``sparse``, with our own engines alone, and three steps instead of seven.
     """
     engines = OWN if sparse else ENGINES
     steps = [2.0**-k / 60.0 for k in (_SPARSE if sparse else range(HALVINGS + 1))]

@@ -17,12 +17,12 @@ __all__ = ["extrapolated", "moved", "passed"]
 type Long = NDArray[np.longdouble]
 
 _COLUMNS = 9
-"""Of the table of extrapolation: the order is twice that."""
+"""Rows of the table of extrapolation: the order is twice that."""
 _TOLERANCE = 1e-16
 _LEAST = 1e-9
 """Places [m] and velocities [m/s] smaller than this are right to a share of this."""
 _G, _DOWN = 1.0, (0.0, -9.81)
-"""Of scenes that give none."""
+"""The defaults of scenes."""
 
 
 def moved(document: Document, seconds: float) -> NDArray[np.float64]:

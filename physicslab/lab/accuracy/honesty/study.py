@@ -35,7 +35,7 @@ FAMILIES: dict[str, Callable[[Random], KnownScene]] = {
     "stacks": touching.stack,
     "crowds": touching.crowd,
 }
-"""What scenes are drawn from."""
+"""The families from which scenes are drawn."""
 QUANTITIES = ("position", "velocity", "angle", "spin")
 _HONEST, _FAR = 3.0, 100.0
 """How many times too small an honest estimate may be, and how many times too large one is told."""
@@ -76,7 +76,7 @@ class HonestRow:
 
 @dataclass(slots=True)
 class HonestShare:
-    """What the rows of a family come to, or all of them.
+    """The summary of the rows of a family, or of all.
 
     Attributes
     ----------
