@@ -61,6 +61,8 @@ class Soft:
         if not self.hooks:
             self.name, self.title = "fused_contact", "Compiled steps, contacts within them"
             self.reason = "bodies can touch, and nothing looks at substeps"
+        elif self.hooks[0] not in plan.reason:
+            self.reason = f"{plan.reason}; {self.hooks[0]}"
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
