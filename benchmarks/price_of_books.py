@@ -29,14 +29,14 @@ TURN_S = 0.02
 
 def leave_out_books() -> None:
     """Replace every function that books by one that does nothing, before any kernel is compiled."""
-    import physicslab.stepping.fused_contact  # noqa: F401 (so that all kernels of contacts are there)
+    import physicslab.stepping.substeps  # noqa: F401 (so that all kernels of contacts are there)
     from physicslab import world
     from physicslab.kernels import inlined
     from physicslab.kernels.constraint.pair import PairVelocity
-    from physicslab.kernels.solver import fused_contact, impact_log, impulse, work
+    from physicslab.kernels.solver import impact_log, impulse, soft, work
     from physicslab.kernels.wide import float64x8, solve
     from physicslab.state.account import Account
-    from physicslab.stepping import fused_contact as stepper
+    from physicslab.stepping import soft as stepper
 
     @inlined
     def nothing(*_: Any) -> None:
@@ -67,7 +67,7 @@ def leave_out_books() -> None:
         work.book_gravity: nothing, work.book_damping: nothing, work.book_solved: follow,
         work.book_relaxed: no_work, solve.work_of: no_more, solve.mean_velocities: no_motion,
         impact_log.book_impact: nothing,
-        fused_contact._balance: nothing, fused_contact._keep_book: nothing,
+        soft._balance: nothing, soft._keep_book: nothing,
     }  # fmt: skip
     for name, module in list(sys.modules.items()):
         if name.startswith("physicslab.kernels."):

@@ -155,9 +155,9 @@ def _add(world: World, bodies: list[dict[str, Any]]) -> None:
 
 
 class Bystander(System):
-    """Acts within steps, so that these are made stage by stage."""
+    """Acts at impacts, so that the systems of that stage are called."""
 
-    @at(Stage.DRIFT)
+    @at(Stage.IMPACT)
     def act(self, state: State, h: float) -> None:
         """Do nothing."""
 

@@ -51,10 +51,11 @@ from physicslab.kernels.interpreter import interpreted, stand_in, twin_of
 from physicslab.kernels.ode.dop853 import dop853
 from physicslab.kernels.stand_ins import math_functions
 from physicslab.kernels.warm import Warmup
+from physicslab.state.state import State
 from physicslab.stepping import rigid_motion
 from physicslab.stepping.rigid import Rigid
 from physicslab.systems import broad_phase
-from physicslab.systems.system import ForceSystem
+from physicslab.systems.system import ForceSystem, Stage, System, at
 from physicslab.view.canvas.canvas import Look
 from physicslab.view.canvas.display import Display
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
@@ -181,12 +182,39 @@ def springs_beside_contacts() -> None:
 
 
 def damped_beside_contacts() -> None:
-    """Let discs fall through air, one of them under a spring, so that the stages are called one by one."""
+    """Let discs fall through air, one of them under a spring, so that some of them are sub-integrated."""
     hung = {"Spring": {"b": "e1", "stiffness": 90.0, "rest_length": 1.1, "damping": 0.5}}
     discs = [body(1.15 * i, 0.51, "disc", **(hung if i == 2 else {})) for i in range(4)]
     world = scene(FLOOR, *discs, physics={"linear_damping": 0.1}, contacts="soft", collisions="step")
     world.run(steps=3)
     assert measure_account(world).energy["damping"] < 0.0
+
+
+class Bystander(System):
+    """Looks at stages, so that the systems of these are called from Python."""
+
+    @at(Stage.DRIFT)
+    def see_drift(self, state: State, h: float) -> None:
+        """See that it is there."""
+
+    @at(Stage.KICK)
+    def see_kick(self, state: State, h: float) -> None:
+        """See that it is there."""
+
+    @at(Stage.BROAD_PHASE)
+    def see_pairs(self, state: State, h: float) -> None:
+        """See that it is there."""
+
+
+def stages_with_hooks() -> None:
+    """Let systems be called one by one, where bodies touch and where nothing can."""
+    for name in ("sandbox", "pendulum"):
+        world = load_scene(name)
+        world.physics = replace(world.physics, linear_damping=0.1)
+        world.simulation = replace(world.simulation, contacts="soft", collisions="step")
+        world.install(Bystander())
+        world.run(steps=2)
+        assert world.stepper is not None and world.stepper.name == "contact"
 
 
 def forces_by_hand() -> None:
@@ -294,6 +322,7 @@ def test_every_kernel_gives_the_same_bits_as_python() -> None:
         *scenes,
         springs_beside_contacts,
         damped_beside_contacts,
+        stages_with_hooks,
         forces_by_hand,
         drawn,
         recorded,

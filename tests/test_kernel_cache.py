@@ -77,9 +77,9 @@ def folders(monkeypatch: pytest.MonkeyPatch, edited: str) -> dict[str, str]:
     [
         ("narrow.sweep", {"narrow.sweep"}, {"motion", "raster", "solver.impulse", "ode.dop853"}),
         ("ode.compensated", {"ode.compensated", "ode.dop853", "events.events"}, {"raster", "solver.impulse"}),
-        ("raster", {"raster"}, {"motion", "energy", "solver.fused_contact"}),
-        ("compiler", {"motion", "raster", "solver.fused_contact", "forces.drag"}, set()),
-        ("loading", set(), {"motion", "raster", "solver.fused_contact", "forces.drag"}),
+        ("raster", {"raster"}, {"motion", "energy", "solver.soft"}),
+        ("compiler", {"motion", "raster", "solver.soft", "forces.drag"}, set()),
+        ("loading", set(), {"motion", "raster", "solver.soft", "forces.drag"}),
     ],
 )
 def test_an_edit_makes_stale_what_depends_on_it(

@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -16,18 +17,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
+from physicslab.contacts.arguments import motion_of
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS, SPRING_SPLITTING
+from physicslab.kernels.arguments import Motion, Springs
+from physicslab.kernels.interpreter import twin_of
+from physicslab.kernels.ode.spring_flow import TURNS_FAST, flow_springs
 from physicslab.lab import worlds
 from physicslab.lab.bench.moving import chains
 from physicslab.lab.worlds import floor, place
 from physicslab.prefabs import box, circle
 from physicslab.stepping import split_forces, spring_flow
-from physicslab.stepping.contact import Contact
+from physicslab.stepping.soft import Soft
 from physicslab.stepping.split_forces import SplitForces
 from physicslab.world import World
 
@@ -64,13 +69,13 @@ def chain(order: int = 1, *, discs: int = 10, height: float = 0.3, gravity: floa
 def split_of(world: World) -> SplitForces:
     world.synchronise()
     stepper = world.steppers.usable[-1]
-    assert isinstance(stepper, Contact) and stepper._split is not None
-    return stepper._split
+    assert isinstance(stepper, Soft) and stepper.substeps.split is not None
+    return stepper.substeps.split
 
 
 def follows(world: World) -> bool:
     """Whether springs are moved by a flow of their own."""
-    return split_of(world)._springs is not None
+    return split_of(world).springs is not None
 
 
 # ---- the method --------------------------------------------------------------------------------------------
@@ -159,18 +164,15 @@ def test_the_reason_names_the_method_and_its_steps() -> None:
 
 
 def by_dop853() -> Any:
-    """Let springs be followed by dop853 alone, within a with block."""
-    return patch.object(spring_flow.SpringFlow, "move", lambda *_: -1)
+    """Let what is built within a with block be followed by dop853 alone: every spring is too short."""
+    return patch.object(spring_flow, "_SHORTEST", 1e9)
 
 
 def after(build: Callable[[], World], seconds: float, *, adaptive: bool = False) -> Any:
     world = build()
-    split_of(world)
-    if adaptive:
-        with by_dop853():
-            world.run(seconds=seconds)
-    else:
-        world.run(seconds=seconds)
+    with by_dop853() if adaptive else nullcontext():
+        split_of(world)
+    world.run(seconds=seconds)
     return np.concatenate((world.table(Transform)["position"], world.table(Velocity)["linear"]))
 
 
@@ -225,7 +227,10 @@ def test_a_flow_that_cannot_be_made_changes_nothing() -> None:
     with world.active():
         split.begin(world)
         before = bits(world)
-        assert split._springs is not None and split._springs.move(world, 1e-3, 1) == -1
+        assert split.springs is not None
+        flow = twin_of(flow_springs)
+        found = flow(Motion(*motion_of(world)), Springs(*split.springs.arrays), 1e-3, world.account.table)
+    assert found == TURNS_FAST and not world.account.table.any()
     assert bits(world) == before
 
 

@@ -16,7 +16,7 @@ from physicslab.files.scene import load_scene
 from physicslab.kernels import cache, interpreter, motion, tiers
 from physicslab.kernels.events.events import run_events
 from physicslab.kernels.ode.classical import rk4
-from physicslab.kernels.solver import fused_contact
+from physicslab.kernels.solver import soft
 from physicslab.kernels.tiers import Tiers, compile_seconds
 from physicslab.stepping.small import is_small
 
@@ -156,7 +156,7 @@ def test_forces_are_compiled_with_what_calls_them_by_address(policy: Policy) -> 
 
 def test_the_time_to_compile_is_estimated_from_all_that_a_kernel_calls() -> None:
     assert compile_seconds(motion.clear) < 0.1 < 1.0 < compile_seconds(run_events)
-    assert compile_seconds(fused_contact.advance) > compile_seconds(run_events)
+    assert compile_seconds(soft.advance) > compile_seconds(run_events)
 
 
 def test_afterwards_kernels_are_compiled_where_they_are_called() -> None:

@@ -1,5 +1,6 @@
 """Wide contacts: the same result as one by one, no body twice in a block, woken by an impact."""
 
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
@@ -10,12 +11,13 @@ from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.contacts import wide
 from physicslab.contacts.arguments import motion_of, near_in
 from physicslab.contacts.memory import export_contacts, restore_contacts
+from physicslab.contacts.one_stage import do_stage
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.scene import read_scene, write_scene
-from physicslab.kernels import compile_kernels, near_counts
+from physicslab.kernels import near_counts
 from physicslab.kernels.arguments import Motion, MotionTuple
-from physicslab.kernels.solver import entries
+from physicslab.kernels.solver import soft
 from physicslab.kernels.wide import restore_slots
 from physicslab.kernels.wide.layout import MASS_A, MASS_B, WIDE
 from physicslab.lab.worlds import floor, open_space, place
@@ -103,8 +105,8 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         for p in kind.pair[k * WIDE : (k + 1) * WIDE]
         if p >= 0
     ]
-    compile_kernels((entries.solve_stage,))
-    h = 1.0 / 240.0
+    h = contacts.impulse_dt = 1.0 / 240.0
+    world.simulation = replace(world.simulation, iterations=1)
     ends = []
     for in_blocks in (True, False):
         linear, angular = velocity["linear"].copy(), velocity["angular"].copy()
@@ -120,10 +122,10 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         near = (counts, near[1], points, near[3], touching, discs, boxes, *near[7:])
         motion = Motion(*motion_of(world))._replace(linear=linear, angular=angular)
         inverse = (bodies.inverse_mass, bodies.inverse_inertia)
-        acting = (bodies.force, bodies.torque, True, bodies.unkicked, True)
-        entries.solve_stage(
-            near, cast(MotionTuple, tuple(motion)), inverse, acting,
-            (0.17, 7.0, 1.5), h, h, 1,
+        acting = (bodies.pull, True, bodies.unkicked, True)
+        do_stage(
+            world, soft.SOLVE, h, softness=(0.17, 7.0, 1.5), near=near,
+            motion=cast(MotionTuple, tuple(motion)), inverse=inverse, acting=acting,
         )  # fmt: skip
         ends.append((linear, angular))
     assert ends[0][0] == pytest.approx(ends[1][0], rel=1e-9, abs=1e-12)

@@ -48,7 +48,7 @@ def inverse_in(state: State) -> InverseTuple:
 def acting_in(state: State) -> ActingTuple:
     """Return the forces of this substep."""
     bodies = state.bodies
-    return (bodies.force, bodies.torque, state.has_forces, bodies.unkicked, state.uniform_forces)
+    return (bodies.pull, state.has_forces, bodies.unkicked, state.uniform_forces)
 
 
 def bounds_of(state: State) -> BoundsTuple:

@@ -9,7 +9,7 @@ from typing import Any
 
 from physicslab.desktop.small_scenes import INTERPRETING_LIMIT, SmallScenes
 from physicslab.kernels import KERNELS, ask_before_compiling, interpreter, load
-from physicslab.kernels.solver import fused_contact
+from physicslab.kernels.solver import soft
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
 from physicslab.view.canvas.display import Display, wants_to_leave
 from physicslab.view.canvas.theme import DARK, Theme
@@ -64,7 +64,7 @@ class Compiling:
             interpreter.limit(lambda _: INTERPRETING_LIMIT, self._catch_up)
             ask_before_compiling(self._ask)
         elif not interpreter.is_forced():
-            load(fused_contact.advance)  # 26 ms, for which no frame has room
+            load(soft.advance)  # 26 ms, for which no frame has room
         return self
 
     def __exit__(

@@ -7,13 +7,16 @@ of 15); what Python calls gives them their names: ``Motion(*motion)``.
 from typing import NamedTuple
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, fused
+from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Couples, Impacts, Manifolds, Points
 from physicslab.kernels.wide.layout import Slots, SlotsTuple
 
 __all__ = [
-    "Acting", "ActingTuple", "Bounds", "BoundsTuple", "Contacts", "Gravity", "GravityTuple", "Inverse",
-    "InverseTuple", "Log", "Materials", "MaterialsTuple", "Motion", "MotionTuple", "Near", "NearTuple",
-    "Plan", "PlanTuple", "Sizes", "SizesTuple", "Sleepers", "SleepersTuple", "Softness", "SoftnessTuple",
+    "Acting", "ActingTuple", "Bounds", "BoundsTuple", "Contacts", "Course", "CourseTuple", "Gravity",
+    "GravityTuple", "Inverse", "InverseTuple", "Log", "Materials", "MaterialsTuple", "Motion", "MotionTuple",
+    "Near", "NearTuple", "Packed", "PackedTuple", "Plan", "PlanTuple", "Sizes", "SizesTuple", "Sleepers",
+    "SleepersTuple", "Softness", "SoftnessTuple", "Springs", "SpringsTuple",
+    "named_acting",
     "named_near",
 ]  # fmt: skip
 
@@ -51,13 +54,15 @@ class Inverse(NamedTuple):
 
 
 class Acting(NamedTuple):
-    """Forces (rows, 2) [N] and torques [N m], whether there are any, and the rows that they do not kick.
+    """Forces (rows, 2) [N] and torques [N m], both in one (3 rows,), whether there are any.
 
+    Then the rows that they do not kick.
     Then whether they are uniform: they accelerate all that can be moved alike, and turn nothing.
     """
 
     force: Vectors
     torque: Numbers
+    pull: Numbers
     any: bool
     unkicked: Flags
     uniform: bool
@@ -132,7 +137,8 @@ class Softness(NamedTuple):
 class Plan(NamedTuple):
     """Substeps a step, iterations of the solver, the substep and the step [s], the time at the start [s].
 
-    Of 0 iterations, the number goes by that of the contacts.
+    0 iterations: their number is chosen from that of the contacts. Then the time [s] that a step counts as
+    rest, and the substep in which the records of a step begin, -1 where they have begun.
     """
 
     substeps: int
@@ -140,12 +146,48 @@ class Plan(NamedTuple):
     h: float
     dt: float
     time: float
+    rested: float
+    first: int
+
+
+class Course(NamedTuple):
+    """The parts of a substep in order (n,), as numbered in :mod:`physicslab.kernels.solver.soft`.
+
+    Then times (3, n) in substeps: of each part its SHARE of the substep, how far the positions have DRIFTED
+    before it, and by how much the middle of the substep comes LATER than that of a kick. Where the substep
+    begins and ends, seen from where impacts are resolved, and how long after its beginning that is. Last,
+    whether the ends of steps are Python's, as some parts are.
+    """
+
+    parts: Rows
+    times: Vectors
+    start: float
+    end: float
+    middle: float
+    hooked: bool
+
+
+class Springs(NamedTuple):
+    """What moves on springs (:mod:`physicslab.kernels.ode.spring_flow`), in two arrays: each costs 0.1 us."""
+
+    numbers: Numbers
+    whole: Rows
+
+
+class Packed(NamedTuple):
+    """The state as compiled forces read it, and positions from before bodies are moved apart (3, 3 rows + 1).
+
+    Then the addresses of these forces (n, 3).
+    """
+
+    state: Vectors
+    calls: Calls
 
 
 class Gravity(NamedTuple):
     """Masses and moments of inertia, the inverse of both (of all bodies), gravity [m/s^2].
 
-    Then the speculative margin [m].
+    Then the speculative margin [m], and the cause by which kicks of other forces are booked.
     """
 
     mass: Numbers
@@ -155,12 +197,14 @@ class Gravity(NamedTuple):
     gx: float
     gy: float
     margin: float
+    other: int
 
 
 class Sleepers(NamedTuple):
     """Whether bodies may sleep and how many do; which, their rests [s] and lowest speeds [m/s].
 
-    Then room for marks, the rows whose pairs are inactive, and those pairs.
+    Then room for marks, the rows whose pairs are inactive, and those pairs; the forces (rows, 3) [N, N m] on
+    those that sleep, and whether some came from a file, so that what supports them is not known yet.
     """
 
     on: bool
@@ -171,13 +215,15 @@ class Sleepers(NamedTuple):
     marked: Flags
     inactive: Flags
     pairs: Rows
+    forces: Vectors
+    unverified: bool
 
 
 MotionTuple = tuple[Vectors, Numbers, Vectors, Numbers]
 SizesTuple = tuple[Rows, Numbers, Numbers, Numbers]
 MaterialsTuple = tuple[Numbers, Numbers]
 InverseTuple = tuple[Numbers, Numbers]
-ActingTuple = tuple[Vectors, Numbers, bool, Flags, bool]
+ActingTuple = tuple[Numbers, bool, Flags, bool]
 BoundsTuple = tuple[Numbers, float, float]
 NearTuple = tuple[
     Rows,
@@ -197,10 +243,23 @@ NearTuple = tuple[
     Numbers,
 ]
 SoftnessTuple = tuple[float, float, float]
-PlanTuple = tuple[int, int, float, float, float]
-GravityTuple = tuple[Numbers, Numbers, Numbers, Numbers, float, float, float]
-SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows]
+PlanTuple = tuple[int, int, float, float, float, float, int]
+CourseTuple = tuple[Rows, Vectors, float, float, float, bool]
+SpringsTuple = tuple[Numbers, Rows]
+PackedTuple = tuple[Vectors, Calls]
+GravityTuple = tuple[Numbers, Numbers, Numbers, Numbers, float, float, float, int]
+SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows, Vectors, bool]
 """The same, without names."""
+
+
+@fused
+def named_acting(plain: ActingTuple) -> Acting:
+    """Give names to a tuple, and to both parts of the forces."""
+    pull, acts, unkicked, uniform = plain
+    rows = len(unkicked)
+    return Acting(
+        pull[: 2 * rows].reshape(rows, 2), pull[2 * rows : 3 * rows], pull, acts, unkicked, uniform
+    )  # fmt: skip
 
 
 @fused

@@ -6,7 +6,8 @@ import sys
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 
 __all__ = [
-    "FARTHEST", "LARGEST", "clear", "damped", "derive_masses", "drift", "find_beyond", "kick", "predict",
+    "FARTHEST", "LARGEST", "clear", "damped", "derive_masses", "drift", "find_beyond", "kick", "pack_state",
+    "predict",
 ]  # fmt: skip
 
 FARTHEST = 1e300
@@ -131,14 +132,26 @@ def drift(
 @kernel
 def predict(
     linear: Vectors, angular: Numbers, force: Vectors, torque: Numbers,
-    inverse_mass: Numbers, inverse_inertia: Numbers, gentle: Flags, h: float,
+    inverse_mass: Numbers, inverse_inertia: Numbers, sub_integrated: Flags, unkicked: Flags, h: float,
 ) -> None:  # fmt: skip
-    """Change the velocities of the rows under weak forces by what these cause in a time h."""
-    for i in range(len(gentle)):
-        if gentle[i]:
+    """Change velocities of sub-integrated rows that follow no fast force by what forces cause in a time h."""
+    for i in range(len(unkicked)):
+        if sub_integrated[i] and not unkicked[i]:
             linear[i, 0] += h * force[i, 0] * inverse_mass[i]
             linear[i, 1] += h * force[i, 1] * inverse_mass[i]
             angular[i] += h * torque[i] * inverse_inertia[i]
+
+
+@kernel
+def pack_state(
+    position: Vectors, angle: Numbers, linear: Vectors, angular: Numbers, now: float, packed: Vectors
+) -> None:
+    """Write the coordinates of all rows and the time [s], and their rates, as compiled forces read them."""
+    q, v, n = packed[0], packed[1], len(angle)
+    for i in range(n):
+        q[2 * i], q[2 * i + 1], q[2 * n + i] = position[i, 0], position[i, 1], angle[i]
+        v[2 * i], v[2 * i + 1], v[2 * n + i] = linear[i, 0], linear[i, 1], angular[i]
+    q[3 * n] = now
 
 
 @kernel

@@ -34,7 +34,7 @@ _FIRST = (
     "impulse",
     "slots",
     "refresh",
-    "entries",
+    "soft",
 )
 """Modules whose kernels almost every scene needs; they are compiled first."""
 _WORKER = (sys.executable, "-m", "physicslab.kernels", "worker")

@@ -20,9 +20,9 @@ class Bodies:
         Forces [N] and torques [N m] added up in this substep; views of ``pull``.
     pull : float64 array (3 rows,)
         Both in one array: the x and y of each force in turn, then the torques.
-    q, v : float64 arrays (3 rows + 1,)
-        Positions and angles, velocities and angular velocities in the same order, for forces that are packed;
-        last in ``q`` the time [s].
+    packed : float64 array (3, 3 rows + 1)
+        Positions and angles, and last the time [s]; velocities and angular velocities in the same order: as
+        compiled forces read them. Then room for positions.
     inverse_mass, inverse_inertia : float64 arrays (rows,)
         Zero for what cannot be moved or turned: static, kinematic and held bodies.
     awake_inverse_mass, awake_inverse_inertia : float64 arrays (rows,)
@@ -52,8 +52,7 @@ class Bodies:
         self.columns = None, ()
         self.pull: NDArray[np.float64] = np.zeros(3 * rows)
         self.force, self.torque = self.pull[: 2 * rows].reshape(rows, 2), self.pull[2 * rows :]
-        self.q: NDArray[np.float64] = np.zeros(3 * rows + 1)
-        self.v: NDArray[np.float64] = np.zeros(3 * rows + 1)
+        self.packed: NDArray[np.float64] = np.zeros((3, 3 * rows + 1))
         self.inverse_mass: NDArray[np.float64] = np.zeros(rows)
         self.inverse_inertia: NDArray[np.float64] = np.zeros(rows)
         self.awake_inverse_mass: NDArray[np.float64] = np.zeros(rows)

@@ -25,6 +25,8 @@ class Checkpoint:
     ----------
     columns : sequence of float64 arrays
         Positions, angles, velocities and angular velocities of then; compiled loops keep them themselves.
+    numbers : float64 array (6 rows,)
+        All of them, one column after the other.
     counts : tuple of int
         Force evaluations, impacts, and impacts logged until then.
     time : float
@@ -35,6 +37,7 @@ class Checkpoint:
 
     def __init__(self) -> None:
         self.columns: _Columns = ()
+        self.numbers: NDArray[np.float64] = np.zeros(0)
         self.counts = 0, 0, 0
         self.time = 0.0
         self.remainders: Remainders = NO_REMAINDERS
@@ -42,7 +45,12 @@ class Checkpoint:
     def make_room(self, columns: _Columns, counts: tuple[int, int, int]) -> None:
         """Keep the counts, with room for columns like these."""
         if not self.columns or len(self.columns[0]) != len(columns[0]):
-            self.columns = tuple(np.zeros_like(column) for column in columns)
+            ends = np.cumsum([column.size for column in columns])
+            self.numbers = np.zeros(ends[-1])
+            parts = np.split(self.numbers, ends[:-1])
+            self.columns = tuple(
+                part.reshape(column.shape) for part, column in zip(parts, columns, strict=True)
+            )
         self.counts = counts
 
     def take(self, columns: _Columns, counts: tuple[int, int, int]) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 from physicslab.contacts.islands import all_asleep
 from physicslab.state.state import State
@@ -16,11 +16,11 @@ __all__ = ["Asleep"]
 class Asleep:
     """Advances the clock alone, while all that could move sleeps."""
 
-    name: ClassVar[str] = "asleep"
-    title: ClassVar[str] = "Everything sleeps: only time passes"
+    name: str = "asleep"
+    title: str = "Everything sleeps: only time passes"
     leaps: bool = False
-    keeps_balance: ClassVar[bool] = False
-    leaves_forces: ClassVar[bool] = True
+    keeps_balance: bool = False
+    leaves_forces: bool = True
     kernels: tuple[Any, ...] = ()
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:

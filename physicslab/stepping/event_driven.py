@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,10 +63,10 @@ class EventDriven:
     state, so that nothing here needs to be saved. Any number of steps has the bits of single ones.
     """
 
-    name: ClassVar[str] = "event_driven"
-    title: ClassVar[str] = "Impacts at their exact times"
-    keeps_balance: ClassVar[bool] = False
-    leaves_forces: ClassVar[bool] = False
+    name: str = "event_driven"
+    title: str = "Impacts at their exact times"
+    keeps_balance: bool = False
+    leaves_forces: bool = False
     kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:

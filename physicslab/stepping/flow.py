@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from typing import Any, ClassVar
+from typing import Any
 
 from physicslab.integrators import StepTooSmall
 from physicslab.ode.system import OdeSystem
@@ -26,11 +26,11 @@ class NotSmooth(ArithmeticError):
 class Flow:
     """Advances the smooth motion of a world by the flow of an integrator."""
 
-    name: ClassVar[str] = "flow"
-    title: ClassVar[str] = "Steps as one compiled flow"
+    name: str = "flow"
+    title: str = "Steps as one compiled flow"
     leaps: bool = True
-    keeps_balance: ClassVar[bool] = False
-    leaves_forces: ClassVar[bool] = False
+    keeps_balance: bool = False
+    leaves_forces: bool = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._plan, self._method = schedule, plan, plan.integrator

@@ -12,11 +12,10 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.kernels.events import events
 from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
-from physicslab.stepping.stage_accounts import StageAccounts
 from physicslab.stepping.stepper import falls_far
+from physicslab.stepping.substeps import Span, Substeps
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.schedule import Schedule
-from physicslab.systems.system import Stage
 
 __all__ = ["Moment", "Motion", "RestingBodies", "clear_impacts", "copy_motion", "list_touching", "set_motion"]
 
@@ -119,14 +118,13 @@ class RestingBodies:
     """
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
-        self._schedule, self._accounts = schedule, StageAccounts(state, schedule.forces)
-        self._stages = [part for part in plan.stages.substep if part[0] is not Stage.BROAD_PHASE]
+        self._contact = schedule.find(ContactSystem)
+        self._substeps = Substeps(state, schedule, plan, whole=False)
 
     def begin_step(self, state: State) -> None:
         """Begin a step, at whose first substep records of impacts are cleared."""
-        contact = self._schedule.find(ContactSystem)
-        if contact is not None:
-            contact.begin_step(state)
+        if self._contact is not None:
+            self._contact.begin_step(state)
 
     def held(self, state: State) -> NDArray[np.bool_]:
         """Return which rows have a contact that holds them after the contact step."""
@@ -154,14 +152,8 @@ class RestingBodies:
         near["count"][others] = -1  # the contact step passes over them
         impact_count, earlier = near["impact_count"].copy(), [points[name].copy() for name in _IMPACT_FIELDS]
         substeps = falls_far(state, span) * state.simulation.substeps
-        # Kernels of the stages are compiled at their first call: most are not called here.
-        for substep in range(substeps):
-            state.moment = began + (substep + 0.5) * span / substeps
-            self._accounts.begin_substep(state)
-            for stage, share in self._stages:
-                self._accounts.begin(stage, state, share, span / substeps)
-                self._schedule.run(stage, state, share * span / substeps)
-                self._accounts.end(stage, state)
+        # The loop is compiled at its first call: most worlds do not come here.
+        self._substeps.go_through(state, Span(substeps, span / substeps, span, began, span))
         near["count"][others] = 0
         # The contact stage has cleared the records of impacts; those of the ballistic part are added again.
         new = impact_count > near["impact_count"]

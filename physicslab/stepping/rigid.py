@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,11 +55,11 @@ class Rigid:
         How often impacts of several points got lower restitutions, as Newton's law would have made energy.
     """
 
-    name: ClassVar[str] = "rigid"
-    title: ClassVar[str] = "Rigid contacts, events at their exact times"
+    name: str = "rigid"
+    title: str = "Rigid contacts, events at their exact times"
     leaps: bool = False
-    keeps_balance: ClassVar[bool] = False
-    leaves_forces: ClassVar[bool] = False
+    keeps_balance: bool = False
+    leaves_forces: bool = False
     kernels: tuple[Any, ...] = (
         motion.touch, motion.collide, motion.advance_piece, motion.begin_motion,
         time_stepping.drift, time_stepping.kick, time_stepping.separate, time_stepping.take_work,

@@ -6,18 +6,17 @@ from dataclasses import dataclass
 
 from physicslab.state.state import State
 from physicslab.stepping.asleep import Asleep
-from physicslab.stepping.contact import Contact
 from physicslab.stepping.event_driven import EventDriven
 from physicslab.stepping.flow import Flow
-from physicslab.stepping.fused_contact import FusedContact
 from physicslab.stepping.plan import StepPlan, choose_plan, resumed_plan
 from physicslab.stepping.rigid import Rigid
+from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Stepper
 from physicslab.systems.schedule import LeftOut, Schedule
 
 __all__ = ["STEPPERS", "Steppers", "choose", "remake", "resume", "select_steppers"]
 
-STEPPERS: tuple[type[Stepper], ...] = (Asleep, Flow, EventDriven, Rigid, FusedContact, Contact)
+STEPPERS: tuple[type[Stepper], ...] = (Asleep, Flow, EventDriven, Rigid, Soft)
 """All of them, the best first. The last can advance any world."""
 
 

@@ -12,7 +12,6 @@ from physicslab.integrators import Integrator, StepTooSmall
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.kernels import motion
-from physicslab.kernels.ode.spring_flow import spring_flow
 from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import Diverged
 from physicslab.state.state import State
@@ -76,7 +75,7 @@ class SplitForces:
     Parameters
     ----------
     state : State
-        Whose bodies. Its ``bodies.sub_integrated`` is set.
+        Whose bodies. Its ``bodies.sub_integrated`` and ``unkicked`` are set.
     forces : sequence of ForceSystem
         What acts.
     method : Integrator
@@ -86,8 +85,8 @@ class SplitForces:
 
     Attributes
     ----------
-    predictable : bool array (rows,)
-        The rows whose velocity is predicted for the contacts.
+    springs : SpringFlow, optional
+        What the loop of substeps moves by itself, as long as no spring turns too fast.
     """
 
     def __init__(self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int) -> None:
@@ -98,11 +97,11 @@ class SplitForces:
         self._ode.tolerance = max(state.simulation.tolerance, _TOLERANCE)
         state.bodies.sub_integrated[:] = rows & state.table(Velocity).present
         self._find_predictable(state)
-        self._springs: SpringFlow | None = None
+        self.springs: SpringFlow | None = None
         if method is SPRING_SPLITTING and why_no_spring_flow(state, forces) is None:
-            self._springs = SpringFlow(state, forces, self._ode.layout)
-        kernels = method.kernels if self._springs is None else (spring_flow,)
-        state.compile((*kernels, motion.predict))
+            self.springs = SpringFlow(state, forces, self._ode.layout, steps)
+        else:
+            state.compile((*method.kernels, motion.predict))
 
     def outdated(self, state: State) -> bool:
         """Whether a number was changed that the layout, or the choice of a method, depends on."""
@@ -112,17 +111,17 @@ class SplitForces:
         """Find what is pulled gently at its present speed: a file must not need to remember that."""
         h = state.simulation.dt / state.simulation.substeps
         bodies = state.bodies
-        self.predictable: NDArray[np.bool_] = bodies.sub_integrated & (bodies.inverse_mass > 0.0)
+        predictable = bodies.sub_integrated & (bodies.inverse_mass > 0.0)
         for force in self._ode.forces:
             rates = force.rates(state)
             if rates is not None:
-                self.predictable &= rates * h <= _MAX_PREDICTABLE
-        bodies.unkicked[:] = bodies.sub_integrated & ~self.predictable
+                predictable &= rates * h <= _MAX_PREDICTABLE
+        bodies.unkicked[:] = bodies.sub_integrated & ~predictable
 
     def begin(self, state: State) -> None:
         """Take the present forces and masses; they are kept for a step."""
-        if self._springs is not None:
-            self._springs.begin(state)
+        if self.springs is not None:
+            self.springs.begin(state)
             return  # springs without dampers pull no more gently at another speed
         self._ode.gather(state)
         self._find_predictable(state)
@@ -130,25 +129,19 @@ class SplitForces:
     def take_part(self, stage: Stage, state: State, h: float) -> None:
         """Do the work of a stage of a substep, if there is any."""
         if stage is Stage.DRIFT:
-            self._move(state, h)
+            state.force_evaluations += self._follow(state, h)
         elif stage is Stage.PREDICT:
             bodies, velocity = state.bodies, state.table(Velocity)
             motion.predict(
                 velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
-                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, self.predictable, h,
+                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, bodies.sub_integrated,
+                bodies.unkicked, h,
             )  # fmt: skip
-
-    def _move(self, state: State, h: float) -> None:
-        """Advance what is sub-integrated by a time h."""
-        made = -1 if self._springs is None else self._springs.move(state, h / self._steps, self._steps)
-        if made < 0:
-            made = self._follow(state, h)
-        state.force_evaluations += made
 
     def _follow(self, state: State, h: float) -> int:
         """Advance by the method, or where springs turn too fast for its steps, by one that chooses them."""
         ode, method, steps = self._ode, self._method, self._steps
-        if self._springs is None:
+        if self.springs is None:
             ode.gather_state(state)
         else:
             method, steps = DOP853, 1

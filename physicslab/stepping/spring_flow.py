@@ -8,19 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Spring, Transform, Velocity
-from physicslab.contacts.arguments import motion_of
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS
-from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, PX, PY, SPIN, SPRINGS
-from physicslab.kernels.ode.spring_flow import (
-    BY_GRAVITY,
-    BY_HAND,
-    BY_SPRINGS,
-    GIVEN,
-    LinksTuple,
-    PlacesTuple,
-    spring_flow,
-)
+from physicslab.kernels.arguments import SpringsTuple
+from physicslab.kernels.ode.spring_flow import HEAD, KNOWN, WEIGHT
 from physicslab.kernels.wide.layout import WIDE
 from physicslab.state.packed import StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
@@ -79,7 +70,7 @@ def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], movable: NDArray[np.b
 
 
 class SpringFlow:
-    """The springs and bodies of a world as :func:`physicslab.kernels.ode.spring_flow.spring_flow` takes them.
+    """The springs and bodies of a world as :func:`flow_springs` takes them (kernels/ode/spring_flow.py).
 
     Parameters
     ----------
@@ -89,9 +80,16 @@ class SpringFlow:
         What acts.
     layout : StateLayout
         Of the bodies that are moved.
+    steps : int
+        Into how many steps of the method half a substep is divided.
+
+    Attributes
+    ----------
+    arrays : SpringsTuple
+        All of it, which the flow goes on from.
     """
 
-    def __init__(self, state: State, forces: Sequence[ForceSystem], layout: StateLayout) -> None:
+    def __init__(self, state: State, forces: Sequence[ForceSystem], layout: StateLayout, steps: int) -> None:
         self._forces, self._moving, inverse = tuple(forces), layout.moving, state.bodies.inverse_mass
         spring, (rows, a, b) = state.table(Spring), spring_ends(state)
         m, moves = len(layout.moving), state.table(Velocity).present
@@ -110,16 +108,17 @@ class SpringFlow:
         rest = np.where(used, spring["rest_length"][rows[order]], 0.0)
         stiffness = np.where(used, spring["stiffness"][rows[order]], 0.0)
         a, b = (np.where(used, end[order], unused) for end in (ends_a, ends_b))
-        self._links: LinksTuple = a, b, rest, stiffness, _SHORTEST * rest
-        self._place, speed, pull = np.zeros((3, unused + 1, 2))
-        self._known, self._gravity, self._weight = np.zeros(1, np.bool_), np.zeros(2 * m), np.zeros(2 * m)
-        gain = np.repeat(inverse[layout.moving], 2)
-        self._places: PlacesTuple = (
-            layout.moving, self._place, speed, pull, self._known, gain, self._gravity, self._weight
-        )  # fmt: skip
         driven = np.flatnonzero(inverse[layout.moving] == 0.0)
-        self._ends = np.concatenate((driven, np.arange(m, unused)))
-        self._given, self._weights = np.zeros(GIVEN), Vector2(0.0, 0.0)
+        ends = np.concatenate((driven, np.arange(m, unused)))
+        sizes = m, unused + 1, len(order), len(DRIFTS), steps
+        whole = np.concatenate((sizes, layout.moving, a, b, ends)).astype(np.int64)
+        gain, lengths = np.repeat(inverse[layout.moving], 2), (rest, stiffness, _SHORTEST * rest)
+        state_of, pulls = np.zeros(HEAD + 6 * (unused + 1)), np.zeros(4 * m)
+        numbers = np.concatenate((state_of, gain, pulls, *lengths, DRIFTS, KICKS))
+        self.arrays: SpringsTuple = numbers, whole
+        self._place = numbers[HEAD : HEAD + 2 * (unused + 1)].reshape(-1, 2)
+        first = len(state_of) + 2 * m
+        self._gravity, self._weight = numbers[first : first + 4 * m].reshape(2, -1)
         self._physics: object = None
 
     def begin(self, state: State) -> None:
@@ -131,7 +130,7 @@ class SpringFlow:
             mass = np.where(pulled, state.table(Mass)["mass"][self._moving], 0.0)
             self._gravity[:] = np.outer(pulled, (gravity.x, gravity.y)).ravel()
             self._weight[:] = np.outer(mass, (gravity.x, gravity.y)).ravel()
-            self._weights = gravity * float(mass.sum())
+            self.arrays[0][WEIGHT : WEIGHT + 2] = np.array((gravity.x, gravity.y)) * float(mass.sum())
             self._physics = state.physics
         transform, first = state.table(Transform), len(self._moving)
         for end, springs, anchors in self._fixed:
@@ -139,22 +138,5 @@ class SpringFlow:
                 points = transform["position"][end] + turned_anchors(state, end, springs, anchors)
                 held = self._place[first : first + len(end)]
                 if not np.array_equal(points, held):
-                    held[:], self._known[0] = points, False
+                    held[:], self.arrays[0][KNOWN] = points, 0.0
                 first += len(end)
-
-    def move(self, state: State, h: float, steps: int) -> int:
-        """Advance by ``steps`` steps of ``h`` seconds; return the evaluations, or that a spring turns fast.
-
-        Nothing is changed where it does.
-        """
-        given, sums = self._given, state.account.sums
-        made = spring_flow(
-            motion_of(state), self._places, self._links, DRIFTS, KICKS, h, steps, self._ends, given
-        )
-        if made >= 0:
-            sums[SPRINGS, PX:] += given[BY_SPRINGS : BY_SPRINGS + 3]
-            sums[HAND, ENERGY] += given[BY_HAND]
-            sums[GRAVITY, PX] += self._weights.x * h * steps
-            sums[GRAVITY, PY] += self._weights.y * h * steps
-            sums[GRAVITY, SPIN] += given[BY_GRAVITY]
-        return made

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, Protocol
 
 from physicslab.ecs.fields import InvalidValue
 from physicslab.state.state import State
@@ -55,10 +55,10 @@ class Stepper(Protocol):
         Whether ``bodies.force`` holds the forces after a step.
     """
 
-    name: ClassVar[str]
-    title: ClassVar[str]
-    keeps_balance: ClassVar[bool]
-    leaves_forces: ClassVar[bool]
+    name: str
+    title: str
+    keeps_balance: bool
+    leaves_forces: bool
     reason: str
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...

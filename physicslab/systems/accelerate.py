@@ -14,7 +14,7 @@ class AccelerateSystem(System):
     """Adds up forces from zero and turns them into velocities. Every world has one."""
 
     engine = True
-    kernels = (motion.clear, motion.kick, motion.find_beyond)
+    kernels = (motion.clear, motion.pack_state, motion.kick, motion.find_beyond)
 
     def attach(self, state: State) -> None:
         """Clear the forces of systems that may not run any more."""
@@ -31,11 +31,11 @@ class AccelerateSystem(System):
         """Begin to add up from zero, with the state packed for the forces that need it."""
         if state.has_forces:
             bodies, transform, velocity = state.bodies, state.table(Transform), state.table(Velocity)
-            rows = len(bodies.torque)
             motion.clear(bodies.force, bodies.torque)
-            bodies.q[: 2 * rows], bodies.q[2 * rows : -1] = transform["position"].ravel(), transform["angle"]
-            bodies.q[-1] = state.time
-            bodies.v[: 2 * rows], bodies.v[2 * rows : -1] = velocity["linear"].ravel(), velocity["angular"]
+            motion.pack_state(
+                transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
+                state.time, bodies.packed,
+            )  # fmt: skip
             state.force_evaluations += 1
 
     @at(Stage.KICK)

@@ -2,17 +2,9 @@
 
 from __future__ import annotations
 
-from physicslab.contacts.arguments import (
-    bounds_of,
-    inverse_in,
-    materials_of,
-    motion_of,
-    near_in,
-    sizes_of,
-    speculative_margin,
-)
+from physicslab.contacts.one_stage import do_stage
 from physicslab.contacts.wide import add_constraints, refill
-from physicslab.kernels.solver import entries
+from physicslab.kernels.solver import soft
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.system import Stage, System, at
@@ -28,7 +20,7 @@ class ContactSystem(System):
     """
 
     engine = True
-    kernels = (entries.find_stage,)
+    kernels = (soft.advance,)
 
     def __init__(self) -> None:
         self._first = True
@@ -51,13 +43,14 @@ class ContactSystem(System):
         """Find or refresh the points of every near pair; once a step, put steady contacts into blocks."""
         if self._first:
             refill(state)
-        entries.find_stage(
-            near_in(state), motion_of(state), sizes_of(state), materials_of(state), inverse_in(state),
-            bounds_of(state), self._first, h, state.window[0], speculative_margin(state, h),
-        )  # fmt: skip
+        do_stage(state, soft.FIND, h, first=self._first)
         state.contacts.changed()
         if self._first and not state.event_driven:
             self.make_wide(state, h)
+        self.end_substep()
+
+    def end_substep(self) -> None:
+        """Let the next substep be none that begins a step."""
         self._first = False
 
     def make_wide(self, state: State, h: float) -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from physicslab.contacts.arguments import acting_in, inverse_in, motion_of, near_in, sizes_of
+from physicslab.contacts.one_stage import do_stage
 from physicslab.kernels.arguments import SoftnessTuple
-from physicslab.kernels.solver import entries, impulse
+from physicslab.kernels.solver import impulse, soft
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.system import Stage, System, at
@@ -30,7 +30,7 @@ class ResolveSystem(System):
     """
 
     engine = True
-    kernels = (entries.impact_stage, entries.solve_stage, entries.relax_stage)
+    kernels = (soft.advance,)
 
     def __init__(self, push: float = 0.17, stiffness: float = 7.0, max_push: float = 1.5) -> None:
         self.push, self.stiffness, self.max_push = push, stiffness, max_push
@@ -66,24 +66,14 @@ class ResolveSystem(System):
     @at(Stage.IMPACT)
     def resolve_impacts(self, state: State, h: float) -> None:
         """Bounce the pairs that meet within the substep."""
-        start, end = state.window
-        state.collisions += entries.impact_stage(
-            near_in(state), motion_of(state), sizes_of(state), inverse_in(state), acting_in(state),
-            state.contacts.step_log, state.moment, h, start * h, end * h,
-        )  # fmt: skip
+        state.collisions += do_stage(state, soft.IMPACTS, h)
 
     @at(Stage.SOLVE)
     def solve(self, state: State, h: float) -> None:
         """Find the impulses that keep bodies apart and correct some of the overlap."""
-        state.contacts.impulse_dt = entries.solve_stage(
-            near_in(state), motion_of(state), inverse_in(state), acting_in(state), self.softness,
-            h, state.contacts.impulse_dt, state.simulation.iterations or 0,
-        )  # fmt: skip
+        do_stage(state, soft.SOLVE, h, softness=self.softness)
 
     @at(Stage.RELAX)
     def relax(self, state: State, h: float) -> None:
         """Remove the velocity that came from correcting overlap."""
-        entries.relax_stage(
-            near_in(state), motion_of(state), inverse_in(state), acting_in(state), self.softness,
-            h, state.simulation.iterations or 0,
-        )  # fmt: skip
+        do_stage(state, soft.RELAX, h, softness=self.softness)

@@ -118,6 +118,10 @@ class Schedule:
         """Whether any system has work at ``stage``."""
         return bool(self._calls.get(stage))
 
+    def at(self, stage: Stage) -> tuple[System, ...]:
+        """Return the running systems that have work at ``stage``, in order."""
+        return tuple(system for system in self.running if stage in self._marked[system])
+
     def kernels(self, state: State) -> list[Any]:
         """Return the kernels that the running systems call at their stages."""
         return [needed for system in self.running for needed in system.kernels_for(state)]

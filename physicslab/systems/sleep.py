@@ -6,19 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Shape, Transform, Velocity
-from physicslab.contacts.arguments import (
-    bounds_of,
-    materials_of,
-    motion_of,
-    near_in,
-    sizes_of,
-    speculative_margin,
-)
+from physicslab.contacts.arguments import near_in
 from physicslab.contacts.islands import check_edits, fall_asleep, keep_places, wake, wake_all
+from physicslab.contacts.one_stage import do_stage
 from physicslab.kernels import motion, near_counts
+from physicslab.kernels.accounts import GRAVITY
 from physicslab.kernels.arguments import InverseTuple
 from physicslab.kernels.sleep import edits, islands
-from physicslab.kernels.solver import entries
+from physicslab.kernels.solver import soft, work
 from physicslab.state.sleep import Sleep
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
@@ -45,7 +40,7 @@ class SleepSystem(System):
     engine = True
     kernels = (
         *Sleep.kernels, islands.count_rest, islands.find_held, islands.find_touched, edits.find_pushed,
-        motion.kick,
+        motion.kick, work.book_kick,
     )  # fmt: skip
 
     def why_left_out(self, state: State) -> str | None:
@@ -98,10 +93,16 @@ class SleepSystem(System):
             return
         contacts, bodies, velocity = state.contacts, state.bodies, state.table(Velocity)
         if state.has_forces:
+            inverse, before = np.where(woken, bodies.inverse_mass, 0.0), state.kick_before_contacts * h
+            work.book_kick(
+                state.table(Transform)["position"], bodies.force, bodies.torque, state.table(Mass)["mass"],
+                inverse, bodies.inverse_inertia, bodies.sub_integrated, 0.0, 0.0, GRAVITY, before,
+                state.account.sums,
+            )  # fmt: skip
             motion.kick(
-                velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
-                np.where(woken, bodies.inverse_mass, 0.0), bodies.inverse_inertia, bodies.sub_integrated,
-                state.physics.linear_damping, state.physics.angular_damping, state.kick_before_contacts * h,
+                velocity["linear"], velocity["angular"], bodies.force, bodies.torque, inverse,
+                bodies.inverse_inertia, bodies.sub_integrated, state.physics.linear_damping,
+                state.physics.angular_damping, before,
             )  # fmt: skip
         scalar = contacts.scalar[: contacts.scalar_count]
         near = contacts.manifolds[scalar]
@@ -172,9 +173,5 @@ def _find_among(
     counts[near_counts.SCALAR] = len(pairs)
     near = near_in(state)
     among = (counts, *near[1:3], pairs, touching, *near[5:])
-    state.compile((entries.find_stage,))
-    entries.find_stage(
-        among, motion_of(state), sizes_of(state), materials_of(state), inverse, bounds_of(state),
-        first, h, state.window[0], speculative_margin(state, h),
-    )  # fmt: skip
+    do_stage(state, soft.FIND, h, first=first, near=among, inverse=inverse)
     return int(counts[near_counts.ACTIVE])

@@ -302,13 +302,17 @@ class ForceSystem(System):
     _calls: NDArray[np.int64]
 
     def add_packed(self, state: State, h: float) -> None:
-        """Add the packed force at the present state; what it is made of is looked at once a step."""
+        """Add the packed force at the present state."""
+        bodies = state.bodies
+        add_forces(bodies.packed[0], bodies.packed[1], bodies.pull, self.calls(state))
+
+    def calls(self, state: State) -> NDArray[np.int64]:
+        """Return the addresses (1, 3) of the packed force; what it is made of is looked at once a step."""
         moment = state.context, state.generation
         if self._packed_for != moment:
             self._pack(state)
             self._packed_for = moment
-        bodies = state.bodies
-        add_forces(bodies.q, bodies.v, bodies.pull, self._calls)
+        return self._calls
 
     def _pack(self, state: State) -> None:
         """Pack the force for every row, where anything that it is made of was changed."""

@@ -7,15 +7,13 @@ on a body is always added up in the same order.
 
 from typing import NamedTuple
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, fused, inlined, kernel
-from physicslab.kernels.arguments import Motion, MotionTuple
+from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
+from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, PX, PY, SPIN, SPRINGS
+from physicslab.kernels.arguments import Motion, Springs
 from physicslab.kernels.wide.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
 from physicslab.kernels.wide.layout import WIDE
 
-__all__ = [
-    "BY_GRAVITY", "BY_HAND", "BY_SPRINGS", "GIVEN", "MAX_TURN", "TURNS_FAST", "Links", "LinksTuple", "Places",
-    "PlacesTuple", "spring_flow",
-]  # fmt: skip
+__all__ = ["HEAD", "KNOWN", "MAX_TURN", "SIZES", "TURNS_FAST", "WEIGHT", "flow_springs"]
 
 TURNS_FAST = -1
 """What is returned where a spring is too short, or turns too far, for steps of this length."""
@@ -26,6 +24,13 @@ in a step of the method."""
 BY_SPRINGS, BY_GRAVITY, BY_HAND, GIVEN = 0, 3, 4, 5
 """Where in what is given are the momentum (x, y) and the angular momentum that springs bring in [N s, N m s];
 the angular momentum of gravity [N m s]; the work of ends that are driven [J]."""
+SIZES = 5
+"""The whole numbers begin with: how many bodies move, how many places there are, slots for springs, drifts of
+the method, and its steps. Then :attr:`Places.moving`, the springs' ends at A and B, and the ``ends`` that
+springs do not move."""
+KNOWN, WEIGHT, _GIVEN, HEAD = 0, 1, 3, 8
+"""The numbers begin with: whether the pull is known (1,), the weight of all that moves (2,) [N], what is
+given (GIVEN,). Then those of :class:`Places` and of :class:`Links` in order, drifts and kicks."""
 
 
 class Places(NamedTuple):
@@ -33,7 +38,7 @@ class Places(NamedTuple):
 
     The rows of the world that move (m,); ``place`` and ``speed`` (m + f + 1, 2) of these, of f fixed ends,
     and of one for slots without a spring; ``pull`` of the same shape, which is [0] the force of the springs
-    at ``place`` where ``known`` (1,) is true. Of each coordinate of what moves: ``gain`` (2 m,), the inverse
+    at ``place`` where ``known`` (1,) is not 0. Of each coordinate of what moves: ``gain`` (2 m,), the inverse
     mass [1/kg], ``gravity`` (2 m,) [m/s^2] and ``weight`` (2 m,) [N].
     """
 
@@ -41,7 +46,7 @@ class Places(NamedTuple):
     place: Vectors
     speed: Vectors
     pull: Vectors
-    known: Flags
+    known: Numbers
     gain: Numbers
     gravity: Numbers
     weight: Numbers
@@ -60,22 +65,17 @@ class Links(NamedTuple):
     shortest: Numbers
 
 
-PlacesTuple = tuple[Rows, Vectors, Vectors, Vectors, Flags, Numbers, Numbers, Numbers]
-LinksTuple = tuple[Rows, Rows, Numbers, Numbers, Numbers]
-"""The same, without names."""
-
-
 @inlined
 def _gather(places: Places, motion: Motion) -> None:
     """Take the state of what moves; the pull is known no more if anything is elsewhere."""
-    same = places.known[0]
+    same = places.known[0] != 0.0
     for i in range(len(places.moving)):
         row = places.moving[i]
         x, y = motion.position[row, 0], motion.position[row, 1]
         same = same and x == places.place[i, 0] and y == places.place[i, 1]
         places.place[i, 0], places.place[i, 1] = x, y
         places.speed[i, 0], places.speed[i, 1] = motion.linear[row, 0], motion.linear[row, 1]
-    places.known[0] = same
+    places.known[0] = 1.0 if same else 0.0
 
 
 @inlined
@@ -183,13 +183,13 @@ def _advance(
     places: Places, links: Links, drifts: Numbers, kicks: Numbers, h: float, steps: int, ends: Rows,
     given: Numbers,
 ) -> int:  # fmt: skip
-    """Advance what was gathered, as :func:`spring_flow` does."""
+    """Advance what was gathered, as :func:`flow_springs` does."""
     fast, evaluations = 0, 0
     for at in range(0, len(links.a), WIDE):
         fast |= _turn_fast(places, links, at, h)
     if fast != 0:
         return TURNS_FAST
-    if not places.known[0]:
+    if places.known[0] == 0.0:
         _clear_pull(places)
         evaluations = 1
         if not _evaluate(places, links):
@@ -213,25 +213,51 @@ def _advance(
     return evaluations
 
 
-@kernel
-def spring_flow(
-    motion_tuple: MotionTuple, places_tuple: PlacesTuple, links_tuple: LinksTuple,
-    drifts: Numbers, kicks: Numbers, h: float, steps: int, ends: Rows, given: Numbers,
-) -> int:  # fmt: skip
-    """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations.
+@inlined
+def flow_springs(motion: Motion, springs: Springs, span: float, account: Vectors) -> int:
+    """Move bodies on springs for ``span`` seconds; return the number of force evaluations.
 
-    ``ends`` are the places that springs do not move, and ``given`` (GIVEN,) takes what comes in there, and by
-    gravity: its torque as the corrected trapezoidal rule has it, which is of the order of the method.
+    A step is kick, drift, kick, ..., drift, kick, with the method's shares of it. What comes in at ends that
+    springs do not move, and by gravity, is booked: its torque as the corrected trapezoidal rule has it, which
+    is of the order of the method.
 
-    A step is kick, drift, kick, ..., drift, kick, with the shares ``kicks`` (n + 1,) and ``drifts`` (n,) of
-    h. Where a spring becomes so short, or turns so fast, that steps of one length do not follow it, nothing
-    is changed but ``given``, and :data:`TURNS_FAST` returned.
+    Where a spring becomes so short, or turns so fast, that steps of one length do not follow it, nothing is
+    changed, and :data:`TURNS_FAST` returned.
     """
-    motion, places, links = Motion(*motion_tuple), Places(*places_tuple), Links(*links_tuple)
+    numbers, whole = springs
+    m, p, n, s, steps = whole[0], whole[1], whole[2], whole[3], whole[4]
+    at, links_at, shares_at = HEAD + 6 * p, HEAD + 6 * p + 6 * m, HEAD + 6 * p + 6 * m + 3 * n
+    places = Places(
+        whole[SIZES : SIZES + m],
+        numbers[HEAD : HEAD + 2 * p].reshape(p, 2),
+        numbers[HEAD + 2 * p : HEAD + 4 * p].reshape(p, 2),
+        numbers[HEAD + 4 * p : at].reshape(p, 2),
+        numbers[KNOWN : KNOWN + 1],
+        numbers[at : at + 2 * m],
+        numbers[at + 2 * m : at + 4 * m],
+        numbers[at + 4 * m : links_at],
+    )
+    links = Links(
+        whole[SIZES + m : SIZES + m + n],
+        whole[SIZES + m + n : SIZES + m + 2 * n],
+        numbers[links_at : links_at + n],
+        numbers[links_at + n : links_at + 2 * n],
+        numbers[links_at + 2 * n : shares_at],
+    )
+    given, ends = numbers[_GIVEN:HEAD], whole[SIZES + m + 2 * n : len(whole)]
+    drifts, kicks = numbers[shares_at : shares_at + s], numbers[shares_at + s : len(numbers)]
     _gather(places, motion)
-    given[:] = 0.0
-    evaluations = _advance(places, links, drifts, kicks, h, steps, ends, given)
-    places.known[0] = evaluations >= 0
-    if evaluations >= 0:
-        _scatter(places, motion, h * steps)
-    return evaluations
+    for i in range(GIVEN):
+        given[i] = 0.0
+    made = _advance(places, links, drifts, kicks, span / steps, steps, ends, given)
+    places.known[0] = 1.0 if made >= 0 else 0.0
+    if made >= 0:
+        _scatter(places, motion, span)
+        account[SPRINGS, PX] += given[BY_SPRINGS]
+        account[SPRINGS, PY] += given[BY_SPRINGS + 1]
+        account[SPRINGS, SPIN] += given[BY_SPRINGS + 2]
+        account[HAND, ENERGY] += given[BY_HAND]
+        account[GRAVITY, PX] += numbers[WEIGHT] * span
+        account[GRAVITY, PY] += numbers[WEIGHT + 1] * span
+        account[GRAVITY, SPIN] += given[BY_GRAVITY]
+    return made

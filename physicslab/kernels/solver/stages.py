@@ -1,7 +1,4 @@
-"""The stages of a substep at contacts: all of them are called by the fused loop of whole steps.
-
-Systems call them one by one through :mod:`physicslab.kernels.solver.entries`.
-"""
+"""The stages of a substep at contacts, which :mod:`physicslab.kernels.solver.soft` goes through."""
 
 from physicslab.kernels import always_inlined, fused
 from physicslab.kernels.arguments import (

@@ -1,0 +1,362 @@
+"""Substeps of a world whose bodies touch, in one compiled loop.
+
+It goes through the stages of a substep in the order in which it is given them
+(:data:`physicslab.integrators.leapfrog.LEAPFROG` has them as data), and returns where Python is needed: to
+list pairs, to wake bodies, or at a stage where systems act that no kernel computes.
+"""
+
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.accounts import BALANCE, BEFORE, ENERGY, PX, PY, SPIN
+from physicslab.kernels.arguments import (
+    Acting,
+    ActingTuple,
+    Bounds,
+    BoundsTuple,
+    Course,
+    CourseTuple,
+    Gravity,
+    GravityTuple,
+    Inverse,
+    InverseTuple,
+    Log,
+    Materials,
+    MaterialsTuple,
+    Motion,
+    MotionTuple,
+    Near,
+    NearTuple,
+    Packed,
+    PackedTuple,
+    Plan,
+    PlanTuple,
+    Sizes,
+    SizesTuple,
+    Sleepers,
+    SleepersTuple,
+    Softness,
+    SoftnessTuple,
+    Springs,
+    SpringsTuple,
+    named_acting,
+    named_near,
+)
+from physicslab.kernels.broad.fat_boxes import still_holds
+from physicslab.kernels.energy import moments_of_mass, motion_totals
+from physicslab.kernels.forces.force_calls import add_forces
+from physicslab.kernels.forces.gravity import uniform_gravity
+from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
+from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
+from physicslab.kernels.ode.spring_flow import flow_springs
+from physicslab.kernels.records import Impacts
+from physicslab.kernels.sleep.edits import find_pushed
+from physicslab.kernels.sleep.islands import count_rest, find_touched
+from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
+from physicslab.kernels.solver.work import book_damping, book_gravity, book_kick
+from physicslab.kernels.ticks import charge, ticks
+from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to_blocks
+
+__all__ = [
+    "ACCELERATE", "ALL", "BLOCKS_FULL", "BROAD_PHASE", "CONTACT", "COSTS", "DIVERGED", "DRIFT", "FIND",
+    "GRAVITY", "HOOK", "IMPACTS", "INTEGRATE", "KICK", "OVERLAP", "PACKED", "PAIRS", "PAIRS_STALE",
+    "PREDICT", "PYTHON", "RELAX", "RESOLVE", "SLEEP", "SLEEP_PENDING", "SOLVE", "SPRINGS", "STEPS",
+    "UNIFORM", "WAKE", "WAKE_PENDING", "WALL_PENDING", "WIDEN", "advance",
+]  # fmt: skip
+
+ALL, PYTHON, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING, WALL_PENDING = range(8)
+"""Why the loop ended: all steps are done; it is at a part that is Python's; the near pairs must be listed
+again; so many bodies touch that more blocks may be needed; the last step left a number that is not finite; a
+sleeping body is touched or pushed; at the end of a step, an island may fall asleep, or a body was beyond the
+bounds."""
+(
+    HOOK, DRIFT, SPRINGS, UNIFORM, PACKED, KICK, PAIRS, FIND, WIDEN, WAKE, IMPACTS, PREDICT, SOLVE, RELAX,
+    OVERLAP,
+) = range(15)  # fmt: skip
+"""The parts of a substep: what is Python's; bodies move; those on springs do, or Python moves them; uniform
+forces, or compiled ones, are added up, and kick; whether the near pairs are still all that are near; where
+bodies touch; steady contacts get into blocks, once a step; whether sleeping bodies are to be woken; impacts;
+velocities are predicted; the impulses of contacts, and those after bodies have moved; what is Python's if
+these have moved bodies apart."""
+SHARE, DRIFTED, LATER = range(3)
+"""Where in ``Course.times`` these are."""
+COSTS, STEPS = 8, 7
+ACCELERATE, GRAVITY, INTEGRATE, BROAD_PHASE, CONTACT, RESOLVE, SLEEP = range(STEPS)
+"""The systems whose work this is, in the order of their times in ``cost``; then how many steps were begun."""
+_TIMED = 8
+"""Every such step is timed: reading the clock takes a twentieth of a step of ten bodies."""
+
+
+@inlined
+def _keep(motion: Motion, kept: Numbers) -> None:
+    """Copy a state into an existing array (6 rows,), one column after the other."""
+    n = len(motion.angle)
+    for i in range(n):
+        kept[2 * i], kept[2 * i + 1] = motion.position[i, 0], motion.position[i, 1]
+        kept[2 * n + i] = motion.angle[i]
+        kept[3 * n + 2 * i], kept[3 * n + 2 * i + 1] = motion.linear[i, 0], motion.linear[i, 1]
+        kept[5 * n + i] = motion.angular[i]
+
+
+@inlined
+def _keep_book(account: Vectors) -> None:
+    """Copy the accounts, to return to where a step fails."""
+    for row in range(BEFORE):
+        for column in range(4):
+            account[BEFORE + row, column] = account[row, column]
+
+
+@inlined
+def _balance(account: Vectors, motion: Motion, gravity: Gravity, cause: int) -> None:
+    """Measure energy and momentum, and book what they have changed by to a cause, unless that is negative."""
+    translation, rotation, px, py, spin, mx, my = motion_totals(
+        motion.position, motion.linear, motion.angular, gravity.mass, gravity.inertia, gravity.inverse_mass,
+        gravity.inverse_inertia,
+    )  # fmt: skip
+    energy = translation + rotation
+    energy += -(gravity.gx * mx + gravity.gy * my)
+    if cause >= 0:
+        account[cause, ENERGY] += energy - account[BALANCE, ENERGY]
+        account[cause, PX] += px - account[BALANCE, PX]
+        account[cause, PY] += py - account[BALANCE, PY]
+        account[cause, SPIN] += spin - account[BALANCE, SPIN]
+    account[BALANCE, ENERGY], account[BALANCE, PX] = energy, px
+    account[BALANCE, PY], account[BALANCE, SPIN] = py, spin
+
+
+@inlined
+def _moved(motion: Motion, before: Numbers) -> bool:
+    """Whether any body is elsewhere than before."""
+    for i in range(len(motion.angle)):
+        if motion.position[i, 0] != before[2 * i] or motion.position[i, 1] != before[2 * i + 1]:
+            return True
+    return False
+
+
+@inlined
+def _woken(near: Near, motion: Motion, inverse: Inverse, acting: Acting, sleepers: Sleepers) -> bool:
+    """Return whether a sleeping body is to be woken; what rests on fixed bodies is passed over by impacts."""
+    if sleepers.unverified:
+        return True
+    if sleepers.number == 0:
+        return False
+    near.counts[ACTIVE], found = find_touched(
+        near.manifolds, near.points, near.touching, near.counts[ACTIVE], inverse.mass, motion.linear,
+        motion.angular, sleepers.asleep, sleepers.marked,
+    )  # fmt: skip
+    if acting.any and not acting.uniform:
+        found += find_pushed(acting.force, acting.torque, sleepers.forces, sleepers.asleep, sleepers.marked)
+    return found > 0
+
+
+@inlined
+def _made_wide(
+    near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, sleepers: Sleepers,
+    opened: Rows, h: float,
+) -> bool:  # fmt: skip
+    """Put steady contacts into blocks; return whether there was room for them."""
+    if near.counts[WIDE_COUNT] == 0 and near.counts[ACTIVE] < MIN_WIDE:
+        return True
+    came = SPARSE  # the first blocks are made in Python
+    if near.counts[WIDE_COUNT] > 0:
+        came = add_to_blocks(
+            near, opened, sleepers.pairs, sleepers.inactive, sleepers.asleep, motion, sizes, materials,
+            inverse, h,
+        )  # fmt: skip
+    return came == ADDED
+
+
+@inlined
+def _advance(
+    steps: int, substep: int, part: int, plan: Plan, course: Course, cause: int,
+    motion: Motion, kept: Numbers, sizes: Sizes, materials: Materials, inverse: Inverse,
+    sub_integrated: Flags, acting: Acting, gravity: Gravity, packed: Packed, springs: Springs,
+    sleepers: Sleepers, damping: tuple[float, float], fat: Vectors, bounds: Bounds, near: Near, opened: Rows,
+    softness: Softness, impulse_dt: float, impacts: Impacts, cost: Rows,
+) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
+    """Advance by steps, beginning at a part of a substep, as :func:`advance` describes."""
+    position, angle, linear, angular = motion
+    h, counts, account = plan.h, near.counts, near.account
+    damped = damping[0] != 0.0 or damping[1] != 0.0
+    done, bounced, finished, evaluations, evaluated = 0, 0, 0, 0, 0
+    weighed, total, mx, my = False, 0.0, 0.0, 0.0
+    now = ticks()
+    while done < steps:
+        if substep == 0 and part == 0:
+            now = ticks() if course.hooked or cost[STEPS] % _TIMED == 0 else -1
+            cost[STEPS] += 1
+            evaluated = evaluations
+            if not course.hooked:
+                _keep(motion, kept)
+                if cause < 0 or done > 0:  # else it was kept before what was changed between steps was booked
+                    _keep_book(account)
+                now = charge(cost, ACCELERATE, now)
+        while part < len(course.parts):
+            what, span, why = course.parts[part], course.times[SHARE, part] * h, ALL
+            if what == DRIFT:
+                drift(position, angle, linear, angular, sub_integrated, span)
+                weighed = False
+                now = charge(cost, INTEGRATE, now)
+            elif what == SPRINGS:
+                made = flow_springs(motion, springs, span, account)
+                evaluations += max(0, made)
+                why = ALL if made >= 0 else PYTHON
+                weighed = False
+                now = charge(cost, INTEGRATE, now)
+            elif what in (UNIFORM, PACKED):
+                clear(acting.force, acting.torque)
+                now = charge(cost, ACCELERATE, now)
+                if what == UNIFORM:
+                    uniform_gravity(acting.force, gravity.mass, gravity.inverse_mass, gravity.gx, gravity.gy)
+                else:
+                    began = plan.time + done * plan.dt + substep * h
+                    drifted = began + course.times[DRIFTED, part] * h
+                    pack_state(position, angle, linear, angular, drifted, packed.state)
+                    add_forces(packed.state[0], packed.state[1], acting.pull, packed.calls)
+                now = charge(cost, GRAVITY, now)
+            elif what == KICK:
+                if acting.uniform:
+                    if not weighed:
+                        total, mx, my = moments_of_mass(position, gravity.mass, inverse.mass)
+                        weighed = True
+                    book_gravity(account, total, mx, my, gravity.gx, gravity.gy, span)
+                elif acting.any:
+                    book_kick(
+                        position, acting.force, acting.torque, gravity.mass, inverse.mass, inverse.inertia,
+                        sub_integrated, gravity.gx, gravity.gy, gravity.other, span, account,
+                    )  # fmt: skip
+                if damped:
+                    book_damping(
+                        position, linear, angular, acting.force, acting.torque, inverse.mass, inverse.inertia,
+                        sub_integrated, damping[0], damping[1], span, course.times[LATER, part] * h, account,
+                    )  # fmt: skip
+                if damped or acting.any:
+                    kick(
+                        linear, angular, acting.force, acting.torque, inverse.mass, inverse.inertia,
+                        sub_integrated, damping[0], damping[1], span,
+                    )  # fmt: skip
+                now = charge(cost, ACCELERATE, now)
+            elif what == PAIRS:
+                holds = still_holds(
+                    position, angle, linear, angular, sizes.kind, sizes.radius, sizes.width, sizes.height,
+                    fat, span, gravity.margin,
+                )  # fmt: skip
+                now = charge(cost, BROAD_PHASE, now)
+                why = ALL if holds else PAIRS_STALE
+            elif what == FIND:
+                first = substep == plan.first
+                find_touching(
+                    near, motion, sizes, materials, inverse, bounds, first, span, course.start, gravity.margin
+                )
+                now = charge(cost, CONTACT, now)
+            elif what == WIDEN:
+                if substep == plan.first:
+                    room = _made_wide(near, motion, sizes, materials, inverse, sleepers, opened, span)
+                    now = charge(cost, CONTACT, now)
+                    why = ALL if room else BLOCKS_FULL
+            elif what == WAKE:
+                if _woken(near, motion, inverse, acting, sleepers):
+                    why = WAKE_PENDING
+                now = charge(cost, SLEEP, now)
+            elif what == IMPACTS:
+                moment = plan.time + done * plan.dt + (substep + course.middle) * h
+                came = resolve_all_impacts(
+                    near, motion, sizes, inverse, acting, Log(impacts, moment, account), span,
+                    course.start * span, course.end * span,
+                )  # fmt: skip
+                bounced += came
+                weighed = weighed and came == 0
+                now = charge(cost, RESOLVE, now)
+            elif what == PREDICT:
+                predict(
+                    linear, angular, acting.force, acting.torque, inverse.mass, inverse.inertia,
+                    sub_integrated, acting.unkicked, span,
+                )  # fmt: skip
+            elif what == SOLVE:
+                impulse_dt = press(near, motion, inverse, acting, softness, span, impulse_dt, plan.iterations)
+                now = charge(cost, RESOLVE, now)
+            elif what == RELAX:
+                if part + 1 < len(course.parts) and course.parts[part + 1] == OVERLAP:
+                    for i in range(len(angle)):
+                        packed.state[2, 2 * i], packed.state[2, 2 * i + 1] = position[i, 0], position[i, 1]
+                relax(near, motion, inverse, acting, softness, span, plan.iterations)
+                weighed = False
+                now = charge(cost, RESOLVE, now)
+            elif what == HOOK or _moved(motion, packed.state[2]):
+                why = PYTHON
+            if why != ALL:
+                return why, done, substep, part, finished, bounced, evaluations, impulse_dt
+            part += 1
+        substep, part = substep + 1, 0
+        if substep == plan.substeps:
+            substep = 0
+            if course.hooked:
+                return ALL, 1, substep, part, bounced, bounced, evaluations, impulse_dt
+            failed = find_beyond(position, angle, FARTHEST) >= 0 or find_beyond(linear, angular, LARGEST) >= 0
+            now = charge(cost, ACCELERATE, now)
+            if failed:
+                return DIVERGED, done, substep, part, finished, bounced, evaluated, impulse_dt
+            done, finished = done + 1, bounced
+            if sleepers.on:
+                check = count_rest(
+                    linear, angular, sizes.kind, sizes.radius, sizes.width, sizes.height,
+                    gravity.inverse_mass, sub_integrated, sleepers.asleep, sleepers.rest, sleepers.slowest,
+                    plan.rested,
+                )  # fmt: skip
+                now = charge(cost, SLEEP, now)
+                if check:
+                    return (
+                        SLEEP_PENDING,
+                        done,
+                        substep,
+                        part,
+                        finished,
+                        bounced,
+                        evaluations,
+                        impulse_dt,
+                    )
+            if counts[OUTSIDE] != 0:
+                return (
+                    WALL_PENDING,
+                    done,
+                    substep,
+                    part,
+                    finished,
+                    bounced,
+                    evaluations,
+                    impulse_dt,
+                )
+    return ALL, done, substep, part, finished, bounced, evaluations, impulse_dt
+
+
+@kernel
+def advance(
+    steps: int, substep: int, part: int, plan: PlanTuple, course: CourseTuple, cause: int,
+    motion: MotionTuple, kept: Numbers, sizes: SizesTuple, materials: MaterialsTuple,
+    inverse: InverseTuple, sub_integrated: Flags, acting: ActingTuple, gravity: GravityTuple,
+    packed: PackedTuple, springs: SpringsTuple, sleepers: SleepersTuple, damping: tuple[float, float],
+    fat: Vectors, bounds: BoundsTuple, near: NearTuple, opened: Rows, softness: SoftnessTuple,
+    impulse_dt: float, impacts: Impacts, cost: Rows,
+) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
+    """Advance by ``steps`` steps, beginning at a part of a substep.
+
+    ``kept`` has the state now, and receives that in which the last step began. ``impacts`` is the log, and
+    ``cost`` (COSTS,) gets ticks added for each system, and the number of steps. What was changed since the
+    last step is booked to a ``cause``, unless that is negative.
+
+    Where some parts are Python's, the ends of steps are too: nothing is kept, and energy is not measured.
+
+    Returns why it ended, how many steps are done, the substep and the part that it was in, the impacts in the
+    steps that are done and all impacts, how often the forces of springs that move bodies were evaluated, and
+    the time [s] over which the points' impulses act.
+    """
+    of, moved, masses, along = named_near(near), Motion(*motion), Gravity(*gravity), Course(*course)
+    if cause >= 0:
+        _balance(of.account, moved, masses, cause)
+    ended = _advance(
+        steps, substep, part, Plan(*plan), along, cause, moved, kept,
+        Sizes(*sizes), Materials(*materials), Inverse(*inverse), sub_integrated,
+        named_acting(acting), masses, Packed(*packed), Springs(*springs), Sleepers(*sleepers), damping, fat,
+        Bounds(*bounds), of, opened, Softness(*softness), impulse_dt, impacts, cost,
+    )  # fmt: skip
+    if not along.hooked:
+        _balance(of.account, moved, masses, -1)
+    return ended

@@ -1,0 +1,129 @@
+"""Steps with soft contacts: any scene, any systems."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from physicslab.contacts.islands import keep_places
+from physicslab.contacts.wide import refill
+from physicslab.kernels.loading import working_ns
+from physicslab.state.masses import check_finite
+from physicslab.state.state import State
+from physicslab.stepping.accounting import held_in, open_account
+from physicslab.stepping.bounds import bring_back
+from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.stepper import Advance, divisions, falls_far
+from physicslab.stepping.substeps import Span, Substeps
+from physicslab.systems.broad_phase import BroadPhaseSystem
+from physicslab.systems.contact import ContactSystem
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.sleep import SleepSystem
+
+__all__ = ["Soft"]
+
+_MAX_STEPS = 4096
+"""Largest number of steps of one call."""
+_CALL_NS = 100_000_000
+"""Time [ns] that a call takes at most, judged by the last one: what stops a run waits for its end."""
+
+
+class Soft:
+    """Goes through the stages of every substep, in one compiled loop.
+
+    It can advance any world, so it is the last of the list. Where only systems of the engine act, it makes
+    many steps in one call. Where another acts within the step, or a force in Python, the loop hands over to
+    it; steps are then made one by one.
+
+    Attributes
+    ----------
+    substeps : Substeps
+        The parts of a substep.
+    hooks : tuple of str
+        Why the loop comes back in every substep, if it does.
+    """
+
+    name: str = "contact"
+    title: str = "Steps stage by stage, contacts within them"
+    leaps: bool = False
+    leaves_forces: bool = True
+
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
+        self._schedule, self.substeps = schedule, Substeps(state, schedule, plan)
+        self._broad_phase, self._contact = schedule.find(BroadPhaseSystem), schedule.find(ContactSystem)
+        self._sleep = schedule.find(SleepSystem)
+        self.kernels: tuple[Any, ...] = self.substeps.kernels
+        self.hooks = self.substeps.hooks
+        self.keeps_balance: bool = not self.hooks and self.substeps.uniform
+        # Of one force the loop measures the same energy, bit for bit, as is measured between steps.
+        self._measures = len(schedule.forces) < 2
+        self._max_steps = 64
+        self.reason = plan.reason
+        if not self.hooks:
+            self.name, self.title = "fused_contact", "Compiled steps, contacts within them"
+            self.reason = "bodies can touch, and nothing looks at substeps"
+        elif self.hooks[0] not in plan.reason:
+            self.reason = f"{plan.reason}; {self.hooks[0]}"
+
+    @classmethod
+    def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
+        """None: any world can be stepped so."""
+        return None
+
+    def holds(self, state: State) -> bool:
+        """Whether the sub-integrated bodies and their forces are still the same."""
+        split = self.substeps.split
+        return split is None or not split.outdated(state)
+
+    def ready(self, state: State, h: float) -> bool:
+        """Be ready for any step."""
+        return True
+
+    def advance(self, state: State, h: float, steps: int) -> Advance:
+        """Make ``steps`` steps or fewer; where one fails, those before it are counted."""
+        contacts, parts = state.contacts, divisions(state, h)
+        single = bool(self.hooks) or parts > 1 or (state.bodies.unequal and state.has_forces)
+        if not single:
+            contacts.substep_factor = 1
+        factor = max(contacts.substep_factor, falls_far(state, h / parts))
+        state.substeps = factor * state.simulation.substeps
+        wanted, steps = steps, 1 if single else min(steps, self._max_steps)
+        began = working_ns() if wanted > 1 else 0
+        refill(state)
+        if self._broad_phase is not None:
+            self._broad_phase.follow_rows(state)
+        if self._contact is not None:
+            self._contact.begin_step(state)
+        if self.substeps.split is not None:
+            self.substeps.split.begin(state)
+        rested = min(h, state.simulation.dt)  # of a divided step only the end is observed
+        span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested)
+        cause = self._open(state) if self.keeps_balance else -1
+        made = self.substeps.go_through(state, span, steps, cause)
+        if self.hooks:
+            self._end_step(state, h)
+        keep_places(state)
+        if single:
+            factors = (system.substep_factor(state) for system in self._schedule.running)
+            contacts.substep_factor = max(factors, default=1)
+        if wanted > 1:
+            self._max_steps = max(1, min(_MAX_STEPS, made * _CALL_NS // max(working_ns() - began, 1)))
+        return Advance(made, parts)
+
+    def _end_step(self, state: State, h: float) -> None:
+        """Judge what has come of a step with hooks, as the loop does where there are none."""
+        check_finite(state, state.time + h)
+        if self._sleep is not None:
+            self._schedule.call(self._sleep, self._sleep.count_rest, state, h)
+        if state.contacts.outside:
+            bring_back(state, self._schedule)
+
+    def _open(self, state: State) -> int:
+        """Return by which cause anything was changed since the last step, or -1 where that is booked."""
+        account = state.account
+        if not (account.is_open or (account.is_known and self._measures)):
+            open_account(state, self._schedule.forces)
+        if account.is_open:
+            return -1
+        held, account.seen = held_in(state), None
+        cause, account.held = account.cause_of_edits(held), held
+        return cause

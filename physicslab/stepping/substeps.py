@@ -1,0 +1,424 @@
+"""Substeps with soft contacts: one compiled loop, which hands over to Python where other systems act."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Mass
+from physicslab.contacts.arguments import (
+    acting_in,
+    bounds_of,
+    inverse_in,
+    materials_of,
+    motion_of,
+    near_in,
+    sizes_of,
+    speculative_margin,
+)
+from physicslab.contacts.islands import all_asleep
+from physicslab.kernels.broad import grid, leaving, near_pairs
+from physicslab.kernels.broad.fat_boxes import fat_boxes
+from physicslab.kernels.loading import direct_entry, working_ns
+from physicslab.kernels.solver import soft
+from physicslab.kernels.wide import slots
+from physicslab.state.masses import check_finite
+from physicslab.state.state import State
+from physicslab.stepping.accounting import acts_unbooked, run_measured
+from physicslab.stepping.bounds import bring_back
+from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.split_forces import SplitForces
+from physicslab.stepping.stage_accounts import StageAccounts
+from physicslab.systems.accelerate import AccelerateSystem
+from physicslab.systems.broad_phase import BroadPhaseSystem
+from physicslab.systems.contact import ContactSystem
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.resolve import ResolveSystem
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.sleep import SleepSystem
+from physicslab.systems.system import ForceSystem, Stage, System
+
+__all__ = ["Span", "Substeps"]
+
+_BOOKED = "the work of a force along the way of bodies is booked"
+_NOTHING_TOUCHES = "nothing can touch, so that each system is called by itself"
+
+type _Hook = Callable[[State, float], None]
+"""Called with the length of the substep [s]."""
+
+_COMPILED: dict[Stage, tuple[type[System], int]] = {
+    Stage.DRIFT: (IntegrateSystem, soft.DRIFT), Stage.KICK: (AccelerateSystem, soft.KICK),
+    Stage.BROAD_PHASE: (BroadPhaseSystem, soft.PAIRS), Stage.CONTACT: (ContactSystem, soft.FIND),
+    Stage.IMPACT: (ResolveSystem, soft.IMPACTS), Stage.SOLVE: (ResolveSystem, soft.SOLVE),
+    Stage.RELAX: (ResolveSystem, soft.RELAX),
+}  # fmt: skip
+"""The system whose work at a stage the loop does, and as which part of the substep."""
+_KERNELS = (
+    soft.advance, fat_boxes, leaving.index_bodies, leaving.add_pairs, grid.find_pairs, near_pairs.partition,
+    near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
+)  # fmt: skip
+_COSTS: dict[type[System], int] = {
+    AccelerateSystem: soft.ACCELERATE, IntegrateSystem: soft.INTEGRATE, BroadPhaseSystem: soft.BROAD_PHASE,
+    ContactSystem: soft.CONTACT, ResolveSystem: soft.RESOLVE, SleepSystem: soft.SLEEP,
+}  # fmt: skip
+"""Where the loop keeps what their work costs; that of forces is in one."""
+
+
+class Span(NamedTuple):
+    """What substeps are to cover: their number a step, the length of a substep and of a step, the start [s].
+
+    ``rested`` is the time [s] that a step counts as rest of what is slow.
+    """
+
+    substeps: int
+    h: float
+    dt: float
+    start: float
+    rested: float
+
+
+class Substeps:
+    """The parts of a substep for the systems of a world, in the order of the integrator's stages.
+
+    What engine systems do is compiled. Where another acts, or a force in Python, its stage is handed over:
+    all systems of that stage are called, in their order.
+
+    Parameters
+    ----------
+    state : State
+        Whose bodies.
+    schedule : Schedule
+        The systems.
+    plan : StepPlan
+        The stages, and what moves bodies on springs.
+    whole : bool
+        Whether whole steps are made. Else the near pairs are those there are, and ends of steps the caller's.
+
+    Attributes
+    ----------
+    hooks : tuple of str
+        Why the loop comes back in every substep, if it does; ends of steps are then the caller's.
+    kernels : tuple of kernels
+        What is called in most steps.
+    split : SplitForces, optional
+        What moves bodies on springs and in drag, if not kicks.
+    uniform : bool
+        Whether no forces act but uniform ones that are compiled.
+    """
+
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan, *, whole: bool = True) -> None:
+        self._schedule, self._whole = schedule, whole
+        self.split: SplitForces | None = None
+        if plan.split_forces is not None:
+            self.split = SplitForces(state, schedule.forces, plan.split_forces, plan.split_steps)
+        self._accounts = StageAccounts(state, schedule.forces)
+        self._contact, self._sleep = schedule.find(ContactSystem), schedule.find(SleepSystem)
+        self._broad_phase, resolve = schedule.find(BroadPhaseSystem), schedule.find(ResolveSystem)
+        self._softness = (0.0, 0.0, 0.0) if resolve is None else resolve.softness
+        self._run: Callable[[Stage, State, float], None] = schedule.run
+        # Where a system of one's own moves the bodies itself, its error is that of the method.
+        if schedule.find(IntegrateSystem) is not None and any(map(acts_unbooked, schedule.running)):
+            self._run = lambda stage, state, h: run_measured(stage, schedule, state, h)
+        springs = None if self.split is None else self.split.springs
+        self._compiled = self._contact is not None or springs is not None
+        self.uniform, self._packs, reasons = True, False, []
+        self._parts: list[int] = []
+        self._times: list[tuple[float, float, float]] = []
+        self._hooks: dict[int, _Hook] = {}
+        self._calls: dict[System, int] = {}
+        self._drifted = self._kicked = 0.0
+        if self._accounts.follows_way:
+            self._hook(lambda state, h: self._accounts.begin_substep(state))
+            reasons.append(_BOOKED)
+        for stage, share in plan.stages.substep:
+            reason = self._add(state, stage, share)
+            if reason and reason not in reasons:
+                reasons.append(reason)
+        self.hooks = tuple(reasons)
+        self._hooked = bool(reasons) or not whole
+        start, end = plan.stages.window
+        parts, times = np.array(self._parts, np.int64), np.array(self._times).reshape(-1, 3).T.copy()
+        self._course = parts, times, start, end, -start, self._hooked
+        self._is_compiled = [*(part != soft.HOOK for part in self._parts), True]
+        self._evaluates = state.has_forces and not {soft.UNIFORM, soft.PACKED}.isdisjoint(self._parts)
+        compiled = _KERNELS if self._compiled else self._accounts.kernels
+        self.kernels: tuple[Any, ...] = (*compiled, *(schedule.kernels(state) if reasons else ()))
+        self._cost, self._forces = np.zeros(soft.COSTS, np.int64), len(schedule.forces)
+        self._h = 0.0
+        self._columns: object = None
+        self._springs = (np.zeros(0), np.zeros(0, np.int64)) if springs is None else springs.arrays
+        self._entry: Callable[..., Any] = soft.advance
+        self._fixed: tuple[tuple[Any, ...], tuple[Any, ...], Any]
+        self._packed: tuple[list[NDArray[np.int64]], NDArray[np.int64]] = [], np.zeros((0, 3), np.int64)
+        self._steps = self._substeps = self._nanoseconds = 0
+
+    # ---- the parts -----------------------------------------------------------------------------------------
+
+    def _part(self, what: int, share: float = 0.0) -> None:
+        """Add a part; what is kicked in ``share`` of a substep is seen from the middle of that."""
+        later = 0.5 - self._kicked - 0.5 * share
+        self._parts.append(what)
+        self._times.append((share, self._drifted, later))
+
+    def _hook(self, call: _Hook, share: float = 0.0) -> None:
+        """Add a part that is Python's."""
+        self._hooks[len(self._parts)] = call
+        self._part(soft.HOOK, share)
+
+    def _add(self, state: State, stage: Stage, share: float) -> str:
+        """Add a stage of the substep; return why some of it is Python's, if it is."""
+        systems, split, accounts, reason = self._schedule.at(stage), self.split, self._accounts, ""
+        if stage is Stage.RELAX and accounts.follows_way:
+            self._hook(lambda state, h: accounts.book_way(state))
+        if stage is Stage.FORCE:
+            reason = self._add_forces(state, systems, share)
+        elif stage is Stage.PREDICT:
+            if self._compiled:
+                self._part(soft.PREDICT, share)
+            elif split is not None:
+                self._hook(lambda state, h: split.take_part(stage, state, share * h))
+        elif systems and not (stage is Stage.BROAD_PHASE and not self._whole):
+            reason = self._add_systems(state, stage, systems, share)
+        if split is not None and stage is Stage.DRIFT:
+            self._hook(lambda state, h: split.take_part(stage, state, share * h), share)
+            if split.springs is not None:
+                self._parts[-1] = soft.SPRINGS
+            else:
+                reason = reason or "what springs and drag act on is sub-integrated"
+        self._drifted += share if stage is Stage.DRIFT else 0.0
+        self._kicked += share if stage is Stage.KICK else 0.0
+        return reason
+
+    def _add_systems(self, state: State, stage: Stage, systems: tuple[System, ...], share: float) -> str:
+        """Add the work of the systems of a stage."""
+        kind, part = _COMPILED[stage]
+        also = SleepSystem if stage is Stage.CONTACT else kind
+        others = [system for system in systems if type(system) not in (kind, also)]
+        accounts, run = self._accounts, self._run
+        if self._compiled and not others:
+            self._part(part, share)
+            self._count(systems)
+            if stage is Stage.CONTACT and not state.event_driven:
+                self._part(soft.WIDEN, share)
+            if stage is Stage.CONTACT and self._sleep is not None:
+                self._part(soft.WAKE, share)
+            if stage is Stage.RELAX and accounts.stores:
+                self._hooks[len(self._parts)] = lambda state, h: accounts.book_overlap(state)
+                self._part(soft.OVERLAP)
+            return ""
+        if stage is Stage.KICK:
+            later = 0.5 - self._kicked - 0.5 * share
+            self._hook(lambda state, h: accounts.book_kick(state, share * h, later * h))
+        elif stage is Stage.RELAX:
+            self._hook(lambda state, h: accounts.note_places(state))
+        self._hook(lambda state, h: run(stage, state, share * h), share)
+        if stage is Stage.RELAX:
+            self._hook(lambda state, h: accounts.book_overlap(state))
+        return f"{others[0].name} acts within the step" if others else _NOTHING_TOUCHES
+
+    def _add_forces(self, state: State, systems: tuple[System, ...], share: float) -> str:
+        """Add what adds up the forces."""
+        first, forces = systems[:1], systems[1:]
+        engine = all(type(system) is AccelerateSystem for system in first)
+        if not systems or (engine and not forces and not state.has_forces):
+            return ""
+        plain = [force for force in forces if isinstance(force, ForceSystem)]
+        same = engine and len(plain) == len(forces)
+        self.uniform = same and all(
+            force.is_engine and force.uniform_acceleration(state) is not None for force in plain
+        )
+        self._packs = same and not self.uniform and not self._accounts.notes_forces
+        self._packs &= all(
+            type(force).packs() and type(force).marked()[Stage.FORCE] == "add_packed" for force in plain
+        )
+        if self._compiled and (self.uniform or self._packs):
+            self._part(soft.UNIFORM if self.uniform else soft.PACKED, share)
+            self._count(systems)
+            return ""
+        accounts, schedule, run = self._accounts, self._schedule, self._run
+        if accounts.notes_forces:
+            self._hook(lambda state, h: schedule.run_forces(state, share * h, accounts.note_force), share)
+        else:
+            self._hook(lambda state, h: run(Stage.FORCE, state, share * h), share)
+        if not self._compiled:
+            return _NOTHING_TOUCHES
+        python = [one.name for one in forces if not (isinstance(one, ForceSystem) and one.packs())]
+        return f"the force of {python[0]} is computed in Python" if python else _BOOKED
+
+    def _count(self, systems: tuple[System, ...]) -> None:
+        """Count a call of each system in every substep."""
+        for system in systems:
+            self._calls[system] = self._calls.get(system, 0) + 1
+
+    # ---- going through them --------------------------------------------------------------------------------
+
+    def go_through(self, state: State, span: Span, steps: int = 1, cause: int = -1) -> int:
+        """Make ``steps`` steps or, where everything falls asleep, fewer; return how many.
+
+        What was changed since the last step is booked to a ``cause``, unless that is negative. Where one
+        fails, those before it are counted.
+        """
+        before, made, substep, part = state.time, 0, 0, 0
+        first = 0 if self._contact is None or self._contact.first else -1
+        try:
+            while made < steps and self._parts:
+                why = soft.PYTHON
+                if self._is_compiled[part]:
+                    where = substep, part, first, cause
+                    why, done, substep, part = self._advance(state, span, steps - made, made, where)
+                    cause, made = -1, made + done
+                if why == soft.DIVERGED:
+                    check_finite(state, span.start + (made + 1) * span.dt)
+                elif why in (soft.SLEEP_PENDING, soft.WALL_PENDING):
+                    part = 0
+                    self._end_step(state, why, span)
+                    if all_asleep(state):
+                        break
+                elif why != soft.ALL:
+                    began = span.start + made * span.dt
+                    state.moment = began + (substep + self._course[4]) * span.h
+                    state.time = began + substep * span.h + self._times[part][1] * span.h
+                    self._leave(state, why, part, span.h)
+                    part += 1
+                    if self._hooked and part == len(self._parts):
+                        substep, part = substep + 1, 0
+                        made += substep == span.substeps
+        except BaseException:
+            before += made * span.dt
+            state.steps += made
+            raise
+        finally:
+            state.time = before
+        if self._hooked:
+            self._finish(state, 1, span)
+            if self._contact is not None:
+                self._contact.end_substep()
+        return made if self._parts else steps
+
+    def _leave(self, state: State, why: int, part: int, h: float) -> None:
+        """Do in Python what the loop has come back for."""
+        if why == soft.PYTHON:
+            self._hooks[part](state, h)
+        elif why == soft.PAIRS_STALE and self._broad_phase is not None:
+            self._timed(self._broad_phase, self._broad_phase.list_pairs, state, h)
+        elif why == soft.BLOCKS_FULL and self._contact is not None:
+            self._timed(self._contact, self._contact.make_wide, state, h)
+        elif why == soft.WAKE_PENDING and self._sleep is not None:
+            self._timed(self._sleep, self._sleep.wake_touched_islands, state, h)
+
+    def _end_step(self, state: State, why: int, span: Span) -> None:
+        """Put islands to sleep, or bring bodies back within the bounds, at the end of a step."""
+        state.checkpoint.take(motion_of(state), state.counts)
+        state.account.begin_step()
+        state.account.is_open = True  # the loop has not seen what is done here
+        if why == soft.SLEEP_PENDING and self._sleep is not None:
+            self._timed(self._sleep, self._sleep.put_islands_to_sleep, state, span.dt)
+        if state.contacts.outside:
+            bring_back(state, self._schedule)
+
+    def _advance(
+        self, state: State, span: Span, steps: int, made: int, where: tuple[int, int, int, int]
+    ) -> tuple[int, int, int, int]:
+        """Run the loop as far as it goes; return why it ended, after how many steps, and where."""
+        began = time.perf_counter_ns()
+        contacts, (substep, part, first, cause) = state.contacts, where
+        plan = (
+            span.substeps, state.simulation.iterations or 0, span.h, span.dt, span.start + made * span.dt,
+            span.rested, first,
+        )  # fmt: skip
+        arguments = self._arguments(state, span.h)
+        why, done, substep, part, finished_impacts, impacts, evaluations, contacts.impulse_dt = self._entry(
+            steps, substep, part, plan, self._course, cause, *arguments
+        )
+        state.force_evaluations += evaluations
+        contacts.changed()
+        state.collisions += finished_impacts
+        if done and not self._hooked:
+            self._finish(state, done, span)
+            state.checkpoint.counts = state.counts
+        state.collisions += impacts - finished_impacts
+        self._nanoseconds += time.perf_counter_ns() - began
+        self._schedule.defer(self._settle)
+        return why, done, substep, part
+
+    def _finish(self, state: State, steps: int, span: Span) -> None:
+        """Count steps that were made."""
+        state.force_evaluations += steps * span.substeps * self._evaluates
+        self._steps += steps
+        self._substeps += steps * span.substeps
+
+    def _arguments(self, state: State, h: float) -> tuple[Any, ...]:
+        """Return the arguments of the loop; those that change only with structure or laws are kept."""
+        contacts, sleep, columns = state.contacts, state.sleep, state.checkpoint.columns
+        if self._columns is not columns or self._h != h:
+            self._columns, self._h, self._fixed = columns, h, self._fixed_arguments(state, h)
+            self._entry = soft.advance  # which looks at the types of the arrays once
+        else:
+            self._entry = direct_entry(soft.advance)
+        motion, laws, marked = self._fixed
+        bodies = state.bodies
+        packed = bodies.packed, self._addresses(state) if self._packs else self._packed[1]
+        sleepers = (
+            self._sleep is not None, sleep.count, sleep.asleep, sleep.rest, sleep.slowest, marked,
+            contacts.inactive, contacts.sleeping, sleep.forces, sleep.unverified,
+        )  # fmt: skip
+        damping, fat, bounds = laws
+        if self._broad_phase is not None:
+            fat = self._broad_phase.fat
+        return (
+            *motion, packed, self._springs, sleepers, damping, fat, bounds, near_in(state), contacts.opened,
+            self._softness, contacts.impulse_dt, contacts.step_log, self._cost,
+        )  # fmt: skip
+
+    def _addresses(self, state: State) -> NDArray[np.int64]:
+        """Return the addresses (n, 3) of the forces that are compiled."""
+        calls, known = [force.calls(state) for force in self._schedule.forces], self._packed[0]
+        if not known or any(new is not old for new, old in zip(calls, known, strict=True)):
+            self._packed = calls, np.concatenate(calls)
+        return self._packed[1]
+
+    def _fixed_arguments(self, state: State, h: float) -> tuple[tuple[Any, ...], tuple[Any, ...], Any]:
+        """Return the columns in order, the laws, and room for marks."""
+        bodies, physics, accounts = state.bodies, state.physics, self._accounts
+        mass = state.table(Mass)
+        gravity = (
+            mass["mass"], mass["inertia"], bodies.inverse_mass, bodies.inverse_inertia, accounts.gravity.x,
+            accounts.gravity.y, speculative_margin(state, h), accounts.other,
+        )  # fmt: skip
+        columns = (
+            motion_of(state), state.checkpoint.numbers, sizes_of(state), materials_of(state),
+            inverse_in(state), bodies.sub_integrated, acting_in(state), gravity,
+        )  # fmt: skip
+        laws = (physics.linear_damping, physics.angular_damping), np.zeros((8, 0)), bounds_of(state)
+        return columns, laws, np.zeros_like(state.sleep.asleep)
+
+    # ---- what they cost ------------------------------------------------------------------------------------
+
+    def _settle(self) -> None:
+        """Note as many calls as the stages would have made; the time is divided by the loop's own clock.
+
+        What that has shown before counts half as much: the last steps may be too few to have been timed.
+        """
+        costs: list[int] = self._cost[: soft.STEPS].tolist()
+        total, timings = max(1, sum(costs)), self._schedule.timings
+        for system, calls in self._calls.items():
+            timing, shared = timings[system.name], 1
+            if isinstance(system, ForceSystem):
+                place, shared = soft.GRAVITY, self._forces
+            else:
+                place = _COSTS[type(system)]
+            once = isinstance(system, SleepSystem) and not self._hooked
+            timing.calls += self._substeps * calls + self._steps * once
+            timing.nanoseconds += self._nanoseconds * costs[place] // (total * shared)
+        self._cost[: soft.STEPS] //= 2
+        self._steps = self._substeps = self._nanoseconds = 0
+
+    def _timed(self, system: System, call: Callable[[State, float], None], state: State, h: float) -> None:
+        """Call a system's method, whose call is counted with the step, and note what it cost."""
+        began = working_ns()
+        call(state, h)
+        self._schedule.note(system.name, 0, working_ns() - began)
