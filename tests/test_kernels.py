@@ -274,13 +274,16 @@ def test_the_wait_for_a_kernel_is_no_cost_of_the_system_that_calls_it() -> None:
 
 
 def _tuples_of_numbers() -> set[str]:
-    """Return the names of the named tuples of kernels that hold numbers alone, or such tuples."""
+    """Return the names of the tuples of kernels that hold numbers alone, or such tuples."""
     kinds: dict[str, set[str]] = {}
     for path in FOLDER.rglob("*.py"):
         for node in ast.parse(path.read_text()).body:
             if isinstance(node, ast.ClassDef) and "NamedTuple" in map(ast.unparse, node.bases):
                 fields = [field for field in node.body if isinstance(field, ast.AnnAssign)]
-                kinds[node.name] = {ast.unparse(field.annotation) for field in fields}
+                kinds[node.name] = {w for f in fields for w in re.findall(r"\w+", ast.unparse(f.annotation))}
+                kinds[node.name] -= {"N"}  # float, or eight of them
+            elif isinstance(node, ast.TypeAlias):
+                kinds[node.name.id] = set(re.findall(r"\w+", ast.unparse(node.value))) - {"tuple"}
     found: set[str] = set()
     while more := {name for name in kinds.keys() - found if kinds[name] <= {"float", "int", "bool"} | found}:
         found |= more

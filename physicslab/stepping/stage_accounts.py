@@ -135,10 +135,12 @@ class StageAccounts:
         )
         kicked = (bodies.awake_inverse_mass > 0.0) & ~bodies.sub_integrated
         rows = np.concatenate((np.repeat(kicked, 2), kicked & (bodies.awake_inverse_inertia > 0.0)))
-        for force, pull in self._pulls.items():
-            sums[force.account, ENERGY] += float(pull[rows] @ way[rows])
+        worked = [(force.account, float(pull[rows] @ way[rows])) for force, pull in self._pulls.items()]
         if self._damps:
-            sums[DAMPING, ENERGY] += float(self._dampers[rows] @ way[rows])
+            worked.append((DAMPING, float(self._dampers[rows] @ way[rows])))
+        for account, energy in worked:
+            # Damping gives no energy: what a kick gives that overshoots is an error of the method.
+            sums[account, ENERGY] += min(energy, 0.0) if account == DAMPING else energy
         if self._driven is not None:
             rows = np.concatenate((np.repeat(self._driven, 2), self._driven))
             sums[HAND, ENERGY] -= float(bodies.pull[rows] @ way[rows])
