@@ -213,7 +213,7 @@ def test_a_body_is_hung_on_a_rod_and_swings() -> None:
     world = empty_world()
     body = circle(world, (0, 0), mass=2.0)
     desk = opened(world, body)
-    click(desk, "Hang from a rod")
+    click(desk, "Hang on a rod")
     (made,) = [e for e in world.entities() if world.has(e, Spring)]
     assert world.component(made, Spring).anchor_b == Vector2(0.0, 1.5)
     assert desk.ui.rows["Period"] == f"{2 * math.pi * math.sqrt(1.50015 / 9.81):.4g} s"
@@ -224,7 +224,7 @@ def test_a_body_is_hung_on_a_rod_and_swings() -> None:
     fixed = box(world, (3, 3), static=True)
     desk.window.selection.entities = (fixed,)
     desk.frames(SETTLED)
-    click(desk, "Hang from a spring")
+    click(desk, "Hang on a spring")
     assert desk.window.notice == "No spring: neither of its ends could move"
 
 

@@ -34,7 +34,7 @@ def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, A
             )
             for way, stiff in _WAYS.items()
         }
-    words = {"spring": "Hang from a spring", "rod": "Hang from a rod"}
+    words = {"spring": "Hang on a spring", "rod": "Hang on a rod"}
     return {
         words[way]: (f"A {way} to a point above it, which can be dragged", partial(_hang, entities[0], stiff))
         for way, stiff in _WAYS.items()
