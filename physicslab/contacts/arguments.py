@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from physicslab.components import Material, Shape, Transform, Velocity
+from physicslab.components import Material, Transform, Velocity
 from physicslab.kernels.arguments import (
     ActingTuple,
     BoundsTuple,
@@ -12,12 +12,12 @@ from physicslab.kernels.arguments import (
     MaterialsTuple,
     MotionTuple,
     NearTuple,
-    SizesTuple,
 )  # fmt: skip
+from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.state.state import State
 
 __all__ = [
-    "acting_in", "bounds_of", "inverse_in", "materials_of", "motion_of", "near_in", "sizes_of",
+    "acting_in", "bounds_of", "inverse_in", "materials_of", "motion_of", "near_in", "shapes_of",
     "speculative_margin",
 ]  # fmt: skip
 
@@ -28,10 +28,9 @@ def motion_of(state: State) -> MotionTuple:
     return (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
 
 
-def sizes_of(state: State) -> SizesTuple:
-    """Return kinds and sizes of shapes."""
-    shape = state.table(Shape)
-    return (shape["kind"], shape["radius"], shape["width"], shape["height"])
+def shapes_of(state: State) -> ShapesTuple:
+    """Return the table of shapes."""
+    return state.bodies.plain_shapes
 
 
 def materials_of(state: State) -> MaterialsTuple:
