@@ -133,12 +133,6 @@ class Contacts:
         log[last % length] = self.log[last % len(self.log)]
         self.log = log
 
-    def forget_impacts(self, first: int, count: int) -> None:
-        """Remove ``count`` impacts from number ``first`` on from the log; later ones move up."""
-        kept = self.log[np.arange(first + count, self.logged) % len(self.log)]
-        self.log[np.arange(first, first + len(kept)) % len(self.log)] = kept
-        self.logged -= count
-
     def make_room(self, capacity: int) -> None:
         """Drop everything, and make room for so many records."""
         self.manifolds: NDArray[Any] = np.zeros(capacity, MANIFOLD)

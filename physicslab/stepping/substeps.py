@@ -95,8 +95,6 @@ class Substeps:
         The systems.
     plan : StepPlan
         The stages, and what moves bodies on springs.
-    whole : bool
-        Whether whole steps are made. Else the near pairs are those there are, and ends of steps the caller's.
 
     Attributes
     ----------
@@ -110,8 +108,8 @@ class Substeps:
         Whether no forces act but uniform ones that are compiled.
     """
 
-    def __init__(self, state: State, schedule: Schedule, plan: StepPlan, *, whole: bool = True) -> None:
-        self._schedule, self._whole = schedule, whole
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
+        self._schedule = schedule
         self.split: SplitForces | None = None
         if plan.split_forces is not None:
             self.split = SplitForces(state, schedule.forces, plan.split_forces, plan.split_steps)
@@ -139,7 +137,7 @@ class Substeps:
             if reason and reason not in reasons:
                 reasons.append(reason)
         self.hooks = tuple(reasons)
-        self._hooked = bool(reasons) or not whole
+        self._hooked = bool(reasons)
         start, end = plan.stages.window
         parts, times = np.array(self._parts, np.int64), np.array(self._times).reshape(-1, 3).T.copy()
         self._course = parts, times, start, end, -start, self._hooked
@@ -181,7 +179,7 @@ class Substeps:
                 self._part(soft.PREDICT, share)
             elif split is not None:
                 self._hook(lambda state, h: split.take_part(stage, state, share * h))
-        elif systems and not (stage is Stage.BROAD_PHASE and not self._whole):
+        elif systems:
             reason = self._add_systems(state, stage, systems, share)
         if split is not None and stage is Stage.DRIFT:
             self._hook(lambda state, h: split.take_part(stage, state, share * h), share)
