@@ -7,8 +7,6 @@ from typing import NamedTuple
 from physicslab.components.lengths import extent
 from physicslab.ecs.component import Component, InvalidValue, component, field
 
-__all__ = ["BOX", "CIRCLE", "KINDS", "Kind", "Shape", "kind_of"]
-
 
 class Kind(NamedTuple):
     """A convex shape as data: a core, which sizes stretch, and a radius that rounds it.

@@ -1,7 +1,5 @@
 """Masses and forces of every row of a world."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -10,8 +8,6 @@ from numpy.typing import NDArray
 
 from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.state.shapes import blank_shapes, with_names
-
-__all__ = ["Bodies"]
 
 
 class Bodies:

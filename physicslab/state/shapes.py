@@ -10,8 +10,6 @@ from physicslab.components.shape import Kind
 from physicslab.ecs.table import Table
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, SizesTuple
 
-__all__ = ["EXTENTS", "KINDS", "blank_shapes", "register", "sizes_in", "with_names"]
-
 _SIZES = tuple(spec.name for spec in shape.Shape.FIELDS if spec.name != "kind")
 
 

@@ -5,8 +5,6 @@ import math
 from physicslab.kernels import inlined
 from physicslab.kernels.geometry.shapes import BOX, Shapes, face, vertex
 
-__all__ = ["area_and_moment", "inertia_of"]
-
 
 @inlined
 def area_and_moment(shapes: Shapes, i: int) -> tuple[float, float]:

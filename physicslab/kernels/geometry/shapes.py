@@ -25,11 +25,6 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
 from physicslab.kernels.records import Pairs
 
-__all__ = [
-    "BOX", "MOST_VERTICES", "Shapes", "ShapesTuple", "SizesTuple", "derive_shape", "derive_shapes", "face",
-    "half_extents", "half_thickness", "named_shapes", "support", "vertex",
-]  # fmt: skip
-
 BOX = 1
 """Where the vertices of a box begin in the pool, after the one of a disc."""
 MOST_VERTICES = 8
