@@ -14,8 +14,6 @@ from physicslab.files.snapshot import WorldSnapshot
 from physicslab.files.writer import text_pieces
 from physicslab.world import World
 
-__all__ = ["Autosave"]
-
 
 class Autosave:
     """Saves a world when something changed, at most every ``period`` seconds.

@@ -11,8 +11,6 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-__all__ = ["freeze", "loading"]
-
 
 def freeze() -> None:
     """Spare what exists by now from all later searches: a full one then takes a millisecond, not 76."""

@@ -16,8 +16,6 @@ from physicslab.view.canvas.theme import THEMES
 from physicslab.view.window.recent import RecentFiles
 from physicslab.view.window.window import LEVELS, Window
 
-__all__ = ["load_preferences", "save_preferences"]
-
 _MIN_SCALE, _MAX_SCALE = 0.5, 3.0
 """The sizes of text that are taken from a file, as shares of the usual."""
 _MAX_ARRANGEMENT = 100_000

@@ -31,8 +31,6 @@ from physicslab.view.workbench.interface import Interface
 from physicslab.view.workbench.world_view import WorldView
 from physicslab.world import World
 
-__all__ = ["Sandbox"]
-
 _REST_AFTER, _REST_PERIOD = 1.0, 0.1
 """How long [s] nothing is done and nothing moves before pictures are fewer, and the time between two then."""
 _PARTLY = 1e-6

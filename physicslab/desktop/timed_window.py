@@ -14,8 +14,6 @@ from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["InWindow"]
-
 _SIZE = (1280, 720)
 _FRAME = 1.0 / 60.0
 

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.canvas import Rect
 
-__all__ = ["Camera", "Extent"]
-
 type Extent = tuple[float, float, float, float]
 """A part of the world: ``(xmin, ymin, xmax, ymax)`` [m]."""
 

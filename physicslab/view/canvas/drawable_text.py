@@ -6,8 +6,6 @@ import re
 import unicodedata
 from functools import lru_cache
 
-__all__ = ["MAX_LETTERS", "drawable", "encodable", "shortened"]
-
 MAX_LETTERS = 1000
 """Longer text is cut: no line, no caption and no message is read beyond that."""
 _MAX_MARKS = 3

@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from physicslab.view.canvas.canvas import Look, Numbers, Points
 
-__all__ = ["draw_boxes", "draw_discs", "draw_strokes"]
-
 _LARGE = 200.0
 """Radius [px] from which a disc is drawn as a polygon, which can be cut off."""
 _CORNERS = 256

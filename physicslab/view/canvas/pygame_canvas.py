@@ -13,8 +13,6 @@ from physicslab.view.canvas.plain_shapes import draw_boxes, draw_discs, draw_str
 from physicslab.view.canvas.surface_cache import SurfaceCache
 from physicslab.view.canvas.theme import Colour
 
-__all__ = ["PygameCanvas"]
-
 _RIM = 1.6
 """Width of the rims [px]."""
 

@@ -7,11 +7,6 @@ from collections import Counter
 
 from physicslab.ecs.vector import Vector2
 
-__all__ = [
-    "ROUNDING", "percentage", "product", "quantity", "quotient", "round_quantity", "rounded_up",
-    "vector_quantity", "without_rounding", "written_unit",
-]  # fmt: skip
-
 ROUNDING = 1e-12
 """Share of what a number is a part of below which it is rounding."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

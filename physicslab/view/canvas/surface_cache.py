@@ -15,8 +15,6 @@ from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.theme import NOTHING, Colour
 
-__all__ = ["SurfaceCache", "rounded"]
-
 _RAISED = re.compile("([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 _PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _RAISED_SIZE = 0.72

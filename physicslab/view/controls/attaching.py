@@ -14,8 +14,6 @@ from physicslab.view.window.spring_tool import spring_between
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
-__all__ = ["attachments"]
-
 _ABOVE = 1.5
 """How far above a body the point is that it is hung from [m]."""
 _WAYS = {"spring": False, "rod": True}

@@ -25,11 +25,6 @@ from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = [
-    "add_meter", "add_slider", "change", "close_graph", "go_to", "plot_phase", "plot_selected", "remove",
-    "save_picture", "save_table", "slide", "table_of", "toggle_line", "usual_range",
-]  # fmt: skip
-
 _ENERGIES = ("kinetic energy", "potential energy", "total energy")
 _LIMIT = 8
 """Bodies that one graph begins with."""

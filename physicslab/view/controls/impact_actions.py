@@ -12,8 +12,6 @@ from physicslab.view.controls.picking import body_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["clicked_impact", "close_up", "go_beside", "pause_at_next", "run_slowly", "save_table"]
-
 _REACH = 14.0
 """How near to the mark of an impact a click need be [px]."""
 _SLOWLY = 0.0625

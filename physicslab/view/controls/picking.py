@@ -17,8 +17,6 @@ from physicslab.view.picture.bodies import POINT_RADIUS, body_rows
 from physicslab.view.picture.springs import ends_of
 from physicslab.world import World
 
-__all__ = ["body_at", "centre_near", "directions_near", "instrument_at", "point_at", "spring_at"]
-
 type Rows = NDArray[np.int64]
 type Numbers = NDArray[np.float64]
 

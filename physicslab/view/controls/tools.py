@@ -14,11 +14,6 @@ from physicslab.view.window.pins import pin_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = [
-    "HAND", "MORE_TOOLS", "PALETTE", "PAN", "REMOVE", "SELECT", "SPAWN_TOOLS", "SPRING", "TOOLS", "Tool",
-    "begin_spring", "end_spring", "remove_selected",
-]  # fmt: skip
-
 
 def _nothing(world: World, window: Window) -> None:
     """Do nothing."""

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.theme import Theme
 
-__all__ = ["Label", "Labels"]
-
 type Key = tuple[int, ...]
 
 _OFF = 14.0

@@ -14,8 +14,6 @@ from physicslab.view.overlay.contact_samples import resting_of
 from physicslab.view.overlay.overlays import Overlays
 from physicslab.world import World
 
-__all__ = ["NORMAL_LENGTH", "draw_vectors"]
-
 NORMAL_LENGTH = 26.0
 """Length of the arrows of contact normals, which are directions only [px]; shorter in a crowd."""
 

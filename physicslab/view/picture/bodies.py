@@ -15,8 +15,6 @@ from physicslab.view.canvas.canvas import Canvas, Look
 from physicslab.view.canvas.theme import Theme
 from physicslab.world import World
 
-__all__ = ["POINT_RADIUS", "BodyRows", "body_rows", "draw_bodies", "own_colour"]
-
 type Rows = NDArray[np.int64]
 
 POINT_RADIUS = 5.0

@@ -10,8 +10,6 @@ from physicslab.view.canvas.camera import Extent
 from physicslab.view.picture.bodies import body_rows
 from physicslab.world import World
 
-__all__ = ["extent_of"]
-
 type Boxes = NDArray[np.float64]
 """A float64 array (n, 4): xmin, ymin, xmax, ymax [m]."""
 

@@ -20,8 +20,6 @@ from physicslab.view.picture.strobe import draw_strobes
 from physicslab.view.picture.trails import draw_trails
 from physicslab.world import World
 
-__all__ = ["draw_world", "picture_of", "save_png"]
-
 _WINDOW = WindowConfig()
 
 

@@ -11,8 +11,6 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
 from physicslab.view.canvas.theme import Theme
 
-__all__ = ["Sparks"]
-
 _MAX_SPARKS = 400
 """The oldest sparks make room for new ones beyond that number."""
 _MIN_PER_IMPACT, _MAX_PER_IMPACT = 3, 18

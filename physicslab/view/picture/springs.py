@@ -11,8 +11,6 @@ from physicslab.view.canvas.canvas import Canvas, Look, Points
 from physicslab.view.canvas.theme import Theme
 from physicslab.world import World
 
-__all__ = ["coil", "draw_springs", "ends_of"]
-
 _TURN = 13.0
 """About how long a turn of a coil is at rest [px]."""
 _MIN_TURNS, _MAX_TURNS = 4, 12

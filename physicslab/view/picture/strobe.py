@@ -16,8 +16,6 @@ from physicslab.view.canvas.theme import Theme, mixed
 from physicslab.view.picture.bodies import POINT_RADIUS, own_colour
 from physicslab.world import World
 
-__all__ = ["draw_strobes"]
-
 _FILL, _RIM = 0.16, 0.55
 """Shares of a body's colour in the copies of it, the rest being background."""
 _MAX = 6_000

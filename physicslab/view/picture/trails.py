@@ -15,8 +15,6 @@ from physicslab.view.canvas.theme import Theme, mixed
 from physicslab.view.picture.bodies import own_colour
 from physicslab.world import World
 
-__all__ = ["TrailSwitch", "draw_trails"]
-
 _SHADES = 16
 """Steps in which a trail fades."""
 _NEWEST_SHARE = 0.85

@@ -8,8 +8,6 @@ from physicslab.view.canvas.theme import Colour
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 
-__all__ = ["bar", "zero_line"]
-
 
 def bar(
     ui: Ui, label: str, value: str, share: float, colour: Colour, *, zero: float = 0.0, tip: str = ""

@@ -6,8 +6,6 @@ import re
 
 from physicslab.view.canvas.drawable_text import drawable
 
-__all__ = ["widget_label"]
-
 _UNSEEN = "\u200b"
 """A space without width: it parts two signs ``#`` that Dear ImGui would take for a mark of its own."""
 

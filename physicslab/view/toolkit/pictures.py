@@ -16,8 +16,6 @@ from physicslab.kernels import compile_kernels
 from physicslab.kernels.triangles import paint_triangles
 from physicslab.view.canvas.theme import Colour
 
-__all__ = ["Pictures"]
-
 _VERTEX_BYTES = 20
 """Place, place in the texture and colour: what ``ImDrawVert`` takes."""
 _MASKS = (0x00FF0000, 0x0000FF00, 0x000000FF, 0xFF000000)

@@ -10,8 +10,6 @@ from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from physicslab.view.canvas.theme import Colour, Theme, mixed
 
-__all__ = ["Fonts", "add_fonts", "apply_theme", "as_vector", "bar_height", "packed"]
-
 
 @dataclass(frozen=True, slots=True)
 class Fonts:

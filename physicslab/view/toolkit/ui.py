@@ -14,8 +14,6 @@ from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.style import Fonts, packed
 
-__all__ = ["Ui"]
-
 _FLAGS = imgui.WindowFlags_
 _FIXED = (
     _FLAGS.no_title_bar | _FLAGS.no_resize | _FLAGS.no_move | _FLAGS.no_collapse | _FLAGS.no_saved_settings

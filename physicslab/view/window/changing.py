@@ -29,11 +29,6 @@ from physicslab.view.window.points import local_point, point_of
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = [
-    "addable", "change_fields", "give", "name_entity", "plain_kind", "removable", "set_end",
-    "take",
-]  # fmt: skip
-
 _SIZE = 0.25
 """Radius of a shape that a body is given, half the width of a box [m]."""
 _ABOVE = 1.0

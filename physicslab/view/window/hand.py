@@ -21,8 +21,6 @@ from physicslab.history import AddComponent, Command, RemoveComponent, SetField
 from physicslab.view.window.placing import free_way, outlines_of
 from physicslab.world import World
 
-__all__ = ["Hand"]
-
 _ALONG, _MAX_BEHIND = 0.3, 24
 """A body is behind another where the way to it points at least so much along; so many are looked at."""
 _WEIGHTS, _EARTH = 20.0, 9.81

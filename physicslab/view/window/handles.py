@@ -14,8 +14,6 @@ from physicslab.view.canvas.quantities import quantity
 from physicslab.view.window.edits import Edits
 from physicslab.world import World
 
-__all__ = ["Handle", "Handles"]
-
 type Kind = Literal["size", "angle", "velocity"]
 
 _CATCH = 9.0

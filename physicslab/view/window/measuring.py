@@ -14,8 +14,6 @@ from physicslab.view.overlay.instruments import Instrument, Overrides
 from physicslab.view.overlay.labels import Labels
 from physicslab.world import World
 
-__all__ = ["Measuring", "Spot", "Writing"]
-
 
 @dataclass(frozen=True, slots=True)
 class Spot:

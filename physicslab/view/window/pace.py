@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["Pace"]
-
 
 class Pace:
     """Counts the steps that are due in a frame, so that the motion does not depend on the frame rate.

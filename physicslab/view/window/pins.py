@@ -16,8 +16,6 @@ from physicslab.view.canvas.quantities import quantity
 from physicslab.view.window.edits import Edits
 from physicslab.world import World
 
-__all__ = ["Pins", "pin_at"]
-
 _CATCH = 8.0
 """How near to a pin a press need be [px]."""
 

@@ -15,8 +15,6 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
-__all__ = ["Outlines", "free_way", "outlines_of", "refused_change", "refused_place"]
-
 _ALLOWED = 1e-3
 """Overlap [m] that is no obstacle: what is put down on a floor by eye."""
 _BEYOND = "there is no room beyond the walls"

@@ -7,8 +7,6 @@ from physicslab.ecs.vector import Vector2
 from physicslab.state.attached import local_point as in_frame
 from physicslab.world import World
 
-__all__ = ["local_point", "point_of"]
-
 
 def point_of(world: World, body: int | None, anchor: Vector2) -> Vector2:
     """Return where a point in a body's frame is in the world [m]; without a body it is one of the world."""

@@ -7,8 +7,6 @@ from typing import ClassVar
 
 from physicslab.ecs.fields import LENGTH_LIMIT, Field
 
-__all__ = ["Recipe"]
-
 
 @dataclass(frozen=True, slots=True)
 class Recipe:

@@ -16,8 +16,6 @@ from physicslab.view.picture.backdrop import grid_spacing
 from physicslab.view.window.placing import outlines_of
 from physicslab.world import World
 
-__all__ = ["Mark", "Snapped", "Snapping", "extent_about", "snapped"]
-
 _NEAR = 9.0
 """How near the edge of another body must be for a place to snap to it [px]."""
 _FINE = 5

@@ -15,8 +15,6 @@ from physicslab.view.overlay.arrows import even_dashes
 from physicslab.view.window.points import local_point, point_of
 from physicslab.world import World
 
-__all__ = ["SpringTool", "rod_stiffness", "spring_between"]
-
 _FREQUENCY = 2.0
 """How fast two bodies swing on a new spring [Hz]: soft enough to be seen, stiff enough to carry them."""
 _DAMPING_RATIO = 0.05

@@ -22,8 +22,6 @@ from physicslab.view.window.window import Picking, Window
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
 
-__all__ = ["ComponentRows"]
-
 _VARIOUS = "various"
 _LESSER = ("inertia", "fixed_rotation")
 """Fields that have no row where few figures are wanted."""

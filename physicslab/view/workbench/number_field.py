@@ -16,8 +16,6 @@ from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 
-__all__ = ["NumberFields", "shown_number", "shown_vector_part"]
-
 _DRAG = 0.005
 """Share of its size by which a number changes a pixel; of numbers below one, share of one."""
 _FINER, _COARSER = 0.1, 10.0

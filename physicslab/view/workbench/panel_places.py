@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 from physicslab.view.canvas.canvas import Rect
 
-__all__ = ["Small", "bar_at_top", "has_room", "is_bar", "places"]
-
 _GRAPH = (27.0, 20.0)
 """Width and height that a graph has where there is room, in heights of the text."""
 _LEAST = (12.0, 14.0)

@@ -13,8 +13,6 @@ from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = ["build_quantities", "named_key", "scale_of", "unit_of"]
-
 _OFFERED = 24
 """Bodies that a menu lists beside those that are selected or shown already."""
 

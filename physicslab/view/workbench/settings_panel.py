@@ -13,8 +13,6 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
 
-__all__ = ["RecipePanel", "SettingsPanel"]
-
 _SLEEPING = {"auto": "auto", "yes": True, "no": False}
 _NUMBERS: tuple[tuple[str, str, str], ...] = (
     ("linear_damping", "Damping", "Share of the velocity that is lost a second"),

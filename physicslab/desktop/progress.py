@@ -5,8 +5,6 @@ from __future__ import annotations
 from physicslab.view.canvas.canvas import Canvas, TextStyle
 from physicslab.view.canvas.theme import Theme
 
-__all__ = ["PAUSE", "draw_corner", "draw_loading", "draw_progress", "draw_waiting"]
-
 PAUSE = 0.05
 """Time [s] between two looks at whether what is shown here has changed, or the user has done anything."""
 _WIDTH, _HEIGHT = 460, 14

@@ -14,8 +14,6 @@ from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity, without_rounding
 from physicslab.world import World
 
-__all__ = ["AGREES", "Step", "body_name", "law_steps", "story"]
-
 AGREES = 1e-9
 """Relative difference up to which the solver's figure and the one worked out here are the same."""
 _LETTERS = 24
