@@ -1,7 +1,5 @@
 """The arguments of the kernels of the contact stages, taken from a state."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from physicslab.components import Material, Shape, Transform, Velocity
@@ -15,11 +13,6 @@ from physicslab.kernels.arguments import (
     SizesTuple,
 )  # fmt: skip
 from physicslab.state.state import State
-
-__all__ = [
-    "acting_in", "bounds_of", "inverse_in", "materials_of", "motion_of", "near_in", "sizes_of",
-    "speculative_margin",
-]  # fmt: skip
 
 
 def motion_of(state: State) -> MotionTuple:

@@ -1,7 +1,5 @@
 """Opens the window at once; what is to be shown in it, and numba with it, is imported while it is there."""
 
-from __future__ import annotations
-
 import threading
 import time
 from importlib import import_module

@@ -1,7 +1,5 @@
 """Saving the state of a window every few seconds, without holding up a frame."""
 
-from __future__ import annotations
-
 import gc
 import threading
 import time

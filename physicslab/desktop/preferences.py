@@ -1,7 +1,5 @@
 """What the user chose of the window, from one start to the next: colours, text, level, where panels are."""
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The window while it loads, and while kernels are compiled."""
 
-from __future__ import annotations
-
 from physicslab.view.canvas.canvas import Canvas, TextStyle
 from physicslab.view.canvas.theme import Theme
 

@@ -1,7 +1,5 @@
 """The desktop sandbox: a world in a window, frame by frame."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from pathlib import Path

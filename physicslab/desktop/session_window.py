@@ -1,7 +1,5 @@
 """Runs the sandbox in a window: its scene, its session, its frames."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A world that is stepped with the systems of a window installed, for the benchmark."""
 
-from __future__ import annotations
-
 import os
 from typing import override
 

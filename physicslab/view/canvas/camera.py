@@ -1,7 +1,5 @@
 """The camera: the one place where metres become pixels."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Text as a font can draw it: scene files and file names may hold any letter, and any number of them."""
 
-from __future__ import annotations
-
 import re
 import unicodedata
 from functools import lru_cache

@@ -4,8 +4,6 @@ Edges are rough and places rounded to pixels; what cannot move is filled with a 
 a hatch. Anything far outside the picture is cut off first, or pygame would go through all of its rows.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """A canvas on a pygame surface."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Numbers with units, as people read them; units of slopes and areas."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 

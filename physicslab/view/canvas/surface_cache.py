@@ -1,7 +1,5 @@
 """Pictures of words and panels, made once and used for as long as they are wanted again."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 from collections import OrderedDict

@@ -1,7 +1,5 @@
 """Every colour there is."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Actions of the user, one function each, for all keys and buttons."""
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Springs made from a list: between the bodies that are selected, or from one to a point above it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 

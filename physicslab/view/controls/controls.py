@@ -1,7 +1,5 @@
 """The controls in one table: what keys do, and what the menus and the help show."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

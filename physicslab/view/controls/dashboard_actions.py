@@ -1,7 +1,5 @@
 """Actions on graphs, meters and sliders: each is an edit, so that it is saved and undone."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math

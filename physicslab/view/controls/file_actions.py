@@ -1,7 +1,5 @@
 """Actions on scene files, films and pictures of the window."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Iterator

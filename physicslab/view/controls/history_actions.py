@@ -1,7 +1,5 @@
 """Actions on the history: switch branches, save all of it in a file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from physicslab.ecs.text import printable

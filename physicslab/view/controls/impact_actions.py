@@ -1,7 +1,5 @@
 """Actions on impacts: list them, look at one closely, pause at the next."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from physicslab.components import Velocity

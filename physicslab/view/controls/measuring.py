@@ -1,7 +1,5 @@
 """Rulers, protractors, gates, notes and strobes by mouse and keys."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """Which body or instrument is at a place on the screen."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

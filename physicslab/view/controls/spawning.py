@@ -1,7 +1,5 @@
 """Bodies that can be put into the world at the cursor."""
 
-from __future__ import annotations
-
 import copy
 import functools
 import math

@@ -1,7 +1,5 @@
 """The interface of a tool: the actions of a press and a release of the left button; its icon."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from physicslab.view.controls.spawning import Spawnable

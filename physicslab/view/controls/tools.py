@@ -1,7 +1,5 @@
 """Tools, the actions of the left mouse button in the world: one at a time, named in the window."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from physicslab.components import Spring, Transform, Velocity

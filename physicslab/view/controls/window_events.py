@@ -1,7 +1,5 @@
 """SDL's events, turned into what they do to the world and to the window."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 

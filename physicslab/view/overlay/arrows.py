@@ -1,7 +1,5 @@
 """Arrows: each kind has its own colour, head and shaft, so that no two differ by colour alone."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import Enum
 

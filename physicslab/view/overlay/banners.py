@@ -1,7 +1,5 @@
 """Short words in boxes over the world: banners and warnings at the top, messages at the bottom."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Contact points with their impulses as one array: what rests, and the impacts of the last second."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Along the edges of the picture: the scale bar, coordinates, and where bodies out of sight are."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

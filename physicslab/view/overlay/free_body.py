@@ -1,7 +1,5 @@
 """The free-body diagram of the selection: every force by name, measured now and then."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

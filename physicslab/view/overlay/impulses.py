@@ -1,7 +1,5 @@
 """The educational overlay: the impulses of every contact, as the solver found them."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Rulers, protractors, gates and notes: where their points are, what they read, and how they are drawn."""
 
-from __future__ import annotations
-
 import math
 import textwrap
 from collections.abc import Collection, Iterator, Mapping, Sequence

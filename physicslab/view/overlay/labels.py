@@ -1,7 +1,5 @@
 """Numbers beside points of the picture: none over another, none that jumps about."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

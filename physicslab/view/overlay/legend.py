@@ -1,7 +1,5 @@
 """The legend of the overlays' arrows: colour, head and scale of each."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Marks of the selection and of tools: outlines, handles, the cursor, what would be made, snapping."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Pictures of a world one after the other, for a film, without a window or a display."""
 
-from __future__ import annotations
-
 import numpy as np
 import pygame
 from numpy.typing import NDArray

@@ -1,7 +1,5 @@
 """Which overlays are shown, the scales of their arrows, and what is kept from frame to frame."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Velocities, forces and contact normals, as arrows."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from physicslab.components import Transform, Velocity

@@ -1,7 +1,5 @@
 """The backdrop: a grid, and the walls of the world."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

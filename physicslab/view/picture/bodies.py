@@ -1,7 +1,5 @@
 """Bodies as they appear on the screen: where, how large, in what colours."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """The part of a world in which there is something to see."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """The whole picture of a world, and a file of it, without a window or a display."""
 
-from __future__ import annotations
-
 import os
 from typing import BinaryIO
 

@@ -1,7 +1,5 @@
 """Sparks that fly where bodies hit each other: a matter of the window, not of the world."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Springs as coils, and the pins that hold them."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -1,7 +1,5 @@
 """Strobe pictures: bodies once more where they were at regular moments, faintly."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Trails: where bodies have been, fading with age, and the switch that turns them on."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

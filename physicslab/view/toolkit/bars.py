@@ -1,7 +1,5 @@
 """Bars of panels: a label and its value over a length."""
 
-from __future__ import annotations
-
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.theme import Colour

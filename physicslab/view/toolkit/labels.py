@@ -1,7 +1,5 @@
 """Labels of widgets: what is written on one, and what it is known by, which is not the same."""
 
-from __future__ import annotations
-
 import re
 
 from physicslab.view.canvas.drawable_text import drawable

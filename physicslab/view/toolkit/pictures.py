@@ -1,7 +1,5 @@
 """Draw lists of Dear ImGui as pictures that are kept for as long as the lists stay the same."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 from dataclasses import dataclass

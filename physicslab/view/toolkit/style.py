@@ -1,7 +1,5 @@
 """The theme as Dear ImGui and ImPlot take it, and the fonts of panels."""
 
-from __future__ import annotations
-
 import importlib.util
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Dear ImGui in the window: its context, what it is told of mouse and keys, and what it draws."""
 
-from __future__ import annotations
-
 import weakref
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Elements of panels: buttons, rows, bars and menus, each identified by its label."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 

@@ -1,7 +1,5 @@
 """Edits of the selection: one command for all of it, or one sentence that says why it is refused."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
 

@@ -1,7 +1,5 @@
 """Graphs, meters and sliders as a window shows them, and what it records for them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary

@@ -1,7 +1,5 @@
 """What is selected, and how the window changes the world: by commands of one history."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

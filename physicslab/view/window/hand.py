@@ -1,7 +1,5 @@
 """The hand that takes hold of a body, moves it, and lets it go or throws it."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Callable

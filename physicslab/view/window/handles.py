@@ -1,7 +1,5 @@
 """The handles of the selection: size, angle and velocity, to be dragged while paused."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal

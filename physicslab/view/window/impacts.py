@@ -1,7 +1,5 @@
 """Impacts: the list that the table shows, and the one in the microscope."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Commands of the laboratory that run in a process of their own, while the window goes on."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess

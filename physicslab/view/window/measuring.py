@@ -1,7 +1,5 @@
 """Instruments that are being placed, dragged or written; they are in the world once that is done."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

@@ -1,7 +1,5 @@
 """From frames of any length to steps of one length."""
 
-from __future__ import annotations
-
 import math
 
 

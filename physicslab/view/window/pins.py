@@ -1,7 +1,5 @@
 """Pins: the fixed ends of springs, which can be dragged."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

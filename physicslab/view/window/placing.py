@@ -1,7 +1,5 @@
 """Whether there is room for what is to be made."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

@@ -1,7 +1,5 @@
 """Points of bodies: in a body's own frame, and in the world."""
 
-from __future__ import annotations
-
 from physicslab.components import Shape, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.state.attached import local_point as in_frame

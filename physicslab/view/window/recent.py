@@ -1,7 +1,5 @@
 """Files of earlier sessions: opened or saved last, and left by sessions that ended without closing."""
 
-from __future__ import annotations
-
 import os
 import time
 from collections.abc import Iterable, Sequence

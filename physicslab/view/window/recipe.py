@@ -1,7 +1,5 @@
 """Properties of bodies that are made with the mouse."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 

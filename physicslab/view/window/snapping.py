@@ -1,7 +1,5 @@
 """Places that snap: to the edges and middles of other bodies, and else to the grid."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Springs drawn with the mouse, from a body to another or to a point of the world."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How many digits of what the window shows can be relied on, found by another process."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Iterator

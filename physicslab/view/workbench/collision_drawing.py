@@ -1,7 +1,5 @@
 """Drawings of one impact: both bodies, B against A, momenta tip to tail, and where the energy went."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager

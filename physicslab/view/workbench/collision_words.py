@@ -1,7 +1,5 @@
 """An impact in words, and its law line by line with the numbers put in."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The rows of a component's fields: one for each, whatever it holds, of one entity or of several at once."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Error against run time: how far measuring has come, then a plot, and a table to choose a method from."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Windows of files: to save, open and film, the gallery of scenes, and what a session has left."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

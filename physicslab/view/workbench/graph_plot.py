@@ -1,7 +1,5 @@
 """The plot of a graph: its lines, those of the run before, and its cursors."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Readings beside a plot: each line with its value, slopes and areas between two moments."""
 
-from __future__ import annotations
-
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 

@@ -1,7 +1,5 @@
 """The figures over the picture, banners and panels."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from physicslab.diagnostics.warnings import ModelWarning, find_warnings

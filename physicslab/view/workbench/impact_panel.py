@@ -1,7 +1,5 @@
 """The table of impacts: sorted by a click on a heading; a click on a row opens the microscope there."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

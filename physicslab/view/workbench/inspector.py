@@ -1,7 +1,5 @@
 """The selection, in numbers that can be changed, and in values derived from them."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Panels of instruments: the stopwatch of gates, and the field in which a note is written."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math

@@ -1,7 +1,5 @@
 """The menus at the top, where all that keys do can be found, and the help, which lists the keys."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The microscope: one impact large, in words, and by the law of impact with the numbers put in."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from imgui_bundle import ImVec2, imgui

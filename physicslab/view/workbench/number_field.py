@@ -1,7 +1,5 @@
 """Rows of numbers and texts: a label, a field that is typed into, the unit, and why a value is refused."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 from collections.abc import Callable

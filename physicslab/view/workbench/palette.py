@@ -1,7 +1,5 @@
 """The tools at the left: what the mouse does in the world."""
 
-from __future__ import annotations
-
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.canvas import Rect

@@ -1,7 +1,5 @@
 """Places of graphs, meters and sliders: beside each other, in the room that the other panels leave."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

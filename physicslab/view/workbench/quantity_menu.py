@@ -1,7 +1,5 @@
 """Menus from which a quantity of a body, or of the world, is chosen."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 

@@ -1,7 +1,5 @@
 """The panels that belong to the scene: graphs in windows of their own, meters and sliders in corners."""
 
-from __future__ import annotations
-
 import io
 
 import pygame

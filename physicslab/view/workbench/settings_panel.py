@@ -1,7 +1,5 @@
 """How the world is stepped, and what the next body is like: each choice with what ``auto`` took and why."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from physicslab.ecs.config import COLLISIONS, CONTACTS, INTEGRATORS, PhysicsConfig, SimulationConfig

@@ -1,7 +1,5 @@
 """Meters and sliders: a number in large figures, and one that is changed between two values."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager

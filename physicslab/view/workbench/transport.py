@@ -1,7 +1,5 @@
 """Time: the transport at the bottom with the time line, and the history, a list to click."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, imgui

@@ -1,7 +1,5 @@
 """How many digits can be relied on: a badge in the bar of menus, which opens, and a line of the inspector."""
 
-from __future__ import annotations
-
 import math
 
 from imgui_bundle import ImVec2, imgui

@@ -1,7 +1,5 @@
 """The world in figures: its energies, where they come from and go, its gravity."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The world as the camera sees it, with the overlays that are on."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from numpy.typing import NDArray
