@@ -6,6 +6,7 @@ take a ``seed``, and give the same things for the same seed.
 
 from physicslab.prefabs.body import BodyOptions, body
 from physicslab.prefabs.box import box
+from physicslab.prefabs.capsule import capsule
 from physicslab.prefabs.chain import chain
 from physicslab.prefabs.circle import circle
 from physicslab.prefabs.container import container
@@ -17,6 +18,6 @@ from physicslab.prefabs.pyramid import pyramid
 from physicslab.prefabs.stack import stack
 
 __all__ = [
-    "BodyOptions", "Planet", "binary", "body", "box", "chain", "circle", "container", "gas", "pendulum",
-    "pile", "planets", "pyramid", "stack",
+    "BodyOptions", "Planet", "binary", "body", "box", "capsule", "chain", "circle", "container", "gas",
+    "pendulum", "pile", "planets", "pyramid", "stack",
 ]  # fmt: skip

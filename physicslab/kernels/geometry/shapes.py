@@ -59,7 +59,7 @@ class Shapes(NamedTuple):
 
 ShapesTuple = tuple[Pairs, Vectors, Vectors]
 """The same in three arrays (2, rows), (4, rows), (n, 2), which are passed faster."""
-SizesTuple = tuple[Numbers, Numbers, Numbers]
+SizesTuple = tuple[Numbers, Numbers, Numbers, Numbers]
 """The columns of sizes of the ``Shape`` component, in its order."""
 
 
@@ -101,6 +101,12 @@ def support(shapes: Shapes, i: int, x: float, y: float) -> tuple[int, float]:
         if along > farthest:
             best, farthest = k, along
     return best, farthest
+
+
+@fused
+def has_own_way(shapes: Shapes, i: int) -> bool:
+    """Whether row i is a disc or a box, for which loops have faster ways than for any rounded polygon."""
+    return bool(shapes.vertices[i] < 2 or shapes.first[i] == BOX)
 
 
 @inlined

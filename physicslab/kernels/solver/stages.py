@@ -13,8 +13,8 @@ from physicslab.kernels.arguments import (
     Softness,
 )
 from physicslab.kernels.broad.near_pairs import activate, sort_scalar
+from physicslab.kernels.geometry.contact import find_contacts
 from physicslab.kernels.geometry.shapes import Shapes
-from physicslab.kernels.narrow.contact import find_contacts
 from physicslab.kernels.near_counts import (
     ACTIVE,
     ENERGETIC,
