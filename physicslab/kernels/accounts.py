@@ -4,11 +4,6 @@ A row is a cause; its columns are the energy that it has given to the world [J],
 the angular momentum about the origin [N m s]. What a cause takes is negative.
 """
 
-__all__ = [
-    "BALANCE", "BEFORE", "BOOK", "CAUSES", "CONTACT", "DAMPING", "EDITS", "ENERGY", "FIELDS", "FRICTION",
-    "GRAVITY", "HAND", "IMPACTS", "JOINTS", "MOTORS", "OVERLAP", "PX", "PY", "SPIN", "SPRINGS", "THRUST",
-]  # fmt: skip
-
 CAUSES = 13
 (
     EDITS, HAND, THRUST, MOTORS, FIELDS, IMPACTS, FRICTION, CONTACT, OVERLAP, DAMPING, JOINTS, GRAVITY,

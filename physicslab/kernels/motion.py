@@ -5,11 +5,6 @@ import sys
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 
-__all__ = [
-    "FARTHEST", "LARGEST", "clear", "damped", "derive_masses", "drift", "find_beyond", "kick", "pack_state",
-    "predict",
-]  # fmt: skip
-
 FARTHEST = 1e300
 """The largest coordinate that a scene may hold [m] (``physicslab.ecs.fields.COORDINATE_LIMIT``)."""
 LARGEST = sys.float_info.max

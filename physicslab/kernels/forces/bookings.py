@@ -17,11 +17,6 @@ from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.ode.fall_shares import fall_shares
 
-__all__ = [
-    "ACCOUNTS", "ALL_MOVED", "A_MOVES", "A_TURNS", "BODIES", "B_MOVES", "B_TURNS", "CLOCK", "DAMPED", "END",
-    "KEPT", "book_damping", "book_kick", "book_open_spring", "gather", "keep_pull", "resist",
-]  # fmt: skip
-
 CLOCK, END, BODIES, DAMPED, KEPT = range(5)
 """What :attr:`physicslab.ode.system.OdeSystem.places` holds: where the time is; where the accounts behind it
 end; how many bodies move; the account of damping, or -1. From ``KEPT`` on, for methods that kick, there are

@@ -17,8 +17,6 @@ from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.forces.gravity import PLAIN_LIMIT, attract, inverse_cube
 from physicslab.kernels.forces.springs import mean_spring_pull, spring_pull, turn_over, turned
 
-__all__ = ["drag", "planet_gravity", "springs", "uniform_gravity"]
-
 
 @force_kernel
 def uniform_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]

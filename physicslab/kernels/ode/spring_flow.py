@@ -13,8 +13,6 @@ from physicslab.kernels.arguments import Motion, Springs
 from physicslab.kernels.wide.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
 from physicslab.kernels.wide.layout import WIDE
 
-__all__ = ["HEAD", "KNOWN", "MAX_TURN", "SIZES", "TURNS_FAST", "WEIGHT", "flow_springs"]
-
 TURNS_FAST = -1
 """What is returned where a spring is too short, or turns too far, for steps of this length."""
 MAX_TURN = 0.25

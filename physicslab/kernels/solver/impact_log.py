@@ -21,10 +21,6 @@ from physicslab.kernels.constraint.pair import (
 )
 from physicslab.kernels.records import Impacts, Manifold
 
-__all__ = [
-    "ImpactPoints", "Pair", "Pose", "book_impact", "book_outside", "pair_of", "shares_of", "write_impact",
-]  # fmt: skip
-
 
 class Pair(NamedTuple):
     """The entities that meet, the wall or -1, and the restitution and friction of the pair."""

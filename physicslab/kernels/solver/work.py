@@ -25,25 +25,8 @@ from physicslab.kernels.constraint.pair import (
 from physicslab.kernels.motion import damped
 from physicslab.kernels.near_counts import DISC_BLOCKS, WIDE_COUNT
 from physicslab.kernels.solver.impact_log import Pose, book_outside
-from physicslab.kernels.wide.layout import (
-    BOX,
-    IMPULSE,
-    NORMAL_X,
-    NORMAL_Y,
-    ONE,
-    TANGENT_IMPULSE,
-    TWO,
-    WIDE,
-    Slots,
-    rows_of,
-)
+from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.solve import slot_frame
-
-__all__ = [
-    "book_damping", "book_gravity", "book_kick", "book_relaxed", "book_slots", "book_solved",
-    "note_velocities", "take_means",
-]  # fmt: skip
-
 
 _unsigned: Any = np.uint64
 """Makes an index of which no loop tests whether it counts from the end: that takes as long as the work."""
@@ -235,10 +218,10 @@ def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
 
 
 @always_inlined
-def _slot_impulse(slots: Slots, at: int, point: int) -> tuple[float, float, float, float]:
+def _slot_impulse(slots: L.Slots, at: int, point: int) -> tuple[float, float, float, float]:
     """Return the impulse at a point of a slot [N s], and its moments about both centres [N m s]."""
     frame, impulses = slot_frame(slots, at, point), at + point
-    normal, tangent = slots.data[impulses + IMPULSE], slots.data[impulses + TANGENT_IMPULSE]
+    normal, tangent = slots.data[impulses + L.IMPULSE], slots.data[impulses + L.TANGENT_IMPULSE]
     px, py = impulse_at(frame.nx, frame.ny, normal, tangent)
     moment_a, moment_b = moments_of(frame, px, py)
     return px, py, moment_a, moment_b
@@ -254,24 +237,24 @@ def book_slots(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: 
     """
     given = Given(0.0, 0.0, 0.0)
     for slots in (near.discs, near.boxes):
-        rows = rows_of(slots.kind)
+        rows = L.rows_of(slots.kind)
         for k in range(near.counts[DISC_BLOCKS + slots.kind]):
             if not slots.outside[k]:
                 continue
-            for slot in range(k * WIDE, (k + 1) * WIDE):
-                a, b, at = _unsigned(slots.a[slot]), _unsigned(slots.b[slot]), k * rows + slot - k * WIDE
+            for slot in range(k * L.WIDE, (k + 1) * L.WIDE):
+                a, b, at = _unsigned(slots.a[slot]), _unsigned(slots.b[slot]), k * rows + slot - k * L.WIDE
                 if slots.pair[slot] < 0 or (inverse.inertia[a] > 0.0 and inverse.inertia[b] > 0.0):
                     continue
                 noted, j = near.noted, 2 * slots.pair[slot]
-                px, py, turn_a, turn_b = _slot_impulse(slots, at, ONE)
-                if slots.kind == BOX:
-                    x, y, moment_a, moment_b = _slot_impulse(slots, at, TWO)
+                px, py, turn_a, turn_b = _slot_impulse(slots, at, L.ONE)
+                if slots.kind == L.BOX:
+                    x, y, moment_a, moment_b = _slot_impulse(slots, at, L.TWO)
                     px, py, turn_a, turn_b = px + x, py + y, turn_a + moment_a, turn_b + moment_b
                 moved, sign = (b, 1.0) if inverse.mass[a] == 0.0 else (a, -1.0)
                 here_x, here_y = sign * motion.position[moved, 0], sign * motion.position[moved, 1]
                 if solved:
                     if acting.uniform:
-                        nx, ny = slots.data[at + NORMAL_X], slots.data[at + NORMAL_Y]
+                        nx, ny = slots.data[at + L.NORMAL_X], slots.data[at + L.NORMAL_Y]
                         ax, ay = _pull(a, b, inverse, acting)
                         pull, across = along_and_across(nx, ny, ax, ay)
                         push, rub = along_and_across(nx, ny, px, py)
