@@ -21,15 +21,6 @@ class Motion(NamedTuple):
     angular: Numbers
 
 
-class Sizes(NamedTuple):
-    """Kinds of shape, and radii, widths and heights [m]."""
-
-    kind: Rows
-    radius: Numbers
-    width: Numbers
-    height: Numbers
-
-
 class Materials(NamedTuple):
     """Restitutions and coefficients of friction."""
 
@@ -211,7 +202,6 @@ class Sleepers(NamedTuple):
 
 
 MotionTuple = tuple[Vectors, Numbers, Vectors, Numbers]
-SizesTuple = tuple[Rows, Numbers, Numbers, Numbers]
 MaterialsTuple = tuple[Numbers, Numbers]
 InverseTuple = tuple[Numbers, Numbers]
 ActingTuple = tuple[Numbers, bool, Flags, bool]
