@@ -27,8 +27,8 @@ before the step at hand."""
 def book(given: Any, account: int, energy: float, px: float, py: float, spin: float) -> None:
     """Add energy [J], momentum [N s] and angular momentum about the origin [N m s] to an account.
 
-    Or what all of that is in a second, where it is integrated beside the motion. ``given`` is an array (n,) of
-    float64, or its address; the account begins at ``account``.
+    Or what all of that is in a second, where it is integrated beside the motion. ``given`` is (n,) float64,
+    or its address; the account begins at ``account``.
     """
     given[account + ENERGY] += energy
     given[account + PX] += px
