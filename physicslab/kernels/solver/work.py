@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, inlined, kernel
-from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, PX, PY, SPIN
+from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, SPIN, book
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
 from physicslab.kernels.constraint.pair import (
     along_and_across,
@@ -181,9 +181,7 @@ def _given(
 @inlined
 def _book_given(near: Near, given: Given) -> None:
     """Book what fixed bodies give."""
-    near.account[CONTACT, PX] += given.px
-    near.account[CONTACT, PY] += given.py
-    near.account[CONTACT, SPIN] += given.spin
+    book(near.account[CONTACT], 0, 0.0, given.px, given.py, given.spin)
 
 
 @always_inlined
@@ -275,9 +273,7 @@ def book_gravity(
     account: Vectors, total: float, mx: float, my: float, gx: float, gy: float, h: float
 ) -> None:
     """Book the impulse of uniform gravity in ``h`` seconds on a mass of such moments."""
-    account[GRAVITY, PX] += h * total * gx
-    account[GRAVITY, PY] += h * total * gy
-    account[GRAVITY, SPIN] += h * (mx * gy - my * gx)
+    book(account[GRAVITY], 0, 0.0, h * total * gx, h * total * gy, h * (mx * gy - my * gx))
 
 
 @kernel
@@ -291,18 +287,14 @@ def book_kick(
     for i in range(len(mass)):
         if inverse_mass[i] > 0.0 and not sub_integrated[i]:
             wx, wy, x, y = mass[i] * gx, mass[i] * gy, position[i, 0], position[i, 1]
-            account[GRAVITY, PX] += h * wx
-            account[GRAVITY, PY] += h * wy
-            account[GRAVITY, SPIN] += h * (x * wy - y * wx)
+            book(account[GRAVITY], 0, 0.0, h * wx, h * wy, h * (x * wy - y * wx))
             fx, fy = force[i, 0] - wx, force[i, 1] - wy
             px += h * fx
             py += h * fy
             spin += h * (x * fy - y * fx)
             if inverse_inertia[i] > 0.0:
                 spin += h * torque[i]
-    account[other, PX] += px
-    account[other, PY] += py
-    account[other, SPIN] += spin
+    book(account[other], 0, 0.0, px, py, spin)
 
 
 @inlined
@@ -342,7 +334,4 @@ def book_damping(
         if inverse_inertia[i] > 0.0:
             turn, inertia = torque[i] * inverse_inertia[i], 1.0 / inverse_inertia[i]
             turned, around = _damped_change(angular[i], turn, angular_decay, angular_gain, h, later, inertia)
-        account[DAMPING, ENERGY] += along + across + around
-        account[DAMPING, PX] += px
-        account[DAMPING, PY] += py
-        account[DAMPING, SPIN] += x * py - y * px + turned
+        book(account[DAMPING], 0, along + across + around, px, py, x * py - y * px + turned)
