@@ -118,7 +118,6 @@ def test_impact_and_friction_take_what_the_accounts_say() -> None:
     assert account.change < -20.0
     assert account.energy["impacts"] < 0.0
     assert account.energy["friction"] < 0.0
-    print(account.energy)
     assert abs(account.energy["numerical"]) < 1e-9 * abs(account.change)
 
 

@@ -16,18 +16,6 @@ from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
 
-__all__ = [
-    "CONTACT_STEP",
-    "MAX_BODIES",
-    "MAX_PAIRS",
-    "count_pairs",
-    "pairs_that_may_meet",
-    "turning_boxes",
-    "why_not_exact",
-    "why_not_located",
-    "why_not_worthwhile",
-]
-
 MAX_BODIES = 32
 """Number of moving bodies above which ``auto`` prefers the contact step."""
 MAX_PAIRS = 20_000

@@ -16,12 +16,6 @@ from physicslab.kernels.geometry.pair import (
 from physicslab.kernels.geometry.shapes import Shapes, half_thickness, has_own_way
 from physicslab.kernels.records import Manifold, Point, Points
 
-__all__ = [
-    "ACTIVATION_RATIO", "AS_FOUND", "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "TOLERANCE_WITHIN_STEP",
-    "WIDE_TOLERANCE",
-    "effective_masses", "find_contacts", "follow_pose", "forget_points", "mix", "note_pose", "touch",
-]  # fmt: skip
-
 ACTIVATION_RATIO = 1.02
 """Distance within which two bodies may have contact points, as a multiple of their bounding radii's sum."""
 CACHE_TOLERANCE = 0.004

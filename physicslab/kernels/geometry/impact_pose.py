@@ -11,8 +11,6 @@ from physicslab.kernels.geometry.outline import lying
 from physicslab.kernels.geometry.shapes import BOX, Shapes, has_own_way, vertex
 from physicslab.kernels.records import Manifold, Point
 
-__all__ = ["is_known", "meeting_at"]
-
 _FLIPPED_BOX = 33
 """From this number on the features of two boxes are corners of A on a face of B."""
 

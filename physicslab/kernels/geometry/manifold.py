@@ -6,8 +6,6 @@ from typing import NamedTuple
 from physicslab.kernels import inlined
 from physicslab.kernels.geometry.outline import Outline
 
-__all__ = ["LEVEL", "Corner", "box_box", "circle_box", "circle_circle", "wall_corner"]
-
 _PARALLEL = 0.9998
 """Cosine of the angle between axes of boxes from which on these count as parallel: 0.02 rad."""
 FAVOUR, ALIKE = 0.005, 1e-9

@@ -15,10 +15,6 @@ from physicslab.kernels.geometry.sweep import (
 )
 from physicslab.kernels.records import Manifold, Point
 
-__all__ = [
-    "CONTACT_MARGIN", "SWEEP_THRESHOLD", "WIDE_SHARE", "touch_boxes", "touch_wall", "touch_with_circle",
-]  # fmt: skip
-
 CONTACT_MARGIN = 0.02
 """Share of the smaller body's size within which a pair counts as near: its points are kept though they do
 not touch."""

@@ -22,7 +22,7 @@ What turns without effect, a disc, has ``shapes.reach[i] - shapes.radius[i]`` eq
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
 from physicslab.kernels.records import Pairs
 
 BOX = 1
@@ -160,13 +160,3 @@ def derive_shape(
             farthest = max(farthest, vx * vx + vy * vy)
     shapes.reach[i] = math.sqrt(farthest) + radius
     return 0.0 < size_x < math.inf and 0.0 < size_y < math.inf and 0.0 < rounding < math.inf
-
-
-@kernel
-def derive_shapes(
-    kind: Rows, sizes: SizesTuple, kinds: Pairs, extents: Vectors, plain_shapes: ShapesTuple
-) -> None:
-    """Fill the table, as :func:`derive_shape` does row by row."""
-    shapes = named_shapes(plain_shapes)
-    for i in range(len(kind)):
-        derive_shape(i, kind, sizes, kinds, extents, shapes)

@@ -12,8 +12,6 @@ from physicslab.kernels.geometry.cores import APPROACHES, MISS, NEAR, REFINEMENT
 from physicslab.kernels.geometry.manifold import circle_box
 from physicslab.kernels.geometry.outline import Outline, Way, swing_of, turned
 
-__all__ = ["MISS", "sweep_box_box", "sweep_circle_box", "sweep_circle_circle", "sweep_turning_box"]
-
 
 @inlined
 def sweep_circle_circle(dx: float, dy: float, ux: float, uy: float, reach: float) -> float:
