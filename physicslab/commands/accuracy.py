@@ -13,8 +13,7 @@ from physicslab.files.scene import load_scene
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.lab.accuracy.contacts.case import ContactCase
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS, CONVERGENCE
-from physicslab.lab.accuracy.contacts.engines import OWN
-from physicslab.lab.accuracy.contacts.study import ContactStudy, study_case
+from physicslab.lab.accuracy.contacts.study import OWN, ContactStudy, study_case
 from physicslab.lab.accuracy.document import document, trust_document
 from physicslab.lab.accuracy.honesty.study import FAMILIES, HonestRow, assess_known
 from physicslab.lab.accuracy.plot import case_plot, overview, work_precision

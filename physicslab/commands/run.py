@@ -26,8 +26,7 @@ from physicslab.ecs.config import CONTACTS, INTEGRATORS
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
 from physicslab.files.json_text import json_bytes
-from physicslab.files.new_scene import save_last_good
-from physicslab.files.scene import SceneError
+from physicslab.files.scene import SceneError, save_last_good
 from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small

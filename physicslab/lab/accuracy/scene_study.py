@@ -15,7 +15,7 @@ from physicslab.files.writer import write_scene
 from physicslab.integrators import INTEGRATORS
 from physicslab.integrators.dop853 import DOP853
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error, find_order
-from physicslab.lab.accuracy.horizon import find_horizon
+from physicslab.lab.accuracy.paths import find_horizon
 from physicslab.lab.accuracy.twins import GOLDEN, Document, refined, with_ids
 from physicslab.lab.case import attempt, cpu_time
 from physicslab.lab.jobs import Job, scaled

@@ -9,9 +9,8 @@ from physicslab.ecs.config import SimulationConfig
 from physicslab.files.reader import read_scene
 from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.contacts.case import ContactCase
-from physicslab.lab.accuracy.contacts.engines import OWN, ContactEngine
-from physicslab.lab.accuracy.problem import KnownCase, Problem
-from physicslab.lab.accuracy.settings import Setting
+from physicslab.lab.accuracy.contacts.study import OWN, ContactEngine
+from physicslab.lab.accuracy.problem import KnownCase, Problem, Setting
 from physicslab.lab.accuracy.trust import STEP_SAFETY
 from physicslab.lab.accuracy.twins import (
     NUDGE_SHARE,
