@@ -4,12 +4,18 @@ import argparse
 import os
 from argparse import ArgumentParser, Namespace
 
+from physicslab.commands import FAILED, CommandError
+from physicslab.commands.arguments import (
+    add_budget,
+    check_output,
+    check_seconds,
+    name_of,
+    opened,
+    positive_duration,
+)
 from physicslab.commands.assignments import add_assignments
-from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.measured_run import MeasuredRun
-from physicslab.commands.numbers import add_budget, positive_duration
 from physicslab.commands.output import Output, reason_of
-from physicslab.commands.scene_argument import check_output, check_seconds, name_of, opened
 from physicslab.ecs.text import printable, shortened
 from physicslab.export.film import Film
 from physicslab.export.framing import Box, extent_of_run

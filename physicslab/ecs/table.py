@@ -1,4 +1,4 @@
-"""The columns of one component in one world."""
+"""The columns of one component in one world, and the rows of entities that have several."""
 
 from __future__ import annotations
 

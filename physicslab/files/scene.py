@@ -1,4 +1,4 @@
-"""Scenes by name and on disk: what opens one, and what saves one."""
+"""Scenes by name and on disk: what opens one, and what saves one, under a new name too."""
 
 import gc
 import itertools

@@ -1,10 +1,8 @@
-"""From a world to a scene document."""
-
-from __future__ import annotations
+"""From a world to a scene document, by way of a copy that may be written while the world goes on."""
 
 import copy
 from collections.abc import Generator, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import esper
 
@@ -23,12 +21,9 @@ from physicslab.files.entities import UNSAVED
 from physicslab.files.json_text import json_pieces
 from physicslab.files.reader import FORMAT
 from physicslab.files.remainders import export_remainders
+from physicslab.state.contacts import Contacts
 from physicslab.stepping.plan import outlived
 from physicslab.world import World
-
-if TYPE_CHECKING:
-    from physicslab.state.contacts import Contacts
-    from physicslab.world import World
 
 
 class WorldSnapshot:

@@ -18,32 +18,13 @@ from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
 from physicslab.ecs.config import MAX_TIME, MIN_TIME
 from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
-from physicslab.files.checks import (
-    SceneError,
-    checked_keys,
-    checked_object,
-    checked_rows,
-    is_number,
-    refusal,
-    shown,
-)
+from physicslab.files import checks
 from physicslab.files.json_text import json_bytes
 from physicslab.files.reader import check_scene, read_scene
 from physicslab.files.replace import replace_file
 from physicslab.files.scene import parse_json, read_text
 from physicslab.files.writer import write_scene
-from physicslab.history.commands import (
-    AddComponent,
-    Command,
-    Configure,
-    Group,
-    Remove,
-    RemoveComponent,
-    SetField,
-    SetPhysics,
-    SetSimulation,
-    Spawn,
-)
+from physicslab.history import commands
 from physicslab.history.line import Edit, Line, Run, Steps
 from physicslab.world import World
 
@@ -71,7 +52,7 @@ def line_document(line: Line, numbers: _Numbers) -> list[dict[str, Any]]:
     return written
 
 
-def _written(command: Command, numbers: _Numbers) -> dict[str, Any]:
+def _written(command: commands.Command, numbers: _Numbers) -> dict[str, Any]:
     """Return a command as a JSON object."""
 
     def number(entity: int | None) -> int | None:
@@ -85,32 +66,32 @@ def _written(command: Command, numbers: _Numbers) -> dict[str, Any]:
         }
 
     match command:
-        case Spawn():
+        case commands.Spawn():
             parts = {type(part).__name__: values(part) for part in command.components}
             return {"do": "spawn", "entity": command.entity, "name": command.name, "components": parts}
-        case Remove():
+        case commands.Remove():
             return {"do": "remove", "entity": number(command.entity)}
-        case SetField():
+        case commands.SetField():
             kind = COMPONENTS[command.component]
             entity = any(spec.name == command.field and spec.kind == "entity" for spec in kind.FIELDS)
             value = number(command.value) if entity else _plain(command.value)
             head = {"do": "set", "entity": number(command.entity), "component": command.component}
             return head | {"field": command.field, "value": value}
-        case AddComponent(entity, component):
+        case commands.AddComponent(entity, component):
             named = isinstance(component, Name)
             given = {"id": component.id} if isinstance(component, Name) else values(component)
             kind_name = "Name" if named else type(component).__name__
             return {"do": "add", "entity": number(entity), "component": kind_name, "values": given}
-        case RemoveComponent():
+        case commands.RemoveComponent():
             return {"do": "take", "entity": number(command.entity), "component": command.component}
-        case Configure(changes):
+        case commands.Configure(changes):
             changed = {key: _plain(value) for key, value in changes.items()}
             return {"do": command.CONFIG.section, "changes": changed}
-        case Group():
+        case commands.Group():
             parts_of = [_written(part, numbers) for part in command.commands]
             return {"do": "group", "words": command.text, "commands": parts_of}
         case _:
-            raise SceneError(f"{type(command).__name__}: no recording holds such a command")
+            raise checks.SceneError(f"{type(command).__name__}: no recording holds such a command")
 
 
 def _plain(value: Any) -> Any:
@@ -123,10 +104,10 @@ def _plain(value: Any) -> Any:
 def read_line(value: object, source: str) -> Line:
     """Return the line that :func:`line_document` wrote; the first thing not allowed is a SceneError."""
     line = Line()
-    for where, entry in checked_rows(value, f"{source}: entries", "a list of edits and runs"):
-        found = checked_object(entry, where, 'an object {"edit": ...} or {"run": ...}')
+    for where, entry in checks.checked_rows(value, f"{source}: entries", "a list of edits and runs"):
+        found = checks.checked_object(entry, where, 'an object {"edit": ...} or {"run": ...}')
         if "edit" in found:
-            checked_keys(found, f"{where}: ", "key", ("edit", "command"))
+            checks.checked_keys(found, f"{where}: ", "key", ("edit", "command"))
             words = _text(found["edit"], f"{where}: edit")
             line.add(Edit(words, _command(found.get("command"), f"{where}: command", 0)))
         else:
@@ -135,8 +116,10 @@ def read_line(value: object, source: str) -> Line:
 
 
 def _read_run(found: Mapping[str, Any], where: str) -> Run:
-    checked_keys(found, f"{where}: ", "key", ("run", "digests"))
-    pieces = [*checked_rows(found.get("run"), f"{where}: run", "a list of [dt, steps] and of commands")]
+    checks.checked_keys(found, f"{where}: ", "key", ("run", "digests"))
+    pieces = [
+        *checks.checked_rows(found.get("run"), f"{where}: run", "a list of [dt, steps] and of commands")
+    ]
     digests = _digests(found.get("digests"), f"{where}: digests")
     run, left = Run(), len(digests) // 4
     for place, piece in pieces:
@@ -147,7 +130,9 @@ def _read_run(found: Mapping[str, Any], where: str) -> Run:
         else:
             run.add_write(_command(piece, place, 0))
     if left:
-        raise SceneError(f"{where}: digests are of {len(digests) // 4} steps, and there are {run.steps}")
+        raise checks.SceneError(
+            f"{where}: digests are of {len(digests) // 4} steps, and there are {run.steps}"
+        )
     run.digests = digests
     return run
 
@@ -155,9 +140,9 @@ def _read_run(found: Mapping[str, Any], where: str) -> Run:
 def _steps(piece: list[Any], where: str, most: int) -> tuple[float, int]:
     allowed = f"[a dt of {MIN_TIME:g} to {MAX_TIME:g} s, a whole number of steps with digests]"
     dt, count = piece if len(piece) == 2 else (0.0, 0)
-    if is_number(dt) and MIN_TIME <= dt <= MAX_TIME and type(count) is int and 1 <= count <= most:
+    if checks.is_number(dt) and MIN_TIME <= dt <= MAX_TIME and type(count) is int and 1 <= count <= most:
         return float(dt), count
-    raise refusal(where, piece, allowed)
+    raise checks.refusal(where, piece, allowed)
 
 
 def _digests(value: object, where: str) -> array[int]:
@@ -170,74 +155,76 @@ def _digests(value: object, where: str) -> array[int]:
         if not unpacker.eof or len(content) % 16:
             raise ValueError
     except (ValueError, zlib.error) as error:
-        raise SceneError(f"{where}: must be 16 bytes a step, compressed, in base64") from error
+        raise checks.SceneError(f"{where}: must be 16 bytes a step, compressed, in base64") from error
     return array("I", np.frombuffer(content, "<u4").tolist())
 
 
-def _command(value: object, where: str, depth: int) -> Command:
+def _command(value: object, where: str, depth: int) -> commands.Command:
     """Return the command of a JSON object."""
-    found = checked_object(value, where, 'an object {"do": ...}')
+    found = checks.checked_object(value, where, 'an object {"do": ...}')
     read = _READERS.get(str(found.get("do")))
     if read is None:
-        raise refusal(f"{where}: do", found.get("do"), f"one of {', '.join(_READERS)}")
+        raise checks.refusal(f"{where}: do", found.get("do"), f"one of {', '.join(_READERS)}")
     try:
         return read(found, where, depth)
-    except SceneError:
+    except checks.SceneError:
         raise
     except (InvalidValue, KeyError, TypeError, ValueError) as error:
         message = error.args[0] if isinstance(error, KeyError) else error
-        raise SceneError(f"{where}: {message}") from error
+        raise checks.SceneError(f"{where}: {message}") from error
 
 
 def _part(name: object, values: object, where: str) -> Component | Name:
-    given = checked_object(values, f"{where}: {name}", "an object of values")
+    given = checks.checked_object(values, f"{where}: {name}", "an object of values")
     if name == "Name":
-        checked_keys(given, f"{where}: Name: ", "key", ("id",))
+        checks.checked_keys(given, f"{where}: Name: ", "key", ("id",))
         return Name(_text(given.get("id"), f"{where}: Name.id"))
     kind = COMPONENTS.get(name) if isinstance(name, str) else None
     if kind is None:
-        raise SceneError(f"{where}: there is no component {shown(name)}")
+        raise checks.SceneError(f"{where}: there is no component {checks.shown(name)}")
     return kind(**given)
 
 
-def _spawn(found: Mapping[str, Any], where: str, depth: int) -> Command:
+def _spawn(found: Mapping[str, Any], where: str, depth: int) -> commands.Command:
     name = found.get("name")
-    parts = checked_object(found.get("components"), f"{where}: components", "an object of components")
+    parts = checks.checked_object(found.get("components"), f"{where}: components", "an object of components")
     made = [_part(kind, values, where) for kind, values in parts.items()]
     components = [part for part in made if isinstance(part, Component)]
     named = _text(name, f"{where}: name") if name is not None else None
-    return Spawn(components, named, _entity(found, where))
+    return commands.Spawn(components, named, _entity(found, where))
 
 
-def _set(found: Mapping[str, Any], where: str, depth: int) -> Command:
+def _set(found: Mapping[str, Any], where: str, depth: int) -> commands.Command:
     name = _text(found.get("field"), f"{where}: field")
-    return SetField(_entity(found, where), _component(found, where), name, found.get("value"))
+    return commands.SetField(_entity(found, where), _component(found, where), name, found.get("value"))
 
 
-def _add(found: Mapping[str, Any], where: str, depth: int) -> Command:
-    return AddComponent(_entity(found, where), _part(found.get("component"), found.get("values"), where))
+def _add(found: Mapping[str, Any], where: str, depth: int) -> commands.Command:
+    return commands.AddComponent(
+        _entity(found, where), _part(found.get("component"), found.get("values"), where)
+    )
 
 
 def _changes(found: Mapping[str, Any], where: str) -> Mapping[str, Any]:
-    return checked_object(found.get("changes"), f"{where}: changes", "an object of settings")
+    return checks.checked_object(found.get("changes"), f"{where}: changes", "an object of settings")
 
 
-def _group(found: Mapping[str, Any], where: str, depth: int) -> Command:
+def _group(found: Mapping[str, Any], where: str, depth: int) -> commands.Command:
     parts = found.get("commands")
     if not isinstance(parts, list) or depth >= _GROUP_DEPTH:
-        raise refusal(f"{where}: commands", parts, f"a list of commands, at most {_GROUP_DEPTH} deep")
+        raise checks.refusal(f"{where}: commands", parts, f"a list of commands, at most {_GROUP_DEPTH} deep")
     read = [_command(part, f"{where}: commands[{k}]", depth + 1) for k, part in enumerate(parts)]
-    return Group(_text(found.get("words"), f"{where}: words"), read)
+    return commands.Group(_text(found.get("words"), f"{where}: words"), read)
 
 
-_READERS: Mapping[str, Callable[[Mapping[str, Any], str, int], Command]] = {
+_READERS: Mapping[str, Callable[[Mapping[str, Any], str, int], commands.Command]] = {
     "spawn": _spawn,
-    "remove": lambda found, where, _: Remove(_entity(found, where)),
+    "remove": lambda found, where, _: commands.Remove(_entity(found, where)),
     "set": _set,
     "add": _add,
-    "take": lambda found, where, _: RemoveComponent(_entity(found, where), _component(found, where)),
-    "physics": lambda found, where, _: SetPhysics(_changes(found, where)),
-    "simulation": lambda found, where, _: SetSimulation(_changes(found, where)),
+    "take": lambda found, where, _: commands.RemoveComponent(_entity(found, where), _component(found, where)),
+    "physics": lambda found, where, _: commands.SetPhysics(_changes(found, where)),
+    "simulation": lambda found, where, _: commands.SetSimulation(_changes(found, where)),
     "group": _group,
 }
 
@@ -245,20 +232,20 @@ _READERS: Mapping[str, Callable[[Mapping[str, Any], str, int], Command]] = {
 def _entity(found: Mapping[str, Any], where: str) -> int:
     entity = found.get("entity")
     if type(entity) is not int or not 1 <= entity < 2**31:
-        raise refusal(f"{where}: entity", entity, "the number of an entity")
+        raise checks.refusal(f"{where}: entity", entity, "the number of an entity")
     return entity
 
 
 def _component(found: Mapping[str, Any], where: str) -> str:
     name = _text(found.get("component"), f"{where}: component")
     if name not in COMPONENTS and name != "Name":
-        raise SceneError(f"{where}: there is no component {shown(name)}")
+        raise checks.SceneError(f"{where}: there is no component {checks.shown(name)}")
     return name
 
 
 def _text(value: object, where: str) -> str:
     if not isinstance(value, str):
-        raise refusal(where, value, "a text")
+        raise checks.refusal(where, value, "a text")
     return value
 
 
@@ -293,9 +280,13 @@ def load(path: str | os.PathLike[str]) -> tuple[World, Line]:
     """
     source = printable(os.fspath(path))
     document = parse_json(read_text(path, source), source)
-    found = checked_object(document, source, 'a recording {"format": ..., "scene": ..., "entries": [...]}')
+    found = checks.checked_object(
+        document, source, 'a recording {"format": ..., "scene": ..., "entries": [...]}'
+    )
     if found.get("format") != FORMAT:
-        raise refusal(f"{source}: format", found.get("format"), f"{shown(FORMAT)}, for a recording")
-    checked_keys(found, f"{source}: ", "key", ("format", "scene", "entries"))
+        raise checks.refusal(
+            f"{source}: format", found.get("format"), f"{checks.shown(FORMAT)}, for a recording"
+        )
+    checks.checked_keys(found, f"{source}: ", "key", ("format", "scene", "entries"))
     line = read_line(found.get("entries"), source)
     return read_scene(found.get("scene"), f"{source}: scene"), line

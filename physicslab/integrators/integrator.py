@@ -1,4 +1,4 @@
-"""The record of a method."""
+"""The record of a method, and how one is split into drifts and kicks."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

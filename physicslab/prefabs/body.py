@@ -1,4 +1,4 @@
-"""A body of any shape."""
+"""Bodies: boxes, circles, and bodies of any shape."""
 
 from typing import TypedDict, Unpack
 

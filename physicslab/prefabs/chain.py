@@ -1,4 +1,4 @@
-"""Balls on a string."""
+"""What hangs on springs: chains of balls, pendulums."""
 
 from physicslab.components import Spring
 from physicslab.ecs.vector import Vector2

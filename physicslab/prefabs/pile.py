@@ -1,4 +1,4 @@
-"""Discs poured out."""
+"""Heaps: discs poured out, boxes in a pyramid and in a stack."""
 
 from typing import Unpack
 

@@ -1,4 +1,4 @@
-"""The results of a method on a problem: error, cost, and errors of conserved quantities."""
+"""A method on a problem: its error and cost, and the errors of conserved quantities along the run."""
 
 import math
 import statistics
@@ -9,8 +9,7 @@ from functools import partial
 import numpy as np
 
 from physicslab.components import Mass, Transform, Velocity
-from physicslab.diagnostics.audit import Audit
-from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import Audit, measure_energy, measure_momentum
 from physicslab.diagnostics.step_warnings import fastest_force
 from physicslab.lab.accuracy.problem import Problem, Setting
 from physicslab.lab.accuracy.verdict import verdict

@@ -1,4 +1,6 @@
-"""Paths of the bodies of a world, and its energy and momentum, at some moments of a run."""
+"""Paths of the bodies of a world, and its energy and momentum, at some moments of a run; the horizon
+of its motion: until when two of them stay together.
+"""
 
 from __future__ import annotations
 

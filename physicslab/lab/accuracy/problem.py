@@ -1,4 +1,4 @@
-"""The record of a problem with a known answer, and the distance of bodies from it."""
+"""The record of a problem with a known answer, how it is computed, and the distance of bodies from it."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Trail, Transform, Velocity
-from physicslab.diagnostics.audit import Audit
+from physicslab.diagnostics.energy import Audit
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.writer import write_scene
 from physicslab.integrators import INTEGRATORS

@@ -1,4 +1,4 @@
-"""The results of a scene, and how costs grow with the number of bodies."""
+"""The results of a scene: times, their spread, and how they grow with the number of bodies."""
 
 from __future__ import annotations
 
