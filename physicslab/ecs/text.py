@@ -1,4 +1,4 @@
-"""Words as they stand in a line: what can be printed, how long they may be, names that differ; texts in columns."""
+"""Words in a line: what can be printed, how long they may be, names that differ; texts in columns."""
 
 import difflib
 import itertools

@@ -1,6 +1,4 @@
-"""Paths of the bodies of a world, and its energy and momentum, at some moments of a run; the horizon
-of its motion: until when two of them stay together.
-"""
+"""Paths of bodies at some moments of a run, with energy and momentum; the horizon of a motion."""
 
 from __future__ import annotations
 
