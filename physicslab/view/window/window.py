@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
 from typing import Concatenate
 
@@ -47,6 +48,12 @@ LEVELS = {
     "Engineer": "Methods, systems and their cost",
 }
 """How much the panel at the right shows, with what each level is for."""
+OPENED: dict[str, object] = {
+    "help": False, "shows_gallery": False, "filming.choosing": False, "opening": None, "naming": None,
+    "lists_history": False, "microscope.record": None, "impacts.shown": False, "error_study.shown": False,
+    "shows_stopwatch": False,
+}  # fmt: skip
+"""Panels that can be closed: what of the window says that they are open, and its value when they are not."""
 _AROUND = 0.04
 """Room left around the world, as a share of what the panels leave."""
 
@@ -290,6 +297,19 @@ class Window:
     def notice(self) -> str:
         """The message that is shown for a few seconds; empty when there is none."""
         return self._notice if self.now < self._notice_until else ""
+
+    def put(self, path: str, value: object) -> None:
+        """Give a part of the state another value, by its path from the window, as ``"pace.paused"``."""
+        owner, _, name = path.rpartition(".")
+        setattr(attrgetter(owner)(self) if owner else self, name, value)
+
+    def is_open(self, panel: str) -> bool:
+        """Whether a panel is open, one of ``OPENED``."""
+        return attrgetter(panel)(self) is not OPENED[panel]
+
+    def closing_of(self, panel: str) -> Callable[[], None]:
+        """Return what closes a panel, one of ``OPENED``."""
+        return lambda: self.put(panel, OPENED[panel])
 
     def has_unsaved(self, world: World) -> bool:
         """Whether the world was edited since it was opened or saved."""
