@@ -369,7 +369,7 @@ def test_the_scale_bar_is_as_long_as_it_says(scale: float, words: str) -> None:
     desk = Desk(empty_world(), canvas)
     desk.window.camera.scale = scale
     canvas.calls.clear()
-    draw_scale_bar(desk.window.camera, 600, 400, 14, canvas, desk.window.theme)
+    draw_scale_bar(desk.window.drawing, 600, 400)
     assert canvas.words == [words]
     (lines,) = canvas.called("lines")
     assert lines["end"][0][0] - lines["start"][0][0] == pytest.approx(float(words[:-2]) * scale)

@@ -14,6 +14,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import History
 from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas, Rect
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.overlay.free_body import Measured
 from physicslab.view.overlay.overlays import Overlays
@@ -276,6 +277,13 @@ class Window:
         self._may_close_until = 0.0
         self._shown: tuple[Vector2, float, float, Extent | None] | None = None
         self._room: Rect | None = None
+
+    @property
+    def drawing(self) -> Drawing:
+        """What the world is drawn with; text is larger in a larger window, times the chosen scale."""
+        width, height = self.canvas.size
+        size = round(min(max(min(height / 48, width / 80), 12), 20) * self.text_scale)
+        return Drawing(self.canvas, self.camera, self.theme, size)
 
     @property
     def middle(self) -> tuple[float, float]:

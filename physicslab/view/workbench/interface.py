@@ -6,7 +6,6 @@ from operator import attrgetter
 import pygame
 
 from physicslab.view.canvas.canvas import Canvas, Rect
-from physicslab.view.overlay.banners import text_size
 from physicslab.view.toolkit.toolkit import Toolkit, Walk
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
@@ -91,7 +90,7 @@ class Interface:
     @property
     def text(self) -> int:
         """Height of the text [px]."""
-        return text_size(self._window.canvas, self._window.text_scale)
+        return self._window.drawing.size
 
     @property
     def layout(self) -> Layout:
