@@ -4,8 +4,6 @@ A command is a module with ``add_arguments(parser)`` and ``execute(arguments) ->
 status or raises :class:`CommandError`. To add one, write its file and name it here.
 """
 
-from __future__ import annotations
-
 from argparse import ArgumentParser, Namespace
 from importlib import import_module
 from typing import Protocol, cast

@@ -1,7 +1,5 @@
 """Measure error against run time, for every integrator, on problems with known answers or on a scene."""
 
-from __future__ import annotations
-
 import os
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Iterator, Sequence
@@ -38,9 +36,6 @@ from physicslab.lab.accuracy.trust import Trust, assess, moments_of
 from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem
 from physicslab.lab.jobs import Job
 from physicslab.scenes import SCENES
-
-__all__ = ["add_arguments", "execute"]
-
 
 _CONTACTS = "contacts"
 """The name of the whole second page."""

@@ -1,7 +1,5 @@
 """Values that the command line gives to fields of a scene: ``--set ball.Mass.mass="2 kg"``."""
 
-from __future__ import annotations
-
 import re
 from argparse import ArgumentParser
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,8 +14,6 @@ from physicslab.files.entities import UNSAVED
 from physicslab.files.reader import check_scene
 from physicslab.files.writer import write_scene
 from physicslab.world import World
-
-__all__ = ["add_assignments", "assign"]
 
 _FORM = "ID.Component.field=VALUE"
 _WORDS = {"true": True, "false": False}

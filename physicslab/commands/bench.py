@@ -1,7 +1,5 @@
 """Measure speed: how long a step takes and how that grows, alone or beside other engines."""
 
-from __future__ import annotations
-
 import os
 import sys
 from argparse import ArgumentParser, Namespace
@@ -30,8 +28,6 @@ from physicslab.lab.peers.mirrors import Box2DMirror
 from physicslab.lab.peers.peer import Peer
 from physicslab.scenes import SCENES as BUILT_IN
 from physicslab.world import World
-
-__all__ = ["add_arguments", "execute"]
 
 _MEMORY, _UNUSED = "memory", "unused"
 _SIZE_LIMITS = {Box2DMirror.title: 2_000}

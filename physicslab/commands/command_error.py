@@ -1,9 +1,5 @@
 """The end of a command that fails."""
 
-from __future__ import annotations
-
-__all__ = ["FAILED", "USAGE", "CommandError"]
-
 FAILED = 1
 """Exit status of a run that failed."""
 USAGE = 2

@@ -1,7 +1,5 @@
 """Export a run as a page of HTML that plays it in any browser, or as a film (GIF, MP4)."""
 
-from __future__ import annotations
-
 import argparse
 from argparse import ArgumentParser, Namespace
 
@@ -19,8 +17,6 @@ from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
-
-__all__ = ["add_arguments", "execute"]
 
 _DEFAULT_S = 10.0
 _EVERY_S = 1.0 / 60.0

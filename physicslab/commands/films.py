@@ -1,7 +1,5 @@
 """Films of a run: GIF and MP4, drawn without a window."""
 
-from __future__ import annotations
-
 import argparse
 import os
 from argparse import Namespace
@@ -19,8 +17,6 @@ from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
-
-__all__ = ["film_size", "make_film"]
 
 _EVERY_S = 1.0 / 30.0
 _SMALLEST, _LARGEST = 16, 4096

@@ -1,7 +1,5 @@
 """Compile the physics for this computer ahead of time, or share what is compiled with others of its kind."""
 
-from __future__ import annotations
-
 import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
@@ -14,8 +12,6 @@ from physicslab.kernels import cache_directory
 from physicslab.kernels.archive import ArchiveError, pack, unpack
 from physicslab.kernels.keys import platform_key
 from physicslab.kernels.warm import Warmup, is_warm, load_all, mark_warm
-
-__all__ = ["add_arguments", "execute"]
 
 _LOOK_EVERY_S = 0.1
 _WARNING = (

@@ -1,7 +1,5 @@
 """Shared parts of the commands of the labs: names of cases, progress, tables, documents and plots."""
 
-from __future__ import annotations
-
 import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -16,8 +14,6 @@ from physicslab.files.json_text import json_bytes
 from physicslab.lab.case import Case, Catalogue
 from physicslab.lab.jobs import Job, run_jobs
 from physicslab.lab.table import table
-
-__all__ = ["LabRun", "add_lab_arguments", "chosen_cases", "list_cases", "unknown_name"]
 
 
 def add_lab_arguments(parser: ArgumentParser, kind: str, what: str, plot: str = "") -> None:

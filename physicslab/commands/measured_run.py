@@ -1,7 +1,5 @@
 """A run without a window: measured at intervals, watched for slow steps, stopped where its time is up."""
 
-from __future__ import annotations
-
 import math
 import sys
 import time
@@ -20,8 +18,6 @@ from physicslab.ecs.text import printable, shortened
 from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.world import World
-
-__all__ = ["MeasuredRun"]
 
 _SAMPLES = 500
 """How often a run without contacts is measured: what lies between is one compiled loop."""

@@ -1,13 +1,7 @@
 """Numbers on the command line: each refused with what is allowed."""
 
-from __future__ import annotations
-
 import argparse
 import math
-
-__all__ = [
-    "STEP_LIMIT", "add_budget", "count", "duration", "positive_count", "positive_duration", "stopped_at",
-]  # fmt: skip
 
 STEP_LIMIT = 10**15
 """More than any run will do; beyond it, times could no longer be counted exactly."""

@@ -1,7 +1,5 @@
 """Destinations of a command's documents: a file, or stdout for ``-``."""
 
-from __future__ import annotations
-
 import importlib.util
 import io
 import os
@@ -15,8 +13,6 @@ from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
 from physicslab.files.replace import check_writable, replace_file, replacing
-
-__all__ = ["Output", "picture_directory", "reason_of"]
 
 
 class Output:

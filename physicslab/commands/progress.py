@@ -1,12 +1,8 @@
 """One line on the terminal: how far a long run is."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import TextIO
-
-__all__ = ["Progress"]
 
 _DELAY_S = 1.0
 _INTERVAL_S = 0.1

@@ -1,7 +1,5 @@
 """Play a recording without a window, and say where its bits first differ."""
 
-from __future__ import annotations
-
 import time
 from argparse import ArgumentParser, Namespace
 from typing import Any
@@ -17,8 +15,6 @@ from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
-
-__all__ = ["add_arguments", "execute"]
 
 
 def add_arguments(parser: ArgumentParser) -> None:

@@ -1,7 +1,5 @@
 """Run a scene without a window, and say what came of it."""
 
-from __future__ import annotations
-
 import dataclasses
 import io
 import math
@@ -34,8 +32,6 @@ from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
-
-__all__ = ["add_arguments", "execute"]
 
 _DEFAULT_S = 10.0
 

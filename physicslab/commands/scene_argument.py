@@ -1,7 +1,5 @@
 """The scene that a command runs: opened with what ``--set`` gives, named, and kept from being overwritten."""
 
-from __future__ import annotations
-
 from argparse import Namespace
 from pathlib import Path
 
@@ -12,8 +10,6 @@ from physicslab.commands.output import Output
 from physicslab.files.scene import load_scene
 from physicslab.scenes import SCENES
 from physicslab.world import World
-
-__all__ = ["check_output", "check_seconds", "name_of", "opened"]
 
 
 def opened(arguments: Namespace) -> World:

@@ -1,7 +1,5 @@
 """List the built-in scenes: name, number of bodies and description."""
 
-from __future__ import annotations
-
 from argparse import ArgumentParser, Namespace
 
 import esper
@@ -10,8 +8,6 @@ from physicslab.commands.output import Output
 from physicslab.components import Transform
 from physicslab.files.json_text import json_bytes
 from physicslab.scenes import SCENES, Scene
-
-__all__ = ["add_arguments", "execute"]
 
 
 def add_arguments(parser: ArgumentParser) -> None:

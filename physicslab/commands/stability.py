@@ -1,7 +1,5 @@
 """Run stiff, extreme and hostile cases: which pass, which fall short."""
 
-from __future__ import annotations
-
 from argparse import ArgumentParser, Namespace
 from concurrent.futures.process import BrokenProcessPool
 
@@ -18,8 +16,6 @@ from physicslab.lab.stability.report import (
     short_names,
     summary_text,
 )
-
-__all__ = ["add_arguments", "execute"]
 
 
 def add_arguments(parser: ArgumentParser) -> None:

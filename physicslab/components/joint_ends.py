@@ -1,17 +1,10 @@
 """The fields that every joint has: the two bodies, where it holds them, and whether these collide."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from physicslab.components.lengths import point
 from physicslab.ecs.component import field
-
-__all__ = [
-    "anchor_of_first", "anchor_of_second", "collides", "first_end", "key_of", "second_end",
-    "why_not_joined",
-]  # fmt: skip
 
 type End = tuple[int, Sequence[float]]
 """A body and its anchor [m]; 0 is the world."""

@@ -1,7 +1,5 @@
 """The arguments of the kernels of the contact stages, taken from a state."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from physicslab.components import Material, Shape, Transform, Velocity
@@ -16,11 +14,6 @@ from physicslab.kernels.arguments import (
 )  # fmt: skip
 from physicslab.kernels.constraint.soft_joints import MEASURED, JointsTuple
 from physicslab.state.state import State
-
-__all__ = [
-    "acting_in", "bounds_of", "inverse_in", "joints_in", "materials_of", "motion_of", "near_in", "sizes_of",
-    "speculative_margin",
-]  # fmt: skip
 
 
 def motion_of(state: State) -> MotionTuple:

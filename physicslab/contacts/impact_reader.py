@@ -1,15 +1,11 @@
 """Impacts, read from a world's log once a frame."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.state.state import State
-
-__all__ = ["ImpactReader"]
 
 
 class ImpactReader:

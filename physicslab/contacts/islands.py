@@ -1,7 +1,5 @@
 """Islands of bodies that touch: how they fall asleep and wake, and which edits wake them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -12,11 +10,6 @@ from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.kernels.accounts import CONTACT
 from physicslab.kernels.sleep import edits, islands
 from physicslab.state.state import State
-
-__all__ = [
-    "all_asleep", "check_edits", "export_rests", "fall_asleep", "follow_rows", "keep_places", "restore_rests",
-    "set_inactive", "wake", "wake_all", "wake_neighbours",
-]  # fmt: skip
 
 type _Marks = NDArray[np.bool_]
 

@@ -20,8 +20,6 @@ from physicslab.state.contacts import Contacts
 from physicslab.state.sleep import Sleep
 from physicslab.state.state import State
 
-__all__ = ["KeptContacts", "KeptSleep", "forget_sleep", "shared"]
-
 type _Array = NDArray[Any]
 
 _LISTED_AGAIN = (

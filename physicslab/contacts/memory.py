@@ -1,7 +1,5 @@
 """What contacts keep from step to step, as rows of numbers that a file can hold."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from physicslab.contacts.report import ordered_records
@@ -11,8 +9,6 @@ from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.kernels.wide.layout import WIDE
 from physicslab.kernels.wide.slots import COLOURS
 from physicslab.state.contacts import Contacts
-
-__all__ = ["copied", "export_contacts", "kept_rows", "restore_contacts"]
 
 _NO_ROWS = ("entity_a", "entity_b", "a", "b", "gap", "slot")
 _KEPT = tuple(name for name in MANIFOLD.names or () if name not in _NO_ROWS)

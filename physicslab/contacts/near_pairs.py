@@ -1,7 +1,5 @@
 """The list of near pairs: taken over from a search, with the record of each pair."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,8 +9,6 @@ from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.kernels.wide import slots
 from physicslab.state.state import State
-
-__all__ = ["list_all", "partition"]
 
 
 def partition(

@@ -1,7 +1,5 @@
 """One stage of a substep by itself, as the systems of contacts do it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from physicslab.contacts.arguments import (
@@ -18,8 +16,6 @@ from physicslab.contacts.arguments import (
 from physicslab.kernels.arguments import ActingTuple, InverseTuple, MotionTuple, NearTuple, SoftnessTuple
 from physicslab.kernels.solver import soft
 from physicslab.state.state import State
-
-__all__ = ["do_stage"]
 
 _NOTHING = np.zeros(0)
 _NO_VECTORS = np.zeros((0, 2))

@@ -12,8 +12,6 @@ from physicslab.components.shape import BOX
 from physicslab.ecs.vector import Vector2
 from physicslab.state.state import State
 
-__all__ = ["Outlines", "exits", "outlines_of", "overlap", "overlapping"]
-
 type Numbers = NDArray[np.float64]
 type Rows = NDArray[np.int64]
 

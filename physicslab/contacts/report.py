@@ -1,7 +1,5 @@
 """Contacts as people and programs read them: normal, points, impulses."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,8 +9,6 @@ from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.state.contacts import Contacts
 from physicslab.state.state import State
-
-__all__ = ["Contact", "ContactPoint", "contact_between", "contacts_of", "list_contacts", "ordered_records"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,5 @@
 """Wide contacts: put into blocks of eight, and kept up to date with masses and materials."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,8 +10,6 @@ from physicslab.kernels.wide.graph_colour import MIN_WIDE
 from physicslab.kernels.wide.layout import WIDE
 from physicslab.kernels.wide.slots import COLOURS
 from physicslab.state.state import State
-
-__all__ = ["add_constraints", "fill_again", "refill"]
 
 
 def add_constraints(state: State, h: float) -> None:

@@ -15,8 +15,6 @@ from physicslab.state.account import Balance
 from physicslab.stepping.accounting import balance_of, held_in
 from physicslab.world import World
 
-__all__ = ["ENERGY_ACCOUNTS", "MOMENTUM_ACCOUNTS", "Accounts", "measure_account"]
-
 ENERGY_ACCOUNTS: dict[str, int] = {name: getattr(accounts, name.upper()) for name in ENERGY_CAUSES}
 """The accounts of energy by name, each with its row; ``numerical`` is what they leave."""
 MOMENTUM_ACCOUNTS: dict[str, int] = {

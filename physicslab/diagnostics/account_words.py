@@ -1,10 +1,6 @@
 """Changes of the energy, in plain words."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-
-__all__ = ["ACCOUNT_WORDS", "flows"]
 
 ACCOUNT_WORDS: dict[str, str] = {
     "edits": "edits",

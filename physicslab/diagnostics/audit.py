@@ -1,7 +1,5 @@
 """How the energy of a world changes while it is sampled, and how much of that is an error."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -9,8 +7,6 @@ import numpy as np
 from physicslab.diagnostics.account import Accounts, measure_account
 from physicslab.diagnostics.energy import Energy
 from physicslab.world import World
-
-__all__ = ["Audit"]
 
 _LEAST_OF_EXCHANGED = 1e-12
 """Share of the energy exchanged below which an account is rounding."""

@@ -1,7 +1,5 @@
 """The near pairs of a world as columns: bodies, overlaps and normals, and mass ratios under load."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,8 +7,6 @@ from numpy.typing import NDArray
 
 from physicslab.components import Mass, Velocity
 from physicslab.world import World
-
-__all__ = ["ContactGraph", "contact_graph"]
 
 _COSINE_ABOVE = 0.5
 """Between gravity and the normal: from here on one body lies on the other, and not beside it."""

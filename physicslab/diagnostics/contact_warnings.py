@@ -1,7 +1,5 @@
 """Warnings about the model of contacts: how far soft ones may be off, and impacts that no law determines."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -11,8 +9,6 @@ from physicslab.diagnostics.warning_records import ModelWarning
 from physicslab.stepping.contact_model import why_not_rigid
 from physicslab.stepping.rigid import Rigid
 from physicslab.world import World
-
-__all__ = ["RIGID_LIMIT", "contact_warnings", "rigid_setting"]
 
 RIGID_LIMIT = 64
 """Number of contacts up to which rigid ones are advised where soft ones are not exact enough."""

@@ -1,7 +1,5 @@
 """Energies and momenta: pure functions over a world, the one source of these figures."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,15 +7,6 @@ import numpy as np
 from physicslab.ecs.vector import Vector2
 from physicslab.stepping.accounting import balance_of, motion_totals_of
 from physicslab.world import World
-
-__all__ = [
-    "Energy",
-    "Momentum",
-    "measure_energy",
-    "measure_kinetic",
-    "measure_momentum",
-    "summation",
-]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,5 @@
 """The forces on one body by name, as a free-body diagram shows them, and their sum on every body."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -15,11 +13,6 @@ from physicslab.ecs.vector import Vector2
 from physicslab.state.masses import quiet
 from physicslab.stepping.forces import forces_by_system
 from physicslab.world import World
-
-__all__ = [
-    "LastStep", "NamedForce", "Pair",
-    "applied_forces", "contact_forces", "forces_on", "last_step", "net_force",
-]  # fmt: skip
 
 type Kind = Literal["field", "normal", "friction"]
 

@@ -10,8 +10,6 @@ J . (u- + u+) / 2, with u before and after all impulses of the moment: this is e
 in the impulses. The sum over the points of a pair, negative, is what the impact took.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 from dataclasses import dataclass
@@ -26,11 +24,6 @@ from physicslab.kernels.constraint.pair import ContactFrame, PairVelocity, point
 from physicslab.kernels.interpreter import twin_of
 from physicslab.kernels.records import IMPACT
 from physicslab.state.state import State
-
-__all__ = [
-    "LAWS", "NO_IMPACTS", "WALLS", "ImpactColumns", "LedgerWriter", "ledger_csv", "names_of", "read_impacts",
-    "speeds_at",
-]  # fmt: skip
 
 WALLS = ("bounds left", "bounds bottom", "bounds right", "bounds top")
 """Names of the world's bounds, by the number of the wall."""

@@ -15,8 +15,6 @@ from physicslab.state.packed import spring_ends
 if TYPE_CHECKING:
     from physicslab.world import World
 
-__all__ = ["find_overflow"]
-
 
 @np.errstate(all="ignore")
 def find_overflow(world: World, energy: Energy) -> str | None:

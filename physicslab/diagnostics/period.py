@@ -1,7 +1,5 @@
 """Present forces of springs, and the period of one body on one spring."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -9,8 +7,6 @@ from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.state.attached import motion_of_point
 from physicslab.world import World
-
-__all__ = ["Period", "SpringState", "gives_way", "period_of", "spring_state"]
 
 _STRING = 0.005
 """Share of its length by which weight stretches a spring that serves as a string of a pendulum."""

@@ -4,8 +4,6 @@
 small, and matter to readers of figures.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
@@ -14,8 +12,6 @@ from physicslab.diagnostics.step_warnings import PHASE_LIMIT, lost_phase
 from physicslab.diagnostics.warning_records import ModelWarning
 from physicslab.ecs.config import SimulationConfig
 from physicslab.world import World
-
-__all__ = ["DIGITS_LIMIT", "EXACT_PHASE", "find_imprecise", "words_of_digits"]
 
 EXACT_PHASE = 1e-9
 """Phase [rad] that oscillations may lose without a warning."""

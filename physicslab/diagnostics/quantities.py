@@ -4,8 +4,6 @@ The names and units are in :mod:`physicslab.components.quantities`; sums over th
 :mod:`physicslab.diagnostics.energy`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cached_property
@@ -22,8 +20,6 @@ from physicslab.kernels.forces import springs
 from physicslab.state.masses import quiet
 from physicslab.state.packed import spring_ends
 from physicslab.world import World
-
-__all__ = ["Reading", "why_undefined"]
 
 _NAN = math.nan
 

@@ -1,7 +1,5 @@
 """Worlds whose motion has an exact solution, and how far a simulated world is from it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -14,8 +12,6 @@ from physicslab.ode.closed_form import NoClosedForm, closed_form
 from physicslab.ode.kepler import propagate_kepler
 from physicslab.stepping.plan import why_not_smooth
 from physicslab.world import World
-
-__all__ = ["ReferenceSolution", "reference_solution"]
 
 
 @dataclass(frozen=True, slots=True)

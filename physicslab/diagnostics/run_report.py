@@ -1,7 +1,5 @@
 """Results of a run: the document of ``run --json`` and the summary for the terminal."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Iterable, Iterator, Mapping
@@ -18,8 +16,6 @@ from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
 from physicslab.ecs.text import printable, unique_name
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
-
-__all__ = ["RunRecord", "advice_of", "body_names", "find_not_finite", "run_report", "run_summary"]
 
 _MOMENTA: dict[str, float | Vector2] = dict.fromkeys(MOMENTUM_CAUSES, math.nan)
 """In the order of the document; a cause whose momentum is not measured by itself stays without a number."""

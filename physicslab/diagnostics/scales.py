@@ -1,13 +1,9 @@
 """How large the quantities of a world are: what is far smaller than that is rounding."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.world import World
-
-__all__ = ["scales_of"]
 
 
 @np.errstate(all="ignore")

@@ -1,7 +1,5 @@
 """Warnings about steps: forces that are too fast for them, and phases that they have lost."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 
@@ -14,11 +12,6 @@ from physicslab.integrators import Integrator
 from physicslab.state.packed import spring_ends
 from physicslab.systems.system import ForceSystem
 from physicslab.world import World
-
-__all__ = [
-    "EXPLICIT_RATE_LIMIT", "IMPLICIT_RATE_LIMIT", "PHASE_LIMIT", "SUBSTEPS_LIMIT", "fastest_force",
-    "lost_phase", "step_warnings",
-]  # fmt: skip
 
 EXPLICIT_RATE_LIMIT = 0.3
 """omega h of a fixed step, as a share of the method's limit: with leapfrog the energy of such an oscillation

@@ -1,13 +1,9 @@
 """Steps that take long, or hold a storm of impacts: which, and what takes the time in them."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from physicslab.diagnostics.warning_records import ModelWarning
 from physicslab.world import World
-
-__all__ = ["STORM_LIMIT", "StepWatch"]
 
 _SLOW_S = 1.0
 """Time [s] from which on a step is called slow: sixty times what the window has for one."""

@@ -1,13 +1,9 @@
 """The display of a stopwatch that light gates start and stop."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from physicslab.systems.gate import Crossing
-
-__all__ = ["Lap", "laps"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,5 @@
 """The motion of every body, with the energy and momentum of all, as a table: a row an instant and body."""
 
-from __future__ import annotations
-
 import csv
 import math
 from typing import TextIO
@@ -12,8 +10,6 @@ from physicslab.diagnostics.account import Accounts
 from physicslab.diagnostics.run_report import body_names
 from physicslab.ecs.text import table_cell
 from physicslab.world import World
-
-__all__ = ["BODY_HEADER", "TrajectoryWriter"]
 
 _MOTION = ("x", "y", "angle", "velocity x", "velocity y", "angular velocity")
 _KINETIC = ("kinetic energy of translation", "kinetic energy of rotation")

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 from physicslab.world import World
 
-__all__ = ["ModelWarning", "WorstWarnings"]
-
 
 @dataclass(frozen=True, slots=True)
 class ModelWarning:

@@ -5,8 +5,6 @@ runs within a step: finding warnings costs some 50 us for a few bodies and below
 and is done ten times a second or once a measurement.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 

@@ -1,7 +1,5 @@
 """How the fields of a component are made, read and written."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -10,8 +8,6 @@ from numpy.typing import NDArray
 from physicslab.ecs.fields import REQUIRED, Field, Kind
 from physicslab.ecs.texts import text_of
 from physicslab.ecs.vector import Vector2
-
-__all__ = ["ABSENT", "Derived", "Maker", "Vector", "accessor", "maker"]
 
 type Maker = Callable[[object], list[list[Any]]]
 """Converts a value to the form that a detached component holds: a list for each column."""

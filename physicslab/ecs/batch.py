@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from physicslab.ecs.table import Table
 
-__all__ = ["Batch"]
-
 
 @dataclass(frozen=True, slots=True)
 class Batch:

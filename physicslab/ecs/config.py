@@ -9,11 +9,6 @@ from typing import Any, ClassVar, Literal
 from physicslab.ecs.fields import COORDINATE_LIMIT, Field, InvalidValue, Kind
 from physicslab.ecs.vector import Vector2
 
-__all__ = [
-    "COLLISIONS", "CONTACTS", "GRAVITY_MODES", "INTEGRATORS", "SOFTENING_LAWS", "PhysicsConfig",
-    "SimulationConfig", "WindowConfig", "checked_box", "field_names",
-]  # fmt: skip
-
 GRAVITY_MODES = ("linear", "planet", "none")
 SOFTENING_LAWS = ("clamp", "plummer")
 INTEGRATORS = (

@@ -1,7 +1,5 @@
 """esper's contexts: which is active and in which thread, and the numbers of its entities."""
 
-from __future__ import annotations
-
 import itertools
 import threading
 from collections.abc import Iterable
@@ -9,8 +7,6 @@ from types import TracebackType
 from typing import Any
 
 import esper
-
-__all__ = ["Active", "create_numbered", "next_number", "switch"]
 
 _OTHER_THREAD = (
     "another thread is working with a world: esper's context is one for the whole process, so worlds must be "

@@ -1,7 +1,5 @@
 """Which entity has which row: keeps a world's tables in step with esper."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Set
 from typing import Any
 
@@ -12,8 +10,6 @@ from numpy.typing import NDArray
 from physicslab.ecs.batch import Batch
 from physicslab.ecs.component import Component
 from physicslab.ecs.table import Table
-
-__all__ = ["EntityIndex"]
 
 
 class _Nothing:

@@ -1,7 +1,5 @@
 """The description of one value: its type, unit, range and meaning, by which it is checked."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -13,10 +11,6 @@ import numpy as np
 from physicslab.ecs.text import has_width, is_line
 from physicslab.ecs.texts import code_of
 from physicslab.ecs.vector import Vector2
-
-__all__ = [
-    "COORDINATE_LIMIT", "LENGTH_LIMIT", "REQUIRED", "TEXT_LIMIT", "Field", "InvalidValue", "Kind", "field",
-]  # fmt: skip
 
 Kind = Literal["number", "whole", "vector", "flag", "entity", "choice", "text"]
 

@@ -1,7 +1,5 @@
 """Numbers as people write them into a field: ``2*pi/3``, ``30 deg``, ``5 km/h``, ``1e3 g``."""
 
-from __future__ import annotations
-
 import ast
 import math
 import operator
@@ -11,8 +9,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from physicslab.ecs.text import printable, shortened
-
-__all__ = ["InvalidText", "evaluate"]
 
 type Dimension = tuple[int, int, int]
 """Powers of metre, kilogram and second; an angle has none."""

@@ -1,7 +1,5 @@
 """The columns of one component in one world."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,8 +8,6 @@ from numpy.typing import NDArray
 
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Kind
-
-__all__ = ["Table"]
 
 _DTYPES: Mapping[Kind, type] = {
     "number": np.float64,

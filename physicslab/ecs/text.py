@@ -1,17 +1,10 @@
 """Words as they stand in a line: what can be printed, how long they may be, and names that differ."""
 
-from __future__ import annotations
-
 import difflib
 import itertools
 import re
 import unicodedata
 from collections.abc import Container, Iterable
-
-__all__ = [
-    "SHORT", "has_width", "in_words", "is_line", "printable", "shortened", "suggestion", "table_cell",
-    "unique_name",
-]  # fmt: skip
 
 SHORT = 60
 """Characters of a value, a key or a name that a message shows."""

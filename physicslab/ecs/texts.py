@@ -5,11 +5,7 @@ in every world, key frame and copy of columns. Nothing that leaves the process h
 recordings, copies by pickle and messages hold the text.
 """
 
-from __future__ import annotations
-
 import threading
-
-__all__ = ["code_of", "text_of"]
 
 _texts = [""]
 _codes = {"": 0}

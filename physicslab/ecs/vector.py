@@ -11,8 +11,6 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Vector2", "rotated"]
-
 
 @dataclass(frozen=True, slots=True, init=False)
 class Vector2:

@@ -1,7 +1,5 @@
 """A film in a file: GIF or MP4 by the ending of its name, there whole or not at all."""
 
-from __future__ import annotations
-
 import os
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -14,8 +12,6 @@ from numpy.typing import NDArray
 from physicslab.export.gif import LARGEST_RATE, GifWriter
 from physicslab.export.mp4 import Mp4Writer, check_encoder
 from physicslab.files.replace import check_writable, replacing
-
-__all__ = ["ENDINGS", "Film"]
 
 ENDINGS = (".gif", ".mp4")
 """What the name of a film ends with."""

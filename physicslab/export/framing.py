@@ -1,7 +1,5 @@
 """What part of the world a page shows at first: where a run takes place."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -11,8 +9,6 @@ from numpy.typing import NDArray
 
 from physicslab.export.recording import RunRecorder
 from physicslab.world import World
-
-__all__ = ["extent_of_run", "frame_run"]
 
 type Boxes = NDArray[np.float64]
 """A float64 array (n, 4): xmin, ymin, xmax, ymax [m]."""

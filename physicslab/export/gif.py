@@ -1,7 +1,5 @@
 """Films as GIF files: pictures of 255 colours each, of which only what has changed is kept."""
 
-from __future__ import annotations
-
 import struct
 from typing import BinaryIO
 
@@ -11,8 +9,6 @@ from numpy.typing import NDArray
 from physicslab.export.palette import find_palette
 from physicslab.kernels import load
 from physicslab.kernels.lzw import CODES, pack_lzw
-
-__all__ = ["LARGEST_RATE", "GifWriter"]
 
 LARGEST_RATE = 50.0
 """Pictures a second: delays are whole hundredths of a second, and players take 1 for 10."""

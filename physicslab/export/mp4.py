@@ -1,7 +1,5 @@
 """Films as MP4 files, compressed by the program ffmpeg (H.264), which the extra ``video`` brings."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import shutil
@@ -9,8 +7,6 @@ import subprocess
 
 import numpy as np
 from numpy.typing import NDArray
-
-__all__ = ["Mp4Writer", "NoEncoder", "check_encoder"]
 
 
 class NoEncoder(ValueError):

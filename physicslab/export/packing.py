@@ -5,14 +5,10 @@ what rests has none. They are differences of the bit patterns, in an order in wh
 unit in the last place apart: unpacking gives every bit back.
 """
 
-from __future__ import annotations
-
 import base64
 
 import numpy as np
 from numpy.typing import NDArray
-
-__all__ = ["pack"]
 
 _ORDERS = range(5)
 """How often differences may be taken; for each column the number is chosen that leaves the fewest bytes."""

@@ -1,7 +1,5 @@
 """The page of a recorded run: one file of HTML with its style, its player and its data."""
 
-from __future__ import annotations
-
 import html
 import json
 from collections.abc import Mapping, Sequence
@@ -13,8 +11,6 @@ from physicslab.export.framing import extent_of_run
 from physicslab.export.packing import pack
 from physicslab.export.recording import RunRecorder
 from physicslab.world import World
-
-__all__ = ["page"]
 
 _SCRIPTS = ("run.js", "picture.js", "figures.js", "controls.js")
 """The player, in order: one script, whose parts see the names of those before."""

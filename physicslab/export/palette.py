@@ -1,11 +1,7 @@
 """Pictures of at most 255 colours."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
-
-__all__ = ["Colours", "find_palette"]
 
 type Colours = NDArray[np.uint8]
 """A uint8 array (n, 3 or 4): red, green, blue, and what is not used."""

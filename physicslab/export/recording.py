@@ -1,7 +1,5 @@
 """A run as a page plays it: what moves, one instant after the other, and what stays as it is."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,8 +9,6 @@ from physicslab.components import Mass, Shape, Spring, Trail, Transform, Velocit
 from physicslab.diagnostics.account import Accounts
 from physicslab.diagnostics.run_report import body_names
 from physicslab.world import World
-
-__all__ = ["BODY_COLUMNS", "NotShown", "RunRecorder"]
 
 type Columns = NDArray[np.float32]
 

@@ -10,19 +10,6 @@ from typing import Any
 
 from physicslab.ecs.text import SHORT, has_width, is_line, printable, shortened, suggestion
 
-__all__ = [
-    "JsonObject",
-    "SceneError",
-    "checked_keys",
-    "checked_object",
-    "checked_rows",
-    "checked_text",
-    "checked_title",
-    "is_number",
-    "refusal",
-    "shown",
-]  # fmt: skip
-
 _BREAKS = dict.fromkeys(map(ord, "\n\t"), " ")
 
 

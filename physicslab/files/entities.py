@@ -4,8 +4,6 @@ Nothing here lists the fields of a component: names, types and ranges come from 
 new component is read, checked and refused like the others.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -27,8 +25,6 @@ from physicslab.files.checks import (
 )
 from physicslab.state.attached import INSTRUMENTS
 from physicslab.state.joints import KINDS
-
-__all__ = ["UNSAVED", "check_contacts", "check_entities", "check_ids", "check_rests"]
 
 UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""

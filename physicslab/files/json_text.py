@@ -1,12 +1,8 @@
 """JSON that people read: one line for each key at the top, and one for each item of what holds many."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Iterator, Mapping
-
-__all__ = ["json_bytes", "json_pieces", "json_text"]
 
 
 def json_text(document: Mapping[str, object]) -> str:

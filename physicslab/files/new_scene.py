@@ -1,7 +1,5 @@
 """Scene files under names that nothing has yet."""
 
-from __future__ import annotations
-
 import itertools
 import re
 from collections.abc import Iterable
@@ -10,8 +8,6 @@ from pathlib import Path
 from physicslab.files.replace import create_file
 from physicslab.files.scene import scene_bytes
 from physicslab.world import World
-
-__all__ = ["file_stem", "save_last_good", "save_new_scene"]
 
 _NAME_LIMIT = 100
 """Bytes of the part of a file name that comes from a scene's name: systems allow 143 to 255 for the whole."""

@@ -1,7 +1,5 @@
 """From a scene document, the parsed JSON, to a world, with every check."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -38,8 +36,6 @@ from physicslab.state.state import View
 from physicslab.stepping.plan import MAX_STEPS
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
-
-__all__ = ["FORMAT", "SceneDraft", "check_scene", "read_scene"]
 
 FORMAT = "physicslab-scene/1"
 """The value of the key ``format`` of a scene."""

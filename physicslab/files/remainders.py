@@ -1,7 +1,5 @@
 """The remainders of compensated sums in scene files: a loaded world goes on bit for bit."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -13,8 +11,6 @@ from physicslab.ecs.component import Component
 from physicslab.files.checks import checked_rows, is_number, refusal
 from physicslab.state.remainders import coordinate_keys
 from physicslab.state.state import State
-
-__all__ = ["check_remainders", "export_remainders"]
 
 _ROW = "[id, x, y, angle, vx, vy, omega]"
 

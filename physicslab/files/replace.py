@@ -1,7 +1,5 @@
 """Writing a file so that it is there whole, or as it was before."""
 
-from __future__ import annotations
-
 import contextlib
 import glob
 import os
@@ -12,8 +10,6 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-
-__all__ = ["check_writable", "create_file", "remove_leftovers", "replace_file", "replacing"]
 
 _ENDING = ".physicslab-tmp"
 """How files end that are being written; one that is there for long was left by a process that was killed."""

@@ -1,7 +1,5 @@
 """Scenes by name and on disk: what opens one, and what saves one."""
 
-from __future__ import annotations
-
 import gc
 import json
 import math

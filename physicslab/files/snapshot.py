@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from physicslab.state.contacts import Contacts
     from physicslab.world import World
 
-__all__ = ["WorldSnapshot"]
-
 
 class WorldSnapshot:
     """The entities, components, contacts and laws of a world at one moment.

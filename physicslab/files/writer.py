@@ -1,7 +1,5 @@
 """From a world to a scene document."""
 
-from __future__ import annotations
-
 from collections.abc import Generator, Iterable, Iterator, Mapping
 from typing import Any
 
@@ -18,8 +16,6 @@ from physicslab.files.json_text import json_pieces
 from physicslab.files.reader import FORMAT
 from physicslab.files.snapshot import WorldSnapshot
 from physicslab.world import World
-
-__all__ = ["scene_pieces", "text_pieces", "write_scene"]
 
 _FIRST = ("Transform", "Velocity", "Mass", "Shape", "Material", "Spring", "Trail")
 

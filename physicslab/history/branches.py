@@ -1,12 +1,8 @@
 """Branches: what once came after a place of a line that goes on differently."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from physicslab.history.line import Line
-
-__all__ = ["Branch", "Branches"]
 
 _LIMIT = 8
 """Number of branches that are kept; the oldest go first."""

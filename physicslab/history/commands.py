@@ -15,11 +15,6 @@ from physicslab.ecs.text import shortened
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
-__all__ = [
-    "AddComponent", "Command", "Configure", "Group", "Remove", "RemoveComponent", "SetField", "SetPhysics",
-    "SetSimulation", "Spawn",
-]  # fmt: skip
-
 
 @runtime_checkable
 class Command(Protocol):

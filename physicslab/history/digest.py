@@ -1,7 +1,5 @@
 """Whether the columns of motion have the bits that they had."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,8 +7,6 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.kernels.digest import digest_motion
 from physicslab.state.masses import quiet
 from physicslab.world import World
-
-__all__ = ["COLUMNS", "Digest", "Digester", "differing"]
 
 type Digest = tuple[int, int, int, int]
 """32 bits for each of the columns of motion after a step."""

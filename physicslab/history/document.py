@@ -1,7 +1,5 @@
 """Commands and lines as JSON values, and back, with every check."""
 
-from __future__ import annotations
-
 import base64
 import zlib
 from array import array
@@ -36,8 +34,6 @@ from physicslab.history.commands import (
     Spawn,
 )
 from physicslab.history.line import Edit, Line, Run, Steps
-
-__all__ = ["line_document", "read_line"]
 
 type _Numbers = Mapping[int, int]
 """The number in the file of an entity that is there at the beginning."""

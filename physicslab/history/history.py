@@ -1,7 +1,5 @@
 """One history of the edits and runs of a world: taken back, put back and gone through, to the bit."""
 
-from __future__ import annotations
-
 import math
 import os
 import time
@@ -17,8 +15,6 @@ from physicslab.history.places import Places
 from physicslab.history.recording import load, save
 from physicslab.history.replay import Played, edit, play, write
 from physicslab.world import World
-
-__all__ = ["History", "HistoryEntry"]
 
 _LATE = 1e-6
 """Share of a step that a time may be after its end and count as within it: sums of steps are rounded."""

@@ -29,8 +29,6 @@ from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import System
 from physicslab.world import World
 
-__all__ = ["Keyframe"]
-
 type _Array = NDArray[Any]
 type _Columns = tuple[_Array, ...]
 

@@ -1,13 +1,9 @@
 """The key frames of a line, within a budget of memory: some all along it, and more around one place."""
 
-from __future__ import annotations
-
 from bisect import bisect_left, bisect_right, insort
 from typing import Any
 
 from physicslab.history.keyframe import Keyframe
-
-__all__ = ["Keyframes"]
 
 _OBJECT = 120
 """Bytes that an array takes besides its contents."""

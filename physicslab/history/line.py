@@ -16,8 +16,6 @@ from dataclasses import dataclass, field
 from physicslab.history.commands import Command
 from physicslab.history.digest import Digest
 
-__all__ = ["Edit", "Line", "Run", "Steps"]
-
 
 @dataclass(slots=True)
 class Steps:

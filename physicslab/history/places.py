@@ -1,7 +1,5 @@
 """The places of a line that a world is taken to: from the last key frame before each, the steps since."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,8 +10,6 @@ from physicslab.history.keyframes import Keyframes
 from physicslab.history.line import Line, Steps
 from physicslab.history.replay import Played, make_again
 from physicslab.world import World
-
-__all__ = ["Places"]
 
 _RARELY, _OFTEN, _SEEKING = 100.0, 16.0, 5.0
 """How many times as long as a key frame takes that takes which lies between two, at most and at least along

@@ -4,8 +4,6 @@ The file is JSON: ``{"format": "physicslab-recording/1", "scene": {...}, "entrie
 scene have the numbers of their places in it, from 1.
 """
 
-from __future__ import annotations
-
 import os
 
 from physicslab.ecs.text import printable
@@ -18,8 +16,6 @@ from physicslab.files.writer import write_scene
 from physicslab.history.document import line_document, read_line
 from physicslab.history.line import Line
 from physicslab.world import World
-
-__all__ = ["FORMAT", "load", "save"]
 
 FORMAT = "physicslab-recording/1"
 """What the key ``format`` of a recording holds."""

@@ -1,7 +1,5 @@
 """A recording played step by step, each compared with what came of it once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -11,8 +9,6 @@ from physicslab.history.commands import Command
 from physicslab.history.digest import Digester, differing
 from physicslab.history.line import Edit, Line, Steps
 from physicslab.world import World
-
-__all__ = ["Played", "edit", "make_again", "play", "write"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,8 @@
 """Blanes and Moan's method of order 6 for forces that depend on positions alone."""
 
-from __future__ import annotations
-
 from physicslab.integrators.integrator import Integrator
 from physicslab.integrators.splitting import splitting
 from physicslab.kernels.ode.splitting import split
-
-__all__ = ["BLANES_MOAN"]
 
 _KICKS = (
     0.0414649985182624, 0.198128671918067, -0.0400061921041533, 0.0752539843015807, -0.0115113874206879,

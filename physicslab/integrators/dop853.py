@@ -1,13 +1,9 @@
 """Dormand and Prince's adaptive method of order 8."""
 
-from __future__ import annotations
-
 from physicslab.integrators.integrator import Integrator, StepTooSmall
 from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
-
-__all__ = ["DOP853"]
 
 _MAX_EVALUATIONS = 1_000_000
 """Force evaluations a step of the world. The most that ``auto`` gives it, 500 rad in a step, takes

@@ -5,8 +5,6 @@ the solution has its own energy, of which dampers and drag take what is lost
 (:mod:`physicslab.ode.closed_form_account`).
 """
 
-from __future__ import annotations
-
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.forces.bookings import ACCOUNTS
 from physicslab.kernels.ode.propagate import propagate
@@ -14,8 +12,6 @@ from physicslab.ode.closed_form import closed_form
 from physicslab.ode.closed_form_account import given_in_closed_form
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
-
-__all__ = ["EXACT"]
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:

@@ -7,8 +7,6 @@ rounding of the search, and so no spring becomes longer than the energy allows. 
 space are kept only where the force is linear. All other forces are taken at the middle of the step.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,8 +14,6 @@ from physicslab.integrators.integrator import Integrator, StepTooSmall
 from physicslab.kernels.ode.implicit import implicit_midpoint
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
-
-__all__ = ["IMPLICIT_MIDPOINT"]
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:

@@ -1,7 +1,5 @@
 """The record of a method."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -10,8 +8,6 @@ from physicslab.integrators.splitting import Splitting
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 from physicslab.systems.system import Stage
-
-__all__ = ["Flow", "Integrator", "StepTooSmall"]
 
 type Flow = Callable[[State, OdeSystem, float, int], int]
 """Advances the equations of a world by so many steps of so many seconds; returns the force evaluations."""

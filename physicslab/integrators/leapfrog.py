@@ -7,8 +7,6 @@ from physicslab.integrators.splitting import splitting
 from physicslab.kernels.ode.splitting import split
 from physicslab.systems.system import Stage
 
-__all__ = ["LEAPFROG", "LEAPFROG_WITH_SPLIT_FORCES"]
-
 # Between the two half kicks, positions and velocities are both those of the middle of the substep. Impacts
 # are resolved there: turning a velocity round at the place it belongs to leaves the energy as it was. The
 # contact solver needs the whole kick, or a body at rest would sag by half of one in every substep.

@@ -1,13 +1,9 @@
 """The classical Runge-Kutta method."""
 
-from __future__ import annotations
-
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.ode.classical import rk4
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
-
-__all__ = ["RK4"]
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:

@@ -1,7 +1,5 @@
 """Splitting methods: drifts and kicks in turn."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,8 +9,6 @@ from numpy.typing import NDArray
 from physicslab.kernels.ode.splitting import split
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
-
-__all__ = ["Splitting", "splitting"]
 
 
 @dataclass(frozen=True)

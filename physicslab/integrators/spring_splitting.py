@@ -5,13 +5,9 @@ of order 6 for linear ones (Hairer, Lubich & Wanner, Geometric Numerical Integra
 that hardly turn are nearly linear. The force at its end is that at the beginning of the next.
 """
 
-from __future__ import annotations
-
 from physicslab.integrators.integrator import Integrator
 from physicslab.integrators.splitting import splitting
 from physicslab.kernels.ode.splitting import split
-
-__all__ = ["DRIFTS", "KICKS", "SPRING_SPLITTING"]
 
 _FIRST_DRIFT, _SECOND_DRIFT = -0.68591955495621668, 0.99662959095293632
 _FIRST_KICK, _SECOND_KICK = 0.15585935917621683, -0.0070254990919573174

@@ -5,8 +5,6 @@ from physicslab.integrators.splitting import splitting
 from physicslab.kernels.ode.splitting import split
 from physicslab.systems.system import Stage
 
-__all__ = ["SYMPLECTIC_EULER"]
-
 SYMPLECTIC_EULER = Integrator(
     name="symplectic_euler",
     title="Semi-implicit (symplectic) Euler",

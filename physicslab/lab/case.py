@@ -1,7 +1,5 @@
 """Shared parts of the labs: cases in a catalogue, and their measurements."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Iterable
@@ -11,8 +9,6 @@ from enum import StrEnum
 import numpy as np
 
 from physicslab.state.masses import Diverged
-
-__all__ = ["Case", "Catalogue", "Verdict", "attempt", "cpu_time"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,10 +1,6 @@
 """Motion with a closed form, to which results of the labs are compared."""
 
-from __future__ import annotations
-
 import math
-
-__all__ = ["corner_impact", "dragged_energy", "rolled", "slid", "stopped_by_friction"]
 
 
 def slid(speed: float, slowing: float, t: float) -> tuple[float, float]:

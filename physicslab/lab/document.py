@@ -1,7 +1,5 @@
 """The results of a lab, as a JSON document: format, machine, versions; figures in SI, finite or ``null``."""
 
-from __future__ import annotations
-
 import math
 import os
 import platform
@@ -10,8 +8,6 @@ from dataclasses import fields, is_dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
-
-__all__ = ["lab_document", "machine", "machine_text", "pick", "plain"]
 
 _PACKAGES = ("physicslab", "numpy", "numba", "esper")
 _PEERS = ("pymunk", "box2d", "pyb2d3")

@@ -1,7 +1,5 @@
 """The work of a lab: jobs one after the other, or in processes where no figure depends on the machine."""
 
-from __future__ import annotations
-
 import gc
 import multiprocessing
 import os
@@ -9,8 +7,6 @@ from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Se
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 
 from physicslab.kernels.warm import Warmup, is_warm
-
-__all__ = ["Job", "in_processes", "result_of", "run_jobs", "scaled"]
 
 type Job[Result] = Generator[float, None, Result]
 """Work that yields the share of it that is done (0 to 1) now and then, and returns the result."""

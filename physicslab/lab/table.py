@@ -1,11 +1,7 @@
 """Tables for the terminal."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-
-__all__ = ["Columns", "cell", "table"]
 
 type Row = Sequence[str]
 

@@ -1,7 +1,5 @@
 """Worlds for the labs to begin with, and what is measured while they run."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
@@ -18,12 +16,6 @@ from physicslab.prefabs.body import Pair
 from physicslab.stepping.rigid import Rigid
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
-
-__all__ = [
-    "GRAVITY", "PLANETS", "Surface", "displacements", "empty_world", "energy_change", "energy_growth",
-    "floor", "largest", "open_space", "place", "soft_space", "spawn_bob", "spawn_point", "steps_not_rigid",
-    "velocity",
-]  # fmt: skip
 
 GRAVITY = 9.81
 """Gravity of the built-in scenes, downwards [m/s^2]."""

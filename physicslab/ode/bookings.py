@@ -1,7 +1,5 @@
 """Which accounts the forces of a world need, and the kernels that book beside them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,8 +11,6 @@ from physicslab.kernels.forces.bookings import ACCOUNTS, gather, resist
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
-
-__all__ = ["BookKeeper", "book_in_python"]
 
 type Numbers = NDArray[np.float64]
 type Packed = Sequence[tuple[ForceSystem, PackedForce | None]]

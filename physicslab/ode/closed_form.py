@@ -1,7 +1,5 @@
 """Which worlds have a solution in closed form, and what it is."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -16,8 +14,6 @@ from physicslab.state.state import State
 from physicslab.systems.drag import DragSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import ForceSystem
-
-__all__ = ["ClosedForm", "NoClosedForm", "closed_form"]
 
 _KNOWN = (SpringSystem, DragSystem)
 """The forces that have a closed form, beside those that accelerate every body alike."""

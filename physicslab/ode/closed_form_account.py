@@ -6,8 +6,6 @@ is evaluated here once more, from the start, and not taken from where bodies hav
 kernel that moves them is no damping.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,8 +13,6 @@ from physicslab.components import Mass, Transform, Velocity
 from physicslab.kernels.accounts import DAMPING, ENERGY, GRAVITY, PX, PY, SPIN, SPRINGS
 from physicslab.ode.closed_form import ClosedForm
 from physicslab.state.state import State
-
-__all__ = ["given_in_closed_form"]
 
 type Numbers = NDArray[np.float64]
 

@@ -1,13 +1,9 @@
 """The motion of two bodies that attract each other by the inverse square: Kepler's problem."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 from numpy.typing import NDArray
-
-__all__ = ["propagate_kepler"]
 
 _MAX_ITERATIONS = 100
 

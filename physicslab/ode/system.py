@@ -1,7 +1,5 @@
 """The smooth motion of a world as one system of ordinary differential equations."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 from collections.abc import Iterable, Sequence
@@ -21,8 +19,6 @@ from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem, Stage
-
-__all__ = ["OdeSystem"]
 
 _REAL = ctypes.POINTER(ctypes.c_double)
 _WHOLE = ctypes.POINTER(ctypes.c_int64)

@@ -1,14 +1,10 @@
 """A body of any shape."""
 
-from __future__ import annotations
-
 from typing import TypedDict, Unpack
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
-
-__all__ = ["BodyOptions", "Pair", "body"]
 
 type Pair = Vector2 | tuple[float, float]
 """A vector, or its two components."""

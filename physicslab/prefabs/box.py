@@ -1,14 +1,10 @@
 """A rectangle."""
 
-from __future__ import annotations
-
 from typing import Unpack
 
 from physicslab.components import Shape
 from physicslab.prefabs.body import BodyOptions, Pair, body
 from physicslab.world import World
-
-__all__ = ["box"]
 
 
 def box(

@@ -1,14 +1,10 @@
 """Balls on a string."""
 
-from __future__ import annotations
-
 from physicslab.components import Spring
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import Pair
 from physicslab.prefabs.circle import circle
 from physicslab.world import World
-
-__all__ = ["chain"]
 
 
 def chain(

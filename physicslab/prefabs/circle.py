@@ -1,14 +1,10 @@
 """A disc."""
 
-from __future__ import annotations
-
 from typing import Unpack
 
 from physicslab.components import Shape
 from physicslab.prefabs.body import BodyOptions, Pair, body
 from physicslab.world import World
-
-__all__ = ["circle"]
 
 
 def circle(world: World, position: Pair, *, radius: float = 0.25, **options: Unpack[BodyOptions]) -> int:

@@ -1,15 +1,11 @@
 """An open box to pour things into."""
 
-from __future__ import annotations
-
 from typing import Unpack
 
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import BodyOptions, Pair
 from physicslab.prefabs.box import box
 from physicslab.world import World
-
-__all__ = ["container"]
 
 
 def container(

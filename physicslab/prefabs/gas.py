@@ -1,7 +1,5 @@
 """A gas of discs."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -9,8 +7,6 @@ import numpy as np
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.circle import circle
 from physicslab.world import World
-
-__all__ = ["gas"]
 
 
 def gas(

@@ -1,14 +1,10 @@
 """A bob on a stiff spring."""
 
-from __future__ import annotations
-
 from physicslab.components import Spring
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import Pair
 from physicslab.prefabs.circle import circle
 from physicslab.world import World
-
-__all__ = ["pendulum"]
 
 
 def pendulum(

@@ -1,7 +1,5 @@
 """Discs poured out."""
 
-from __future__ import annotations
-
 from typing import Unpack
 
 import numpy as np
@@ -10,8 +8,6 @@ from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import BodyOptions, Pair
 from physicslab.prefabs.circle import circle
 from physicslab.world import World
-
-__all__ = ["pile"]
 
 
 def pile(

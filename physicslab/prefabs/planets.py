@@ -1,7 +1,5 @@
 """Bodies that attract each other, on their orbits. The world must be in planet mode."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,8 +7,6 @@ from dataclasses import dataclass
 from physicslab.components import Mass, Trail, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
-
-__all__ = ["Planet", "binary", "planets"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,8 +7,6 @@ from physicslab.prefabs import BodyOptions, circle
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["BILLIARDS"]
-
 _RADIUS = 0.15
 _BALL: BodyOptions = {"mass": 0.17, "restitution": 0.95, "friction": 0.05}
 

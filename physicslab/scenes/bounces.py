@@ -4,8 +4,6 @@ from physicslab.prefabs import box, circle
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["BOUNCES"]
-
 
 def _fill(world: World) -> None:
     box(world, (0, -0.5), width=14, height=1, static=True, restitution=1, name="floor")

@@ -4,8 +4,6 @@ from physicslab.prefabs import box
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["DOMINOES"]
-
 
 def _fill(world: World) -> None:
     box(world, (0, -0.5), width=20, height=1, static=True, friction=0.6, name="floor")

@@ -5,8 +5,6 @@ from physicslab.prefabs import gas
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["GAS"]
-
 _WALLS = (-12.0, -7.5, 12.0, 7.5)
 
 

@@ -5,8 +5,6 @@ from physicslab.prefabs import pendulum
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["NEWTONS_CRADLE"]
-
 _RADIUS = 0.25
 _GAP = 1e-4
 

@@ -5,8 +5,6 @@ from physicslab.prefabs import pendulum
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["PENDULUM"]
-
 
 def _fill(world: World) -> None:
     pendulum(world, (0.0, 3.0), length=2.0, angle=0.5, name="bob")

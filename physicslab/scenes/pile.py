@@ -4,8 +4,6 @@ from physicslab.prefabs import container, pile
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["PILE"]
-
 
 def _fill(world: World) -> None:
     container(world, width=11, height=8)

@@ -6,8 +6,6 @@ from physicslab.prefabs import box, pyramid
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["PYRAMID"]
-
 
 def _fill(world: World) -> None:
     box(world, (0, -0.5), width=100, height=1, static=True, friction=0.6, name="floor")

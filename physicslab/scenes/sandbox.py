@@ -1,15 +1,11 @@
 """The playground that the window opens with."""
 
-from __future__ import annotations
-
 import math
 
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
-
-__all__ = ["SANDBOX"]
 
 
 def _fill(world: World) -> None:

@@ -1,7 +1,5 @@
 """The record of a built-in scene."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -9,8 +7,6 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.state.state import View
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
-
-__all__ = ["Scene"]
 
 
 @dataclass(frozen=True, slots=True)

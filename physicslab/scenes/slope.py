@@ -7,8 +7,6 @@ from physicslab.prefabs import box
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["SLOPE"]
-
 _ANGLE = math.radians(20.0)
 
 

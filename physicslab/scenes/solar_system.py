@@ -5,8 +5,6 @@ from physicslab.prefabs import Planet, planets
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["SOLAR_SYSTEM"]
-
 # Light enough that no planet deflects another: Kepler's law holds to 1e-4 for a hundred turns.
 _PLANETS = (
     Planet("first", 1e-5, 0.6, 0.0),

@@ -4,8 +4,6 @@ from physicslab.prefabs import chain
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["SPRING_CHAIN"]
-
 
 def _fill(world: World) -> None:
     chain(world, 20, (-4.0, 3.0), (4.0, 3.0), hold_end=True)

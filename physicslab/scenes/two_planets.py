@@ -5,8 +5,6 @@ from physicslab.prefabs import binary
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
-__all__ = ["TWO_PLANETS"]
-
 
 def _fill(world: World) -> None:
     # Point masses: without Shapes, nothing has to be searched for contacts.

@@ -1,7 +1,5 @@
 """What changed the energy and the momentum of a world, by cause: kept where it happens."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 
@@ -9,8 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.kernels.accounts import BALANCE, BEFORE, BOOK, CAUSES, EDITS, HAND
-
-__all__ = ["Account", "Balance", "KeptAccount"]
 
 
 class Balance(NamedTuple):

@@ -1,7 +1,5 @@
 """Points of instruments, which may go with bodies: where they are in the world."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,11 +8,6 @@ from numpy.typing import NDArray
 from physicslab.components import Gate, Note, Protractor, Ruler, Transform, Velocity
 from physicslab.ecs.vector import Vector2, rotated
 from physicslab.state.state import State
-
-__all__ = [
-    "INSTRUMENTS", "attached_to", "let_go_of_removed", "local_point", "motion_of_point", "place_of",
-    "points_of",
-]  # fmt: skip
 
 INSTRUMENTS: tuple[type[Any], ...] = (Note, Ruler, Protractor, Gate)
 """The components whose ``POINTS`` may go with bodies."""

@@ -1,14 +1,10 @@
 """Masses and forces of every row of a world."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-__all__ = ["Bodies"]
 
 
 class Bodies:

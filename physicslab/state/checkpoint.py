@@ -1,15 +1,11 @@
 """The state of motion at one moment, to go back to."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.state.remainders import NO_REMAINDERS, Remainders
-
-__all__ = ["Checkpoint"]
 
 type _Columns = Sequence[NDArray[np.float64]]
 

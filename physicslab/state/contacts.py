@@ -1,7 +1,5 @@
 """The near pairs of a world, those that may touch with a record, and which of them do: arrays."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -15,16 +13,14 @@ from physicslab.kernels.solver import impulse
 from physicslab.kernels.wide import refresh, slots
 from physicslab.state.wide_contacts import WideContacts
 
-__all__ = ["Contacts"]
-
 
 def _count(place: int, meaning: str) -> Any:
     """Return a property that reads and writes one of the counts that kernels change."""
 
-    def read(contacts: Contacts) -> int:
+    def read(contacts: "Contacts") -> int:
         return int(contacts.counts[place])
 
-    def write(contacts: Contacts, value: int) -> None:
+    def write(contacts: "Contacts", value: int) -> None:
         contacts.counts[place] = value
 
     return property(read, write, doc=meaning)
@@ -132,12 +128,6 @@ class Contacts:
         log: NDArray[Any] = np.zeros(length, IMPACT)
         log[last % length] = self.log[last % len(self.log)]
         self.log = log
-
-    def forget_impacts(self, first: int, count: int) -> None:
-        """Remove ``count`` impacts from number ``first`` on from the log; later ones move up."""
-        kept = self.log[np.arange(first + count, self.logged) % len(self.log)]
-        self.log[np.arange(first, first + len(kept)) % len(self.log)] = kept
-        self.logged -= count
 
     def make_room(self, capacity: int) -> None:
         """Drop everything, and make room for so many records."""

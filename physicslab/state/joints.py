@@ -1,7 +1,5 @@
 """Joints as rows of constraints: one table, whatever kind of joint a row comes from."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -11,8 +9,6 @@ from numpy.typing import NDArray
 from physicslab.components import Pin, Transform
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.table import Table
-
-__all__ = ["KINDS", "Joint", "Joints", "Row", "ends_of"]
 
 
 class Row(NamedTuple):

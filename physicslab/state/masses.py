@@ -1,7 +1,5 @@
 """The masses of bodies, from their present components; and whether their state is still finite."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -14,8 +12,6 @@ from physicslab.ecs.component import InvalidValue
 from physicslab.kernels import direct_entry, motion, ranges
 from physicslab.kernels.solver import impulse
 from physicslab.state.state import State
-
-__all__ = ["Diverged", "check_finite", "derive_masses", "quiet"]
 
 _INERTIA = next(spec for spec in Mass.FIELDS if spec.name == "inertia")
 

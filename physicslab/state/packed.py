@@ -15,8 +15,6 @@ from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.force_calls import ForceKernel
 from physicslab.state.state import State
 
-__all__ = ["PackedForce", "StateLayout", "spring_ends", "turned_anchors"]
-
 
 @dataclass(frozen=True, slots=True)
 class PackedForce:

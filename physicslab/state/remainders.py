@@ -8,8 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["NO_REMAINDERS", "Remainders", "coordinate_keys"]
-
 type _Numbers = NDArray[np.float64]
 type _Keys = NDArray[np.int64]
 

@@ -1,15 +1,11 @@
 """Which bodies sleep, how long the others have rested, and how the sleeping ones were left: arrays."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.kernels.sleep import edits, islands
-
-__all__ = ["Sleep"]
 
 
 class Sleep:

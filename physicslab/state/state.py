@@ -1,7 +1,5 @@
 """What a world holds: entities, columns, laws, clock and arrays. It depends on no system and no stepper."""
 
-from __future__ import annotations
-
 import itertools
 import weakref
 from collections.abc import Iterable
@@ -27,8 +25,6 @@ from physicslab.state.contacts import Contacts
 from physicslab.state.joints import Joints
 from physicslab.state.remainders import NO_REMAINDERS, Remainders
 from physicslab.state.sleep import Sleep
-
-__all__ = ["State", "View"]
 
 type View = tuple[float, float, float, float]
 """What a window shows of a world at first: xmin, ymin, xmax, ymax [m]."""

@@ -1,15 +1,11 @@
 """Wide contacts of one world, eight side by side."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.kernels import near_counts
 from physicslab.kernels.wide import graph_colour, refresh, restore_slots, slots
 from physicslab.kernels.wide.layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE, SlotsTuple
-
-__all__ = ["WideConstraints", "WideContacts"]
 
 type _Rows = NDArray[np.int64]
 

@@ -212,7 +212,7 @@ def resumed_plan(state: State, schedule: Schedule, kept: tuple[str, str, int]) -
 
 def _event_driven_plan(state: State, reason: str) -> StepPlan:
     """Return the plan for bodies whose collisions are exact."""
-    method = "between impacts bodies move in closed form; resting ones by leapfrog"
+    method = "between impacts bodies move in closed form"
     return StepPlan(
         EXACT, method, state.simulation.substeps, smooth=False, collisions="exact", collision_reason=reason
     )

@@ -115,14 +115,6 @@ class Rigid:
             self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
         return Advance(made, parts)
 
-    def collide(self, state: State, at: float) -> int:
-        """Let all that approaches in a state bounce, at time ``at`` [s]; return how many impacts that is."""
-        self._ode.gather(state)
-        impacts = self._motion.collide(self._scene(state), state, at)
-        if impacts:
-            self._ode.scatter(state, 0.0)
-        return impacts
-
     def _step(self, scene: tuple[Any, ...], state: State, at: float, h: float, parts: int) -> MadeStep:
         """Make a step from time ``at`` in parts; where one cannot be made, all is as before the step."""
         q, v, impacts, added = self._ode.q, self._ode.v, 0, 0.0

@@ -149,14 +149,6 @@ class RigidMotion:
             made.refused = self._by_impulses(scene, state, at + done, h - done, longest, made)
         return made
 
-    def collide(self, scene: tuple[Any, ...], state: State, at: float) -> int:
-        """Resolve the impacts of a state at time ``at``; return how many, 0 if some have no solution."""
-        if len(self._stages[2]) != len(self._ode.q):
-            self._stages = _stages_of(len(self._ode.q))
-        made = MadeStep(self._equations[0], self._equations[1], self._equations[3][UNKNOWN])
-        why, _ = self._collide(scene, state, at, made)
-        return made.impacts if why == motion.DONE else 0
-
     def _by_events(self, scene: tuple[Any, ...], state: State, at: float, h: float, made: MadeStep) -> float:
         """Go from event to event; return how far that leads [s]. What stops it is noted in ``made``."""
         q, v, changed = self._ode.q, self._ode.v, self._changed

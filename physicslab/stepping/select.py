@@ -75,8 +75,7 @@ def select_steppers(state: State, schedule: Schedule, plan: StepPlan) -> Stepper
             usable.append(kind(state, schedule, plan))
         else:
             left_out.append(LeftOut(kind.name, reason))
-        alone = kind is Flow or (kind is EventDriven and plan.contacts != "rigid")
-        if alone and reason is None:
+        if kind is Flow and reason is None:
             break
     return Steppers(tuple(usable), tuple(left_out))
 

@@ -29,11 +29,9 @@ from physicslab.kernels.solver import soft
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
-from physicslab.stepping.accounting import acts_unbooked, run_measured
 from physicslab.stepping.bounds import bring_back
 from physicslab.stepping.plan import StepPlan
-from physicslab.stepping.split_forces import SplitForces
-from physicslab.stepping.stage_accounts import StageAccounts
+from physicslab.stepping.substep_parts import SubstepParts
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
@@ -42,23 +40,10 @@ from physicslab.systems.joint import JointSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.sleep import SleepSystem
-from physicslab.systems.system import ForceSystem, Stage, System
+from physicslab.systems.system import ForceSystem, System
 
 __all__ = ["Span", "Substeps"]
 
-_BOOKED = "the work of a force along the way of bodies is booked"
-_NOTHING_TOUCHES = "nothing can touch, so that each system is called by itself"
-
-type _Hook = Callable[[State, float], None]
-"""Called with the length of the substep [s]."""
-
-_COMPILED: dict[Stage, tuple[type[System], int]] = {
-    Stage.DRIFT: (IntegrateSystem, soft.DRIFT), Stage.KICK: (AccelerateSystem, soft.KICK),
-    Stage.BROAD_PHASE: (BroadPhaseSystem, soft.PAIRS), Stage.CONTACT: (ContactSystem, soft.FIND),
-    Stage.IMPACT: (ResolveSystem, soft.IMPACTS), Stage.SOLVE: (ResolveSystem, soft.SOLVE),
-    Stage.RELAX: (ResolveSystem, soft.RELAX),
-}  # fmt: skip
-"""The system whose work at a stage the loop does, and as which part of the substep."""
 _KERNELS = (
     soft.advance, fat_boxes, leaving.index_bodies, leaving.add_pairs, grid.find_pairs, near_pairs.partition,
     near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
@@ -85,21 +70,12 @@ class Span(NamedTuple):
 
 
 class Substeps:
-    """The parts of a substep for the systems of a world, in the order of the integrator's stages.
-
-    What engine systems do is compiled. Where another acts, or a force in Python, its stage is handed over:
-    all systems of that stage are called, in their order.
+    """Going through the parts of substeps, in one compiled loop as far as that goes.
 
     Parameters
     ----------
-    state : State
-        Whose bodies.
-    schedule : Schedule
-        The systems.
-    plan : StepPlan
-        The stages, and what moves bodies on springs.
-    whole : bool
-        Whether whole steps are made. Else the near pairs are those there are, and ends of steps the caller's.
+    state, schedule, plan
+        As of :class:`SubstepParts`.
 
     Attributes
     ----------
@@ -113,150 +89,33 @@ class Substeps:
         Whether no forces act but uniform ones that are compiled.
     """
 
-    def __init__(self, state: State, schedule: Schedule, plan: StepPlan, *, whole: bool = True) -> None:
-        self._schedule, self._whole = schedule, whole
-        self.split: SplitForces | None = None
-        if plan.split_forces is not None:
-            self.split = SplitForces(state, schedule.forces, plan.split_forces, plan.split_steps)
-        self._accounts = StageAccounts(state, schedule.forces)
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
+        self._schedule = schedule
         self._contact, self._sleep = schedule.find(ContactSystem), schedule.find(SleepSystem)
         self._broad_phase, resolve = schedule.find(BroadPhaseSystem), schedule.find(ResolveSystem)
         self._joined = resolve is not None and schedule.find(JointSystem) is not None
         self._softness = (0.0, 0.0, 0.0) if resolve is None else resolve.softness
-        self._run: Callable[[Stage, State, float], None] = schedule.run
-        # Where a system of one's own moves the bodies itself, its error is that of the method.
-        if schedule.find(IntegrateSystem) is not None and any(map(acts_unbooked, schedule.running)):
-            self._run = lambda stage, state, h: run_measured(stage, schedule, state, h)
-        springs = None if self.split is None else self.split.springs
-        self._compiled = self._contact is not None or springs is not None
-        self.uniform, self._packs, reasons = True, False, []
-        self._parts: list[int] = []
-        self._times: list[tuple[float, float, float]] = []
-        self._hooks: dict[int, _Hook] = {}
-        self._calls: dict[System, int] = {}
-        self._drifted = self._kicked = 0.0
-        if self._accounts.follows_way:
-            self._hook(lambda state, h: self._accounts.begin_substep(state))
-            reasons.append(_BOOKED)
-        for stage, share in plan.stages.substep:
-            reason = self._add(state, stage, share)
-            if reason and reason not in reasons:
-                reasons.append(reason)
-        self.hooks = tuple(reasons)
-        self._hooked = bool(reasons) or not whole
+        made = SubstepParts(state, schedule, plan)
+        self.split, self.uniform, self.hooks = made.split, made.uniform, tuple(made.reasons)
+        self._parts, self._times, self._calls = made.parts, made.times, made.calls
+        self._python, self._accounts, self._packs = made.hooks, made.accounts, made.packs
+        self._hooked = bool(made.reasons)
         start, end = plan.stages.window
         parts, times = np.array(self._parts, np.int64), np.array(self._times).reshape(-1, 3).T.copy()
         self._course = parts, times, start, end, -start, self._hooked
         self._is_compiled = [*(part != soft.HOOK for part in self._parts), True]
         self._evaluates = state.has_forces and not {soft.UNIFORM, soft.PACKED}.isdisjoint(self._parts)
-        compiled = _KERNELS if self._compiled else self._accounts.kernels
-        self.kernels: tuple[Any, ...] = (*compiled, *(schedule.kernels(state) if reasons else ()))
+        compiled = _KERNELS if made.compiled else self._accounts.kernels
+        self.kernels: tuple[Any, ...] = (*compiled, *(schedule.kernels(state) if made.reasons else ()))
         self._cost, self._forces = np.zeros(soft.COSTS, np.int64), len(schedule.forces)
         self._h = 0.0
         self._columns: object = None
+        springs = None if self.split is None else self.split.springs
         self._springs = (np.zeros(0), np.zeros(0, np.int64)) if springs is None else springs.arrays
         self._entry: Callable[..., Any] = soft.advance
         self._fixed: tuple[tuple[Any, ...], tuple[Any, ...], Any]
         self._packed: tuple[list[NDArray[np.int64]], NDArray[np.int64]] = [], np.zeros((0, 3), np.int64)
         self._steps = self._substeps = self._nanoseconds = 0
-
-    # ---- the parts -----------------------------------------------------------------------------------------
-
-    def _part(self, what: int, share: float = 0.0) -> None:
-        """Add a part; what is kicked in ``share`` of a substep is seen from the middle of that."""
-        later = 0.5 - self._kicked - 0.5 * share
-        self._parts.append(what)
-        self._times.append((share, self._drifted, later))
-
-    def _hook(self, call: _Hook, share: float = 0.0) -> None:
-        """Add a part that is Python's."""
-        self._hooks[len(self._parts)] = call
-        self._part(soft.HOOK, share)
-
-    def _add(self, state: State, stage: Stage, share: float) -> str:
-        """Add a stage of the substep; return why some of it is Python's, if it is."""
-        systems, split, accounts, reason = self._schedule.at(stage), self.split, self._accounts, ""
-        if stage is Stage.RELAX and accounts.follows_way:
-            self._hook(lambda state, h: accounts.book_way(state))
-        if stage is Stage.FORCE:
-            reason = self._add_forces(state, systems, share)
-        elif stage is Stage.PREDICT:
-            if self._compiled:
-                self._part(soft.PREDICT, share)
-            elif split is not None:
-                self._hook(lambda state, h: split.take_part(stage, state, share * h))
-        elif systems and not (stage is Stage.BROAD_PHASE and not self._whole):
-            reason = self._add_systems(state, stage, systems, share)
-        if split is not None and stage is Stage.DRIFT:
-            self._hook(lambda state, h: split.take_part(stage, state, share * h), share)
-            if split.springs is not None:
-                self._parts[-1] = soft.SPRINGS
-            else:
-                reason = reason or "what springs and drag act on is sub-integrated"
-        self._drifted += share if stage is Stage.DRIFT else 0.0
-        self._kicked += share if stage is Stage.KICK else 0.0
-        return reason
-
-    def _add_systems(self, state: State, stage: Stage, systems: tuple[System, ...], share: float) -> str:
-        """Add the work of the systems of a stage."""
-        kind, part = _COMPILED[stage]
-        also = SleepSystem if stage is Stage.CONTACT else kind
-        others = [system for system in systems if type(system) not in (kind, also, JointSystem)]
-        accounts, run = self._accounts, self._run
-        if self._compiled and not others:
-            self._part(part, share)
-            self._count(systems)
-            if stage is Stage.CONTACT and not state.event_driven:
-                self._part(soft.WIDEN, share)
-            if stage is Stage.CONTACT and self._sleep is not None:
-                self._part(soft.WAKE, share)
-            if stage is Stage.RELAX and accounts.stores:
-                self._hooks[len(self._parts)] = lambda state, h: accounts.book_overlap(state)
-                self._part(soft.OVERLAP)
-            return ""
-        if stage is Stage.KICK:
-            later = 0.5 - self._kicked - 0.5 * share
-            self._hook(lambda state, h: accounts.book_kick(state, share * h, later * h))
-        elif stage is Stage.RELAX:
-            self._hook(lambda state, h: accounts.note_places(state))
-        self._hook(lambda state, h: run(stage, state, share * h), share)
-        if stage is Stage.RELAX:
-            self._hook(lambda state, h: accounts.book_overlap(state))
-        return f"{others[0].name} acts within the step" if others else _NOTHING_TOUCHES
-
-    def _add_forces(self, state: State, systems: tuple[System, ...], share: float) -> str:
-        """Add what adds up the forces."""
-        first, forces = systems[:1], systems[1:]
-        engine = all(type(system) is AccelerateSystem for system in first)
-        if not systems or (engine and not forces and not state.has_forces):
-            return ""
-        plain = [force for force in forces if isinstance(force, ForceSystem)]
-        same = engine and len(plain) == len(forces)
-        self.uniform = same and all(
-            force.is_engine and force.uniform_acceleration(state) is not None for force in plain
-        )
-        self._packs = same and not self.uniform and not self._accounts.notes_forces
-        self._packs &= all(
-            type(force).packs() and type(force).marked()[Stage.FORCE] == "add_packed" for force in plain
-        )
-        if self._compiled and (self.uniform or self._packs):
-            self._part(soft.UNIFORM if self.uniform else soft.PACKED, share)
-            self._count(systems)
-            return ""
-        accounts, schedule, run = self._accounts, self._schedule, self._run
-        if accounts.notes_forces:
-            self._hook(lambda state, h: schedule.run_forces(state, share * h, accounts.note_force), share)
-        else:
-            self._hook(lambda state, h: run(Stage.FORCE, state, share * h), share)
-        if not self._compiled:
-            return _NOTHING_TOUCHES
-        python = [one.name for one in forces if not (isinstance(one, ForceSystem) and one.packs())]
-        return f"the force of {python[0]} is computed in Python" if python else _BOOKED
-
-    def _count(self, systems: tuple[System, ...]) -> None:
-        """Count a call of each system in every substep."""
-        for system in systems:
-            self._calls[system] = self._calls.get(system, 0) + 1
 
     # ---- going through them --------------------------------------------------------------------------------
 
@@ -306,7 +165,7 @@ class Substeps:
     def _leave(self, state: State, why: int, part: int, h: float) -> None:
         """Do in Python what the loop has come back for."""
         if why == soft.PYTHON:
-            self._hooks[part](state, h)
+            self._python[part](state, h)
         elif why == soft.PAIRS_STALE and self._broad_phase is not None:
             self._timed(self._broad_phase, self._broad_phase.list_pairs, state, h)
         elif why == soft.BLOCKS_FULL and self._contact is not None:

@@ -1,13 +1,9 @@
 """Forces change velocities: Newton's second law."""
 
-from __future__ import annotations
-
 from physicslab.components import Transform, Velocity
 from physicslab.kernels import motion
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
-
-__all__ = ["AccelerateSystem"]
 
 
 class AccelerateSystem(System):

@@ -1,7 +1,5 @@
 """Which bodies are near each other."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -15,8 +13,6 @@ from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes, still_holds
 from physicslab.kernels.wide import slots
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
-
-__all__ = ["BroadPhaseSystem"]
 
 _MAX_LOOKAHEAD = 8.0
 """Largest factor by which the margin of a moving body is increased."""

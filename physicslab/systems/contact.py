@@ -1,15 +1,11 @@
 """Contact points of near bodies."""
 
-from __future__ import annotations
-
 from physicslab.contacts.one_stage import do_stage
 from physicslab.contacts.wide import add_constraints, refill
 from physicslab.kernels.solver import soft
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.system import Stage, System, at
-
-__all__ = ["ContactSystem"]
 
 
 class ContactSystem(System):

@@ -1,7 +1,5 @@
 """Drag: resistance that grows with speed or with its square."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,8 +10,6 @@ from physicslab.kernels.forces.resistance import drag_resistance
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
-
-__all__ = ["DragSystem"]
 
 
 class DragSystem(ForceSystem):

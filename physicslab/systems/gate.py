@@ -1,7 +1,5 @@
 """When bodies cross light gates."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,8 +11,6 @@ from physicslab.state.attached import let_go_of_removed, points_of
 from physicslab.state.state import State
 from physicslab.systems.gate_passage import Moment, Passage, Roots
 from physicslab.systems.system import Stage, System, at
-
-__all__ = ["LIMIT", "Crossing", "GateSystem"]
 
 LIMIT = 500
 """Crossings that are kept; the oldest go first."""

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from physicslab.systems.within_step import StepPath
 
-__all__ = ["Moment", "Passage", "Roots"]
-
 _WIDTH = 1e-5
 """Half the width of a gate as a share of its length: a body has crossed it once it is out on the other side,
 so that one that comes to rest on it, or trembles there, is not counted again and again."""

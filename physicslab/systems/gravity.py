@@ -1,7 +1,5 @@
 """Gravity: uniform, or pairwise between planets."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -15,8 +13,6 @@ from physicslab.kernels.forces.tree_pull import MAX_ERROR, RMS_ERROR, THETA
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
-
-__all__ = ["GravitySystem"]
 
 
 class GravitySystem(ForceSystem):

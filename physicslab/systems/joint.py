@@ -1,7 +1,5 @@
 """Joints between bodies, or a body and a fixed point."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import esper
@@ -21,8 +19,6 @@ from physicslab.state.joints import KINDS, ends_of
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem, Stage, System, at
-
-__all__ = ["JointForces", "JointSystem", "remove_lost"]
 
 
 def remove_lost(state: State, kind: type[Any], a: NDArray[np.int64], b: NDArray[np.int64]) -> None:

@@ -1,15 +1,11 @@
 """Impulses at contacts."""
 
-from __future__ import annotations
-
 from physicslab.contacts.one_stage import do_stage
 from physicslab.kernels.arguments import SoftnessTuple
 from physicslab.kernels.solver import impulse, soft
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.system import Stage, System, at
-
-__all__ = ["ResolveSystem"]
 
 _LIGHT_LOAD = 12.0
 """Multiple of its own weight that a body carries with the configured substeps."""

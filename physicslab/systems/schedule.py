@@ -1,7 +1,5 @@
 """The systems of one world: which run, at what cost, and what was left out."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -13,8 +11,6 @@ from physicslab.kernels import working_ns
 from physicslab.state.state import State
 from physicslab.systems.joint import JointSystem
 from physicslab.systems.system import ForceSystem, Stage, System
-
-__all__ = ["LeftOut", "Schedule", "Timing"]
 
 
 @dataclass(slots=True)

@@ -1,7 +1,5 @@
 """Bodies at rest fall asleep, and wake when they are touched or pushed."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,8 +16,6 @@ from physicslab.state.sleep import Sleep
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.system import Stage, System, at
-
-__all__ = ["SleepSystem"]
 
 _AWAKE_LIMIT = 64
 """Number of bodies up to which none falls asleep unless a scene has ``"sleeping": true``.

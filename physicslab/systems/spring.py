@@ -1,7 +1,5 @@
 """Springs and dampers between bodies, or a body and a fixed point."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,9 +14,6 @@ from physicslab.state.packed import PackedForce, StateLayout, spring_ends, turne
 from physicslab.state.state import State
 from physicslab.systems.joint import remove_lost
 from physicslab.systems.system import ForceSystem
-
-__all__ = ["SpringSystem"]
-
 
 _NOTHING = 1e-9
 """Share of its rest length below which a spring has no direction."""

@@ -1,7 +1,5 @@
 """The physics systems, in the order in which they run within a stage. A new system is added here."""
 
-from __future__ import annotations
-
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.drag import DragSystem
@@ -15,8 +13,6 @@ from physicslab.systems.spring import SpringSystem
 from physicslab.systems.strobe import StrobeSystem
 from physicslab.systems.system import System
 from physicslab.systems.trail import TrailSystem
-
-__all__ = ["PHYSICS_SYSTEMS", "standard_systems"]
 
 PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     GravitySystem,

@@ -1,7 +1,5 @@
 """Positions of bodies at regular moments."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -11,8 +9,6 @@ from physicslab.components import Strobe, Transform, Velocity
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
 from physicslab.systems.within_step import StepPath
-
-__all__ = ["StrobeSystem"]
 
 _LIMIT = 200_000
 """Pictures that are kept of all bodies together; the oldest go first."""

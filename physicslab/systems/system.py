@@ -1,7 +1,5 @@
 """The interface of a system: its work, at its stages, and its declarations."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from enum import Enum
 from functools import cache
@@ -15,8 +13,6 @@ from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
-
-__all__ = ["AROUND", "OF_FRAMES", "ForceSystem", "Stage", "System", "at"]
 
 
 class Stage(Enum):

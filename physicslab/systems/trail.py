@@ -1,7 +1,5 @@
 """Trails: past positions of bodies."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,6 @@ from numpy.typing import NDArray
 from physicslab.components import Trail, Transform
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
-
-__all__ = ["TrailSystem"]
 
 SAMPLES = 128
 """Positions kept of each body."""

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["StepPath"]
-
 type _Numbers = NDArray[np.float64]
 
 _BEND = 0.25

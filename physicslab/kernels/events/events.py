@@ -30,7 +30,7 @@ from physicslab.kernels.events.path import advance_to, begin, place, seen_from
 from physicslab.kernels.events.path_impact import path_velocity, resolve_ballistic_impacts
 from physicslab.kernels.narrow.contact import effective_masses, mix
 from physicslab.kernels.ode.compensated import add
-from physicslab.kernels.records import Impacts, Manifold, Manifolds, Points
+from physicslab.kernels.records import Impacts, Manifolds, Points
 from physicslab.kernels.solver.impact_log import (
     ImpactPoints,
     Pose,
@@ -41,15 +41,15 @@ from physicslab.kernels.solver.impact_log import (
 from physicslab.kernels.twins import endless
 
 __all__ = [
-    "BALLISTIC", "CAME_TO_REST", "DEEP", "DONE", "FIXED", "IN_CONTACT", "KINEMATIC", "OVERLAP", "REST",
-    "TOGETHER", "TOO_MANY_IMPACTS", "WOKEN", "run_events",
+    "BALLISTIC", "CAME_TO_REST", "DEEP", "DONE", "FIXED", "KINEMATIC", "OVERLAP", "REST", "TOGETHER",
+    "TOO_MANY_IMPACTS", "run_events",
 ]  # fmt: skip
 
-FIXED, BALLISTIC, IN_CONTACT, KINEMATIC = 0, 1, 2, 3
-"""Modes of a row: fixed; moving freely; resting on others (and not moved here); moving and not deflected."""
-DONE, CAME_TO_REST, WOKEN, OVERLAP, TOO_MANY_IMPACTS, TOGETHER = 0, 1, 2, 3, 4, 5
-"""Why the motion ended: the time was over; a body came to rest; a resting one was hit; bodies overlap deeply;
-there were too many impacts within one step; a body meets two others at once."""
+FIXED, BALLISTIC, KINEMATIC = range(3)
+"""Modes of a row: fixed; moving freely; moving and not deflected."""
+DONE, CAME_TO_REST, OVERLAP, TOO_MANY_IMPACTS, TOGETHER = range(5)
+"""Why the motion ended: the time was over; a body came to rest; bodies overlap deeply; there were too many
+impacts within one step; a body meets two others at once."""
 REST = 1e-3
 """Share of a step: a bounce against a pressing force is rest if the force causes its speed in that time."""
 DEEP = 0.01
@@ -90,33 +90,6 @@ class Flight(NamedTuple):
     inverse: Inverse
     bounds: Bounds
     account: Vectors
-
-
-@inlined
-def _outcome(manifold: Manifold, mode: Rows, approach: float, pull: float, slowest: float) -> int:
-    """Return DONE for a bounce, else why the motion ends; mark the bodies that rest or are woken."""
-    a, b = manifold.a, manifold.b
-    limit = -pull * slowest
-    if mode[a] == IN_CONTACT or mode[b] == IN_CONTACT:
-        kind = CAME_TO_REST if pull < 0.0 and approach <= limit else WOKEN
-        if kind == CAME_TO_REST:
-            _mark_in_contact(mode, a, b)
-        else:
-            mode[a] = BALLISTIC if mode[a] == IN_CONTACT else mode[a]
-            mode[b] = BALLISTIC if mode[b] == IN_CONTACT else mode[b]
-        return kind
-    if not (pull < 0.0 and manifold.restitution * approach <= limit):
-        return DONE
-    _mark_in_contact(mode, a, b)
-    return CAME_TO_REST
-
-
-@inlined
-def _mark_in_contact(mode: Rows, a: int, b: int) -> None:
-    """Put those of two rows that are ballistic into contact."""
-    for i in (a, b):
-        if mode[i] == BALLISTIC:
-            mode[i] = IN_CONTACT
 
 
 @inlined
@@ -164,7 +137,6 @@ def _begin_all(flight: Flight, step: int, span: float, left: int) -> tuple[int, 
         gap, size = gap_of(manifold, paths, angle, flight.sizes, flight.bounds.walls)
         if gap < -DEEP * size:
             why = OVERLAP
-            _mark_in_contact(mode, a, b)
     return why, _MIN_SPEED_RATIO * fastest, rounding
 
 
@@ -208,7 +180,7 @@ def _meets_two(flight: Flight, p: int, within: float) -> bool:
             continue
         a, b = flight.manifolds[k].a, flight.manifolds[k].b
         for i in (mine.a, mine.b):
-            if mode[i] == BALLISTIC and i in (a, b) and mode[a + b - i] != IN_CONTACT:
+            if mode[i] == BALLISTIC and i in (a, b):
                 return True
     return False
 
@@ -216,11 +188,11 @@ def _meets_two(flight: Flight, p: int, within: float) -> bool:
 @fused
 def _meet(
     flight: Flight, p: int, materials: Materials, log: Impacts, number: int, start: float, now: float,
-    low: float, dt: float, ordered: bool,
+    low: float, span: float,
 ) -> tuple[int, int]:  # fmt: skip
     """Resolve a meeting; return why the motion ends, DONE if it goes on, and how many impacts it was.
 
-    Unless impacts are ``ordered``, one that is at the same time as another of the same body is left.
+    A bounce that a pressing force ends soon is left, and one at the same time as another of the same body.
     """
     manifold, one, two = flight.manifolds[p], flight.points[2 * p], flight.points[2 * p + 1]
     paths, mode, due, angle, angular = (
@@ -234,25 +206,26 @@ def _meet(
     effective_masses(manifold, flight.points, p, flight.inverse)
     nx, ny = manifold.normal_x, manifold.normal_y
     approach = -(ux * nx + uy * ny)
-    was_resting = mode[a] == IN_CONTACT or mode[b] == IN_CONTACT
-    why = _outcome(manifold, mode, approach, wx * nx + wy * ny, REST * dt)
-    together = why == DONE and not ordered and _meets_two(flight, p, _SAME_TIME * dt)
-    if was_resting or together:
+    pull = wx * nx + wy * ny
+    if pull < 0.0 and manifold.restitution * approach <= -pull * REST * span:
         manifold.count = 0
-        return (TOGETHER if together else why), 0
+        return CAME_TO_REST, 0
+    if _meets_two(flight, p, _SAME_TIME * span):
+        manifold.count = 0
+        return TOGETHER, 0
     if mode[a] != FIXED:
         advance_to(paths, a, angle, angular, now, low, flight.account)
     if mode[b] != FIXED:
         advance_to(paths, b, angle, angular, now, low, flight.account)
-    due[p, 3] = due[p, 3] + 1.0 if now - due[p, 2] <= _SAME_TIME * dt else 0.0
+    due[p, 3] = due[p, 3] + 1.0 if now - due[p, 2] <= _SAME_TIME * span else 0.0
     due[p, 2], due[p, 4] = now, float(number)
     e = manifold.restitution
-    if why == CAME_TO_REST or (e < 1.0 and due[p, 3] > _MAX_REPEATS):
+    if e < 1.0 and due[p, 3] > _MAX_REPEATS:
         manifold.restitution = 0.0
     _bounce(flight, p, log, number, start + (now + low), approach)
     manifold.restitution, manifold.count, manifold.found = e, 0, 0
     flight.impact_position[p, 0], flight.impact_position[p, 1] = x, y
-    return why, 1 if approach > 0.0 else 0
+    return DONE, 1 if approach > 0.0 else 0
 
 
 @inlined
@@ -283,31 +256,38 @@ def run_events(
     manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, apart: Rows,
     due: Vectors, impact_position: Vectors, motion: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
     inverse: InverseTuple, bounds: BoundsTuple,
-    account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int, dt: float,
-    urgent: int, ordered: bool,
-) -> tuple[int, float, int, int, int]:  # fmt: skip
-    """Move bodies from impact to impact for ``steps`` times ``span`` s, or until one rests or is woken.
+    account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int,
+) -> tuple[int, int, int]:  # fmt: skip
+    """Move bodies from impact to impact for ``steps`` times ``span`` s, or until one rests or meets two.
 
-    So does one that meets two others at once, unless impacts are ``ordered``: then it meets one after the
-    other.
-
-    ``paths`` (rows, 13) holds the remainders of places and velocities, which are carried on, the
-    accelerations [m/s^2] in columns 8 and 9 and in column 12 the mass [kg] of what gravity pulls, ``mode``
-    that of each row;
-    ``face`` and ``apart`` (pairs,) and ``due`` (pairs, 5) are work space; ``impact_position`` (pairs, 2)
-    receives where B was at the pair's last impact of the last step [m]. What impacts and gravity give is
-    added to ``account`` (:mod:`physicslab.kernels.accounts`). Impacts are logged from number ``logged`` on,
-    with times from ``start`` [s]; a step has ``dt`` seconds. ``urgent`` is a pair that meets now, before all
-    others, or -1.
     All paths begin again after ``span`` seconds, so that steps made at once have the bits of single ones.
+
+    Parameters
+    ----------
+    manifolds, points, count : records (pairs,), (2 pairs,), int
+        The pairs that may meet.
+    paths : float64 array (rows, 13)
+        Of each row the remainders of its place and velocity, which are carried on, the acceleration [m/s^2]
+        in columns 8 and 9, and in column 12 the mass [kg] that gravity pulls.
+    mode : int64 array (rows,)
+        The mode of each row.
+    face, apart, due : int64 arrays (pairs,), float64 array (pairs, 5)
+        Room.
+    impact_position : float64 array (pairs, 2)
+        Receives where B was at the pair's last impact of the last step [m].
+    motion, sizes, materials, inverse, bounds : tuples of arrays
+        As :mod:`physicslab.kernels.arguments` has them.
+    account : float64 array (CAUSES, 4)
+        To which the work and the momentum of impacts and gravity are added.
+    log, logged : impact records (n,), int
+        Impacts are logged from number ``logged`` on, with times from ``start`` [s].
 
     Returns
     -------
-    made, elapsed, impacts, why, pair
-        How many whole steps were made; the time that passed of the one that was not [s]; how many impacts
-        there were; why it ended, and with which pair.
+    made, impacts, why
+        How many whole steps were made, how many impacts there were, and why it ended.
     """
-    now, low, impacts, window, within, p, made, why = 0.0, 0.0, 0, 0.0, 0, -1, 0, DONE
+    now, low, impacts, within, made, why = 0.0, 0.0, 0, 0, 0, DONE
     flight = Flight(
         manifolds, points, count, paths, mode, Motion(*motion), face, apart, due,
         impact_position, Sizes(*sizes), Inverse(*inverse), Bounds(*bounds), account,
@@ -319,32 +299,27 @@ def run_events(
             _clear_impacts(flight)
         why, min_speed, rounding = _begin_all(flight, made, span, steps - made)
         if why == OVERLAP:
-            return made, 0.0, impacts, why, -1
-        now, low, window, within, first, second = 0.0, 0.0, 0.0, 0, -1, -1
+            return made, impacts, why
+        now, low, within, first, second = 0.0, 0.0, 0, -1, -1
         while why == DONE:
             _predict_pairs(flight, first, second, now, low, span, min_speed, made, steps - made, rounding)
             p = _first(due, count)
-            if urgent >= 0:
-                p, due[urgent, 0], due[urgent, 1], urgent = urgent, 0.0, 0.0, -1
             if p < 0 or due[p, 0] >= span:
                 now, low = span, 0.0
                 break
             now, low = due[p, 0], due[p, 1]
-            within = within + 1 if now < window + dt else 1
-            window = window if now < window + dt else now
+            within += 1
             if within > _MAX_IMPACTS:
                 why = TOO_MANY_IMPACTS
                 break
             first, second = manifolds[p].a, manifolds[p].b
-            why, new = _meet(
-                flight, p, mixed, log, logged + impacts, start + made * span, now, low, dt, ordered
-            )
+            why, new = _meet(flight, p, mixed, log, logged + impacts, start + made * span, now, low, span)
             impacts += new
         _end_all(flight, now, low)
         if why != DONE:
             break
         made += 1
-    return made, now + low if why != DONE else 0.0, impacts, why, p
+    return made, impacts, why
 
 
 @endless

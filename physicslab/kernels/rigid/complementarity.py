@@ -11,39 +11,38 @@ violated change over, one at a time. Where that does not end, Lemke's pivots do.
 determined, as under a table with four legs, they are those of the least norm.
 """
 
-import math
-
 from physicslab.kernels import fused, inlined
 from physicslab.kernels.rigid.equations import (
     CAUSED,
     CHANGE,
     FREE,
     OPEN,
-    RIGHT,
     SLIDES_BACK,
     SLIDES_ON,
     STICKS,
     UNKNOWN,
     Equations,
-    edge_of,
 )
 from physicslab.kernels.rigid.features import GIVEN, MU, STATUS
+from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.lemke import find_by_pivots
 
 __all__ = [
-    "FITTING", "NOT_FOUND", "REFINEMENTS", "SETTLED", "begin_equations", "refine", "settle_at_an_edge",
-    "solve_complementarity", "solve_equations",
-]  # fmt: skip
+    "FITTING",
+    "NOT_FOUND",
+    "SETTLED",
+    "settle_at_an_edge",
+    "solve_complementarity",
+]
 
-_ROUNDING = 1e-4
-"""Share of the motion of points that slide in any case, whose rounding is in all that they touch."""
-_TOLERANCE = 1e-11
+_LEAST_SCALE = 1e-4
+"""Share of the largest free rate, that of points that slide in any case too, which the scale of rates is at
+least: its rounding is in all that they touch."""
+_VIOLATION = 1e-11
 """Share of the largest free acceleration, or of the largest force, up to which a law counts as kept."""
-_DAMPED = 1e-13
-"""Share of the diagonal that is added to a matrix that may be singular; refinement removes its effect."""
 NOT_FOUND, FITTING, SETTLED = 0, 1, 2
 """Whether forces were found."""
-_OF_SUMS = 4e-16
+_ROUNDING_OF_SUMS = 4e-16
 """Share of the sum of magnitudes by which a sum may be rounded."""
 _FEW_CHANGES = 4
 """Number of changes that are tried before the pivots where they are good enough."""
@@ -54,225 +53,6 @@ _AT_REST = 1e-7
 _INSIDE = 1e-6
 """Share of a friction cone within which pivots leave the force on its edge: they are found with raised
 sides."""
-_STALLED = 1e-11
-"""Share of the free rates that equations of forces may leave where M M^T serves."""
-_DEPENDENT = 1e-13
-"""Share of the longest row of M below which what is left of another one is rounding."""
-_CONTRADICTS = 1e-6
-"""Share of the right sides up to which dependent equations agree."""
-REFINEMENTS = 40
-"""Largest number of refinements of a solution."""
-
-
-@fused
-def _take_equations(equations: Equations, count: int, friction: float) -> int:
-    """Write the matrix of the unknowns that are not given, M; return how many they are.
-
-    Rows and columns are divided by the roots of the diagonal, so that masses of all sizes count alike.
-    """
-    n, order, a = 0, equations.order, equations.a
-    for i in range(count):
-        status = equations.points[i, STATUS]
-        if status != OPEN:
-            order[1, n] = 2 * i
-            n += 1
-            if status == STICKS:
-                order[1, n] = 2 * i + 1
-                n += 1
-    for k in range(n):
-        row = order[1, k]
-        for j in range(n):
-            column = order[1, j]
-            value, status = a[row, column], equations.points[column // 2, STATUS]
-            if column % 2 == 0 and status != STICKS:
-                value += friction * edge_of(status, equations.measures[column // 2, MU]) * a[row, column + 1]
-            equations.matrix[k, j] = value / math.sqrt(a[row, row] * a[column, column])
-    return n
-
-
-@fused
-def _factorise(equations: Equations, n: int) -> None:
-    """Write the Cholesky factor of M M^T, slightly damped, into the tableau."""
-    matrix, factor, largest = equations.matrix, equations.tableau, 0.0
-    for i in range(n):
-        for j in range(i + 1):
-            product = 0.0
-            for k in range(n):
-                product += matrix[i, k] * matrix[j, k]
-            factor[i, j] = product
-        largest = max(largest, factor[i, i])
-    for i in range(n):
-        factor[i, i] += _DAMPED * largest
-        for j in range(i + 1):
-            value = factor[i, j]
-            for k in range(j):
-                value -= factor[i, k] * factor[j, k]
-            if i == j:
-                factor[i, i] = math.sqrt(max(value, _DAMPED * largest))
-            else:
-                factor[i, j] = value / factor[j, j]
-
-
-@fused
-def _substitute(equations: Equations, n: int) -> None:
-    """Replace the right side r by M^T (M M^T)^-1 r."""
-    factor, vectors = equations.tableau, equations.vectors
-    for i in range(n):
-        for k in range(i):
-            vectors[RIGHT, i] -= factor[i, k] * vectors[RIGHT, k]
-        vectors[RIGHT, i] /= factor[i, i]
-    for i in range(n - 1, -1, -1):
-        for k in range(i + 1, n):
-            vectors[RIGHT, i] -= factor[k, i] * vectors[RIGHT, k]
-        vectors[RIGHT, i] /= factor[i, i]
-    for j in range(n):
-        vectors[CHANGE, j] = 0.0
-        for k in range(n):
-            vectors[CHANGE, j] += equations.matrix[k, j] * vectors[RIGHT, k]
-    for j in range(n):
-        vectors[RIGHT, j] = vectors[CHANGE, j]
-
-
-@inlined
-def _factorise_orthogonally(equations: Equations, n: int) -> int:
-    """Write the triangle and the reflections of M^T = Q R P into the tableau; return the rank of M.
-
-    M itself loses half as many digits as M M^T: what is light between heavy bodies costs more than there are.
-    Row i of the tableau has row P_i of R^T, then the direction of reflection i; behind them are 2 / v^2 and
-    the diagonal of R.
-    """
-    factor, order, first = equations.tableau, equations.order, 0.0
-    for i in range(n):
-        order[0, i] = i
-        for k in range(n):
-            factor[i, k] = equations.matrix[i, k]
-    for k in range(n):
-        longest, square = k, -1.0
-        for i in range(k, n):
-            norm = 0.0
-            for j in range(k, n):
-                norm += factor[i, j] * factor[i, j]
-            if norm > square:
-                longest, square = i, norm
-        first = math.sqrt(square) if k == 0 else first
-        if math.sqrt(square) <= _DEPENDENT * first:
-            return k
-        order[0, k], order[0, longest] = order[0, longest], order[0, k]
-        for j in range(n):
-            factor[k, j], factor[longest, j] = factor[longest, j], factor[k, j]
-        diagonal = -math.copysign(math.sqrt(square), factor[k, k])
-        factor[k, k] -= diagonal
-        factor[k, n] = -1.0 / (diagonal * factor[k, k])
-        factor[k, n + 1] = diagonal
-        for i in range(k + 1, n):
-            share = 0.0
-            for j in range(k, n):
-                share += factor[k, j] * factor[i, j]
-            share *= factor[k, n]
-            for j in range(k, n):
-                factor[i, j] -= share * factor[k, j]
-    return n
-
-
-@inlined
-def _substitute_orthogonally(equations: Equations, n: int, rank: int) -> bool:
-    """Replace the right side r by the shortest x with M x = r; return whether there is any."""
-    factor, order, vectors, largest = equations.tableau, equations.order, equations.vectors, 0.0
-    for i in range(n):
-        largest = max(largest, abs(vectors[RIGHT, i]))
-    for i in range(n):
-        left = vectors[RIGHT, order[0, i]]
-        for k in range(min(i, rank)):
-            left -= factor[i, k] * vectors[CHANGE, k]
-        if i >= rank and abs(left) > _CONTRADICTS * largest:
-            return False
-        vectors[CHANGE, i] = left / factor[i, n + 1] if i < rank else 0.0
-    for k in range(rank - 1, -1, -1):
-        share = 0.0
-        for j in range(k, n):
-            share += factor[k, j] * vectors[CHANGE, j]
-        share *= factor[k, n]
-        for j in range(k, n):
-            vectors[CHANGE, j] -= share * factor[k, j]
-    for i in range(n):
-        vectors[RIGHT, i] = vectors[CHANGE, i]
-    return True
-
-
-@inlined
-def begin_equations(equations: Equations, count: int, friction: float) -> int:
-    """Factorise the equations of the points that are not open, of forces 0; return how many there are.
-
-    Points that slide have ``friction`` (0 or 1) times their friction.
-    """
-    for i in range(2 * count):
-        equations.vectors[UNKNOWN, i] = 0.0
-    n = _take_equations(equations, count, friction)
-    _factorise(equations, n)
-    return n
-
-
-@inlined
-def refine(
-    equations: Equations, count: int, n: int, friction: float, caused: int, largest: float, previous: float,
-    rank: int,
-) -> tuple[float, int]:  # fmt: skip
-    """Change the forces so that what they cause, row ``caused`` of the vectors, vanishes.
-
-    Returns the largest of it, or -1 where it is rounding of ``largest``, or not half of the ``previous`` one:
-    then forces stay. The change is of the form M^T u, so that forces are of least norm where the equations
-    are singular. ``rank`` is 0 while M M^T serves; where that does not suffice M takes over, and its rank is
-    returned.
-    """
-    vectors, order, a, residual = equations.vectors, equations.order, equations.a, 0.0
-    for k in range(n):
-        row = order[1, k]
-        vectors[RIGHT, k] = -vectors[caused, row] / math.sqrt(a[row, row])
-        residual = max(residual, abs(vectors[caused, row]))
-    if residual <= 2e-16 * largest or not residual < math.inf:
-        return -1.0, rank
-    if residual >= 0.5 * previous:
-        if rank > 0 or friction == 0.0 or residual <= _STALLED * largest:
-            return -1.0, rank
-        rank = _factorise_orthogonally(equations, n)
-    if rank == 0:
-        _substitute(equations, n)
-    elif not _substitute_orthogonally(equations, n, rank):
-        return -1.0, rank
-    for i in range(2 * count):
-        vectors[CHANGE, i] = 0.0
-    for k in range(n):
-        row = order[1, k]
-        change, status = vectors[RIGHT, k] / math.sqrt(a[row, row]), equations.points[row // 2, STATUS]
-        vectors[CHANGE, row] += change
-        if row % 2 == 0 and status != STICKS:
-            edge = friction * edge_of(status, equations.measures[row // 2, MU])
-            vectors[CHANGE, row + 1] += edge * change
-    for i in range(2 * count):
-        vectors[UNKNOWN, i] += vectors[CHANGE, i]
-    return residual, rank
-
-
-@inlined
-def solve_equations(equations: Equations, count: int, friction: float) -> None:
-    """Solve w = 0 for the points that are not open, along the tangent for those that stick.
-
-    Those that slide have ``friction`` (0 or 1) times their friction.
-    """
-    vectors, largest, residual, rank = equations.vectors, 0.0, math.inf, 0
-    for i in range(2 * count):
-        largest = max(largest, abs(vectors[FREE, i]))
-    n = begin_equations(equations, count, friction)
-    for _ in range(REFINEMENTS):
-        for k in range(n):
-            row = equations.order[1, k]
-            w = vectors[FREE, row]
-            for j in range(2 * count):
-                w += equations.a[row, j] * vectors[UNKNOWN, j]
-            vectors[CAUSED, row] = w
-        residual, rank = refine(equations, count, n, friction, CAUSED, largest, residual, rank)
-        if residual < 0.0:
-            break
 
 
 @inlined
@@ -284,7 +64,7 @@ def _find_caused(equations: Equations, count: int) -> None:
             part = equations.a[i, j] * equations.vectors[UNKNOWN, j]
             caused += part
             parts += abs(part)
-        equations.vectors[CAUSED, i], equations.vectors[CHANGE, i] = caused, _OF_SUMS * parts
+        equations.vectors[CAUSED, i], equations.vectors[CHANGE, i] = caused, _ROUNDING_OF_SUMS * parts
 
 
 @inlined
@@ -303,7 +83,7 @@ def _closed_status(equations: Equations, i: int, opening: float, along: float) -
 @fused
 def _change_most_violated(equations: Equations, count: int, w_scale: float, z_scale: float) -> bool:
     """Let the point whose law is violated most do what it must instead; return whether there is any."""
-    worst, change, amount = -1, OPEN, _TOLERANCE
+    worst, change, amount = -1, OPEN, _VIOLATION
     vectors = equations.vectors
     for i in range(count):
         status, given, mu = equations.points[i, STATUS], equations.points[i, GIVEN], equations.measures[i, MU]
@@ -417,7 +197,7 @@ def solve_complementarity(equations: Equations, count: int, scale: float, exactl
         if i % 2 == 0 or points[i // 2, GIVEN] == STICKS:
             w_scale = max(w_scale, abs(vectors[FREE, i]))
             z_scale = max(z_scale, abs(vectors[FREE, i]) / equations.a[i, i])
-    w_scale = max(w_scale, _ROUNDING * largest, scale)
+    w_scale = max(w_scale, _LEAST_SCALE * largest, scale)
     z_scale = z_scale if z_scale > 0.0 else 1.0
     for i in range(count):
         free_n, free_t = vectors[FREE, 2 * i], vectors[FREE, 2 * i + 1]

@@ -5,12 +5,6 @@ import math
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
-from physicslab.kernels.rigid.complementarity import (
-    REFINEMENTS,
-    begin_equations,
-    refine,
-    solve_equations,
-)
 from physicslab.kernels.rigid.equations import CHANGE, FREE, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     BIAS_N,
@@ -29,6 +23,12 @@ from physicslab.kernels.rigid.features import (
     VT,
     Scene,
     measure,
+)
+from physicslab.kernels.rigid.least_norm import (
+    REFINEMENTS,
+    begin_equations,
+    refine,
+    solve_equations,
 )
 
 __all__ = [

@@ -9,12 +9,11 @@ trial on the piece itself takes twelve sets of contact forces.
 import math
 
 from physicslab.kernels import Numbers, inlined
-from physicslab.kernels.ode.dop853 import largest
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
 from physicslab.kernels.rigid.features import Scene
-from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages
+from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages, largest_free
 
 __all__ = ["curve_is_exact", "fit_curve", "place_bodies", "place_on_curve"]
 
@@ -83,8 +82,8 @@ def curve_is_exact(
     s, n, exact = _CHECKED, 3 * scene.rows, True
     place_on_curve(stages, q, v, h, s * h)
     constrained_acceleration(scene, equations, count, stages.q, stages.v, stages.acceleration)
-    q_limit = tolerance * max(largest(q, n), largest(stages.q, n))
-    v_limit = tolerance * max(largest(v, n), largest(stages.v, n))
+    q_limit = tolerance * max(largest_free(scene, q), largest_free(scene, stages.q))
+    v_limit = tolerance * max(largest_free(scene, v), largest_free(scene, stages.v))
     for i in range(n):
         third, fourth, fifth = stages.rates[_THIRD, i], stages.rates[_FOURTH, i], stages.rates[_FIFTH, i]
         bent = stages.pushes[0, i] + s * (6.0 * third + s * (12.0 * fourth + s * 20.0 * fifth)) / (h * h)

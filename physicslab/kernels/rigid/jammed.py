@@ -8,21 +8,17 @@ Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653). In that limit no body moves, s
 
 from physicslab.kernels import Numbers, fused
 from physicslab.kernels.rigid.bookings import book_contacts
-from physicslab.kernels.rigid.complementarity import (
-    NOT_FOUND,
-    SETTLED,
-    solve_complementarity,
-    solve_equations,
-)
+from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, Equations
 from physicslab.kernels.rigid.features import GIVEN, MU, PAIR, STATUS, VN, VT, Points, Scene
+from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.touching import SLOW
 
 __all__ = ["stop_sliding"]
 
 _NO_TIME = 0.01
-"""Largest speed that forces give in the moment of the impulses, as a share of that which counts as none."""
+"""Largest speed that forces give in the moment of the impulses, as a share of that treated as zero."""
 
 
 @fused

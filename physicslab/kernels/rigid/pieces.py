@@ -6,15 +6,14 @@ from typing import NamedTuple
 import numpy as np
 
 from physicslab.kernels import Numbers, Vectors, fused, inlined
-from physicslab.kernels.ode.dop853 import largest
 from physicslab.kernels.ode.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, WEIGHTS
 from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
 from physicslab.kernels.rigid.features import Scene
 
 __all__ = [
-    "METHODS", "SHORT_LAST", "Stages", "StagesTuple", "begin_piece", "make_piece", "make_stages",
-    "named_stages",
+    "METHODS", "SHORT_LAST", "Stages", "StagesTuple", "begin_piece", "largest_free", "make_piece",
+    "make_stages", "named_stages",
 ]  # fmt: skip
 
 SHORT_LAST = 6
@@ -68,6 +67,19 @@ def begin_piece(
     constrained_acceleration(scene, equations, count, q, v, stages.acceleration)
     for i in range(len(v)):
         stages.rates[0, i], stages.pushes[0, i] = v[i], stages.acceleration[i]
+
+
+@inlined
+def largest_free(scene: Scene, values: Numbers) -> float:
+    """Return the largest magnitude of ``values`` (3 rows,) of what can move.
+
+    What is fixed far away is no measure of errors.
+    """
+    found = 0.0
+    for i in range(3 * scene.rows):
+        if scene.inverse_mass[i] > 0.0:
+            found = max(found, abs(values[i]))
+    return found
 
 
 @inlined
@@ -136,11 +148,11 @@ def make_piece(
     for i in range(n):  # rows of what is fixed, or gone, are no reason for another step
         free += 1 if scene.inverse_mass[i] > 0.0 else 0
     # What the start reaches by itself: in a step beyond the limit of stability the end grows with the error.
-    q_start, v_start = largest(q, n), largest(v, n)
+    q_start, v_start = largest_free(scene, q), largest_free(scene, v)
     push = 0.0
     for i in range(n):
         push = max(push, abs(stages.pushes[0, i]))
-    v_scale = min(max(v_start, largest(stages.v, n)), v_start + h * push)
-    q_scale = min(max(q_start, largest(stages.q, n)), q_start + h * v_scale)
+    v_scale = min(max(v_start, largest_free(scene, stages.v)), v_start + h * push)
+    q_scale = min(max(q_start, largest_free(scene, stages.q)), q_start + h * v_scale)
     error = _error(stages, n, max(free, 1), h, q_scale, max(v_scale, _LEADS * q_scale / h), tolerance)
     return error if math.isfinite(error) else math.inf

@@ -10,7 +10,6 @@ from physicslab.kernels.rigid.complementarity import (
     SETTLED,
     settle_at_an_edge,
     solve_complementarity,
-    solve_equations,
 )
 from physicslab.kernels.rigid.constraints import apply, assemble, find_free_rates, measure_all
 from physicslab.kernels.rigid.detect import find_points, seen_from
@@ -37,6 +36,7 @@ from physicslab.kernels.rigid.features import (
     Scene,
     measure,
 )
+from physicslab.kernels.rigid.least_norm import solve_equations
 
 __all__ = [
     "NO_SPEED",

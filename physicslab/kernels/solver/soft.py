@@ -297,7 +297,7 @@ def _advance(
             now = charge(cost, ACCELERATE, now)
             if failed:
                 return DIVERGED, done, substep, part, finished, bounced, evaluated, impulse_dt
-            done, finished = done + 1, bounced
+            done, finished, pending = done + 1, bounced, ALL
             if sleepers.on:
                 check = count_rest(
                     linear, angular, sizes.kind, sizes.radius, sizes.width, sizes.height,
@@ -305,28 +305,11 @@ def _advance(
                     plan.rested,
                 )  # fmt: skip
                 now = charge(cost, SLEEP, now)
-                if check:
-                    return (
-                        SLEEP_PENDING,
-                        done,
-                        substep,
-                        part,
-                        finished,
-                        bounced,
-                        evaluations,
-                        impulse_dt,
-                    )
-            if counts[OUTSIDE] != 0:
-                return (
-                    WALL_PENDING,
-                    done,
-                    substep,
-                    part,
-                    finished,
-                    bounced,
-                    evaluations,
-                    impulse_dt,
-                )
+                pending = SLEEP_PENDING if check else ALL
+            if pending == ALL and counts[OUTSIDE] != 0:
+                pending = WALL_PENDING
+            if pending != ALL:
+                return pending, done, substep, part, finished, bounced, evaluations, impulse_dt
     return ALL, done, substep, part, finished, bounced, evaluations, impulse_dt
 
 

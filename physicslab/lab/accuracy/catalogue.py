@@ -1,15 +1,11 @@
 """Every problem, in one explicit list; and reference problems that the engine cannot compute, and why."""
 
-from __future__ import annotations
-
 from physicslab.lab.accuracy.friction import FRICTION
 from physicslab.lab.accuracy.impacts import IMPACTS
 from physicslab.lab.accuracy.planets import ATTRACTED
 from physicslab.lab.accuracy.points import POINTS
 from physicslab.lab.accuracy.problem import LeftOut
 from physicslab.lab.case import Catalogue
-
-__all__ = ["LEFT_OUT", "PROBLEMS"]
 
 PROBLEMS = Catalogue((*POINTS, *ATTRACTED, *IMPACTS, *FRICTION))
 """Every problem by name, from the simplest on; families are those of one source."""

@@ -1,7 +1,5 @@
 """The results of the accuracy lab, as a document."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -14,8 +12,6 @@ from physicslab.lab.accuracy.study import Curve, Study
 from physicslab.lab.accuracy.trust import Trust, trust_report
 from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
 from physicslab.lab.document import lab_document, pick, plain
-
-__all__ = ["document", "trust_document"]
 
 
 def document(

@@ -1,7 +1,5 @@
 """How far the twins of a scene end apart: an estimate of its error, and of the order of that in the step."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -18,8 +16,6 @@ from physicslab.lab.case import attempt
 from physicslab.lab.jobs import Job
 from physicslab.lab.worlds import steps_not_rigid
 from physicslab.world import World
-
-__all__ = ["Departure", "Estimate", "TwinResult", "estimate_error", "find_order"]
 
 _LIMITED_BY_STEP = 0.25
 """Share of the estimate that halving the step must explain for the step to be what limits the results."""

@@ -1,13 +1,9 @@
 """The figures of the reference problems: decimal digits, as ``problems.json`` keeps them."""
 
-from __future__ import annotations
-
 import json
 from functools import cache
 from importlib.resources import files
 from typing import Any
-
-__all__ = ["digits", "number", "record"]
 
 
 @cache

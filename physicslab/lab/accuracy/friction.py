@@ -1,7 +1,5 @@
 """Bodies that slide, roll, rest on each other and come to rest, on level ground and on inclined planes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial
@@ -16,8 +14,6 @@ from physicslab.lab.closed_forms import rolled, slid
 from physicslab.lab.worlds import GRAVITY, empty_world, place, velocity
 from physicslab.prefabs import box
 from physicslab.world import World
-
-__all__ = ["FRICTION"]
 
 _problem = partial(Problem, group="contact", touches=True)
 _NONE: frozenset[str] = frozenset()

@@ -1,7 +1,5 @@
 """Until when a scene can be predicted: how fast a start that is displaced parts from it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 
@@ -15,8 +13,6 @@ from physicslab.lab.accuracy.twins import ROUNDING, Document
 from physicslab.lab.jobs import Job
 from physicslab.state.masses import Diverged
 from physicslab.world import World
-
-__all__ = ["find_horizon", "sizes_of"]
 
 _DISPLACED = 1e-10
 """By what share of its size each body is displaced in the twin that shows how errors grow."""

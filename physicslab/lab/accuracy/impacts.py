@@ -1,7 +1,5 @@
 """Bodies that bounce. States at given times are compared, which show when the impacts took place."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from itertools import pairwise
@@ -12,8 +10,6 @@ from physicslab.lab.accuracy.problem import Ladder, Problem
 from physicslab.lab.worlds import GRAVITY, Surface, empty_world, place, velocity
 from physicslab.prefabs import box, circle
 from physicslab.world import World
-
-__all__ = ["IMPACTS"]
 
 _problem = partial(Problem, group="collision", touches=True)
 _NEEDS_EXACT = "a problem for located impacts: within steps, impacts crowd"

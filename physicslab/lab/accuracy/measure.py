@@ -1,7 +1,5 @@
 """The results of a method on a problem: error, cost, and errors of conserved quantities."""
 
-from __future__ import annotations
-
 import math
 import statistics
 from functools import partial
@@ -15,8 +13,6 @@ from physicslab.lab.accuracy.verdict import verdict
 from physicslab.lab.accuracy.watch import Row, watch
 from physicslab.lab.case import Verdict, attempt, cpu_time
 from physicslab.world import World
-
-__all__ = ["measure", "rounding_floor"]
 
 _REPEATED_BELOW_S = 0.05
 """A run that takes less is made three times more, and their median counts."""

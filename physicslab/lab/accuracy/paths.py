@@ -15,8 +15,6 @@ from physicslab.diagnostics.contact_graph import contact_graph
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.world import World
 
-__all__ = ["OutOfTime", "Path", "differences", "rows_of", "run_path"]
-
 _MIRROR = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
 _PATIENCE_S = 0.1
 """How long a run that may be given up goes on before the clock is looked at [s]."""

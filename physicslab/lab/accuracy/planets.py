@@ -1,7 +1,5 @@
 """Bodies that attract each other: on orbits that come again, in close passages, and in a crowd."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -14,8 +12,6 @@ from physicslab.lab.accuracy.figures import number, record
 from physicslab.lab.accuracy.problem import Ladder, Problem, distance
 from physicslab.lab.worlds import PLANETS, empty_world, spawn_point
 from physicslab.world import World
-
-__all__ = ["ATTRACTED", "CROWD", "CROWD_SOFTENING", "CROWD_TIME", "crowd"]
 
 type _Pair = tuple[float, float]
 type _Build = Callable[[SimulationConfig], World]

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.lines import Line2D
 
-__all__ = ["case_plot", "method_styles", "overview", "work_precision"]
-
 type _Style = tuple[str, str, Any]
 """Colour, marker and line."""
 _STYLES: dict[str, _Style] = {

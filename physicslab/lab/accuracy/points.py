@@ -1,7 +1,5 @@
 """One body without extent, thrown, dropped or on a spring; damped and not, and fast beside the step."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from fractions import Fraction
@@ -16,8 +14,6 @@ from physicslab.lab.closed_forms import dragged_energy
 from physicslab.lab.worlds import GRAVITY, Surface, empty_world, place, spawn_point, velocity
 from physicslab.prefabs import box, circle
 from physicslab.world import World
-
-__all__ = ["POINTS"]
 
 _STEP = 0.01
 _RESTS = "its steps shrink without end as the weight comes to rest: they are measured by the present speed"

@@ -1,7 +1,5 @@
 """The record of a problem with a known answer, and the distance of bodies from it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 from typing import override
@@ -13,8 +11,6 @@ from physicslab.ecs.vector import Vector2
 from physicslab.lab.case import Case
 from physicslab.lab.worlds import place, velocity
 from physicslab.world import World
-
-__all__ = ["KnownCase", "Ladder", "LeftOut", "Problem", "distance", "state_error"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,5 @@
 """A scene without a known answer: how far its results depend on the method and on the step."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field, replace
@@ -24,8 +22,6 @@ from physicslab.lab.jobs import Job, scaled
 from physicslab.lab.worlds import steps_not_rigid
 from physicslab.stepping.plan import tolerance_for
 from physicslab.world import World
-
-__all__ = ["DEFAULT_S", "ESTIMATE", "SceneRow", "SceneStudy", "study_scene"]
 
 ESTIMATE = "an estimate: there is no reference, runs are compared with each other"
 DEFAULT_S = 5.0

@@ -1,7 +1,5 @@
 """How a problem is computed: which method, and how finely."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -9,8 +7,6 @@ from physicslab.diagnostics.step_warnings import fastest_force
 from physicslab.ecs.config import SimulationConfig
 from physicslab.integrators import Integrator
 from physicslab.lab.accuracy.problem import Problem
-
-__all__ = ["Setting", "ladder", "refusal", "sees_velocity"]
 
 _TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15, 1e-16, 1e-17)
 _SUBSTEPS = 4

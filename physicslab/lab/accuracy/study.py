@@ -1,7 +1,5 @@
 """One problem with every method: error against work."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 
 from physicslab.integrators import INTEGRATORS, Integrator
@@ -11,8 +9,6 @@ from physicslab.lab.accuracy.settings import Setting, ladder, refusal, sees_velo
 from physicslab.lab.accuracy.verdict import measured_order, why_order_short
 from physicslab.lab.accuracy.watch import Row
 from physicslab.lab.jobs import Job
-
-__all__ = ["Curve", "Study", "study"]
 
 _LADDER_ENDS_MS = 300.0
 """The first rung that takes longer is the last."""

@@ -1,7 +1,5 @@
 """The results of the accuracy lab, as tables for the terminal."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -17,11 +15,6 @@ from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
 from physicslab.lab.accuracy.watch import Row
 from physicslab.lab.case import Verdict
 from physicslab.lab.table import cell, table
-
-__all__ = [
-    "contact_summary", "contact_text", "honest_text", "left_out_text", "order_text", "scene_text",
-    "study_text", "summary_text", "trust_rows_text", "trust_text",
-]  # fmt: skip
 
 type _Cells = Sequence[str]
 

@@ -6,8 +6,6 @@ every operation is most of the error of a method that is exact otherwise. The ho
 is moved by far more: the rate at which both runs part is that at which any error grows.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -27,8 +25,6 @@ from physicslab.lab.case import attempt
 from physicslab.lab.document import plain
 from physicslab.lab.jobs import Job, scaled
 from physicslab.world import World
-
-__all__ = ["Look", "Trust", "assess", "moments_of", "scales", "trust_report"]
 
 _TWINS, _NUDGED = 0.6, 0.85
 """Shares of the work after which the twins are run, and after which the starts are that are moved."""

@@ -1,7 +1,5 @@
 """How good estimates of errors are: beside the true errors, where answers are known."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,8 +26,6 @@ from physicslab.lab.accuracy.twins import (
 from physicslab.lab.case import attempt
 from physicslab.lab.jobs import Job
 from physicslab.world import World
-
-__all__ = ["CONTACT_STEP", "TrustRow", "TrustSummary", "assess_contacts", "assess_problem", "summarise"]
 
 CONTACT_STEP = 1.0 / 60.0
 """With which contact cases are computed [s]."""

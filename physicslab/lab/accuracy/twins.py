@@ -5,8 +5,6 @@ model of contacts, with its overlap and its softness, and the order in which con
 that these make do not show, so some of the twins differ in them.
 """
 
-from __future__ import annotations
-
 import copy
 import math
 import random
@@ -23,11 +21,6 @@ from physicslab.files.reader import read_scene
 from physicslab.integrators.dop853 import DOP853
 from physicslab.stepping.plan import tolerance_for
 from physicslab.world import World
-
-__all__ = [
-    "GOLDEN", "NUDGES", "NUDGE_SHARE", "ROUNDING", "TWINS", "Document", "Twin", "nudged", "refined",
-    "with_ids",
-]  # fmt: skip
 
 type Document = dict[str, Any]
 """A scene as :func:`physicslab.files.writer.write_scene` returns it, in which every entity has an id."""

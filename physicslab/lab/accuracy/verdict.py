@@ -1,16 +1,11 @@
 """Verdicts on errors, and the order with which errors fall."""
 
-from __future__ import annotations
-
 import math
 import statistics
 from collections.abc import Sequence
 from itertools import pairwise
 
 from physicslab.lab.case import Verdict
-
-__all__ = ["measured_order", "verdict", "why_order_short"]
-
 
 _LARGE, _ROUNDING = 0.1, 1e-13
 """Errors between which an order can be seen."""

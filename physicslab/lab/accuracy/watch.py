@@ -1,7 +1,5 @@
 """Measurements of a run; energy and momenta at random times of one more run, which is not timed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -15,8 +13,6 @@ from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.settings import Setting
 from physicslab.lab.case import Verdict
 from physicslab.world import World
-
-__all__ = ["Row", "watch"]
 
 _SAMPLES = 48
 _SEED = 20260101

@@ -1,7 +1,5 @@
 """Every scene of the benchmark, in one explicit list."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import partial
@@ -29,11 +27,6 @@ from physicslab.prefabs import box, container, gas, pile, pyramid
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import System
 from physicslab.world import World
-
-__all__ = [
-    "PEER_SIZE_LIMIT", "SCENES", "SIZES", "by_default", "discs", "gas_scene", "opened", "pile_scene",
-    "ten_discs",
-]  # fmt: skip
 
 SIZES = (1_000, 2_000, 4_000, 8_000, 16_000)
 """Bodies of the piles and gases."""

@@ -18,8 +18,6 @@ from numpy.typing import NDArray
 
 from physicslab.lab.bench.engine import Engine
 
-__all__ = ["TURN", "Spread", "Times", "take_turns"]
-
 
 @dataclass(frozen=True, slots=True)
 class Spread:

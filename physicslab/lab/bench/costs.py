@@ -1,7 +1,5 @@
 """Memory of a body, and the extra cost of a step for systems that the scene does not use."""
 
-from __future__ import annotations
-
 import gc
 import tracemalloc
 from collections.abc import Callable
@@ -23,8 +21,6 @@ from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import System
 from physicslab.world import World
-
-__all__ = ["UNUSED", "Memory", "Unused", "measure_memory", "measure_unused"]
 
 _SIZES = (1_000, 4_000)
 _STEPS = 120

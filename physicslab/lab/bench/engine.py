@@ -1,7 +1,5 @@
 """The engines that are timed, behind one interface: step, run, read the state back."""
 
-from __future__ import annotations
-
 import importlib.util
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -14,8 +12,6 @@ from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.peers.mirrors import Box2D3Mirror, Box2DMirror, PymunkMirror
 from physicslab.lab.peers.peer import Peer
 from physicslab.world import World
-
-__all__ = ["OURS", "PEERS", "Engine", "OtherEngine", "OurEngine", "missing_peers", "prepared"]
 
 OURS = "PhysicsLab"
 PEERS: tuple[type[Peer], ...] = (PymunkMirror, Box2DMirror, Box2D3Mirror)

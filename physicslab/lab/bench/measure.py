@@ -1,7 +1,5 @@
 """Time a scene, in PhysicsLab alone or beside its peers, and judge how well each simulates it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 
@@ -19,8 +17,6 @@ from physicslab.lab.peers.peer import CannotBuild, Peer
 from physicslab.state.masses import Diverged
 from physicslab.systems.system import OF_FRAMES
 from physicslab.world import World
-
-__all__ = ["Judge", "measure_scene"]
 
 _BEGIN_S = 2.0
 """How long [s] the beginning is: a pile falls in it."""

@@ -3,8 +3,6 @@
 Each is made from a seed, so that it is the same in every run, and states soft contacts.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from typing import Any
@@ -18,8 +16,6 @@ from physicslab.lab.bench.scene import BenchScene, Places, at_rest, largest_over
 from physicslab.lab.worlds import GRAVITY, floor, soft_space
 from physicslab.prefabs import box, circle, container
 from physicslab.world import World
-
-__all__ = ["FUNNELS", "MOVING", "chains", "funnel", "heap", "tumbler"]
 
 _SIZES = (0.15, 0.3)
 """Width of a box, or diameter of a disc [m]."""

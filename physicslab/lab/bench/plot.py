@@ -13,8 +13,6 @@ from physicslab.lab.plot import COLOURS, new_figure, png, prepare_axes
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["bench_picture"]
-
 _COLOURS = {
     OURS: COLOURS["blue"], "pymunk": COLOURS["vermilion"], "Box2D 2.3": COLOURS["green"],
     "Box2D 3": COLOURS["purple"], "Box2D 3 C": COLOURS["orange"], "Box2D 3 C AVX2": COLOURS["orange"],

@@ -1,7 +1,5 @@
 """All that a run of the benchmark found, and its document: times in ms, else SI units."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -9,8 +7,6 @@ from physicslab.lab.bench.costs import Memory, Unused
 from physicslab.lab.bench.result import Growth, SceneResult, growths
 from physicslab.lab.bench.targets import Check, checks
 from physicslab.lab.document import lab_document, pick, plain
-
-__all__ = ["BenchReport"]
 
 
 @dataclass(slots=True)

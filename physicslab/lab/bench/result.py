@@ -1,7 +1,5 @@
 """The results of a scene, and how costs grow with the number of bodies."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -10,8 +8,6 @@ import numpy as np
 from physicslab.lab.bench.clock import Spread
 from physicslab.lab.bench.engine import OURS
 from physicslab.lab.bench.scene import BenchScene
-
-__all__ = ["EngineResult", "Growth", "SceneResult", "exponent", "growths"]
 
 _GROUPS = ("piles", "gases", "funnels")
 _SIZES_NEEDED = 3

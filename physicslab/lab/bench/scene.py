@@ -18,11 +18,6 @@ from physicslab.lab.case import Case
 from physicslab.lab.peers.peer import find_contacts
 from physicslab.world import World
 
-__all__ = [
-    "BenchScene", "Moment", "Places", "Quality", "When", "at_rest", "energy_change", "largest_overlap",
-    "lost", "overlap", "sideways", "sink", "within",
-]  # fmt: skip
-
 type When = Literal["settled", "throughout", "end"]
 """Before the steps that are timed; the largest of all looks, from the start on; after those steps."""
 type Places = NDArray[np.float64]

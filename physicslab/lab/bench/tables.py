@@ -1,7 +1,5 @@
 """The results of the benchmark, as tables for the terminal."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT
@@ -11,8 +9,6 @@ from physicslab.lab.bench.report import BenchReport
 from physicslab.lab.bench.result import EngineResult, SceneResult
 from physicslab.lab.document import machine_text
 from physicslab.lab.table import cell, table
-
-__all__ = ["report_text", "scene_text"]
 
 _BEGIN = (
     "ms of CPU time a step of the first 2 s: median; p99: the 99th percentile as a multiple of it; ratio: "

@@ -1,7 +1,5 @@
 """The targets of the engine, in numbers, and whether they are met."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -12,8 +10,6 @@ from physicslab.lab.bench.engine import OURS
 from physicslab.lab.bench.result import Growth, SceneResult
 from physicslab.lab.peers.box2d3_built import BuiltBox2D
 from physicslab.lab.peers.mirrors import PymunkMirror
-
-__all__ = ["Check", "checks"]
 
 FASTER = {"pyramid_30": 4.0, "pyramid_60": 4.0, "pile_1000": 4.0, "pile_4000": 4.0, "gas_2000": 2.0}
 """Lower limit of how many times as long pymunk's step takes."""

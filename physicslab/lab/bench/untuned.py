@@ -3,8 +3,6 @@
 A speed must also hold for scenes that were not used while the engine was made.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 
@@ -15,8 +13,6 @@ from physicslab.lab.bench.scene import BenchScene, largest_overlap, lost, overla
 from physicslab.lab.worlds import floor, soft_space
 from physicslab.prefabs import box, circle, container
 from physicslab.world import World
-
-__all__ = ["UNTUNED", "dominoes", "hail", "stairs", "struck_wall", "zigzag"]
 
 _OVERLAP, _LARGEST = 0.06, 0.25
 """Deepest overlap that counts as right at the end, and at any time [m]."""

@@ -1,7 +1,5 @@
 """A world's scene in Box2D 3 in C, compiled here from its sources with a driver of our own, ``box2d3.c``."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 import os
@@ -19,8 +17,6 @@ from numpy.typing import NDArray
 from physicslab.components import Material, Shape, Spring
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.peers.peer import Peer, PeerBody
-
-__all__ = ["BuildError", "BuiltBox2D", "built_box2d"]
 
 SUBSTEPS = 4
 _DRIVER = Path(__file__).with_name("box2d3.c")

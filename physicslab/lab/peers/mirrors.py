@@ -1,7 +1,5 @@
 """A world's scene in pymunk, Box2D 2.3 and Box2D 3, by their Python bindings."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import Any, override
@@ -9,8 +7,6 @@ from typing import Any, override
 from physicslab.components import Material, Shape, Spring
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.peers.peer import CannotBuild, Peer, PeerBody
-
-__all__ = ["Box2D3Mirror", "Box2DMirror", "PymunkMirror"]
 
 FAST = 20.0
 """A body that starts faster [m/s] is one of Box2D's bullets, which do not pass through moving bodies."""

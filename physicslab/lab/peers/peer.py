@@ -1,7 +1,5 @@
 """Another engine that holds a world's scene; its state can be copied back into the world's tables."""
 
-from __future__ import annotations
-
 import importlib
 import math
 import warnings
@@ -18,8 +16,6 @@ from physicslab.ecs.vector import Vector2
 from physicslab.state.masses import Diverged
 from physicslab.systems.system import Stage
 from physicslab.world import World
-
-__all__ = ["CannotBuild", "Peer", "PeerBody", "find_contacts"]
 
 
 class CannotBuild(Exception):

@@ -1,7 +1,5 @@
 """Planets that come close, or closer."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from functools import partial
@@ -15,8 +13,6 @@ from physicslab.lab.worlds import energy_change, open_space, spawn_point
 from physicslab.prefabs import binary
 from physicslab.state.masses import Diverged
 from physicslab.world import World
-
-__all__ = ["ATTRACTION"]
 
 
 def _planets(softening: float = 0.0) -> World:

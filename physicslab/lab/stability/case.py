@@ -1,7 +1,5 @@
 """Cases of the stability lab, and their outcomes."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
@@ -9,8 +7,6 @@ from functools import partial
 
 from physicslab.lab.case import Case, Verdict, attempt
 from physicslab.lab.worlds import open_space
-
-__all__ = ["MODELS", "Outcome", "StabilityCase", "part_of", "run_case", "touching_space"]
 
 MODELS = {"soft": "soft contacts", "rigid": "rigid contacts"}
 """Names of both models of contacts, by the word in a scene's ``simulation``."""

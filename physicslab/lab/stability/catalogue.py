@@ -1,7 +1,5 @@
 """Every case of the stability lab, in one explicit list."""
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Sequence
 
 from physicslab.lab.case import Catalogue
@@ -14,8 +12,6 @@ from physicslab.lab.stability.springs import SPRINGS
 from physicslab.lab.stability.squeezed import SQUEEZED
 from physicslab.lab.stability.standing import STANDING
 from physicslab.lab.stability.steps import STEPS
-
-__all__ = ["CASES", "run_named", "runs_of"]
 
 CASES = Catalogue((*SPRINGS, *CHAINS, *STANDING, *SQUEEZED, *IMPACTS, *STEPS, *ATTRACTION, *RANGES))
 """Every case by name; families are groups."""

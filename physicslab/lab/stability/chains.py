@@ -1,7 +1,5 @@
 """Chains and nets of stiff springs."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np
@@ -12,8 +10,6 @@ from physicslab.lab.stability.case import StabilityCase
 from physicslab.lab.worlds import GRAVITY, energy_growth, largest, open_space, place, spawn_point
 from physicslab.prefabs import chain
 from physicslab.world import World
-
-__all__ = ["CHAINS"]
 
 _LINKS = 50
 _STIFF = 1e6

@@ -1,7 +1,5 @@
 """Fast bodies against thin walls, what spins fast, and elastic collisions that go on for long."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial
@@ -14,8 +12,6 @@ from physicslab.lab.worlds import GRAVITY, energy_change, energy_growth, floor, 
 from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
 from physicslab.world import World
-
-__all__ = ["IMPACTS"]
 
 type _Target = Callable[[World, float], int]
 """Spawns what is shot at, of a thickness [m]."""

@@ -1,7 +1,5 @@
 """Masses and sizes of every magnitude in one scene, and scenes that run for long."""
 
-from __future__ import annotations
-
 import gc
 import sys
 from functools import cache, partial
@@ -15,8 +13,6 @@ from physicslab.lab.stability.case import StabilityCase, part_of
 from physicslab.lab.worlds import floor, largest, open_space, place
 from physicslab.prefabs import box, circle, container, pendulum, pile
 from physicslab.world import World
-
-__all__ = ["RANGES"]
 
 
 def _lost(world: World, bodies: list[int], steps: int) -> float:

@@ -1,7 +1,5 @@
 """The results of the stability lab: lines for the terminal, and a document."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from typing import Any
 
@@ -9,8 +7,6 @@ from physicslab.lab.case import Verdict
 from physicslab.lab.document import lab_document
 from physicslab.lab.stability.case import Outcome, StabilityCase
 from physicslab.lab.table import Columns, cell
-
-__all__ = ["columns", "document", "head_text", "row_text", "short_names", "summary_text"]
 
 
 def columns(cases: Collection[StabilityCase]) -> Columns:

@@ -1,7 +1,5 @@
 """Springs and dampers too stiff for the step."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial
@@ -12,8 +10,6 @@ from physicslab.ecs.vector import Vector2
 from physicslab.lab.stability.case import StabilityCase
 from physicslab.lab.worlds import GRAVITY, energy_change, largest, open_space, place, spawn_bob, velocity
 from physicslab.world import World
-
-__all__ = ["SPRINGS"]
 
 _DT = 1.0 / 60.0
 _STEPS = 1_000

@@ -1,7 +1,5 @@
 """Bodies put where others are already, a box that spins against a wall, and discs below a piston."""
 
-from __future__ import annotations
-
 from functools import cache, partial
 
 import numpy as np
@@ -11,8 +9,6 @@ from physicslab.lab.stability.case import MODELS, StabilityCase, part_of, touchi
 from physicslab.lab.worlds import energy_growth, largest, open_space, place
 from physicslab.prefabs import box, circle
 from physicslab.world import World
-
-__all__ = ["SQUEEZED"]
 
 _CROWD_RADIUS = 0.1
 _SPIN = 1e4

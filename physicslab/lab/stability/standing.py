@@ -1,7 +1,5 @@
 """Stacks, pyramids, towers of small cubes and thin rods on each other, which should stand."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 
@@ -10,8 +8,6 @@ from physicslab.lab.stability.case import MODELS, StabilityCase, touching_space
 from physicslab.lab.worlds import displacements, floor, open_space
 from physicslab.prefabs import box, pyramid, stack
 from physicslab.world import World
-
-__all__ = ["STANDING"]
 
 type _Fill = Callable[[World], list[int]]
 

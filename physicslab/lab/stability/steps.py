@@ -1,7 +1,5 @@
 """Rest, sliding and rolling: at the edge of sliding, in steps and gravity of any size, and far away."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial
@@ -14,8 +12,6 @@ from physicslab.lab.stability.case import MODELS, StabilityCase, touching_space
 from physicslab.lab.worlds import GRAVITY, displacements, floor, largest, open_space, place, spawn_bob
 from physicslab.prefabs import box, circle, stack
 from physicslab.world import World
-
-__all__ = ["STEPS"]
 
 _ANGLE = math.radians(20.0)
 _LONG, _TINY, _TINY_STEPS = 10.0, 1e-9, 20_000

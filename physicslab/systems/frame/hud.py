@@ -1,14 +1,10 @@
 """The figures over the picture."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 from physicslab.state.state import State
 from physicslab.systems.frame.refresh_timer import RefreshTimer
 from physicslab.systems.system import Stage, System, at
-
-__all__ = ["HudSystem"]
 
 
 class HudSystem[W: State](System):

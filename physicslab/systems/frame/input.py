@@ -1,14 +1,10 @@
 """Input of the user to the world and to the window."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
-
-__all__ = ["EventHandler", "InputSystem"]
 
 
 class EventHandler[W: State, E](Protocol):

@@ -1,10 +1,6 @@
 """Work that is done a few times a second, spread over frames."""
 
-from __future__ import annotations
-
 from collections.abc import Hashable, Mapping
-
-__all__ = ["RefreshTimer"]
 
 
 class RefreshTimer[J: Hashable]:

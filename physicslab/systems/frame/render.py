@@ -1,7 +1,5 @@
 """The picture of the world."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -10,8 +8,6 @@ from numpy.typing import NDArray
 from physicslab.contacts.impact_reader import ImpactReader
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
-
-__all__ = ["RenderSystem"]
 
 
 class RenderSystem[W: State](System):

@@ -1,7 +1,5 @@
 """Scenes that should go alike: over seams as over one floor, mirrored, and in another order."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 
@@ -12,8 +10,6 @@ from physicslab.lab.closed_forms import slid
 from physicslab.lab.worlds import GRAVITY, Surface, empty_world, floor
 from physicslab.prefabs import box, circle
 from physicslab.world import World
-
-__all__ = ["ALIKE"]
 
 _SPEED, _MU, _THICK = 5.0, 0.3, 0.1
 _HEAP = (

@@ -1,7 +1,5 @@
 """The record of a contact case with a known answer."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -10,8 +8,6 @@ from physicslab.components import Transform
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.problem import KnownCase
 from physicslab.world import World
-
-__all__ = ["ContactCase", "Pose", "pose_case", "state_off"]
 
 type Pose = tuple[float, float, float]
 """x, y [m] and angle [rad]."""

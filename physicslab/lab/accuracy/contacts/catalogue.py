@@ -1,14 +1,10 @@
 """Every contact case, in one explicit list."""
 
-from __future__ import annotations
-
 from physicslab.lab.accuracy.contacts.alike import ALIKE
 from physicslab.lab.accuracy.contacts.rolling import ROLLING
 from physicslab.lab.accuracy.contacts.sliding import SLIDING
 from physicslab.lab.accuracy.contacts.striking import STRIKING
 from physicslab.lab.case import Catalogue
-
-__all__ = ["CONTACTS", "CONVERGENCE"]
 
 CONTACTS = Catalogue((*SLIDING, *ROLLING, *STRIKING, *ALIKE))
 """Every case by name; families are groups."""

@@ -1,7 +1,5 @@
 """The engines of a contact case: rigid and soft contacts, and other engines if installed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -10,8 +8,6 @@ from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.peers.mirrors import Box2D3Mirror, Box2DMirror, PymunkMirror
 from physicslab.lab.peers.peer import Peer
 from physicslab.world import World
-
-__all__ = ["ENGINES", "OWN", "ContactEngine"]
 
 type Advance = Callable[[float], None]
 """Advances one world by a time [s]."""

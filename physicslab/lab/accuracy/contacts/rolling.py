@@ -1,7 +1,5 @@
 """Discs that come to roll, spin down in a groove and roll over a hill; boxes that turn over."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 
@@ -12,8 +10,6 @@ from physicslab.lab.closed_forms import rolled
 from physicslab.lab.worlds import GRAVITY, empty_world, floor
 from physicslab.prefabs import box, circle
 from physicslab.world import World
-
-__all__ = ["ROLLING"]
 
 _R = 0.25
 _SPEED, _MU = 3.0, 0.3

@@ -1,7 +1,5 @@
 """Cubes that stand; blocks that slide, on an incline, to a stop and on a spring; a disc round a planet."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 
@@ -13,8 +11,6 @@ from physicslab.lab.closed_forms import slid, stopped_by_friction
 from physicslab.lab.worlds import GRAVITY, PLANETS, empty_world, floor
 from physicslab.prefabs import box, circle
 from physicslab.world import World
-
-__all__ = ["SLIDING"]
 
 _SLOPE = math.pi / 6.0
 _SIZE, _SPEED, _MU = 0.5, 3.0, 0.3

@@ -1,7 +1,5 @@
 """Impacts: on corners, in a corner of floor and wall, of free boxes, and of slow discs."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 
@@ -12,8 +10,6 @@ from physicslab.lab.closed_forms import corner_impact
 from physicslab.lab.worlds import GRAVITY, Surface, empty_world, floor
 from physicslab.prefabs import box, circle
 from physicslab.world import World
-
-__all__ = ["STRIKING"]
 
 _DROP = 0.5
 _SIZES = {"cube": (1.0, 1.0), "rod": (2.0, 0.1)}

@@ -1,7 +1,5 @@
 """One contact case by every engine, the step halved again and again: errors, cost and order."""
 
-from __future__ import annotations
-
 import math
 import statistics
 from collections.abc import Sequence
@@ -17,11 +15,6 @@ from physicslab.lab.case import Verdict, attempt, cpu_time
 from physicslab.lab.jobs import Job
 from physicslab.lab.peers.peer import CannotBuild
 from physicslab.lab.worlds import steps_not_rigid
-
-__all__ = [
-    "HALVINGS", "ROUNDING", "ContactCurve", "ContactRow", "ContactStudy", "fitted_order", "measure_row",
-    "study_case",
-]  # fmt: skip
 
 HALVINGS = 6
 """How often the step of 1/60 s is halved."""

@@ -3,16 +3,12 @@
 It shares nothing with the integrators that it judges: neither the method nor the code of the forces.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.lab.accuracy.twins import Document
-
-__all__ = ["extrapolated", "moved", "passed"]
 
 type Long = NDArray[np.longdouble]
 

@@ -1,7 +1,5 @@
 """A random scene whose outcome is known, and what it is made of."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,8 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.lab.accuracy.twins import Document
-
-__all__ = ["KnownScene", "State", "between", "body", "spring", "still", "written"]
 
 type State = tuple[float, float, float, float, float, float]
 """x, y [m], angle [rad], vx, vy [m/s], spin [rad/s]."""

@@ -1,7 +1,5 @@
 """Random scenes in which forces alone act: springs, nets, orbits, flybys, drag."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from random import Random
@@ -9,8 +7,6 @@ from typing import Any
 
 from physicslab.lab.accuracy.honesty.extrapolation import moved, passed
 from physicslab.lab.accuracy.honesty.scene import KnownScene, between, body, spring, written
-
-__all__ = ["drag", "flyby", "net", "orbit", "springs"]
 
 _PLANETS = {"gravity_mode": "planet", "softening_law": "plummer", "G": 1.0}
 

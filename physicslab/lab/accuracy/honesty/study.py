@@ -1,7 +1,5 @@
 """How honest estimates of errors are: random scenes of many families, beside what is known of each."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from random import Random
@@ -18,8 +16,6 @@ from physicslab.lab.accuracy.twins import ROUNDING
 from physicslab.lab.case import attempt
 from physicslab.lab.jobs import Job, scaled
 from physicslab.world import World
-
-__all__ = ["FAMILIES", "QUANTITIES", "HonestRow", "HonestShare", "assess_known", "share_of"]
 
 FAMILIES: dict[str, Callable[[Random], KnownScene]] = {
     "springs": smooth.springs,

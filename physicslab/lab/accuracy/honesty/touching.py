@@ -1,7 +1,5 @@
 """Random scenes of bodies that touch, whose outcome has a closed form or comes from impact to impact."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from random import Random
@@ -12,8 +10,6 @@ from numpy.typing import NDArray
 
 from physicslab.lab.accuracy.honesty.scene import KnownScene, State, between, body, spring, still, written
 from physicslab.lab.closed_forms import rolled, slid
-
-__all__ = ["belt", "bounce", "crowd", "edge", "fall", "slope", "stack"]
 
 _G = 9.81
 _MAX_SCAN = 20_000
