@@ -140,7 +140,7 @@ def test_systems_called_one_by_one_give_the_bits_of_the_loop() -> None:
             world.step()
     tables = [world.table(Transform)["position"] for world in worlds]
     assert worlds[1].stepper is not None and worlds[1].stepper.name == "contact"
-    np.testing.assert_array_equal(*tables)
+    np.testing.assert_array_equal(tables[0], tables[1])
 
 
 def test_bodies_on_one_pin_pass_through_each_other_unless_they_collide() -> None:
@@ -239,9 +239,7 @@ def test_the_same_is_refused_in_a_world() -> None:
     world.remove(pin)
     for name in ("one", "two"):
         world.spawn(Pin(a=body), name=name)
-    with pytest.raises(
-        InvalidValue, match="two: Pin.b = None: must be other points than those that one joins"
-    ):
+    with pytest.raises(InvalidValue, match=r"two: Pin.b = None: must be other points than those that one"):
         world.step()
 
 
