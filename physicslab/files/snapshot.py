@@ -36,6 +36,8 @@ class WorldSnapshot:
         All of them once more, and those with a Shape.
     contacts : Contacts
         What the contact solver remembers.
+    joints : list of (int, str, list of float)
+        Of each joint that has impulses its entity, its kind and these [N s].
     rests : list of lists
         What sleeps, and how long the others have rested.
     remainders : list of lists
@@ -63,6 +65,7 @@ class WorldSnapshot:
         self.view = world.view
         self.shaped = set(world.batch(Shape).entities.tolist())
         self.contacts: Contacts = copied(world.contacts)
+        self.joints = list(world.joints.kept())
         self.rests = export_rests(world)
         self.remainders = export_remainders(world)
         self._rows = dict(world.entity_index.row_of)

@@ -73,7 +73,7 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
         yield
     ids = dict(snapshot.names)
     referred = {end for row in contacts for end in row[:2]} | {rest[0] for rest in snapshot.rests}
-    referred |= {row[0] for row in snapshot.remainders}
+    referred |= {row[0] for row in (*snapshot.remainders, *snapshot.joints)}
     ids |= yield from _invented(entities, ids, referred)
     document: dict[str, Any] = {"format": FORMAT} | {
         key: text for key, text in snapshot.texts.items() if text
@@ -95,7 +95,14 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
         yield
     rests = [[ids[rest[0]], *rest[1:]] for rest in snapshot.rests]
     remainders = [[ids[row[0]], *row[1:]] for row in snapshot.remainders]
-    kept = {"contacts": contacts, "rests": rests, "solver": _solver(snapshot), "remainders": remainders}
+    joints = [[ids[entity], kind, *impulses] for entity, kind, impulses in snapshot.joints]
+    kept = {
+        "contacts": contacts,
+        "joints": joints,
+        "rests": rests,
+        "solver": _solver(snapshot),
+        "remainders": remainders,
+    }
     return document | {key: value for key, value in kept.items() if value}
 
 
