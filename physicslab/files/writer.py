@@ -42,6 +42,8 @@ class WorldSnapshot:
         All of them once more, and those with a Shape.
     contacts : Contacts
         What the contact solver remembers.
+    joints : list of (int, str, list of float)
+        Of each joint that has impulses its entity, its kind and these [N s].
     rests : list of lists
         What sleeps, and how long the others have rested.
     remainders : list of lists
@@ -69,6 +71,7 @@ class WorldSnapshot:
         self.view = world.view
         self.shaped = set(world.batch(Shape).entities.tolist())
         self.contacts: Contacts = copied(world.contacts)
+        self.joints = list(world.joints.kept())
         self.rests = export_rests(world)
         self.remainders = export_remainders(world)
         self._rows = dict(world.entity_index.row_of)
@@ -152,7 +155,7 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
         yield
     ids = dict(snapshot.names)
     referred = {end for row in contacts for end in row[:2]} | {rest[0] for rest in snapshot.rests}
-    referred |= {row[0] for row in snapshot.remainders}
+    referred |= {row[0] for row in (*snapshot.remainders, *snapshot.joints)}
     ids |= yield from _invented(entities, ids, referred)
     document: dict[str, Any] = {"format": FORMAT} | {
         key: text for key, text in snapshot.texts.items() if text
@@ -174,7 +177,14 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
         yield
     rests = [[ids[rest[0]], *rest[1:]] for rest in snapshot.rests]
     remainders = [[ids[row[0]], *row[1:]] for row in snapshot.remainders]
-    kept = {"contacts": contacts, "rests": rests, "solver": _solver(snapshot), "remainders": remainders}
+    joints = [[ids[entity], kind, *impulses] for entity, kind, impulses in snapshot.joints]
+    kept = {
+        "contacts": contacts,
+        "joints": joints,
+        "rests": rests,
+        "solver": _solver(snapshot),
+        "remainders": remainders,
+    }
     return document | {key: value for key, value in kept.items() if value}
 
 
