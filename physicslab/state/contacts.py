@@ -229,7 +229,7 @@ class Contacts:
             )
 
     def rescale(self, pairs: NDArray[np.bool_], before: float, after: float) -> None:
-        """Rescale impulses of some ``pairs`` (recorded,) from the time ``before`` [s] to the one ``after``."""
+        """Rescale impulses of ``pairs`` (recorded,) from the time ``before`` [s] to the one ``after``."""
         if before > 0.0 and after > 0.0 and before != after:
             chosen = np.repeat(pairs, 2)
             for name in ("normal_impulse", "tangent_impulse"):
