@@ -28,7 +28,7 @@ from physicslab.view.overlay.arrows import (
     draw_arrows,
     max_length,
 )
-from physicslab.view.overlay.gauge import Gauge
+from physicslab.view.overlay.overlays import Gauge
 from physicslab.view.overlay.vectors import NORMAL_LENGTH
 from physicslab.world import World
 

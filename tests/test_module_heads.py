@@ -9,8 +9,8 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "physicslab"
 FOLDERS = (
-    "commands", "contacts", "diagnostics", "ecs", "export", "files", "history", "integrators", "lab", "ode",
-    "prefabs", "scenes", "state", "systems",
+    "commands", "contacts", "desktop", "diagnostics", "ecs", "export", "files", "history", "integrators",
+    "lab", "ode", "prefabs", "scenes", "state", "systems", "view",
 )  # fmt: skip
 """The folders that hold to it; the others follow."""
 

@@ -15,8 +15,7 @@ from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import DARK, Colour
-from physicslab.view.overlay.contact_samples import resting_of
-from physicslab.view.overlay.impacts import SHOWN
+from physicslab.view.overlay.contact_samples import SHOWN, resting_of
 from physicslab.view.overlay.impulses import CROWD, LABELLED, LABELLED_IN_CROWD
 from physicslab.view.overlay.labels import Label, Labels
 from physicslab.world import World

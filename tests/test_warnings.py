@@ -23,7 +23,7 @@ from physicslab.scenes import SCENES
 from physicslab.systems.standard import standard_systems
 from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.canvas.theme import THEMES
-from physicslab.view.panels.banners import draw_advice
+from physicslab.view.overlay.banners import draw_advice
 from physicslab.world import World
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from physicslab.components import Material, Shape, Transform, Velocity
+from physicslab.components import Material, Transform, Velocity
 from physicslab.kernels.arguments import (
     ActingTuple,
     BoundsTuple,
@@ -10,8 +10,8 @@ from physicslab.kernels.arguments import (
     MaterialsTuple,
     MotionTuple,
     NearTuple,
-    SizesTuple,
 )  # fmt: skip
+from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.state.state import State
 
 
@@ -21,10 +21,9 @@ def motion_of(state: State) -> MotionTuple:
     return (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
 
 
-def sizes_of(state: State) -> SizesTuple:
-    """Return kinds and sizes of shapes."""
-    shape = state.table(Shape)
-    return (shape["kind"], shape["radius"], shape["width"], shape["height"])
+def shapes_of(state: State) -> ShapesTuple:
+    """Return the table of shapes."""
+    return state.bodies.plain_shapes
 
 
 def materials_of(state: State) -> MaterialsTuple:

@@ -17,7 +17,7 @@ from physicslab.contacts.arguments import (
     materials_of,
     motion_of,
     near_in,
-    sizes_of,
+    shapes_of,
     speculative_margin,
 )
 from physicslab.contacts.islands import all_asleep
@@ -249,7 +249,7 @@ class Substeps:
             accounts.gravity.y, speculative_margin(state, h), accounts.other,
         )  # fmt: skip
         columns = (
-            motion_of(state), state.checkpoint.numbers, sizes_of(state), materials_of(state),
+            motion_of(state), state.checkpoint.numbers, shapes_of(state), materials_of(state),
             inverse_in(state), bodies.sub_integrated, acting_in(state), gravity,
         )  # fmt: skip
         laws = (physics.linear_damping, physics.angular_damping), np.zeros((8, 0)), bounds_of(state)

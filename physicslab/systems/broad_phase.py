@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
-from physicslab.contacts.arguments import motion_of, near_in, sizes_of, speculative_margin
+from physicslab.contacts.arguments import motion_of, near_in, shapes_of, speculative_margin
 from physicslab.contacts.near_pairs import partition
 from physicslab.kernels.broad import grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes, still_holds
@@ -144,7 +144,8 @@ class BroadPhaseSystem(System):
     def search(self, state: State, h: float) -> None:
         """Update the list of near pairs, where it is not valid any more."""
         self.follow_rows(state)
-        if not still_holds(*motion_of(state), *sizes_of(state), self.fat, h, speculative_margin(state, h)):
+        motion, shapes = motion_of(state), shapes_of(state)
+        if not still_holds(motion, shapes, self.fat, h, speculative_margin(state, h)):
             self.list_pairs(state, h)
 
     def list_pairs(self, state: State, h: float) -> None:
@@ -156,15 +157,15 @@ class BroadPhaseSystem(System):
 
     def _add_pairs(self, state: State, h: float, ahead: float) -> bool:
         """Add the new pairs of those bodies; return whether that was possible."""
-        left, kind = self.leavers, state.table(Shape)["kind"]
-        if len(kind) <= _FEW or _sparse(state) or left.crowded or state.contacts.stale:
+        left, vertices = self.leavers, state.bodies.shapes.vertices
+        if len(vertices) <= _FEW or _sparse(state) or left.crowded or state.contacts.stale:
             return False
         if left.indexed is None:
             left.indexed = leaving.index_bodies(
-                self.boxes, kind, left.first, left.body, left.home_x, left.home_y
+                self.boxes, vertices, left.first, left.body, left.home_x, left.home_y
             )
         left.number = leaving.add_pairs(
-            near_in(state), motion_of(state), sizes_of(state), state.bodies.inverse_mass,
+            near_in(state), motion_of(state), shapes_of(state), state.bodies.inverse_mass,
             self.fat, self.boxes, left.moved, left.number, state.physics.bounds is not None, self.bounds,
             left.first, left.body, left.home_x, left.home_y, left.indexed,
             h, ahead, speculative_margin(state, h),
@@ -174,20 +175,20 @@ class BroadPhaseSystem(System):
     def _list_all(self, state: State, awake: NDArray[np.float64], ahead: float, margin: float) -> None:
         """List all near pairs again."""
         share = math.inf if _sparse(state) else HIT_SHARE
-        fat_boxes(motion_of(state), sizes_of(state), awake, self.fat, self.boxes, ahead, share, margin)
+        fat_boxes(motion_of(state), shapes_of(state), awake, self.fat, self.boxes, ahead, share, margin)
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
-        found, walls = self._count_pairs(state.table(Shape)["kind"], inverse_mass, bounded)
+        found, walls = self._count_pairs(state.bodies.shapes.vertices, inverse_mass, bounded)
         self.leavers.begin()
         partition(state, self._couples, found, self._pairs, walls, self.fat)
 
     def _count_pairs(
-        self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool
+        self, vertices: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool
     ) -> tuple[int, int]:
         """Find the pairs, with more room where it is too little; return how many of bodies, of walls."""
         while True:
             found, walls, self.leavers.crowded = grid.find_pairs(
-                self.boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs, self._couples
+                self.boxes, self.fat, vertices, inverse_mass, bounded, self.bounds, self._pairs, self._couples
             )
             if 2 * found <= len(self._couples) and found + walls <= len(self._pairs):
                 return found, walls

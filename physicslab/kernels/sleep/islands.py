@@ -21,7 +21,7 @@ _PERIOD = 0.1
 _STOPS_WITHIN = 1e-5
 """Way, as a share of the smaller body's size, within which friction must stop what is to sleep."""
 _STILL = 1e-6
-"""Speed along a surface, in sizes of the smaller body a second, below which it counts as none."""
+"""Speed along a surface, in shapes of the smaller body a second, below which it counts as none."""
 _ROLLING = 1e-2
 """The same for a disc that rolls: nothing stops it, and without a limit strays would keep piles awake."""
 _LEVEL = 1e-6
@@ -41,8 +41,8 @@ READY = REST - _ROUNDING
 
 @kernel
 def count_rest(
-    linear: Vectors, angular: Numbers, kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
-    inverse_mass: Numbers, sub_integrated: Flags, asleep: Flags, rest: Numbers, slowest: Numbers, h: float,
+    linear: Vectors, angular: Numbers, reach: Numbers, inverse_mass: Numbers, sub_integrated: Flags,
+    asleep: Flags, rest: Numbers, slowest: Numbers, h: float,
 ) -> bool:  # fmt: skip
     """Count for a step of h how long each body has been slow; return whether islands are to be checked.
 
@@ -53,11 +53,12 @@ def count_rest(
     for i in range(len(rest)):
         if asleep[i]:
             continue
-        if kind[i] == 0 or inverse_mass[i] == 0.0 or sub_integrated[i]:
+        if reach[i] == 0.0 or inverse_mass[i] == 0.0 or sub_integrated[i]:
             rest[i] = slowest[i] = 0.0
             continue
-        reach = radius[i] if kind[i] == 1 else 0.5 * math.sqrt(width[i] * width[i] + height[i] * height[i])
-        speed = math.sqrt(linear[i, 0] * linear[i, 0] + linear[i, 1] * linear[i, 1]) + abs(angular[i]) * reach
+        speed = (
+            math.sqrt(linear[i, 0] * linear[i, 0] + linear[i, 1] * linear[i, 1]) + abs(angular[i]) * reach[i]
+        )
         if not speed < SLOW or (rest[i] > 0.0 and speed > slowest[i] + _GAIN):
             rest[i] = slowest[i] = 0.0
             continue
@@ -138,7 +139,7 @@ def _rolls(
 
 @allocating
 def _mark_moving(
-    manifolds: Manifolds, points: Points, pairs: int, impulse_dt: float, kind: Rows,
+    manifolds: Manifolds, points: Points, pairs: int, impulse_dt: float, vertices: Rows,
     inverse_mass: Numbers, force: Vectors, linear: Vectors, angular: Numbers, moving: Flags,
 ) -> None:  # fmt: skip
     """Mark the bodies that go on moving: friction does not stop them soon, or they slide or roll freely.
@@ -177,7 +178,7 @@ def _mark_moving(
         if inverse_mass[i] == 0.0 or load[i] <= 0.0:
             continue
         p = carrier[i]
-        free = kind[i] == 1 and not caged[i]
+        free = vertices[i] == 1 and not caged[i]
         main = manifolds[p]
         fixed = inverse_mass[main.a] == 0.0 or inverse_mass[main.b] == 0.0
         if not sticks[i] or (free and _rolls(main, i, fixed, points, p, force, linear, angular)):
@@ -186,7 +187,7 @@ def _mark_moving(
 
 @allocating_kernel
 def find_held(
-    manifolds: Manifolds, points: Points, pairs: int, impulse_dt: float, kind: Rows,
+    manifolds: Manifolds, points: Points, pairs: int, impulse_dt: float, vertices: Rows,
     inverse_mass: Numbers, force: Vectors, linear: Vectors, angular: Numbers, ready: Flags, held: Flags,
 ) -> int:  # fmt: skip
     """Mark the bodies of islands that may sleep; return how many there are.
@@ -203,7 +204,7 @@ def find_held(
     restless = np.zeros(len(inverse_mass), np.bool_)
     supported = np.zeros(len(inverse_mass), np.bool_)
     moving = ~ready
-    _mark_moving(manifolds, points, pairs, impulse_dt, kind, inverse_mass, force, linear, angular, moving)
+    _mark_moving(manifolds, points, pairs, impulse_dt, vertices, inverse_mass, force, linear, angular, moving)
     for i in range(len(inverse_mass)):
         if inverse_mass[i] > 0.0 and moving[i]:
             restless[_root(parent, i)] = True

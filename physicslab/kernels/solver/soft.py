@@ -29,8 +29,6 @@ from physicslab.kernels.arguments import (
     PackedTuple,
     Plan,
     PlanTuple,
-    Sizes,
-    SizesTuple,
     Sleepers,
     SleepersTuple,
     Softness,
@@ -40,10 +38,11 @@ from physicslab.kernels.arguments import (
     named_acting,
     named_near,
 )
-from physicslab.kernels.broad.fat_boxes import still_holds
+from physicslab.kernels.broad.fat_boxes import all_inside
 from physicslab.kernels.energy import moments_of_mass, motion_totals
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import uniform_gravity
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
 from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
 from physicslab.kernels.ode.spring_flow import flow_springs
@@ -149,7 +148,7 @@ def _woken(near: Near, motion: Motion, inverse: Inverse, acting: Acting, sleeper
 
 @inlined
 def _made_wide(
-    near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, sleepers: Sleepers,
+    near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, sleepers: Sleepers,
     opened: Rows, h: float,
 ) -> bool:  # fmt: skip
     """Put steady contacts into blocks; return whether there was room for them."""
@@ -158,7 +157,7 @@ def _made_wide(
     came = SPARSE  # the first blocks are made in Python
     if near.counts[WIDE_COUNT] > 0:
         came = add_to_blocks(
-            near, opened, sleepers.pairs, sleepers.inactive, sleepers.asleep, motion, sizes, materials,
+            near, opened, sleepers.pairs, sleepers.inactive, sleepers.asleep, motion, shapes, materials,
             inverse, h,
         )  # fmt: skip
     return came == ADDED
@@ -167,7 +166,7 @@ def _made_wide(
 @inlined
 def _advance(
     steps: int, substep: int, part: int, plan: Plan, course: Course, cause: int,
-    motion: Motion, kept: Numbers, sizes: Sizes, materials: Materials, inverse: Inverse,
+    motion: Motion, kept: Numbers, shapes: Shapes, materials: Materials, inverse: Inverse,
     sub_integrated: Flags, acting: Acting, gravity: Gravity, packed: Packed, springs: Springs,
     sleepers: Sleepers, damping: tuple[float, float], fat: Vectors, bounds: Bounds, near: Near, opened: Rows,
     softness: Softness, impulse_dt: float, impacts: Impacts, cost: Rows,
@@ -235,21 +234,27 @@ def _advance(
                     )  # fmt: skip
                 now = charge(cost, ACCELERATE, now)
             elif what == PAIRS:
-                holds = still_holds(
-                    position, angle, linear, angular, sizes.kind, sizes.radius, sizes.width, sizes.height,
-                    fat, span, gravity.margin,
-                )  # fmt: skip
+                holds = all_inside(motion, shapes, fat, span, gravity.margin)
                 now = charge(cost, BROAD_PHASE, now)
                 why = ALL if holds else PAIRS_STALE
             elif what == FIND:
                 first = substep == plan.first
                 find_touching(
-                    near, motion, sizes, materials, inverse, bounds, first, span, course.start, gravity.margin
+                    near,
+                    motion,
+                    shapes,
+                    materials,
+                    inverse,
+                    bounds,
+                    first,
+                    span,
+                    course.start,
+                    gravity.margin,
                 )
                 now = charge(cost, CONTACT, now)
             elif what == WIDEN:
                 if substep == plan.first:
-                    room = _made_wide(near, motion, sizes, materials, inverse, sleepers, opened, span)
+                    room = _made_wide(near, motion, shapes, materials, inverse, sleepers, opened, span)
                     now = charge(cost, CONTACT, now)
                     why = ALL if room else BLOCKS_FULL
             elif what == WAKE:
@@ -259,7 +264,7 @@ def _advance(
             elif what == IMPACTS:
                 moment = plan.time + done * plan.dt + (substep + course.middle) * h
                 came = resolve_all_impacts(
-                    near, motion, sizes, inverse, acting, Log(impacts, moment, account), span,
+                    near, motion, shapes, inverse, acting, Log(impacts, moment, account), span,
                     course.start * span, course.end * span,
                 )  # fmt: skip
                 bounced += came
@@ -297,9 +302,8 @@ def _advance(
             done, finished, pending = done + 1, bounced, ALL
             if sleepers.on:
                 check = count_rest(
-                    linear, angular, sizes.kind, sizes.radius, sizes.width, sizes.height,
-                    gravity.inverse_mass, sub_integrated, sleepers.asleep, sleepers.rest, sleepers.slowest,
-                    plan.rested,
+                    linear, angular, shapes.reach, gravity.inverse_mass, sub_integrated, sleepers.asleep,
+                    sleepers.rest, sleepers.slowest, plan.rested,
                 )  # fmt: skip
                 now = charge(cost, SLEEP, now)
                 pending = SLEEP_PENDING if check else ALL
@@ -313,7 +317,7 @@ def _advance(
 @kernel
 def advance(
     steps: int, substep: int, part: int, plan: PlanTuple, course: CourseTuple, cause: int,
-    motion: MotionTuple, kept: Numbers, sizes: SizesTuple, materials: MaterialsTuple,
+    motion: MotionTuple, kept: Numbers, shapes: ShapesTuple, materials: MaterialsTuple,
     inverse: InverseTuple, sub_integrated: Flags, acting: ActingTuple, gravity: GravityTuple,
     packed: PackedTuple, springs: SpringsTuple, sleepers: SleepersTuple, damping: tuple[float, float],
     fat: Vectors, bounds: BoundsTuple, near: NearTuple, opened: Rows, softness: SoftnessTuple,
@@ -336,7 +340,7 @@ def advance(
         _balance(of.account, moved, masses, cause)
     ended = _advance(
         steps, substep, part, Plan(*plan), along, cause, moved, kept,
-        Sizes(*sizes), Materials(*materials), Inverse(*inverse), sub_integrated,
+        named_shapes(shapes), Materials(*materials), Inverse(*inverse), sub_integrated,
         named_acting(acting), masses, Packed(*packed), Springs(*springs), Sleepers(*sleepers), damping, fat,
         Bounds(*bounds), of, opened, Softness(*softness), impulse_dt, impacts, cost,
     )  # fmt: skip

@@ -10,10 +10,10 @@ from physicslab.kernels.arguments import (
     Materials,
     Motion,
     Near,
-    Sizes,
     Softness,
 )
 from physicslab.kernels.broad.near_pairs import activate, sort_scalar
+from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.narrow.contact import find_contacts
 from physicslab.kernels.near_counts import (
     ACTIVE,
@@ -46,7 +46,7 @@ def _contacts(near: Near) -> Contacts:
 
 @always_inlined
 def find_touching(
-    near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, bounds: Bounds,
+    near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, bounds: Bounds,
     first: bool, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Find where wide contacts touch now, activate proximity pairs, then find where scalar ones touch.
@@ -58,7 +58,7 @@ def find_touching(
     if counts[WIDE_COUNT] > 0:
         before = counts[SCALAR]
         for slots in (near.discs, near.boxes):
-            refresh(slots, near, motion, sizes, inverse, bounds, first, h, start, speculative_margin)
+            refresh(slots, near, motion, shapes, inverse, bounds, first, h, start, speculative_margin)
         came = counts[SCALAR] - before
         counts[WIDE_COUNT] -= came
         if came > 0:
@@ -71,13 +71,13 @@ def find_touching(
         scalar, counts[SCALAR], near.entities, motion.position, motion.linear, h, speculative_margin,
     )  # fmt: skip
     counts[ACTIVE] = find_contacts(
-        near, counts[SCALAR], motion, sizes, materials, inverse, bounds, first, h, start, speculative_margin
+        near, counts[SCALAR], motion, shapes, materials, inverse, bounds, first, h, start, speculative_margin
     )
 
 
 @always_inlined
 def resolve_all_impacts(
-    near: Near, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log,
+    near: Near, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
     h: float, start: float, end: float,
 ) -> int:  # fmt: skip
     """Bounce what meets between ``start`` and ``end`` [s] from now; return how many impacts there were.
@@ -88,7 +88,7 @@ def resolve_all_impacts(
     counts[LEFT] = 0
     while counts[ACTIVE] > 0:
         came, counts[LEFT], energetic, lowered = resolve_impacts(
-            _contacts(near), motion, sizes, inverse, acting, log, counts[LOGGED], h, start, end
+            _contacts(near), motion, shapes, inverse, acting, log, counts[LOGGED], h, start, end
         )
         impacts += came
         counts[ENERGETIC] += energetic

@@ -1,7 +1,8 @@
 """Where wide contacts touch now, eight at a time; those that are not steady any more become scalar."""
 
 from physicslab.kernels import Numbers, fused, inlined, kernel
-from physicslab.kernels.arguments import Bounds, Inverse, Motion, Near, Sizes
+from physicslab.kernels.arguments import Bounds, Inverse, Motion, Near
+from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.narrow.contact import (
     CACHE_TOLERANCE,
     CACHE_TURN_TOLERANCE,
@@ -147,7 +148,7 @@ def _refresh_boxes(slots: Slots, k: int, motion: Motion, tolerance: float) -> in
 
 @fused
 def _find_again(
-    slots: Slots, slot: int, near: Near, motion: Motion, sizes: Sizes, inverse: Inverse,
+    slots: Slots, slot: int, near: Near, motion: Motion, shapes: Shapes, inverse: Inverse,
     bounds: Bounds, h: float, start: float, speculative_margin: float,
 ) -> bool:  # fmt: skip
     """Find the points of a slot's pair in its present pose; return whether it keeps its slot."""
@@ -160,7 +161,7 @@ def _find_again(
         (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h,
     )  # fmt: skip
     manifold.offset_x, manifold.offset_y = way.dx, way.dy
-    touch(manifold, one, two, way, motion, sizes, bounds, near.rotations, h, start, speculative_margin)
+    touch(manifold, one, two, way, motion, shapes, bounds, near.rotations, h, start, speculative_margin)
     if manifold.count == 0 or manifold.swept != 0:
         if manifold.count == 0:
             forget_points(one, two)
@@ -175,7 +176,7 @@ def _find_again(
 
 @inlined
 def refresh(
-    slots: Slots, near: Near, motion: Motion, sizes: Sizes, inverse: Inverse,
+    slots: Slots, near: Near, motion: Motion, shapes: Shapes, inverse: Inverse,
     bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Find where the contacts of all blocks of a kind touch now.
@@ -201,7 +202,7 @@ def refresh(
                 if p < 0 or not (moved >> place) & 1:
                     continue
                 if not _find_again(
-                    slots, slot, near, motion, sizes, inverse, bounds, h, start, speculative_margin
+                    slots, slot, near, motion, shapes, inverse, bounds, h, start, speculative_margin
                 ):
                     near.scalar[near.counts[SCALAR]] = p
                     near.counts[SCALAR] += 1

@@ -10,9 +10,8 @@ from physicslab.kernels.arguments import (
     InverseTuple,
     Materials,
     MaterialsTuple,
-    Sizes,
-    SizesTuple,
 )
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.narrow.contact import effective_masses
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 from physicslab.kernels.wide.layout import (
@@ -84,12 +83,12 @@ def _fill_arms(data: Numbers, at: int, point: Point) -> None:
 @inlined
 def fill_slot(
     slots: Slots, slot: int, colour: int, manifolds: Manifolds, points: Points, p: int,
-    sizes: Sizes, materials: Materials, inverse: Inverse,
+    shapes: Shapes, materials: Materials, inverse: Inverse,
 ) -> None:  # fmt: skip
     """Put a pair into a free slot of a block of that colour."""
     data, at = slots.data, slot // WIDE * rows_of(slots.kind) + slot % WIDE
     manifold, one, two = manifolds[p], points[2 * p], points[2 * p + 1]
-    i, j, radius = manifold.a, manifold.b, sizes.radius
+    i, j, radius = manifold.a, manifold.b, shapes.radius
     manifold.restitution = min(materials.restitution[i], materials.restitution[j])
     manifold.friction = math.sqrt(materials.friction[i] * materials.friction[j])
     if slots.kind == DISC:
@@ -108,8 +107,8 @@ def fill_slot(
     else:
         data[at + BASE_X], data[at + BASE_Y] = manifold.base_x, manifold.base_y
         data[at + ANGLE_A], data[at + ANGLE_B] = manifold.base_angle_a, manifold.base_angle_b
-        data[at + TURNS_A] = 1.0 if sizes.kind[i] == 2 else 0.0
-        data[at + TURNS_B] = 1.0 if sizes.kind[j] == 2 else 0.0
+        data[at + TURNS_A] = 1.0 if shapes.vertices[i] > 1 else 0.0
+        data[at + TURNS_B] = 1.0 if shapes.vertices[j] > 1 else 0.0
         _fill_arms(data, at + ONE, one)
         if manifold.count == 2:
             _fill_point(data, at + TWO, two)
@@ -163,14 +162,14 @@ def _may_hold(slots: Slots, slot: int, manifold: Manifold, shape: Rows, inverse_
 
 @kernel
 def restore_slots(
-    plain: SlotsTuple, manifolds: Manifolds, points: Points, pairs: int, plain_sizes: SizesTuple,
+    plain: SlotsTuple, manifolds: Manifolds, points: Points, pairs: int, plain_shapes: ShapesTuple,
     plain_materials: MaterialsTuple, plain_inverse: InverseTuple,
 ) -> tuple[int, int]:  # fmt: skip
     """Put the pairs whose records name a slot back there; return how many blocks and slots there are.
 
     A pair that cannot be there, as in a file that was edited by hand, stays scalar.
     """
-    slots, sizes, materials = Slots(*plain), Sizes(*plain_sizes), Materials(*plain_materials)
+    slots, shapes, materials = Slots(*plain), named_shapes(plain_shapes), Materials(*plain_materials)
     inverse, blocks, restored = Inverse(*plain_inverse), 0, 0
     for p in range(pairs):
         if manifolds[p].slot >= 0 and manifolds[p].slot % 2 == slots.kind:
@@ -182,9 +181,9 @@ def restore_slots(
         if manifold.slot < 0 or manifold.slot % 2 != slots.kind:
             continue
         slot = manifold.slot // 2
-        if _may_hold(slots, slot, manifold, sizes.kind, inverse.mass):
+        if _may_hold(slots, slot, manifold, shapes.vertices, inverse.mass):
             fill_slot(
-                slots, slot, slots.colour[slot // WIDE], manifolds, points, p, sizes, materials, inverse
+                slots, slot, slots.colour[slot // WIDE], manifolds, points, p, shapes, materials, inverse
             )
             restored += 1
         else:
@@ -195,19 +194,19 @@ def restore_slots(
 @kernel
 def remember(
     made_of: Vectors, inverse_mass: Numbers, inverse_inertia: Numbers, restitution: Numbers,
-    friction: Numbers, radius: Numbers, width: Numbers, height: Numbers,
+    friction: Numbers, half_x: Numbers, half_y: Numbers, radius: Numbers,
 ) -> None:  # fmt: skip
     """Write what slots hold of each body into ``made_of`` (rows, 7)."""
     for i in range(len(made_of)):
         made_of[i, 0], made_of[i, 1], made_of[i, 2] = inverse_mass[i], inverse_inertia[i], restitution[i]
-        made_of[i, 3], made_of[i, 4] = friction[i], radius[i]
-        made_of[i, 5], made_of[i, 6] = width[i], height[i]
+        made_of[i, 3], made_of[i, 4] = friction[i], half_x[i]
+        made_of[i, 5], made_of[i, 6] = half_y[i], radius[i]
 
 
 @kernel
 def outdated(
     made_of: Vectors, changed: Flags, inverse_mass: Numbers, inverse_inertia: Numbers, restitution: Numbers,
-    friction: Numbers, radius: Numbers, width: Numbers, height: Numbers,
+    friction: Numbers, half_x: Numbers, half_y: Numbers, radius: Numbers,
 ) -> int:  # fmt: skip
     """Mark the bodies of which any of that has been ``changed`` (rows,) since :func:`remember`.
 
@@ -219,7 +218,7 @@ def outdated(
     found = 0
     for i in range(len(made_of)):
         fixed = (made_of[i, 0] == 0.0) != (inverse_mass[i] == 0.0)
-        sized = (made_of[i, 4] != radius[i]) | (made_of[i, 5] != width[i]) | (made_of[i, 6] != height[i])
+        sized = (made_of[i, 4] != half_x[i]) | (made_of[i, 5] != half_y[i]) | (made_of[i, 6] != radius[i])
         weighs = (made_of[i, 0] != inverse_mass[i]) | (made_of[i, 1] != inverse_inertia[i])
         changed[i] = weighs | (made_of[i, 2] != restitution[i]) | (made_of[i, 3] != friction[i])
         found = max(found, 2 if fixed | sized else (1 if changed[i] else 0))
@@ -229,15 +228,15 @@ def outdated(
 @kernel
 def update_slots(
     plain: SlotsTuple, blocks: int, changed: Flags, manifolds: Manifolds, points: Points,
-    plain_sizes: SizesTuple, plain_materials: MaterialsTuple, plain_inverse: InverseTuple,
+    plain_shapes: ShapesTuple, plain_materials: MaterialsTuple, plain_inverse: InverseTuple,
 ) -> None:  # fmt: skip
     """Fill the slots of the ``changed`` bodies again, with their impulses, masses and materials of now."""
-    slots, sizes, materials = Slots(*plain), Sizes(*plain_sizes), Materials(*plain_materials)
+    slots, shapes, materials = Slots(*plain), named_shapes(plain_shapes), Materials(*plain_materials)
     inverse = Inverse(*plain_inverse)
     for slot in range(blocks * WIDE):
         p = slots.pair[slot]
         if p >= 0 and (changed[slots.a[slot]] or changed[slots.b[slot]]):
             store_slot(slots, slot, manifolds, points)
             fill_slot(
-                slots, slot, slots.colour[slot // WIDE], manifolds, points, p, sizes, materials, inverse
+                slots, slot, slots.colour[slot // WIDE], manifolds, points, p, shapes, materials, inverse
             )

@@ -1,7 +1,5 @@
 """Arrows: each kind has its own colour, head and shaft, so that no two differ by colour alone."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from enum import Enum
 
@@ -10,11 +8,6 @@ from numpy.typing import NDArray
 
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
 from physicslab.view.canvas.theme import Colour, Theme
-
-__all__ = [
-    "CONTACT_NORMAL", "FORCE", "FRICTION_IMPULSE", "MIN_LENGTH", "NORMAL_IMPULSE", "VELOCITY", "ArrowKind",
-    "Head", "dashes", "draw_arrows", "even_dashes", "max_length",
-]  # fmt: skip
 
 MIN_LENGTH = 3.0
 """Arrows shorter than this are left out [px]."""

@@ -1,23 +1,84 @@
-"""The free-body diagram of the selection: every force by name, in newtons."""
-
-from __future__ import annotations
+"""The free-body diagram of the selection: every force by name, measured now and then."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from physicslab.diagnostics.free_body import NamedForce
+from physicslab.components import Transform
+from physicslab.diagnostics.free_body import LastStep, NamedForce, forces_on, last_step, net_force
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.overlay.arrows import ArrowKind, Head, draw_arrows
-from physicslab.view.overlay.gauge import Gauge
 from physicslab.view.overlay.labels import Label
-from physicslab.view.overlay.overlays import Overlays
+from physicslab.view.overlay.overlays import Gauge, Overlays
+from physicslab.world import World
 
-__all__ = ["draw_free_body"]
+_PERIOD = 0.2
+"""Time [s] after which forces are measured again while time runs: faster digits cannot be read."""
+
+
+class Measured:
+    """The measurements of one body.
+
+    Attributes
+    ----------
+    forces : tuple of NamedForce
+        Those on it; none where no body is measured.
+    step : LastStep, optional
+        What changed its momentum in the last step, where that is known.
+    number : int
+        How often was measured: what shows the figures is built again where it has grown.
+    """
+
+    def __init__(self) -> None:
+        self.forces: tuple[NamedForce, ...] = ()
+        self.step: LastStep | None = None
+        self.number = 0
+        self._stepped = -1, -1  # how many steps and edits there were when a step was seen first
+        self._of: tuple[object, ...] = ()
+        self._steps, self._until, self._place = -1, 0.0, Vector2()
+
+    @property
+    def net(self) -> Vector2:
+        """The sum of the forces [N]."""
+        return net_force(self.forces)
+
+    def follow(self, world: World, entity: int | None, now: float, *, paused: bool) -> None:
+        """Measure again where it is time for that, or where time stands still and something has changed.
+
+        Parameters
+        ----------
+        entity : int, optional
+            Whose forces are shown; ``None`` where none are.
+        now : float
+            Time [s] that the window has been open.
+        """
+        if entity is None or not world.has(entity, Transform):
+            self.forces, self.step, self._of = (), None, ()
+            return
+        if world.steps != self._stepped[0]:
+            self._stepped = world.steps, world.motion_edits
+        of = world, entity, world.motion_edits
+        changed = of != self._of or (paused and world.steps != self._steps)
+        if not changed and (now < self._until or world.steps == self._steps):
+            return
+        self._of, self._steps, self._until = of, world.steps, now + _PERIOD
+        self.forces = forces_on(world, entity)
+        is_edited = self._stepped != (world.steps, world.motion_edits)
+        self.step = None if is_edited else last_step(world, entity)
+        self._place = world.component(entity, Transform).position
+        self.number += 1
+
+    def moved(self, world: World, entity: int) -> Vector2:
+        """Return how far the body has come since it was measured [m]: arrows go with it."""
+        return world.component(entity, Transform).position - self._place
+
+
+# ---- drawing -----------------------------------------------------------------------------------------------
+
 
 _NORMAL = ArrowKind("Normal force", "normal_impulse", Head.DIAMOND)
 _FRICTION = ArrowKind("Friction", "friction_impulse", Head.OPEN, dashed=True)

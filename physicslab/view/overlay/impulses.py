@@ -1,7 +1,5 @@
 """The educational overlay: the impulses of every contact, as the solver found them."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
@@ -13,14 +11,16 @@ from physicslab.view.canvas.canvas import Canvas, Numbers, Points, Rect
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import Theme
 from physicslab.view.overlay.arrows import FRICTION_IMPULSE, NORMAL_IMPULSE, dashes, draw_arrows, max_length
-from physicslab.view.overlay.contact_samples import ContactSamples, resting_of, sliding
-from physicslab.view.overlay.gauge import Gauge
-from physicslab.view.overlay.impacts import RecentImpacts, same_place
+from physicslab.view.overlay.contact_samples import (
+    ContactSamples,
+    RecentImpacts,
+    resting_of,
+    same_place,
+    sliding,
+)
 from physicslab.view.overlay.labels import Key, Label
-from physicslab.view.overlay.overlays import Overlays
+from physicslab.view.overlay.overlays import Gauge, Overlays
 from physicslab.world import World
-
-__all__ = ["CROWD", "IMPACT_WIDTH", "LABELLED", "LABELLED_IN_CROWD", "REST_WIDTH", "draw_impulses"]
 
 LABELLED = 12
 """How many contacts have their numbers written beside them: the strongest."""

@@ -1,7 +1,5 @@
 """Numbers beside points of the picture: none over another, none that jumps about."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,8 +8,6 @@ from numpy.typing import NDArray
 
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.theme import Theme
-
-__all__ = ["Label", "Labels"]
 
 type Key = tuple[int, ...]
 

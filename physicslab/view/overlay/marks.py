@@ -1,7 +1,5 @@
 """Marks of the selection and of tools: outlines, handles, the cursor, what would be made, snapping."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 
@@ -16,11 +14,6 @@ from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.overlay.arrows import VELOCITY, draw_arrows
 from physicslab.view.picture.bodies import POINT_RADIUS
 from physicslab.world import World
-
-__all__ = [
-    "draw_band", "draw_cursor", "draw_ghost", "draw_handles", "draw_reading", "draw_selection",
-    "draw_snap_marks",
-]  # fmt: skip
 
 _RADIUS = 5.0
 """Radius of a handle [px]."""

@@ -1,7 +1,5 @@
 """Pictures of a world one after the other, for a film, without a window or a display."""
 
-from __future__ import annotations
-
 import numpy as np
 import pygame
 from numpy.typing import NDArray
@@ -10,13 +8,10 @@ from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
-from physicslab.view.overlay.instrument_marks import draw_instruments
-from physicslab.view.overlay.instruments import instruments_of
+from physicslab.view.overlay.instruments import draw_instruments, instruments_of
 from physicslab.view.overlay.labels import Labels
 from physicslab.view.picture.picture import draw_world
 from physicslab.world import World
-
-__all__ = ["MovingPicture", "part_of", "pixels_of"]
 
 _TEXT = 14
 """Height of the words of instruments [px]."""

@@ -1,7 +1,5 @@
 """Velocities, forces and contact normals, as arrows."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from physicslab.components import Transform, Velocity
@@ -13,8 +11,6 @@ from physicslab.view.overlay.arrows import CONTACT_NORMAL, FORCE, MIN_LENGTH, VE
 from physicslab.view.overlay.contact_samples import resting_of
 from physicslab.view.overlay.overlays import Overlays
 from physicslab.world import World
-
-__all__ = ["NORMAL_LENGTH", "draw_vectors"]
 
 NORMAL_LENGTH = 26.0
 """Length of the arrows of contact normals, which are directions only [px]; shorter in a crowd."""

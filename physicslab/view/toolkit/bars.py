@@ -1,14 +1,10 @@
 """Bars of panels: a label and its value over a length."""
 
-from __future__ import annotations
-
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
-
-__all__ = ["bar", "zero_line"]
 
 
 def bar(

@@ -1,12 +1,8 @@
 """Labels of widgets: what is written on one, and what it is known by, which is not the same."""
 
-from __future__ import annotations
-
 import re
 
 from physicslab.view.canvas.drawable_text import drawable
-
-__all__ = ["widget_label"]
 
 _UNSEEN = "\u200b"
 """A space without width: it parts two signs ``#`` that Dear ImGui would take for a mark of its own."""

@@ -1,7 +1,5 @@
 """Elements of panels: buttons, rows, bars and menus, each identified by its label."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 
@@ -13,8 +11,6 @@ from physicslab.view.canvas.drawable_text import drawable, encodable
 from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.style import Fonts, packed
-
-__all__ = ["Ui"]
 
 _FLAGS = imgui.WindowFlags_
 _FIXED = (

@@ -1,7 +1,5 @@
 """Springs drawn with the mouse, from a body to another or to a point of the world."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -14,8 +12,6 @@ from physicslab.view.canvas.theme import Theme
 from physicslab.view.overlay.arrows import even_dashes
 from physicslab.view.window.points import local_point, point_of
 from physicslab.world import World
-
-__all__ = ["SpringTool", "rod_stiffness", "spring_between"]
 
 _FREQUENCY = 2.0
 """How fast two bodies swing on a new spring [Hz]: soft enough to be seen, stiff enough to carry them."""

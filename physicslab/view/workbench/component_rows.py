@@ -1,7 +1,5 @@
 """The rows of a component's fields: one for each, whatever it holds, of one entity or of several at once."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -21,8 +19,6 @@ from physicslab.view.window.changing import change_fields, set_end
 from physicslab.view.window.window import Picking, Window
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
-
-__all__ = ["ComponentRows"]
 
 _VARIOUS = "various"
 _LESSER = ("inertia", "fixed_rotation")

@@ -1,7 +1,5 @@
 """Error against run time: how far measuring has come, then a plot, and a table to choose a method from."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -11,14 +9,12 @@ from numpy.typing import NDArray
 from physicslab.history import SetSimulation
 from physicslab.view.canvas.quantities import round_quantity
 from physicslab.view.controls import file_actions
-from physicslab.view.panels.error_study import ErrorStudy, Sample
 from physicslab.view.toolkit.bars import bar
 from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.lab_process import ErrorStudy, Sample
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = ["build_error_plot"]
 
 _TITLE = "Error against run time"
 _FLOOR = 1e-17

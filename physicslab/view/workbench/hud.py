@@ -1,38 +1,36 @@
 """The figures over the picture, banners and panels."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from physicslab.diagnostics.warnings import ModelWarning, find_warnings
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.theme import Colour
-from physicslab.view.overlay.edge_arrows import draw_edge_arrows
-from physicslab.view.overlay.marks import draw_selection
-from physicslab.view.panels.banners import (
+from physicslab.view.controls.actions import has_gravity
+from physicslab.view.overlay.banners import (
     DroppedTime,
     draw_advice,
     draw_banners,
     draw_messages,
     lay_out_messages,
 )
-from physicslab.view.panels.figures import EnergyWatch, FrameMeter, WorldFigures, measure_world
-from physicslab.view.panels.laws import has_gravity
-from physicslab.view.panels.legend import legend_of
-from physicslab.view.panels.panels import Line
-from physicslab.view.panels.readings import (
+from physicslab.view.overlay.edges import draw_axis_numbers, draw_edge_arrows, draw_scale_bar
+from physicslab.view.overlay.legend import legend_of
+from physicslab.view.overlay.marks import draw_selection
+from physicslab.view.window.window import Window
+from physicslab.view.workbench.figures import (
+    EnergyWatch,
+    FrameMeter,
+    Line,
+    WorldFigures,
     cost_lines,
     impulse_lines,
     left_out_lines,
     measure_lines,
+    measure_world,
     method_lines,
 )
-from physicslab.view.panels.scale_bar import draw_axis_numbers, draw_scale_bar
-from physicslab.view.window.window import Window
 from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
-
-__all__ = ["Hud"]
 
 _STRIP, _LEAST = 6, 14
 """How high the strip is in which words make way for windows, and how much of its width must be left, in

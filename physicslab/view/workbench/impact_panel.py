@@ -1,7 +1,5 @@
 """The table of impacts: sorted by a click on a heading; a click on a row opens the microscope there."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
@@ -9,14 +7,12 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.controls import impact_actions
-from physicslab.view.panels.collision_words import body_name
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.impact_list import COLUMNS
+from physicslab.view.window.impacts import COLUMNS
 from physicslab.view.window.window import Window
+from physicslab.view.workbench.collision_words import body_name
 from physicslab.world import World
-
-__all__ = ["build_impacts"]
 
 _HEADS = ("Time", "A", "B", "Approach", "Normal", "Friction", "Contact", "mu", "e", "e found", "Energy lost")
 _WIDTHS = (4.6, 5.2, 5.2, 4.8, 5.0, 5.0, 3.6, 2.4, 2.2, 3.8, 5.0)

@@ -1,40 +1,30 @@
 """The panels around the world: menus, tools, transport, and the selection or the world in figures."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from operator import attrgetter
 
 import pygame
 
 from physicslab.view.canvas.canvas import Canvas, Rect
-from physicslab.view.panels.figures import WorldFigures
-from physicslab.view.panels.panels import Line, text_size
-from physicslab.view.toolkit.toolkit import Toolkit
+from physicslab.view.overlay.banners import text_size
+from physicslab.view.toolkit.toolkit import Toolkit, Walk
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.error_plot import build_error_plot
-from physicslab.view.workbench.file_panels import build_film, build_open, build_save
-from physicslab.view.workbench.gallery import Gallery
-from physicslab.view.workbench.help_panel import build_help
-from physicslab.view.workbench.history_panel import build_history
+from physicslab.view.workbench.figures import Line, WorldFigures
+from physicslab.view.workbench.file_panels import Gallery, build_film, build_open, build_recovery, build_save
 from physicslab.view.workbench.impact_panel import build_impacts
 from physicslab.view.workbench.inspector import Inspector
+from physicslab.view.workbench.instrument_panels import NotePanel, build_stopwatch
 from physicslab.view.workbench.layout import Layout
-from physicslab.view.workbench.menu_bar import build_menu_bar
+from physicslab.view.workbench.menus import build_help, build_menu_bar
 from physicslab.view.workbench.microscope_panel import build_microscope
-from physicslab.view.workbench.note_panel import NotePanel
 from physicslab.view.workbench.palette import build_palette
-from physicslab.view.workbench.recovery_panel import build_recovery
 from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.settings_panel import RecipePanel, SettingsPanel
-from physicslab.view.workbench.stopwatch_panel import build_stopwatch
-from physicslab.view.workbench.transport import build_transport
-from physicslab.view.workbench.walk import Walk
+from physicslab.view.workbench.transport import build_history, build_transport
 from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
 from physicslab.world import World
-
-__all__ = ["Interface"]
 
 _PERIOD = 0.2
 """Time [s] after which panels are built again where nothing was done: faster digits cannot be read."""

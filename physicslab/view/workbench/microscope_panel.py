@@ -1,7 +1,5 @@
 """The microscope: one impact large, in words, and by the law of impact with the numbers put in."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from imgui_bundle import ImVec2, imgui
@@ -10,14 +8,12 @@ from physicslab.diagnostics.collision import Collision
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.controls import impact_actions
-from physicslab.view.panels.collision_words import AGREES, Step, body_name, law_steps, story
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.microscope import FRAMES
+from physicslab.view.window.impacts import FRAMES
 from physicslab.view.window.window import Action, Window
 from physicslab.view.workbench.collision_drawing import draw_bodies, draw_contact, draw_energies, draw_momenta
+from physicslab.view.workbench.collision_words import AGREES, Step, body_name, law_steps, story
 from physicslab.world import World
-
-__all__ = ["build_microscope"]
 
 _PICTURE, _WORDS = 24.0, 29.0
 """Widths of the drawings and of the words beside them, in heights of the text."""

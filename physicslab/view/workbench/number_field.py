@@ -1,7 +1,5 @@
 """Rows of numbers and texts: a label, a field that is typed into, the unit, and why a value is refused."""
 
-from __future__ import annotations
-
 import contextlib
 import math
 from collections.abc import Callable
@@ -15,8 +13,6 @@ from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
-
-__all__ = ["NumberFields", "shown_number", "shown_vector_part"]
 
 _DRAG = 0.005
 """Share of its size by which a number changes a pixel; of numbers below one, share of one."""

@@ -1,17 +1,13 @@
 """The tools at the left: what the mouse does in the world."""
 
-from __future__ import annotations
-
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.controls import actions
-from physicslab.view.controls.icons import ICONS
-from physicslab.view.controls.tools import MORE_TOOLS, PALETTE, Tool
+from physicslab.view.controls.tool import ICONS, Tool
+from physicslab.view.controls.tools import MORE_TOOLS, PALETTE
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
-
-__all__ = ["build_palette"]
 
 _LOWEST = 1.1
 """Height of a button at least, in heights of the text."""

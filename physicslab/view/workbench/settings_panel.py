@@ -1,7 +1,5 @@
 """How the world is stepped, and what the next body is like: each choice with what ``auto`` took and why."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from physicslab.ecs.config import COLLISIONS, CONTACTS, INTEGRATORS, PhysicsConfig, SimulationConfig
@@ -12,8 +10,6 @@ from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
-
-__all__ = ["RecipePanel", "SettingsPanel"]
 
 _SLEEPING = {"auto": "auto", "yes": True, "no": False}
 _NUMBERS: tuple[tuple[str, str, str], ...] = (

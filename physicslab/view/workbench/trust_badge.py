@@ -1,19 +1,15 @@
 """How many digits can be relied on: a badge in the bar of menus, which opens, and a line of the inspector."""
 
-from __future__ import annotations
-
 import math
 
 from imgui_bundle import ImVec2, imgui
 
-from physicslab.view.panels.trust_watch import RUNS, Finding, TrustWatch
 from physicslab.view.toolkit.bars import bar
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.trust_watch import RUNS, Finding, TrustWatch
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = ["BADGE", "badge_width", "build_badge", "build_body_digits"]
 
 BADGE = "Digits to trust"
 """By what the badge is found."""

@@ -1,7 +1,5 @@
 """The world as the camera sees it, with the overlays that are on."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from numpy.typing import NDArray
@@ -11,10 +9,10 @@ from physicslab.view.canvas.canvas import is_within
 from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.tools import TOOLS
+from physicslab.view.overlay.banners import text_size
 from physicslab.view.overlay.free_body import draw_free_body
 from physicslab.view.overlay.impulses import draw_impulses
-from physicslab.view.overlay.instrument_marks import draw_instruments
-from physicslab.view.overlay.instruments import instruments_of
+from physicslab.view.overlay.instruments import draw_instruments, instruments_of
 from physicslab.view.overlay.marks import (
     draw_band,
     draw_cursor,
@@ -25,13 +23,10 @@ from physicslab.view.overlay.marks import (
     draw_snap_marks,
 )
 from physicslab.view.overlay.vectors import draw_vectors
-from physicslab.view.panels.panels import text_size
 from physicslab.view.picture.picture import draw_world
 from physicslab.view.window.placing import refused_place
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = ["WorldView"]
 
 
 class WorldView:

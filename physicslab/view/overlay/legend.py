@@ -1,7 +1,5 @@
 """The legend of the overlays' arrows: colour, head and scale of each."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,11 +16,9 @@ from physicslab.view.overlay.arrows import (
     dashes,
     draw_arrows,
 )
+from physicslab.view.overlay.banners import broken
 from physicslab.view.overlay.impulses import IMPACT_WIDTH, REST_WIDTH
 from physicslab.view.overlay.overlays import Overlays
-from physicslab.view.panels.panels import broken
-
-__all__ = ["Legend", "legend_of"]
 
 _WIDTH = 19.5
 """Width of the legend, in heights of the text."""

@@ -1,11 +1,7 @@
 """The window while it loads, and while kernels are compiled."""
 
-from __future__ import annotations
-
 from physicslab.view.canvas.canvas import Canvas, TextStyle
 from physicslab.view.canvas.theme import Theme
-
-__all__ = ["PAUSE", "draw_corner", "draw_loading", "draw_progress", "draw_waiting"]
 
 PAUSE = 0.05
 """Time [s] between two looks at whether what is shown here has changed, or the user has done anything."""

@@ -1,7 +1,5 @@
 """How many digits of what the window shows can be relied on, found by another process."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Iterator
@@ -12,10 +10,8 @@ from physicslab.components import Held, Transform, Velocity
 from physicslab.files.checks import SceneError
 from physicslab.files.snapshot import WorldSnapshot
 from physicslab.files.writer import text_pieces
-from physicslab.view.panels.lab_process import LabProcess
+from physicslab.view.window.lab_process import LabProcess
 from physicslab.world import World
-
-__all__ = ["BODIES_LIMIT", "RUNS", "Finding", "TrustWatch"]
 
 _NICELY = "import os, sys; getattr(os, 'nice', int)(5); from physicslab.cli import main; sys.exit(main())"
 _COMMAND = (sys.executable, "-c", _NICELY, "accuracy")

@@ -1,7 +1,5 @@
 """An impact in words, and its law line by line with the numbers put in."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,8 +11,6 @@ from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity, without_rounding
 from physicslab.world import World
-
-__all__ = ["AGREES", "Step", "body_name", "law_steps", "story"]
 
 AGREES = 1e-9
 """Relative difference up to which the solver's figure and the one worked out here are the same."""
