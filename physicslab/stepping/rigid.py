@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Material, Velocity
-from physicslab.stepping.temp_shapes import shapes_of
+from physicslab.contacts.arguments import shapes_of
 from physicslab.kernels.accounts import CONTACT, FRICTION, HAND
 from physicslab.kernels.broad import near_pairs
-from physicslab.kernels.geometry.shapes import named_shapes
 from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.wide import slots
 from physicslab.ode.system import OdeSystem
@@ -144,7 +143,7 @@ class Rigid:
         material, physics = state.table(Material), state.physics
         present = np.concatenate((np.repeat(state.table(Velocity).present, 2), state.table(Velocity).present))
         self._ode.v[: len(present)][~present] = 0.0
-        of = named_shapes.py_func(shapes_of(state))
+        of = state.bodies.shapes
         size = 2.0 * (np.minimum(of.half_x, of.half_y) + of.radius)
         a, b, wall = self._pairs.T
         walled = wall >= 0

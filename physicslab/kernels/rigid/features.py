@@ -31,7 +31,7 @@ __all__ = [
 PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)
 """The columns of a point: its pair; bodies and features; what it may do, and what it does."""
 CORNER, WALL = MOST_VERTICES, 2 * MOST_VERTICES
-"""Where features of vertices and of walls begin: those before are faces, each from the vertex of its number on."""
+"""Where features of vertices and walls begin; those before are faces, from the vertex of that number on."""
 NX, NY, TA, TB, NA, NB, GAP, VN, VT, BIAS_N, BIAS_T, MARGIN, PX, PY, MU, RESTITUTION, MEASURES = range(17)
 """The columns of measures of a point: normal; arms of ONE and OTHER along the tangent and the normal [m]; gap
 [m]; speeds along both [m/s]; their rates at no acceleration [m/s^2]; how far it is from the end of its
@@ -78,11 +78,9 @@ def beside_vertex(shapes: Shapes, row: int, k: int, x: float, y: float) -> tuple
     """Return how far a place is beyond both faces that meet at vertex k of a row, along each [m].
 
     The place is seen from the vertex, in the body's own directions [m]. Where both are positive, the vertex
-    is what is nearest to it; they are infinite for a core of one vertex.
+    is what is nearest to it.
     """
     count = shapes.vertices[row]
-    if count == 1:
-        return math.inf, math.inf
     before_x, before_y, _, _ = face(shapes, row, (k + count - 1) % count)
     after_x, after_y, _, _ = face(shapes, row, k)
     return before_x * y - before_y * x, after_y * x - after_x * y
@@ -148,9 +146,13 @@ def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: V
             distance = math.sqrt(dx * dx + dy * dy)
             nx, ny = dx / distance, dy / distance
             out[i, GAP] = distance - own - radius
-            near, far = beside_vertex(shapes, one, feature - CORNER, co * dx + so * dy, co * dy - so * dx)
-            near_b, far_b = beside_vertex(shapes, other, points[i, VERTEX], -c * dx - s * dy, s * dx - c * dy)
-            out[i, MARGIN] = min(min(near, far), min(near_b, far_b))
+            out[i, MARGIN] = math.inf
+            if shapes.vertices[one] > 1:
+                near, far = beside_vertex(shapes, one, feature - CORNER, co * dx + so * dy, co * dy - so * dx)
+                out[i, MARGIN] = min(near, far)
+            if shapes.vertices[other] > 1:
+                near, far = beside_vertex(shapes, other, points[i, VERTEX], -c * dx - s * dy, s * dx - c * dy)
+                out[i, MARGIN] = min(out[i, MARGIN], min(near, far))
             dvx = cvx - one_vx + one_spin * arm_y
             dvy = cvy - one_vy - one_spin * arm_x
             across = nx * dvy - ny * dvx

@@ -117,20 +117,22 @@ def _has_vertex(points: Points, i: int, row: int, k: int) -> bool:
 
 
 @inlined
-def _is_closed(scene: Scene, points: Points, count: int, others: Points, k: int) -> bool:
+def _is_closed(radius: Numbers, points: Points, count: int, others: Points, k: int) -> bool:
     """Whether point k of ``others`` is among ``count`` closed points.
 
     A vertex touches a rounded body at one point: where that comes to the end of its feature is an event.
     """
-    one, other, feature = others[k, ONE], others[k, OTHER], others[k, FEATURE]
-    rounded = feature >= WALL or scene.shapes.radius[one] + scene.shapes.radius[other] > 0.0
     for i in range(count):
         if points[i, PAIR] != others[k, PAIR]:
             continue
-        if _is_same(points, i, others, k) or (rounded and _has_vertex(points, i, other, others[k, VERTEX])):
+        if _is_same(points, i, others, k):
             return True
-        if rounded and CORNER <= feature < WALL and _has_vertex(points, i, one, feature - CORNER):
-            return True
+        one, other, feature = others[k, ONE], others[k, OTHER], others[k, FEATURE]
+        if radius[one] + radius[other] > 0.0:
+            if _has_vertex(points, i, other, others[k, VERTEX]):
+                return True
+            if CORNER <= feature < WALL and _has_vertex(points, i, one, feature - CORNER):
+                return True
     return False
 
 
@@ -150,7 +152,7 @@ def find_open(
     n = 0
     found, apart = find_points(scene, p, q, v, scratch.points)
     for k in range(found):
-        if _is_closed(scene, equations.points, count, scratch.points, k):
+        if _is_closed(scene.shapes.radius, equations.points, count, scratch.points, k):
             apart = -math.inf
         else:
             for column in range(GIVEN):
