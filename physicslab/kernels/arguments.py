@@ -11,15 +11,6 @@ from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Couples, Impacts, Manifolds, Points
 from physicslab.kernels.wide.layout import Slots, SlotsTuple
 
-__all__ = [
-    "Acting", "ActingTuple", "Bounds", "BoundsTuple", "Contacts", "Course", "CourseTuple", "Gravity",
-    "GravityTuple", "Inverse", "InverseTuple", "Log", "Materials", "MaterialsTuple", "Motion", "MotionTuple",
-    "Near", "NearTuple", "Packed", "PackedTuple", "Plan", "PlanTuple", "Sleepers",
-    "SleepersTuple", "Softness", "SoftnessTuple", "Springs", "SpringsTuple",
-    "named_acting",
-    "named_near",
-]  # fmt: skip
-
 
 class Motion(NamedTuple):
     """Positions (rows, 2) [m], angles [rad], velocities (rows, 2) [m/s] and angular velocities [rad/s]."""

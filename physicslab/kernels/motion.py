@@ -14,11 +14,6 @@ from physicslab.kernels.geometry.shapes import (
 )
 from physicslab.kernels.records import Pairs
 
-__all__ = [
-    "FARTHEST", "LARGEST", "clear", "damped", "derive_masses", "drift", "find_beyond", "kick", "pack_state",
-    "predict",
-]  # fmt: skip
-
 FARTHEST = 1e300
 """The largest coordinate that a scene may hold [m] (``physicslab.ecs.fields.COORDINATE_LIMIT``)."""
 LARGEST = sys.float_info.max

@@ -1,7 +1,5 @@
 """The table of shapes of a world, and the register of kinds as the arrays that it is derived with."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

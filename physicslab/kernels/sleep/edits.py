@@ -4,8 +4,6 @@ import math
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, kernel
 
-__all__ = ["FIGURES", "INVERSE_MASS", "find_edited", "find_overlapped", "find_pushed", "note_figures"]
-
 FIGURES = 12
 """How many numbers describe where a body is and what it is made of."""
 INVERSE_MASS = 9

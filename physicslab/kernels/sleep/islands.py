@@ -8,8 +8,6 @@ from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating, alloca
 from physicslab.kernels.constraint.pair import frame_of, point_velocity, velocity_of
 from physicslab.kernels.records import Manifold, Manifolds, Points
 
-__all__ = ["READY", "REST", "SLOW", "count_rest", "find_held", "find_touched", "join_marked", "list_sleeping"]
-
 REST = 0.5
 """How long [s] a body must have been slow before it may sleep."""
 SLOW = 0.05

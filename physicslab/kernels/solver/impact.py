@@ -39,8 +39,6 @@ from physicslab.kernels.solver.impact_log import (
 from physicslab.kernels.solver.impact_pose import is_known, meeting_at
 from physicslab.kernels.solver.impulse import follow_drift
 
-__all__ = ["resolve_impacts"]
-
 _MAX_SWEEPS = 32
 """Largest number of sweeps over the impacts of a substep; those left are treated as inelastic."""
 

@@ -10,8 +10,6 @@ from physicslab.kernels.narrow.manifold import circle_box
 from physicslab.kernels.narrow.outline import Outline
 from physicslab.kernels.records import Manifold, Point
 
-__all__ = ["is_known", "meeting_at"]
-
 _FLIPPED = 33
 """From this number on the features of two boxes are corners of A on a face of B."""
 

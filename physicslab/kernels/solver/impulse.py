@@ -19,12 +19,6 @@ from physicslab.kernels.solver.sweep import sweep
 from physicslab.kernels.solver.work import book_relaxed, book_solved, take_means
 from physicslab.kernels.wide.solve import SoftConstraint, sweep_wide, warm_start_wide
 
-__all__ = [
-    "HEAVY_RATIO", "MAX_SUBSTEP_FACTOR", "deepest", "follow_drift", 
-    "relax", "solve", "sweeps_of", "worst_load_ratio",
-]  # fmt: skip
-
-
 _MAX_SWEEPS = 16
 """Sweeps of a substep over few contacts: with a spring as stiff as they carry, cubes of 2 cm stand."""
 _CONTACT_SWEEPS = 512

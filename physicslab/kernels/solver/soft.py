@@ -6,7 +6,7 @@ list pairs, to wake bodies, or at a stage where systems act that no kernel compu
 """
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.accounts import BALANCE, BEFORE, ENERGY, PX, PY, SPIN
+from physicslab.kernels.accounts import BALANCE, BEFORE, ENERGY, PX, PY, SPIN, book
 from physicslab.kernels.arguments import (
     Acting,
     ActingTuple,
@@ -113,12 +113,10 @@ def _balance(account: Vectors, motion: Motion, gravity: Gravity, cause: int) -> 
     energy = translation + rotation
     energy += -(gravity.gx * mx + gravity.gy * my)
     if cause >= 0:
-        account[cause, ENERGY] += energy - account[BALANCE, ENERGY]
-        account[cause, PX] += px - account[BALANCE, PX]
-        account[cause, PY] += py - account[BALANCE, PY]
-        account[cause, SPIN] += spin - account[BALANCE, SPIN]
-    account[BALANCE, ENERGY], account[BALANCE, PX] = energy, px
-    account[BALANCE, PY], account[BALANCE, SPIN] = py, spin
+        last = account[BALANCE]
+        book(account[cause], 0, energy - last[ENERGY], px - last[PX], py - last[PY], spin - last[SPIN])
+    account[BALANCE] = 0.0
+    book(account[BALANCE], 0, energy, px, py, spin)
 
 
 @inlined

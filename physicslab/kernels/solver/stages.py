@@ -35,8 +35,6 @@ from physicslab.kernels.solver.work import book_slots, note_velocities
 from physicslab.kernels.wide.refresh import refresh
 from physicslab.kernels.wide.slots import wake
 
-__all__ = ["find_touching", "press", "relax", "resolve_all_impacts"]
-
 
 @fused
 def _contacts(near: Near) -> Contacts:

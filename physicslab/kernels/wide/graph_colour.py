@@ -33,8 +33,6 @@ from physicslab.kernels.wide.layout import BOX, WIDE, Masks, Slots, rows_of
 from physicslab.kernels.wide.restore_slots import fill_slot, is_of_kind
 from physicslab.kernels.wide.slots import COLOURS, clear_slot, list_scalar
 
-__all__ = ["ADDED", "FULL", "MIN_WIDE", "SPARSE", "add_constraints", "add_to_blocks", "sort_blocks"]
-
 MIN_WIDE = 64
 """Smallest number of contacts for which blocks are made: solving fewer takes less time than sorting them."""
 ADDED, SPARSE, FULL = range(3)
