@@ -31,6 +31,8 @@ def check_edits(state: State, *, within: bool = False) -> None:
         sleep.gone = sleep.gone[:0]
         return
     marked = sleep.asleep & state.bodies.sub_integrated
+    if state.joints.refresh(state.entity_index):
+        marked |= sleep.asleep
     if sleep.laws != (state.physics, state.simulation):
         marked |= sleep.asleep
     figures, edited = _figures(state), np.zeros(len(sleep.asleep), np.bool_)
@@ -74,7 +76,11 @@ def wake(state: State, marked: _Marks) -> _Marks:
     """Wake the islands of the ``marked`` bodies, and mark all of them; return which bodies woke."""
     sleep = state.sleep
     a, b, count = _touching(state)
-    islands.join_marked(a, b, count, sleep.asleep, marked)
+    joined = state.joints.edges
+    islands.join_marked(
+        np.concatenate((a, joined[:, 0])), np.concatenate((b, joined[:, 1])),
+        np.concatenate((count, np.ones(len(joined), np.int64))), sleep.asleep, marked,
+    )  # fmt: skip
     woken = marked & sleep.asleep
     sleep.asleep &= ~woken
     sleep.rest[woken] = sleep.slowest[woken] = 0.0
