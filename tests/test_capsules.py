@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from physicslab import World, load_scene, save_scene
 from physicslab.components import Mass, Shape, Transform, Velocity
-from physicslab.diagnostics.account import measure_account
-from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import box, capsule, circle

@@ -11,6 +11,7 @@ from physicslab.kernels.arguments import (
     MotionTuple,
     NearTuple,
 )  # fmt: skip
+from physicslab.kernels.constraint.soft_joints import MEASURED, JointsTuple
 from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.state.state import State
 
@@ -41,6 +42,18 @@ def acting_in(state: State) -> ActingTuple:
     """Return the forces of this substep."""
     bodies = state.bodies
     return (bodies.pull, state.has_forces, bodies.unkicked, state.uniform_forces)
+
+
+def joints_in(state: State) -> JointsTuple:
+    """Return the rows of joints."""
+    joints = state.joints
+    joints.refresh(state.entity_index)
+    if len(joints.measured) != len(joints):
+        joints.measured = np.zeros((len(joints), MEASURED))
+    return (
+        joints.a, joints.b, joints.block, joints.anchor_a, joints.anchor_b, joints.axis, joints.impulse,
+        joints.measured,
+    )  # fmt: skip
 
 
 def bounds_of(state: State) -> BoundsTuple:

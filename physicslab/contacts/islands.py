@@ -31,6 +31,8 @@ def check_edits(state: State, *, within: bool = False) -> None:
         sleep.gone = sleep.gone[:0]
         return
     marked = sleep.asleep & state.bodies.sub_integrated
+    if state.joints.refresh(state.entity_index):
+        marked |= sleep.asleep
     if sleep.laws != (state.physics, state.simulation):
         marked |= sleep.asleep
     figures, edited = _figures(state), np.zeros(len(sleep.asleep), np.bool_)
@@ -62,7 +64,7 @@ def _mark_neighbours(state: State, causes: NDArray[np.int64], marked: _Marks) ->
 
 
 def wake_neighbours(state: State, entities: NDArray[np.int64]) -> None:
-    """Wake what sleeps and touched some entities when pairs were last listed."""
+    """Wake what sleeps and touched some entities (n,) when pairs were last listed."""
     if state.sleep.count:
         marked = np.zeros(len(state.sleep.asleep), np.bool_)
         _mark_neighbours(state, entities, marked)
@@ -71,10 +73,14 @@ def wake_neighbours(state: State, entities: NDArray[np.int64]) -> None:
 
 
 def wake(state: State, marked: _Marks) -> _Marks:
-    """Wake the islands of the ``marked`` bodies, and mark all of them; return which bodies woke."""
+    """Wake the islands of the ``marked`` bodies (rows,), and mark all of them; return which bodies woke."""
     sleep = state.sleep
     a, b, count = _touching(state)
-    islands.join_marked(a, b, count, sleep.asleep, marked)
+    joined = state.joints.edges
+    islands.join_marked(
+        np.concatenate((a, joined[:, 0])), np.concatenate((b, joined[:, 1])),
+        np.concatenate((count, np.ones(len(joined), np.int64))), sleep.asleep, marked,
+    )  # fmt: skip
     woken = marked & sleep.asleep
     sleep.asleep &= ~woken
     sleep.rest[woken] = sleep.slowest[woken] = 0.0
@@ -86,7 +92,7 @@ def wake(state: State, marked: _Marks) -> _Marks:
 
 
 def fall_asleep(state: State, falling: _Marks) -> None:
-    """Put bodies to sleep."""
+    """Put bodies to sleep: those that are ``falling`` (rows,)."""
     sleep, velocity, bodies = state.sleep, state.table(Velocity), state.bodies
     _book_rest(state, falling)
     velocity["linear"][falling] = velocity["angular"][falling] = 0.0

@@ -17,17 +17,8 @@ from physicslab.ecs.config import (
     field_names,
 )
 from physicslab.ecs.fields import Field
-from physicslab.files.checks import (
-    SceneError,
-    checked_keys,
-    checked_object,
-    checked_text,
-    checked_title,
-    is_number,
-    refusal,
-    shown,
-)
-from physicslab.files.entities import check_contacts, check_entities, check_ids, check_rests
+from physicslab.files import checks
+from physicslab.files.entities import check_contacts, check_entities, check_ids, check_joints, check_rests
 from physicslab.files.remainders import check_remainders
 from physicslab.integrators import SPLIT_METHODS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
@@ -47,7 +38,7 @@ TITLE_LIMIT = 200
 
 _KEYS = (
     "format", "name", "title", "description", "view", "time", "physics", "simulation", "entities", "contacts",
-    "rests", "solver", "remainders",
+    "joints", "rests", "solver", "remainders",
 )  # fmt: skip
 
 
@@ -69,6 +60,8 @@ class SceneDraft:
         The id of each entity and its components. They refer to entities by place in this list, from 1.
     contacts : list of lists of numbers
         The contact solver's memory; the first two numbers of a row are entities, 0 for the bounds.
+    joints : list of (int, str, list of float)
+        Of each joint its entity, its kind, and its impulses in the last substep [N s].
     rests : list of lists of numbers
         What sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
     remainders : dict of int to two lists of six numbers
@@ -87,6 +80,7 @@ class SceneDraft:
     simulation: SimulationConfig
     entities: list[tuple[str | None, list[Component]]]
     contacts: list[list[Any]]
+    joints: list[tuple[int, str, list[float]]]
     rests: list[list[Any]]
     remainders: dict[int, tuple[list[float], list[float]]]
     solver: tuple[float, int, tuple[str, str, int] | None]
@@ -125,13 +119,14 @@ def read_scene(document: object, source: str = "scene") -> World:
     for number, (id_, components) in enumerate(draft.entities, start=1):
         world.spawn(*components, name=id_, entity=number)  # by which springs name bodies that are yet to come
     world.contacts.impulse_dt, world.contacts.substep_factor, chosen = draft.solver
-    if draft.contacts or draft.rests or chosen:
+    if draft.contacts or draft.joints or draft.rests or chosen:
         world.synchronise()
         try:
             restore_contacts(world.contacts, draft.contacts)
         except (ValueError, OverflowError) as error:
             esper.switch_world(before)
-            raise SceneError(f"{source}: contacts: {error}") from error
+            raise checks.SceneError(f"{source}: contacts: {error}") from error
+        world.joints.restore(draft.joints)
         restore_rests(world, draft.rests)
     if draft.remainders:
         world.remainders = Remainders.of_bodies(draft.remainders)
@@ -142,27 +137,28 @@ def read_scene(document: object, source: str = "scene") -> World:
 
 def check_scene(document: object, source: str = "scene") -> SceneDraft:
     """Return the content of a scene document; the first thing not allowed is a :class:`SceneError`."""
-    scene = checked_object(document, source, 'an object {"format": ..., "entities": [...]}')
-    checked_keys(scene, f"{source}: ", "key", _KEYS)
+    scene = checks.checked_object(document, source, 'an object {"format": ..., "entities": [...]}')
+    checks.checked_keys(scene, f"{source}: ", "key", _KEYS)
     if "format" not in scene:
-        raise SceneError(f"{source}: format is missing: must be {shown(FORMAT)}")
+        raise checks.SceneError(f"{source}: format is missing: must be {checks.shown(FORMAT)}")
     if scene["format"] != FORMAT:
-        raise refusal(f"{source}: format", scene["format"], shown(FORMAT))
+        raise checks.refusal(f"{source}: format", scene["format"], checks.shown(FORMAT))
     if "entities" not in scene:
-        raise SceneError(f"{source}: entities is missing: must be a list of entities")
+        raise checks.SceneError(f"{source}: entities is missing: must be a list of entities")
     ids = check_ids(scene["entities"], source)
     simulation = _config(SimulationConfig, scene.get("simulation", {}), source)
     entities = check_entities(scene["entities"], ids, source)
     return SceneDraft(
-        name=checked_title(scene.get("name", ""), f"{source}: name", NAME_LIMIT),
-        title=checked_title(scene.get("title", ""), f"{source}: title", TITLE_LIMIT),
-        description=checked_text(scene.get("description", ""), f"{source}: description", lines=True),
+        name=checks.checked_title(scene.get("name", ""), f"{source}: name", NAME_LIMIT),
+        title=checks.checked_title(scene.get("title", ""), f"{source}: title", TITLE_LIMIT),
+        description=checks.checked_text(scene.get("description", ""), f"{source}: description", lines=True),
         view=_view(scene.get("view"), source),
         time=_time(scene.get("time", 0.0), f"{source}: time"),
         physics=_config(PhysicsConfig, scene.get("physics", {}), source),
         simulation=simulation,
         entities=entities,
         contacts=check_contacts(scene.get("contacts", []), scene["entities"], ids, source),
+        joints=check_joints(scene.get("joints", []), scene["entities"], ids, source),
         rests=check_rests(scene.get("rests", []), scene["entities"], ids, source),
         remainders=check_remainders(scene.get("remainders", []), entities, ids, source),
         solver=_solver(scene.get("solver", {}), simulation, f"{source}: solver"),
@@ -176,7 +172,7 @@ def _view(value: object, source: str) -> View | None:
     try:
         return checked_box("scene", "view", value)
     except InvalidValue as error:
-        raise refusal(f"{source}: view", value, error.allowed) from None
+        raise checks.refusal(f"{source}: view", value, error.allowed) from None
 
 
 _SPAN = Field("span", "number", unit="s", minimum=MIN_TIME, maximum=MAX_TIME, owner="solver")
@@ -187,13 +183,13 @@ def _solver(
     value: Any, simulation: SimulationConfig, where: str
 ) -> tuple[float, int, tuple[str, str, int] | None]:
     """Return the values that the solver takes from the last step; those left out are as configured."""
-    found = checked_object(value, where, 'an object {"span": ..., "finer": ...}')
-    checked_keys(found, f"{where}: ", "key", ("span", "finer", "chosen"))
+    found = checks.checked_object(value, where, 'an object {"span": ..., "finer": ...}')
+    checks.checked_keys(found, f"{where}: ", "key", ("span", "finer", "chosen"))
     given: dict[str, Any] = {"span": simulation.dt / simulation.substeps, "finer": 1, **found}
     try:
         span, finer = float(_SPAN.check(given["span"])), int(_FINER.check(given["finer"]))
     except InvalidValue as error:
-        raise SceneError(f"{where.removesuffix('solver')}{error}") from error
+        raise checks.SceneError(f"{where.removesuffix('solver')}{error}") from error
     return span, finer, _chosen(found["chosen"], f"{where}.chosen") if "chosen" in found else None
 
 
@@ -205,20 +201,20 @@ def _chosen(value: Any, where: str) -> tuple[str, str, int]:
         known = collisions in ("exact", "rigid", "step", "none") and isinstance(method, str)
         if known and method in SPLIT_METHODS and type(steps) is int and 1 <= steps <= MAX_STEPS:
             return collisions, method, steps
-    raise refusal(where, value, allowed)
+    raise checks.refusal(where, value, allowed)
 
 
 def _time(value: Any, where: str) -> float:
-    if is_number(value) and value >= 0.0:
+    if checks.is_number(value) and value >= 0.0:
         return float(value)
-    raise refusal(where, value, "a finite number >= 0 s")
+    raise checks.refusal(where, value, "a finite number >= 0 s")
 
 
 def _config[C: (PhysicsConfig, SimulationConfig)](config: type[C], value: object, source: str) -> C:
     where = f"{source}: {config.section}"
-    given = checked_object(value, where, "an object of settings")
-    checked_keys(given, f"{where}.", "setting", field_names(config))
+    given = checks.checked_object(value, where, "an object of settings")
+    checks.checked_keys(given, f"{where}.", "setting", field_names(config))
     try:
         return config(**given)
     except InvalidValue as error:
-        raise refusal(f"{where}.{error.field}", error.value, error.allowed) from error
+        raise checks.refusal(f"{where}.{error.field}", error.value, error.allowed) from error

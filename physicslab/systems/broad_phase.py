@@ -29,9 +29,22 @@ def nothing_to_touch(state: State) -> str | None:
         return "no Shape in the scene"
     if not moving:
         return "nothing that has a Shape moves"
-    if shapes == 1 and state.physics.bounds is None:
+    if state.physics.bounds is not None:
+        return None
+    if shapes == 1:
         return "only one Shape in the scene, and no bounds"
+    if len(state.joints.apart) and shapes <= _FEW and not _may_any_touch(state):
+        return "all pairs that could meet are on joints, and pass through each other"
     return None
+
+
+def _may_any_touch(state: State) -> bool:
+    """Whether any two bodies may meet that no joint keeps from touching each other."""
+    shaped = state.batch(Shape, Transform).rows
+    i, j = np.triu_indices(len(shaped), 1)
+    a, b = shaped[i], shaped[j]
+    moves = state.table(Velocity).present
+    return bool((state.joints.may_touch(a, b) & (moves[a] | moves[b])).any())
 
 
 def _lookahead(sleepers: int, awake: int) -> float:
@@ -160,6 +173,8 @@ class BroadPhaseSystem(System):
         left, vertices = self.leavers, state.bodies.shapes.vertices
         if len(vertices) <= _FEW or _sparse(state) or left.crowded or state.contacts.stale:
             return False
+        if len(state.joints.apart):  # which the search for new pairs does not know
+            return False
         if left.indexed is None:
             left.indexed = leaving.index_bodies(
                 self.boxes, vertices, left.first, left.body, left.home_x, left.home_y
@@ -179,6 +194,11 @@ class BroadPhaseSystem(System):
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
         found, walls = self._count_pairs(state.bodies.shapes.vertices, inverse_mass, bounded)
+        if len(state.joints.apart):
+            couples = self._couples[: 2 * found].reshape(-1, 2)
+            couples = couples[state.joints.may_touch(couples[:, 0], couples[:, 1])]
+            found = len(couples)
+            self._couples[: 2 * found] = couples.ravel()
         self.leavers.begin()
         partition(state, self._couples, found, self._pairs, walls, self.fat)
 

@@ -139,7 +139,7 @@ class SleepSystem(System):
         islands.find_held(
             contacts.manifolds, contacts.points, contacts.recorded, impulse_dt, state.bodies.shapes.vertices,
             state.bodies.inverse_mass, state.bodies.force, velocity["linear"], velocity["angular"],
-            ready, held,
+            state.joints.edges.ravel(), ready, held,
         )  # fmt: skip
         return held
 

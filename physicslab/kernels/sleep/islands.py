@@ -186,19 +186,27 @@ def _mark_moving(
 @allocating_kernel
 def find_held(
     manifolds: Manifolds, points: Points, pairs: int, impulse_dt: float, vertices: Rows,
-    inverse_mass: Numbers, force: Vectors, linear: Vectors, angular: Numbers, ready: Flags, held: Flags,
+    inverse_mass: Numbers, force: Vectors, linear: Vectors, angular: Numbers, edges: Rows, ready: Flags,
+    held: Flags,
 ) -> int:  # fmt: skip
     """Mark the bodies of islands that may sleep; return how many there are.
 
+    Bodies that touch each other are one island, and so are those that joints hold together: ``edges`` (2 n,)
+    are their rows.
+
     All bodies of such an island are ``ready``, none had an impact in this step, friction holds or soon stops
-    all of them, and one of them is pressed with friction against a fixed body at rest: without friction or
-    support it would move on for ever. ``impulse_dt`` is the time [s] over which the points' impulses act.
+    all of them, and one of them is on a joint to a fixed body at rest, or pressed against one with friction:
+    without friction or support it would move on for ever. ``impulse_dt`` is the time [s] over which the
+    points' impulses act.
     """
     parent = np.arange(len(inverse_mass))
     for p in range(pairs):
         manifold = manifolds[p]
         if manifold.count > 0 and inverse_mass[manifold.a] > 0.0 and inverse_mass[manifold.b] > 0.0:
             _join(parent, manifold.a, manifold.b)
+    for k in range(0, len(edges), 2):
+        if inverse_mass[edges[k]] > 0.0 and inverse_mass[edges[k + 1]] > 0.0:
+            _join(parent, edges[k], edges[k + 1])
     restless = np.zeros(len(inverse_mass), np.bool_)
     supported = np.zeros(len(inverse_mass), np.bool_)
     moving = ~ready
@@ -226,6 +234,14 @@ def find_held(
             loaded = points[2 * p].normal_impulse > 0.0
             if loaded or (manifold.count == 2 and points[2 * p + 1].normal_impulse > 0.0):
                 supported[island] = True
+    for k in range(0, len(edges), 2):
+        body, other = edges[k], edges[k + 1]
+        if inverse_mass[body] == 0.0:
+            body, other = other, body
+        if inverse_mass[body] > 0.0 and inverse_mass[other] == 0.0:
+            still = linear[other, 0] == 0.0 and linear[other, 1] == 0.0 and angular[other] == 0.0
+            supported[_root(parent, body)] |= still
+            restless[_root(parent, body)] |= not still
     found = 0
     for i in range(len(inverse_mass)):
         island = _root(parent, i)

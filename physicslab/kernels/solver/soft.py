@@ -39,6 +39,7 @@ from physicslab.kernels.arguments import (
     named_near,
 )
 from physicslab.kernels.broad.fat_boxes import all_inside
+from physicslab.kernels.constraint.soft_joints import Joints, JointsTuple
 from physicslab.kernels.energy import moments_of_mass, motion_totals
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import uniform_gravity
@@ -166,8 +167,8 @@ def _advance(
     steps: int, substep: int, part: int, plan: Plan, course: Course, cause: int,
     motion: Motion, kept: Numbers, shapes: Shapes, materials: Materials, inverse: Inverse,
     sub_integrated: Flags, acting: Acting, gravity: Gravity, packed: Packed, springs: Springs,
-    sleepers: Sleepers, damping: tuple[float, float], fat: Vectors, bounds: Bounds, near: Near, opened: Rows,
-    softness: Softness, impulse_dt: float, impacts: Impacts, cost: Rows,
+    sleepers: Sleepers, damping: tuple[float, float], fat: Vectors, bounds: Bounds, near: Near,
+    joints: Joints, opened: Rows, softness: Softness, impulse_dt: float, impacts: Impacts, cost: Rows,
 ) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
     """Advance by steps, beginning at a part of a substep, as :func:`advance` describes."""
     position, angle, linear, angular = motion
@@ -274,13 +275,15 @@ def _advance(
                     sub_integrated, acting.unkicked, span,
                 )  # fmt: skip
             elif what == SOLVE:
-                impulse_dt = press(near, motion, inverse, acting, softness, span, impulse_dt, plan.iterations)
+                impulse_dt = press(
+                    near, joints, motion, inverse, acting, softness, span, impulse_dt, plan.iterations
+                )
                 now = charge(cost, RESOLVE, now)
             elif what == RELAX:
                 if part + 1 < len(course.parts) and course.parts[part + 1] == OVERLAP:
                     for i in range(len(angle)):
                         packed.state[2, 2 * i], packed.state[2, 2 * i + 1] = position[i, 0], position[i, 1]
-                relax(near, motion, inverse, acting, softness, span, plan.iterations)
+                relax(near, joints, motion, inverse, acting, softness, span, plan.iterations)
                 weighed = False
                 now = charge(cost, RESOLVE, now)
             elif what == HOOK or _moved(motion, packed.state[2]):
@@ -318,8 +321,8 @@ def advance(
     motion: MotionTuple, kept: Numbers, shapes: ShapesTuple, materials: MaterialsTuple,
     inverse: InverseTuple, sub_integrated: Flags, acting: ActingTuple, gravity: GravityTuple,
     packed: PackedTuple, springs: SpringsTuple, sleepers: SleepersTuple, damping: tuple[float, float],
-    fat: Vectors, bounds: BoundsTuple, near: NearTuple, opened: Rows, softness: SoftnessTuple,
-    impulse_dt: float, impacts: Impacts, cost: Rows,
+    fat: Vectors, bounds: BoundsTuple, near: NearTuple, joints: JointsTuple, opened: Rows,
+    softness: SoftnessTuple, impulse_dt: float, impacts: Impacts, cost: Rows,
 ) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
     """Advance by ``steps`` steps, beginning at a part of a substep.
 
@@ -340,7 +343,7 @@ def advance(
         steps, substep, part, Plan(*plan), along, cause, moved, kept,
         named_shapes(shapes), Materials(*materials), Inverse(*inverse), sub_integrated,
         named_acting(acting), masses, Packed(*packed), Springs(*springs), Sleepers(*sleepers), damping, fat,
-        Bounds(*bounds), of, opened, Softness(*softness), impulse_dt, impacts, cost,
+        Bounds(*bounds), of, Joints(*joints), opened, Softness(*softness), impulse_dt, impacts, cost,
     )  # fmt: skip
     if not along.hooked:
         _balance(of.account, moved, masses, -1)

@@ -13,6 +13,7 @@ from physicslab.kernels.arguments import (
     Softness,
 )
 from physicslab.kernels.broad.near_pairs import activate, sort_scalar
+from physicslab.kernels.constraint.soft_joints import Joints
 from physicslab.kernels.geometry.contact import find_contacts
 from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.near_counts import (
@@ -40,6 +41,13 @@ from physicslab.kernels.wide.slots import wake
 def _contacts(near: Near) -> Contacts:
     """Return the scalar pairs that touch now."""
     return Contacts(near.manifolds, near.points, near.touching, near.counts[ACTIVE])
+
+
+@fused
+def _solved(near: Near) -> Contacts:
+    """Return the scalar pairs that impulses act at in this substep: none where all are left to impacts."""
+    number = near.counts[ACTIVE] if near.counts[LEFT] + near.counts[WIDE_COUNT] > 0 else 0
+    return Contacts(near.manifolds, near.points, near.touching, number)
 
 
 @always_inlined
@@ -114,20 +122,20 @@ def _warm_start_scale(h: float, impulse_dt: float) -> float:
 
 @fused
 def press(
-    near: Near, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
+    near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
     h: float, impulse_dt: float, iterations: int,
 ) -> float:  # fmt: skip
-    """Find the impulses that keep bodies apart and correct some of the overlap.
+    """Find the impulses that keep bodies apart and joints together, and correct some of the error.
 
-    ``impulse_dt`` is the time [s] over which the points' impulses act; returns the new one.
+    ``impulse_dt`` is the time [s] over which the impulses act; returns the new one.
     """
-    if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
+    if near.counts[LEFT] + near.counts[WIDE_COUNT] + len(joints.impulse) == 0:
         return impulse_dt
     scale = _warm_start_scale(h, impulse_dt)
-    sweeps = impulse.sweeps_of(near, iterations)
-    contacts = _contacts(near)
+    sweeps = impulse.sweeps_of(near, len(joints.impulse), iterations)
+    contacts = _solved(near)
     note_velocities(contacts, near, motion, inverse, acting, h)
-    impulse.solve(contacts, near, motion, inverse, acting, softness, h, scale, sweeps)
+    impulse.solve(contacts, near, joints, motion, inverse, acting, softness, h, scale, sweeps)
     if near.counts[WIDE_COUNT] > 0:
         book_slots(near, motion, inverse, acting, h, True)
     return h
@@ -136,6 +144,7 @@ def press(
 @fused
 def relax(
     near: Near,
+    joints: Joints,
     motion: Motion,
     inverse: Inverse,
     acting: Acting,
@@ -143,11 +152,12 @@ def relax(
     h: float,
     iterations: int,
 ) -> None:
-    """Remove the velocity that came from correcting overlap, ``h`` seconds after :func:`press`."""
-    if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
+    """Remove the velocity that came from correcting errors, ``h`` seconds after :func:`press`."""
+    if near.counts[LEFT] + near.counts[WIDE_COUNT] + len(joints.impulse) == 0:
         return
-    contacts = _contacts(near)
-    impulse.relax(contacts, near, motion, inverse, acting, h, impulse.sweeps_of(near, iterations))
+    contacts = _solved(near)
+    sweeps = impulse.sweeps_of(near, len(joints.impulse), iterations)
+    impulse.relax(contacts, near, joints, motion, inverse, acting, h, sweeps)
     if near.counts[WIDE_COUNT] > 0:
         book_slots(near, motion, inverse, acting, h, False)
     if any_deep(contacts, near):  # to count references to all these arrays takes as long as ten contacts
