@@ -21,7 +21,6 @@ from physicslab.contacts.kept import KeptContacts, KeptSleep, forget_sleep, shar
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.context import create_numbered
-from physicslab.ecs.table import Table
 from physicslab.state.account import KeptAccount
 from physicslab.state.remainders import Remainders
 from physicslab.stepping.plan import StepPlan
@@ -88,7 +87,7 @@ class _Structure:
         living = set(esper.get_entities())
         for entity, others in wanted.items():
             if entity not in living:
-                made = [_blank(world.table(kind)) for kind in kinds[entity]]
+                made = [world.table(kind).blank() for kind in kinds[entity]]
                 create_numbered(entity, [*made, *others])
                 continue
             there: tuple[Any, ...] = esper.components_for_entity(entity)
@@ -98,7 +97,7 @@ class _Structure:
                     esper.remove_component(entity, kind)
             for kind in kinds[entity]:
                 if not esper.has_component(entity, kind):
-                    esper.add_component(entity, _blank(world.table(kind)))
+                    esper.add_component(entity, world.table(kind).blank())
             for other in others:
                 if esper.try_component(entity, type(other)) is not other:
                     esper.add_component(entity, other)
@@ -209,11 +208,3 @@ def _put(then: _Array, now: _Array, rows: NDArray[np.int64]) -> None:
         now[1:] = then[1:]
     else:
         now[rows[rows > 0]] = then[rows > 0]
-
-
-def _blank(table: Table) -> Component:
-    """Return a component of no entity, whose values are all zero: its row is written later."""
-    made: Component = Component.__new__(table.component)
-    made._views = [[column.dtype.type(0).item()] * (column.ndim) for column in table.columns]
-    made._row = 0
-    return made

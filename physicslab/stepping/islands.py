@@ -1,0 +1,414 @@
+"""A world as islands, each advanced by the best stepper for it in a world of its own.
+
+Bodies that forces couple, or that may meet, are one island (:mod:`physicslab.stepping.partition`); what is
+fixed, or moves at a given speed, belongs to every one. While there are several, each is a world that holds
+the columns of its bodies, made as a loaded file is. It follows edits of the whole world, and writes back how
+its bodies move. So the bits of an island are those that it has alone.
+"""
+
+from __future__ import annotations
+
+import math
+import weakref
+from collections.abc import Callable, Sequence
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Transform, Velocity
+from physicslab.contacts.arguments import motion_of
+from physicslab.contacts.kept import KeptContacts, carry_sleep
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.state.masses import Diverged
+from physicslab.state.remainders import Remainders
+from physicslab.state.state import State
+from physicslab.stepping.island import Island, Part, Rows, fill, join_logs, numbers_of
+from physicslab.stepping.partition import MAX_ISLANDS, groups_of, join, movable_in, why_whole
+from physicslab.stepping.stepper import Advance
+from physicslab.stepping.undo import go_back
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.standard import PHYSICS_SYSTEMS
+from physicslab.systems.system import Stage, System
+
+type Make = Callable[[Sequence[System], PhysicsConfig, SimulationConfig], Part]
+
+EXAMINED_S = 2.0
+"""At each multiple of this time [s] it is looked whether an island has come apart."""
+_LATE = 1e-9
+"""Share of that time by which the clock, a sum of rounded steps, may be late."""
+_NEVER = 1 << 60
+
+
+class Islands:
+    """The islands of one world: none while it is one, which its own steppers then advance.
+
+    Parameters
+    ----------
+    schedule : Schedule
+        The systems of the world.
+    make : callable, optional
+        Makes the world of an island, of systems, laws and settings. Without it a world is never divided.
+
+    Attributes
+    ----------
+    members : tuple of Island
+        The islands, in the order of their first bodies; empty while the world is one.
+    why_one : str
+        The reason, if it is.
+    due : bool
+        Whether they are all to be found again before the next step.
+    joined : bool
+        Whether all have become one, for which steppers must be chosen.
+    """
+
+    name: str = "islands"
+    title: str = "Islands, each by a stepper of its own"
+    leaps: bool = False
+    keeps_balance: bool = False
+    leaves_forces: bool = False
+
+    def __init__(self, schedule: Schedule, make: Make | None) -> None:
+        self._schedule, self._make = schedule, make
+        self.members: tuple[Island, ...] = ()
+        self.why_one = "an island itself"
+        self.due, self.joined = make is not None, False
+        self._comes_apart = False
+        self._examined = 0
+        self._apart_until = -math.inf
+        self._left: list[NDArray[Any]] = []
+        self._entities: Rows | None = None
+
+    # ---- as a stepper --------------------------------------------------------------------------------------
+
+    @property
+    def reason(self) -> str:
+        """The reason for several steppers."""
+        return f"{len(self.members)} islands are too far apart to meet, and no force couples them"
+
+    @property
+    def kernels(self) -> tuple[Any, ...]:
+        """What the steppers of all islands call."""
+        mains = (island.world.steppers.main(island.state) for island in self.members)
+        return tuple(dict.fromkeys(kernel for stepper in mains for kernel in stepper.kernels))
+
+    def holds(self, state: State) -> bool:
+        """Return True: edits are followed at each step."""
+        return True
+
+    def ready(self, state: State, h: float) -> bool:
+        """Whether there are several islands."""
+        return bool(self.members)
+
+    def advance(self, state: State, h: float, steps: int) -> Advance:
+        """Make the steps, or those until all is one island.
+
+        Where one fails, those before it are counted; islands are then found again.
+        """
+        opened = state.account.is_open
+        try:
+            return self._advance(state, h, steps)
+        except Diverged:
+            self.forget(state)
+            if steps == 1:
+                raise
+        except BaseException:
+            self.forget(state)
+            raise
+        go_back(state)
+        return self._advance_singly(state, h, steps, opened)
+
+    def _advance_singly(self, state: State, h: float, steps: int, opened: bool) -> Advance:
+        """Make the steps one by one up to that which fails, with islands found again."""
+        start, made = state.time, 0
+        self.follow(state)
+        try:
+            while made < steps and self.members:
+                state.account.is_open = opened
+                made += self._advance(state, h, 1).steps
+                state.time = start + made * h
+                state.checkpoint.take(motion_of(state), state.counts)
+                state.account.begin_step()
+                self.follow(state)
+        except BaseException:
+            self.forget(state)
+            state.steps += made
+            raise
+        finally:
+            state.time, state.account.is_open = start, opened
+        return Advance(made)
+
+    def _advance(self, state: State, h: float, steps: int) -> Advance:
+        if self._schedule.observer is not None:  # it may have written at the beginning of the step
+            self._take_edits(state)
+        if h > state.simulation.dt:
+            self._join_near(state, h)
+        start, made, parts = state.time, 0, 1
+        state.substeps = state.simulation.substeps
+        smooth = [island for island in self.members if island.extent is None]
+        try:
+            for island in smooth:
+                parts = max(parts, island.go(state, start, h, steps))
+            while made < steps and self.members:
+                touching = [island for island in self.members if island.extent is not None]
+                count = min(self.steps_ahead(state, h), steps - made) if touching else steps - made
+                logged = [island.state.contacts.logged for island in touching]
+                for island in touching:
+                    parts = max(parts, island.go(state, state.time, h, count))
+                    island.measure()
+                join_logs(state, [island.state for island in touching], logged)
+                made += count
+                state.time = start + made * h
+                self._write_back(state)
+                if made < steps and not self._join_near(state, h):
+                    self._examine(state)
+        finally:
+            state.time = start
+        return Advance(made, parts)
+
+    def steps_ahead(self, state: State, h: float) -> int:
+        """Return how many steps of ``h`` seconds are made at most before islands are looked for again."""
+        if not self._comes_apart:
+            return _NEVER
+        until = (self._examined + 1) * EXAMINED_S - _LATE
+        steps = math.ceil((until - state.time) / h)
+        if self.members:
+            apart = max(0.0, self._apart_until - state.time)
+            steps = min(steps, math.floor(apart / h + 0.5))
+        return max(1, steps)
+
+    def _take_edits(self, state: State) -> None:
+        """Let the islands follow what was changed in the whole world since the last step."""
+        self._follow_rows(state)
+        numbers, left = numbers_of(state), self._left
+        if len(numbers) == len(left) and all(map(np.array_equal, numbers, left)):
+            return
+        changed = np.ones(len(state.entity_index), np.bool_)
+        if len(numbers) == len(left) and all(len(column) == len(changed) for column in left):
+            others = [now != before for now, before in zip(numbers, left, strict=True)]
+            changed = np.any([other.any(axis=1) if other.ndim == 2 else other for other in others], axis=0)
+        for island in self.members:
+            island.take(state, changed)
+            if island.extent is not None:
+                island.measure()
+        self._apart_until = -math.inf
+        self._join_near(state, state.simulation.dt)
+
+    def _write_back(self, state: State) -> None:
+        """Write the motion of all islands into the whole world."""
+        driven = state.table(Transform).present & state.table(Velocity).present & ~movable_in(state)
+        rows = np.flatnonzero(driven)
+        for n, island in enumerate(self.members):
+            island.write_back(state, rows if n == 0 else rows[:0])
+        state.sleep.count = int(np.count_nonzero(state.sleep.asleep))
+        self._left = [column.copy() for column in numbers_of(state)]
+        own, whole = weakref.ref(self), weakref.ref(state)
+
+        def show() -> None:
+            islands, of = own(), whole()
+            if islands is not None and of is not None and islands.members:
+                islands.contacts(of).show(of)
+
+        state.contacts.source = show
+        self._schedule.defer(self._settle)
+
+    def _settle(self) -> None:
+        """Let the islands note the costs that they have deferred."""
+        for island in self.members:
+            _ = island.world.schedule.timings
+
+    def _follow_rows(self, state: State) -> None:
+        """Find the rows of all islands, where those of the whole world are numbered again."""
+        if self._entities is not state.entity_index.entities:
+            self._entities = state.entity_index.entities
+            for island in self.members:
+                island.follow_rows(state)
+
+    # ---- which they are ------------------------------------------------------------------------------------
+
+    def follow(self, state: State) -> None:
+        """Divide what has come apart, and join what is near; nothing is done twice in one state."""
+        if self._make is None:
+            return
+        if self.due:
+            self.due, self._examined = False, _period(state)
+            self._divide(state)
+            return
+        if self.members:
+            self._take_edits(state)
+        if not self._join_near(state, state.simulation.dt):
+            self._examine(state)
+
+    def _divide(self, state: State) -> None:
+        """Find all islands of a world that is one."""
+        rows = self._survey(state)
+        if self.why_one:
+            return
+        groups, self.why_one = groups_of(state, self._schedule, rows)
+        if len(groups) > 1:
+            entities = state.entity_index.entities
+            self.members = tuple(self._island(state, entities[group], [state]) for group in groups)
+            self._begin(state)
+
+    def _survey(self, state: State) -> Rows:
+        """Find whether a world that is one may be divided; return the rows of its bodies."""
+        self._apart_until, rows = -math.inf, np.flatnonzero(movable_in(state))
+        self.why_one = why_whole(state, self._schedule) or ""
+        self._comes_apart = not self.why_one and len(rows) > 1 and self._schedule.runs(Stage.CONTACT)
+        return rows
+
+    def _begin(self, state: State) -> None:
+        """Go on with islands that were found or joined."""
+        self._entities = None
+        self._follow_rows(state)
+        self._comes_apart = any(island.extent is not None for island in self.members)
+        self._apart_until = -math.inf
+        self._write_back(state)
+
+    def _examine(self, state: State) -> bool:
+        """Divide islands that have come apart, where it is time to look; return whether any were."""
+        period = _period(state)
+        if period == self._examined or not self._comes_apart:
+            return False
+        self._examined = period
+        if not self.members:
+            self._divide(state)
+            return bool(self.members)
+        members: list[Island] = []
+        for island in self.members:
+            groups: tuple[Rows, ...] = (island.own,)
+            if island.extent is not None:
+                groups, _ = groups_of(island.state, island.world.schedule, island.own)
+            parts = [island.state.entity_index.entities[group] for group in groups]
+            members += (
+                [island] if len(parts) == 1 else [self._island(state, part, [island.state]) for part in parts]
+            )
+        if len(self.members) < len(members) <= MAX_ISLANDS:
+            self.members = tuple(sorted(members, key=lambda island: int(island.entities[0])))
+            self._begin(state)
+            return True
+        return False
+
+    def _join_near(self, state: State, h: float) -> bool:
+        """Join islands whose bodies may meet soon, in steps of ``h`` seconds; return whether any were."""
+        touching = [island for island in self.members if island.extent is not None]
+        if not touching or (state.time < self._apart_until - 0.5 * h and h <= state.simulation.dt):
+            return False
+        near: list[tuple[int, int]] = []
+        steps = _NEVER
+        for (i, one), (j, other) in combinations(enumerate(touching), 2):
+            assert one.extent is not None
+            assert other.extent is not None
+            if one.extent.meets(other.extent, h):
+                near.append((i, j))
+            else:
+                steps = min(steps, one.extent.steps_apart(other.extent, h))
+        self._apart_until = state.time + min(steps, 1 << 20) * h
+        if not near:
+            return False
+        labels = join(np.arange(len(touching)), near)
+        members = [island for island in self.members if island.extent is None]
+        for label in dict.fromkeys(labels.tolist()):
+            group = [touching[n] for n in np.flatnonzero(labels == label)]
+            if len(group) > 1 and len(group) < len(self.members):
+                entities = np.sort(np.concatenate([island.entities for island in group]))
+                group = [self._island(state, entities, [island.state for island in group])]
+            members += group
+        self.members = tuple(sorted(members, key=lambda island: int(island.entities[0])))
+        if labels.any() or len(touching) < len(self.members):
+            self._begin(state)
+        else:
+            self.give_back(state)
+            self.joined, self.why_one = True, "bodies came near each other"
+        return True
+
+    # ---- making and keeping them ---------------------------------------------------------------------------
+
+    def blank(self, state: State) -> Part:
+        """Return a world without bodies that can become an island of a state."""
+        assert self._make is not None
+        systems = [
+            system.fresh()
+            for system in self._schedule.systems
+            if type(system) in PHYSICS_SYSTEMS and system.acts_within_step()
+        ]
+        with state.active():
+            part = self._make(systems, state.physics, state.simulation)
+        part.schedule.note_into(self._schedule)
+        return part
+
+    def _island(
+        self, state: State, entities: Rows, sources: Sequence[State], *, apart: bool = True
+    ) -> Island:
+        """Return an island of some bodies, of which ``sources`` have contacts, sleep and remainders.
+
+        ``apart`` says that wide contacts get other slots than they had.
+        """
+        island = Island(self.blank(state), entities)
+        part = island.state
+        fixed = state.table(Transform).present & ~movable_in(state)
+        fill(state, part, entities, state.entity_index.entities[np.flatnonzero(fixed)])
+        part.time, part.steps = state.time, state.steps
+        island.world.synchronise()
+        kept = [KeptContacts.of(source.contacts).among(entities, apart=apart) for source in sources]
+        KeptContacts.joined(kept, part.contacts.counts).restore(part)
+        for source in sources:
+            carry_sleep(source, part)
+        part.remainders = _joined_remainders([source.remainders for source in sources])
+        island.follow_rows(state)
+        island.measure()
+        return island
+
+    def adopt(self, state: State, parts: Sequence[tuple[Rows, Part]]) -> None:
+        """Go on with islands that were made elsewhere: their own bodies, and the worlds that advance them."""
+        self.due, self._examined = False, _period(state)
+        self._survey(state)
+        self.members = tuple(Island(part, entities) for entities, part in parts)
+        if self.members:
+            self._entities = None
+            self._follow_rows(state)
+            for island in self.members:
+                island.measure()
+            self._begin(state)
+
+    def contacts(self, state: State, *, rescaled: bool = True) -> KeptContacts:
+        """Return the contacts of all islands.
+
+        Their impulses are ``rescaled`` to act over one time, so that one rate makes forces of them.
+        """
+        kept = [KeptContacts.of(island.state.contacts) for island in self.members]
+        return KeptContacts.joined(kept, state.contacts.counts, rescaled=rescaled)
+
+    def give_back(self, state: State) -> None:
+        """Let the world be one again, with all that its islands know."""
+        if self.members:
+            self.contacts(state).restore(state)
+            for island in self.members:
+                carry_sleep(island.state, state)
+            state.remainders = _joined_remainders([island.state.remainders for island in self.members])
+        state.contacts.source, self.members, self._left = None, (), []
+
+    def find_again(self) -> None:
+        """Let all islands be found before the next step."""
+        self.due = self._make is not None
+
+    def forget(self, state: State) -> None:
+        """Let the world be one, as it is; islands are found again before its next step."""
+        state.contacts.source, self.members, self._left = None, (), []
+        self.find_again()
+
+
+def _period(state: State) -> int:
+    """Return how often it was time to look for islands."""
+    return math.floor((state.time + _LATE) / EXAMINED_S)
+
+
+def _joined_remainders(kept: Sequence[Remainders]) -> Remainders:
+    """Return all remainders; each coordinate has one."""
+    if len(kept) == 1:
+        return kept[0]
+    names = ("keys", "q", "v", "q_low", "v_low")
+    columns = [np.concatenate([getattr(one, name) for one in kept]) for name in names]
+    _, first = np.unique(columns[0], return_index=True)
+    return Remainders(*(column[first] for column in columns))
