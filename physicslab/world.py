@@ -248,11 +248,11 @@ class World(State):
             if numbers:
                 self.generation += 1
                 derive_masses(self)
+                if not self.steppers.hold(self):
+                    self._choose()
                 self.islands.follow(self)
                 self._follow_islands()
                 if not self.islands.members:
-                    if not self.steppers.hold(self):
-                        self._choose()
                     check_edits(self)
         finally:
             self.in_step = False

@@ -119,9 +119,21 @@ class KeptContacts:
         has = np.isin(self.manifolds["entity_a"], entities) | np.isin(self.manifolds["entity_b"], entities)
         manifolds, colours = self.manifolds[has], self.colours
         if apart:
-            manifolds["slot"], colours = -1, tuple(colour[:0] for colour in colours)
+            manifolds["slot"] = -1
+        if not (manifolds["slot"] >= 0).any():
+            colours = tuple(colour[:0] for colour in colours)
         rest = self.counts, self.impulse_dt, self.substep_factor
         return KeptContacts(manifolds, self.points[has], colours, *rest)
+
+    def as_contacts(self) -> Contacts:
+        """Return contacts that hold copies of them, to be written to a file."""
+        held = Contacts()
+        held.recorded, held.impulse_dt = len(self.manifolds), self.impulse_dt
+        held.substep_factor = self.substep_factor
+        held.manifolds, held.points = self.manifolds.copy(), self.points.reshape(-1).copy()
+        for kind, colour in zip(held.wide.kinds, self.colours, strict=True):
+            kind.colour = colour.copy()
+        return held
 
     def show(self, state: State) -> None:
         """Give them to a state in which others are not found, so that they can be read."""
@@ -215,16 +227,17 @@ class KeptSleep:
 def carry_sleep(state: State, part: State) -> None:
     """Let the bodies of a part of a world sleep and rest as they do in ``state``, which has some of them."""
     source, sleep = state.sleep, part.sleep
-    own = sleep.on and source.on
-    there = state.entity_index.rows_of(part.entity_index.entities)
-    rows = np.flatnonzero((there > 0) & (part.entity_index.entities > 0))
-    for name in _OF_ALL + _OF_SLEEPERS if own else ():
-        getattr(sleep, name)[rows] = getattr(source, name)[there[rows]]
-    if own:
-        sleep.gone, sleep.laws = np.union1d(sleep.gone, source.gone), source.laws or sleep.laws
-        sleep.unverified |= source.unverified
+    if not (sleep.on and source.on):
+        return
+    # The rows of a world whose structure was changed may be numbered again, and those of its sleep not yet.
+    _, own, there = np.intersect1d(sleep.entities, source.entities, return_indices=True)
+    own, there = own[sleep.entities[own] > 0], there[source.entities[there] > 0]
+    for name in _OF_ALL + _OF_SLEEPERS:
+        getattr(sleep, name)[own] = getattr(source, name)[there]
+    sleep.gone, sleep.laws = np.union1d(sleep.gone, source.gone), source.laws or sleep.laws
+    sleep.unverified |= source.unverified
     sleep.count = int(np.count_nonzero(sleep.asleep))
-    if sleep.count:
+    if sleep.count and len(sleep.asleep) == len(part.entity_index):
         set_inactive(part)
 
 

@@ -13,6 +13,8 @@ from physicslab.contacts.memory import copied
 from physicslab.ecs.component import Component
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.files.remainders import export_remainders
+from physicslab.state.contacts import Contacts
+from physicslab.state.state import State
 from physicslab.stepping.plan import outlived
 
 if TYPE_CHECKING:
@@ -42,6 +44,8 @@ class WorldSnapshot:
         What rounding left out of positions and velocities, where it is not zero.
     chosen : tuple, optional
         What was chosen for the motion as it once was, where it would not be chosen now.
+    islands : list of KeptIsland, optional
+        The islands, where a loaded world would find others.
     texts : dict of str to str
         Name, title and description of the world.
     view : View, optional
@@ -55,6 +59,7 @@ class WorldSnapshot:
         with world.active():
             self.entities = world.entities()
             self.chosen = outlived(world, world.schedule, world.plan)
+            self.islands = world.islands.keep(world)
             named = [(entity, name.id) for entity, name in esper.get_component(Name)]
         self.living = living = set(self.entities)
         self.names = {entity: name for entity, name in named if entity in living}
@@ -62,9 +67,14 @@ class WorldSnapshot:
         self.time, self.physics, self.simulation = world.time, world.physics, world.simulation
         self.view = world.view
         self.shaped = set(world.batch(Shape).entities.tolist())
-        self.contacts: Contacts = copied(world.contacts)
-        self.rests = export_rests(world)
-        self.remainders = export_remainders(world)
+        members = world.islands.members
+        self.contacts: Contacts = (
+            world.islands.contacts(world, rescaled=False).as_contacts() if members else copied(world.contacts)
+        )
+        parts: list[State] = [island.state for island in members] or [world]
+        self.rests = [rest for part in parts for rest in export_rests(part)]
+        low = {row[0]: row for part in reversed(parts) for row in export_remainders(part)}
+        self.remainders = [low[entity] for entity in sorted(low)]
         self._rows = dict(world.entity_index.row_of)
         self._tables = _copied(world.entity_index)
 

@@ -1,6 +1,6 @@
 """From a world to a scene document."""
 
-from collections.abc import Generator, Iterable, Iterator, Mapping
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from physicslab.components.naming import plain_name
@@ -15,6 +15,7 @@ from physicslab.files.entities import UNSAVED
 from physicslab.files.json_text import json_pieces
 from physicslab.files.reader import FORMAT
 from physicslab.files.snapshot import WorldSnapshot
+from physicslab.stepping.islands import KeptIsland
 from physicslab.world import World
 
 _FIRST = ("Transform", "Velocity", "Mass", "Shape", "Material", "Spring", "Trail")
@@ -74,6 +75,8 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
     ids = dict(snapshot.names)
     referred = {end for row in contacts for end in row[:2]} | {rest[0] for rest in snapshot.rests}
     referred |= {row[0] for row in snapshot.remainders}
+    for island in snapshot.islands or ():
+        referred |= {*island.bodies, *(int(row[0]) for row in island.driven)}
     ids |= yield from _invented(entities, ids, referred)
     document: dict[str, Any] = {"format": FORMAT} | {
         key: text for key, text in snapshot.texts.items() if text
@@ -96,7 +99,18 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
     rests = [[ids[rest[0]], *rest[1:]] for rest in snapshot.rests]
     remainders = [[ids[row[0]], *row[1:]] for row in snapshot.remainders]
     kept = {"contacts": contacts, "rests": rests, "solver": _solver(snapshot), "remainders": remainders}
-    return document | {key: value for key, value in kept.items() if value}
+    islands = {} if snapshot.islands is None else {"islands": _islands(snapshot.islands, ids)}
+    return document | {key: value for key, value in kept.items() if value} | islands
+
+
+def _islands(islands: Sequence[KeptIsland], ids: Mapping[int, str]) -> list[dict[str, Any]]:
+    """Return the bodies of each island, and what its world does not begin with."""
+    return [
+        {"bodies": [ids[body] for body in island.bodies], "span": island.span, "finer": island.finer}
+        | ({"chosen": list(island.chosen)} if island.chosen is not None else {})
+        | ({"driven": [[ids[int(row[0])], *row[1:]] for row in island.driven]} if island.driven else {})
+        for island in islands
+    ]
 
 
 def _solver(snapshot: WorldSnapshot) -> dict[str, Any]:

@@ -193,7 +193,7 @@ def join_logs(state: State, parts: list[State], logged: list[int]) -> None:
         part.contacts.log[np.arange(first, part.contacts.logged) % len(part.contacts.log)]
         for part, first in zip(parts, logged, strict=True)
     ]
-    impacts = np.concatenate(new)
+    impacts = np.concatenate([state.contacts.log[:0], *new])
     if len(impacts):
         log, first = state.contacts.log, state.contacts.logged
         impacts = impacts[np.argsort(impacts["time"], kind="stable")][-len(log) :]

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
@@ -25,7 +26,8 @@ from physicslab.state.masses import Diverged
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import State
 from physicslab.stepping.island import Island, Part, Rows, fill, join_logs, numbers_of
-from physicslab.stepping.partition import MAX_ISLANDS, groups_of, join, movable_in, why_whole
+from physicslab.stepping.partition import MAX_BODIES, MAX_ISLANDS, groups_of, join, movable_in, why_whole
+from physicslab.stepping.plan import outlived
 from physicslab.stepping.stepper import Advance
 from physicslab.stepping.undo import go_back
 from physicslab.systems.schedule import Schedule
@@ -39,6 +41,37 @@ EXAMINED_S = 2.0
 _LATE = 1e-9
 """Share of that time by which the clock, a sum of rounded steps, may be late."""
 _NEVER = 1 << 60
+
+
+@dataclass(frozen=True, slots=True)
+class KeptIsland:
+    """What a file keeps of an island, beside the contacts, rests and remainders of all bodies.
+
+    Attributes
+    ----------
+    bodies : list of int
+        Its entities.
+    span, finer : float, int
+        The time [s] over which impulses of its contacts act; by which factor its next step needs more
+        substeps.
+    chosen : tuple, optional
+        What was chosen for it as it once moved, where it would not be chosen now (:attr:`StepPlan.kept`).
+    driven : list of lists
+        Of bodies that move at given speeds the entity, x, y [m] and the angle, where rounding has led them
+        elsewhere than in the whole world.
+    """
+
+    bodies: list[int]
+    span: float
+    finer: int
+    chosen: tuple[str, str, int] | None
+    driven: list[list[float]]
+
+    def is_fresh(self, state: State) -> bool:
+        """Whether an island begins so."""
+        simulation = state.simulation
+        begins = self.finer == 1 and self.chosen is None and not self.driven
+        return begins and self.span == simulation.dt / simulation.substeps
 
 
 class Islands:
@@ -57,8 +90,9 @@ class Islands:
         The islands, in the order of their first bodies; empty while the world is one.
     why_one : str
         The reason, if it is.
-    due : bool
-        Whether they are all to be found again before the next step.
+    due, paused : bool
+        Whether they are all to be found again before the next step; whether they are not, as a world that is
+        being restored knows which they are.
     joined : bool
         Whether all have become one, for which steppers must be chosen.
     """
@@ -73,7 +107,7 @@ class Islands:
         self._schedule, self._make = schedule, make
         self.members: tuple[Island, ...] = ()
         self.why_one = "an island itself"
-        self.due, self.joined = make is not None, False
+        self.due, self.paused, self.joined = make is not None, False, False
         self._comes_apart = False
         self._examined = 0
         self._apart_until = -math.inf
@@ -229,7 +263,7 @@ class Islands:
 
     def follow(self, state: State) -> None:
         """Divide what has come apart, and join what is near; nothing is done twice in one state."""
-        if self._make is None:
+        if self._make is None or self.paused:
             return
         if self.due:
             self.due, self._examined = False, _period(state)
@@ -275,20 +309,22 @@ class Islands:
         if not self.members:
             self._divide(state)
             return bool(self.members)
+        found = [
+            groups_of(island.state, island.world.schedule, island.own).groups
+            if island.extent is not None
+            else (island.own,)
+            for island in self.members
+        ]
+        if not len(self.members) < sum(map(len, found)) <= MAX_ISLANDS:
+            return False
         members: list[Island] = []
-        for island in self.members:
-            groups: tuple[Rows, ...] = (island.own,)
-            if island.extent is not None:
-                groups, _ = groups_of(island.state, island.world.schedule, island.own)
-            parts = [island.state.entity_index.entities[group] for group in groups]
-            members += (
-                [island] if len(parts) == 1 else [self._island(state, part, [island.state]) for part in parts]
-            )
-        if len(self.members) < len(members) <= MAX_ISLANDS:
-            self.members = tuple(sorted(members, key=lambda island: int(island.entities[0])))
-            self._begin(state)
-            return True
-        return False
+        for island, groups in zip(self.members, found, strict=True):
+            entities, sources = island.state.entity_index.entities, [island.state]
+            apart = [entities[group] for group in groups] if len(groups) > 1 else []
+            members += [self._island(state, part, sources) for part in apart] or [island]
+        self.members = _in_order(members)
+        self._begin(state)
+        return True
 
     def _join_near(self, state: State, h: float) -> bool:
         """Join islands whose bodies may meet soon, in steps of ``h`` seconds; return whether any were."""
@@ -309,18 +345,19 @@ class Islands:
             return False
         labels = join(np.arange(len(touching)), near)
         members = [island for island in self.members if island.extent is None]
+        all_one = not members and not labels.any()
         for label in dict.fromkeys(labels.tolist()):
             group = [touching[n] for n in np.flatnonzero(labels == label)]
-            if len(group) > 1 and len(group) < len(self.members):
+            if len(group) > 1 and not all_one:
                 entities = np.sort(np.concatenate([island.entities for island in group]))
                 group = [self._island(state, entities, [island.state for island in group])]
             members += group
-        self.members = tuple(sorted(members, key=lambda island: int(island.entities[0])))
-        if labels.any() or len(touching) < len(self.members):
-            self._begin(state)
-        else:
+        self.members = _in_order(members)
+        if all_one:
             self.give_back(state)
             self.joined, self.why_one = True, "bodies came near each other"
+        else:
+            self._begin(state)
         return True
 
     # ---- making and keeping them ---------------------------------------------------------------------------
@@ -333,24 +370,21 @@ class Islands:
             for system in self._schedule.systems
             if type(system) in PHYSICS_SYSTEMS and system.acts_within_step()
         ]
-        with state.active():
+        with state.active():  # a new world is the active one until the end of the block
             part = self._make(systems, state.physics, state.simulation)
         part.schedule.note_into(self._schedule)
         return part
 
-    def _island(
-        self, state: State, entities: Rows, sources: Sequence[State], *, apart: bool = True
-    ) -> Island:
-        """Return an island of some bodies, of which ``sources`` have contacts, sleep and remainders.
-
-        ``apart`` says that wide contacts get other slots than they had.
-        """
+    def _island(self, state: State, entities: Rows, sources: Sequence[State]) -> Island:
+        """Return an island of some bodies, of which ``sources`` have contacts, sleep and remainders."""
         island = Island(self.blank(state), entities)
         part = island.state
         fixed = state.table(Transform).present & ~movable_in(state)
         fill(state, part, entities, state.entity_index.entities[np.flatnonzero(fixed)])
         part.time, part.steps = state.time, state.steps
         island.world.synchronise()
+        # Slots of wide contacts are those of one world, and no matter of few bodies.
+        apart = len(sources) > 1 or len(entities) <= MAX_BODIES
         kept = [KeptContacts.of(source.contacts).among(entities, apart=apart) for source in sources]
         KeptContacts.joined(kept, part.contacts.counts).restore(part)
         for source in sources:
@@ -360,17 +394,48 @@ class Islands:
         island.measure()
         return island
 
-    def adopt(self, state: State, parts: Sequence[tuple[Rows, Part]]) -> None:
-        """Go on with islands that were made elsewhere: their own bodies, and the worlds that advance them."""
-        self.due, self._examined = False, _period(state)
+    def adopt(self, state: State, members: Sequence[Island]) -> None:
+        """Go on with islands that were made elsewhere; without any the world is one."""
+        self.due, self.paused, self._examined = False, False, _period(state)
         self._survey(state)
-        self.members = tuple(Island(part, entities) for entities, part in parts)
+        self.members = _in_order(members)
         if self.members:
             self._entities = None
             self._follow_rows(state)
             for island in self.members:
                 island.measure()
             self._begin(state)
+
+    def keep(self, state: State) -> list[KeptIsland] | None:
+        """Return what a file keeps of the islands; ``None`` where a loaded world would find the same."""
+        present = [island.entities.tolist() for island in self.members]
+        kept = [_kept(state, island) for island in self.members]
+        found: list[list[int]] = []
+        if self._make is not None and why_whole(state, self._schedule) is None:
+            groups, _ = groups_of(state, self._schedule, np.flatnonzero(movable_in(state)))
+            entities = state.entity_index.entities
+            found = [entities[group].tolist() for group in groups] if len(groups) > 1 else []
+        return None if found == present and all(one.is_fresh(state) for one in kept) else kept
+
+    def restore(self, state: State, kept: Sequence[KeptIsland]) -> None:
+        """Go on with the islands of a file, whose contacts, rests and remainders the state has."""
+        bodies = np.array(sorted(body for one in kept for body in one.bodies), np.int64)
+        if len(kept) and not np.array_equal(bodies, state.entity_index.entities[movable_in(state)]):
+            self.find_again()  # what moves was edited in the file
+            return
+        members: list[Island] = []
+        for one in kept:
+            island = self._island(state, np.array(sorted(one.bodies), np.int64), [state])
+            part = island.state
+            part.contacts.impulse_dt, part.contacts.substep_factor = one.span, one.finer
+            for entity, *pose in one.driven:
+                row, transform = part.entity_index.row_of[int(entity)], part.table(Transform)
+                transform["position"][row], transform["angle"][row] = pose[:2], pose[2]
+            if one.chosen is not None:
+                with part.active():
+                    island.world.resume(*one.chosen)
+            members.append(island)
+        self.adopt(state, members)
 
     def contacts(self, state: State, *, rescaled: bool = True) -> KeptContacts:
         """Return the contacts of all islands.
@@ -399,9 +464,32 @@ class Islands:
         self.find_again()
 
 
+def _in_order(members: Iterable[Island]) -> tuple[Island, ...]:
+    """Return islands in the order of their first bodies."""
+    return tuple(sorted(members, key=lambda island: int(island.entities[0])))
+
+
+def _kept(state: State, island: Island) -> KeptIsland:
+    """Return what a file keeps of an island."""
+    part, contacts = island.state, island.state.contacts
+    span = contacts.impulse_dt or part.simulation.dt / part.simulation.substeps
+    rows = np.flatnonzero(part.table(Velocity).present & ~movable_in(part))
+    there = state.entity_index.rows_of(part.entity_index.entities[rows])
+    own, whole = part.table(Transform), state.table(Transform)
+    moved = (own["position"][rows] != whole["position"][there]).any(axis=1)
+    moved |= own["angle"][rows] != whole["angle"][there]
+    driven = [
+        [int(part.entity_index.entities[row]), *own["position"][row].tolist(), float(own["angle"][row])]
+        for row in rows[moved]
+    ]
+    with part.active():
+        chosen = outlived(part, island.world.schedule, island.world.plan)
+    return KeptIsland(island.entities.tolist(), span, contacts.substep_factor, chosen, driven)
+
+
 def _period(state: State) -> int:
     """Return how often it was time to look for islands."""
-    return math.floor((state.time + _LATE) / EXAMINED_S)
+    return math.floor((state.time + _LATE) / EXAMINED_S) if math.isfinite(state.time) else 0
 
 
 def _joined_remainders(kept: Sequence[Remainders]) -> Remainders:
