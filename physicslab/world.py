@@ -9,6 +9,8 @@ import time
 from collections.abc import Iterable, Iterator
 from typing import Never
 
+import numpy as np
+
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows
 from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationConfig
@@ -344,6 +346,13 @@ class World(State):
     def interpreted(self) -> tuple[str, ...]:
         """The forces that Python computes, call by call, where a compiled loop could run."""
         return self.schedule.interpreted
+
+    @property
+    def parts(self) -> tuple[World, ...]:
+        """The worlds that advance this one: it itself, or those of its islands, that with most bodies first."""
+        worlds = [island.state for island in self.islands.members]
+        parts = tuple(world for world in worlds if isinstance(world, World)) or (self,)
+        return tuple(sorted(parts, key=lambda part: -int(np.count_nonzero(part.bodies.inverse_mass))))
 
     @quiet
     def add_up_forces(self) -> None:

@@ -15,6 +15,7 @@ from physicslab.ecs.context import create_numbered
 from physicslab.ecs.table import Table
 from physicslab.kernels import near_counts
 from physicslab.state.state import State
+from physicslab.stepping.flow import Flow
 from physicslab.stepping.partition import Extent
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.run import Stepped
@@ -101,7 +102,9 @@ class Island:
         with own.active():
             while done < steps:
                 self.world.synchronise()
-                done += self.world.advance(h, steps - done)
+                # Smooth motion depends on where it is divided, and that on what else there is.
+                single = self.extent is not None and isinstance(self.world.stepper_for(h), Flow)
+                done += self.world.advance(h, 1 if single else steps - done)
                 own.time = time + done * h
         state.account.sums += own.account.sums - sums
         for name, count in zip(_COUNTED, counts, strict=True):
