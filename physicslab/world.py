@@ -349,7 +349,7 @@ class World(State):
 
     @property
     def parts(self) -> tuple[World, ...]:
-        """The worlds that advance this one: it itself, or those of its islands, that with most bodies first."""
+        """The worlds that advance this one: itself, or those of its islands, that with most bodies first."""
         worlds = [island.state for island in self.islands.members]
         parts = tuple(world for world in worlds if isinstance(world, World)) or (self,)
         return tuple(sorted(parts, key=lambda part: -int(np.count_nonzero(part.bodies.inverse_mass))))

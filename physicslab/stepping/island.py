@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Name
+from physicslab.components import Name, Shape
 from physicslab.contacts.arguments import motion_of
 from physicslab.ecs.component import Component
 from physicslab.ecs.context import create_numbered
@@ -54,8 +55,8 @@ class Island:
         Their rows in its world, and in the whole one.
     every, every_there : int64 arrays (m,)
         Those of all its entities, fixed bodies and springs among them.
-    extent : Extent, optional
-        Where its bodies are; ``None`` where none can touch another.
+    touches : bool
+        Whether any of its bodies can touch another.
     """
 
     def __init__(self, world: Part, entities: Rows) -> None:
@@ -63,7 +64,7 @@ class Island:
         self.world: Part = world
         self.state: State = world
         self.entities = entities
-        self.extent: Extent | None = None
+        self.touches = False
         self.own = self.there = self.every = self.every_there = np.zeros(0, np.int64)
 
     def follow_rows(self, state: State) -> None:
@@ -72,16 +73,17 @@ class Island:
         self.own, self.there = index.rows_of(self.entities), state.entity_index.rows_of(self.entities)
         self.every = np.flatnonzero(index.entities)
         self.every_there = state.entity_index.rows_of(index.entities[self.every])
+        self.touches = bool(self.state.table(Shape).present[self.own].any())
 
-    def measure(self) -> None:
-        """Note where its bodies are now."""
+    def extent(self) -> Extent:
+        """Return where its bodies are now."""
         stores = [force for force in self.world.schedule.forces if force.potential is not None]
         stored = sum(
             force.potential_energy(self.state)
             for force in stores
             if force.uniform_acceleration(self.state) is None
         )
-        self.extent = Extent.of(self.state, self.own, stored)
+        return Extent.of(self.state, self.own, stored)
 
     def take(self, state: State, changed: NDArray[np.bool_]) -> None:
         """Follow what was edited in rows (rows,) of the whole world, which books it."""
@@ -103,7 +105,7 @@ class Island:
             while done < steps:
                 self.world.synchronise()
                 # Smooth motion depends on where it is divided, and that on what else there is.
-                single = self.extent is not None and isinstance(self.world.stepper_for(h), Flow)
+                single = self.touches and isinstance(self.world.stepper_for(h), Flow)
                 done += self.world.advance(h, 1 if single else steps - done)
                 own.time = time + done * h
         state.account.sums += own.account.sums - sums
@@ -190,15 +192,30 @@ def numbers_of(state: State) -> list[NDArray[Any]]:
     ]
 
 
+def rows_changed(numbers: Sequence[NDArray[Any]], left: bytes) -> NDArray[np.bool_]:
+    """Return in which rows (rows,) columns are not as they were ``left``; all if there were others."""
+    changed = np.zeros(len(numbers[0]), np.bool_)
+    if len(left) != sum(column.nbytes for column in numbers):
+        return ~changed
+    start = 0
+    for column in numbers:
+        end = start + column.nbytes
+        before = np.frombuffer(left[start:end], column.dtype).reshape(column.shape)
+        changed |= (column != before).reshape(len(changed), -1).any(axis=1)
+        start = end
+    return changed
+
+
 def join_logs(state: State, parts: list[State], logged: list[int]) -> None:
     """Add the impacts of all parts, from numbers ``logged`` on, to the log of the whole, in order of time."""
     new = [
         part.contacts.log[np.arange(first, part.contacts.logged) % len(part.contacts.log)]
         for part, first in zip(parts, logged, strict=True)
+        if part.contacts.logged > first
     ]
-    impacts = np.concatenate([state.contacts.log[:0], *new])
-    if len(impacts):
+    if new:
         log, first = state.contacts.log, state.contacts.logged
+        impacts = np.concatenate(new)
         impacts = impacts[np.argsort(impacts["time"], kind="stable")][-len(log) :]
         log[np.arange(first, first + len(impacts)) % len(log)] = impacts
         state.contacts.logged += len(impacts)

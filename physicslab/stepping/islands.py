@@ -16,7 +16,6 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.contacts.arguments import motion_of
@@ -25,7 +24,7 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.state.masses import Diverged
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import State
-from physicslab.stepping.island import Island, Part, Rows, fill, join_logs, numbers_of
+from physicslab.stepping.island import Island, Part, Rows, fill, join_logs, numbers_of, rows_changed
 from physicslab.stepping.partition import MAX_BODIES, MAX_ISLANDS, groups_of, join, movable_in, why_whole
 from physicslab.stepping.plan import outlived
 from physicslab.stepping.stepper import Advance
@@ -111,7 +110,7 @@ class Islands:
         self._comes_apart = False
         self._examined = 0
         self._apart_until = -math.inf
-        self._left: list[NDArray[Any]] = []
+        self._left = b""
         self._entities: Rows | None = None
 
     # ---- as a stepper --------------------------------------------------------------------------------------
@@ -180,17 +179,16 @@ class Islands:
             self._join_near(state, h)
         start, made, parts = state.time, 0, 1
         state.substeps = state.simulation.substeps
-        smooth = [island for island in self.members if island.extent is None]
+        smooth = [island for island in self.members if not island.touches]
         try:
             for island in smooth:
                 parts = max(parts, island.go(state, start, h, steps))
             while made < steps and self.members:
-                touching = [island for island in self.members if island.extent is not None]
+                touching = [island for island in self.members if island.touches]
                 count = min(self.steps_ahead(state, h), steps - made) if touching else steps - made
                 logged = [island.state.contacts.logged for island in touching]
                 for island in touching:
                     parts = max(parts, island.go(state, state.time, h, count))
-                    island.measure()
                 join_logs(state, [island.state for island in touching], logged)
                 made += count
                 state.time = start + made * h
@@ -215,17 +213,11 @@ class Islands:
     def _take_edits(self, state: State) -> None:
         """Let the islands follow what was changed in the whole world since the last step."""
         self._follow_rows(state)
-        numbers, left = numbers_of(state), self._left
-        if len(numbers) == len(left) and all(map(np.array_equal, numbers, left)):
+        if b"".join(numbers_of(state)) == self._left:
             return
-        changed = np.ones(len(state.entity_index), np.bool_)
-        if len(numbers) == len(left) and all(len(column) == len(changed) for column in left):
-            others = [now != before for now, before in zip(numbers, left, strict=True)]
-            changed = np.any([other.any(axis=1) if other.ndim == 2 else other for other in others], axis=0)
+        changed = rows_changed(numbers_of(state), self._left)
         for island in self.members:
             island.take(state, changed)
-            if island.extent is not None:
-                island.measure()
         self._apart_until = -math.inf
         self._join_near(state, state.simulation.dt)
 
@@ -236,7 +228,7 @@ class Islands:
         for n, island in enumerate(self.members):
             island.write_back(state, rows if n == 0 else rows[:0])
         state.sleep.count = int(np.count_nonzero(state.sleep.asleep))
-        self._left = [column.copy() for column in numbers_of(state)]
+        self._left = b"".join(numbers_of(state))
         own, whole = weakref.ref(self), weakref.ref(state)
 
         def show() -> None:
@@ -296,7 +288,7 @@ class Islands:
         """Go on with islands that were found or joined."""
         self._entities = None
         self._follow_rows(state)
-        self._comes_apart = any(island.extent is not None for island in self.members)
+        self._comes_apart = any(island.touches for island in self.members)
         self._apart_until = -math.inf
         self._write_back(state)
 
@@ -311,7 +303,7 @@ class Islands:
             return bool(self.members)
         found = [
             groups_of(island.state, island.world.schedule, island.own).groups
-            if island.extent is not None
+            if island.touches
             else (island.own,)
             for island in self.members
         ]
@@ -328,23 +320,21 @@ class Islands:
 
     def _join_near(self, state: State, h: float) -> bool:
         """Join islands whose bodies may meet soon, in steps of ``h`` seconds; return whether any were."""
-        touching = [island for island in self.members if island.extent is not None]
+        touching = [island for island in self.members if island.touches]
         if not touching or (state.time < self._apart_until - 0.5 * h and h <= state.simulation.dt):
             return False
         near: list[tuple[int, int]] = []
         steps = _NEVER
-        for (i, one), (j, other) in combinations(enumerate(touching), 2):
-            assert one.extent is not None
-            assert other.extent is not None
-            if one.extent.meets(other.extent, h):
-                near.append((i, j))
-            else:
-                steps = min(steps, one.extent.steps_apart(other.extent, h))
+        extents = [island.extent() for island in touching]
+        for (i, one), (j, other) in combinations(enumerate(extents), 2):
+            apart = one.steps_apart(other, h)
+            near += [(i, j)] if apart == 0 else []
+            steps = min(steps, apart or steps)
         self._apart_until = state.time + min(steps, 1 << 20) * h
         if not near:
             return False
         labels = join(np.arange(len(touching)), near)
-        members = [island for island in self.members if island.extent is None]
+        members = [island for island in self.members if not island.touches]
         all_one = not members and not labels.any()
         for label in dict.fromkeys(labels.tolist()):
             group = [touching[n] for n in np.flatnonzero(labels == label)]
@@ -390,8 +380,6 @@ class Islands:
         for source in sources:
             carry_sleep(source, part)
         part.remainders = _joined_remainders([source.remainders for source in sources])
-        island.follow_rows(state)
-        island.measure()
         return island
 
     def adopt(self, state: State, members: Sequence[Island]) -> None:
@@ -400,10 +388,6 @@ class Islands:
         self._survey(state)
         self.members = _in_order(members)
         if self.members:
-            self._entities = None
-            self._follow_rows(state)
-            for island in self.members:
-                island.measure()
             self._begin(state)
 
     def keep(self, state: State) -> list[KeptIsland] | None:
@@ -452,7 +436,7 @@ class Islands:
             for island in self.members:
                 carry_sleep(island.state, state)
             state.remainders = _joined_remainders([island.state.remainders for island in self.members])
-        state.contacts.source, self.members, self._left = None, (), []
+        state.contacts.source, self.members, self._left = None, (), b""
 
     def find_again(self) -> None:
         """Let all islands be found before the next step."""
@@ -460,7 +444,7 @@ class Islands:
 
     def forget(self, state: State) -> None:
         """Let the world be one, as it is; islands are found again before its next step."""
-        state.contacts.source, self.members, self._left = None, (), []
+        state.contacts.source, self.members, self._left = None, (), b""
         self.find_again()
 
 

@@ -171,46 +171,44 @@ class Extent:
     gravity: float
 
     @classmethod
-    def of(cls, state: State, rows: Rows, stored: float) -> Extent | None:
-        """Return that of some rows; ``None`` where nothing has a Shape. Springs hold ``stored`` J."""
-        rows = rows[state.table(Shape).present[rows]]
-        if not len(rows):
-            return None
+    def of(cls, state: State, rows: Rows, stored: float) -> Extent:
+        """Return that of the rows of an island, whose springs hold ``stored`` energy [J]."""
+        shaped, velocity = state.table(Shape).present, state.table(Velocity)
+        rows, inverse_mass = rows[shaped[rows]], state.bodies.inverse_mass
         position, radius = state.table(Transform)["position"][rows], _radii(state, rows)
-        velocity, inverse_mass = state.table(Velocity), state.bodies.inverse_mass
         speed = np.hypot(*velocity["linear"][rows].T)
-        driven = state.table(Shape).present & velocity.present & (inverse_mass == 0.0)
+        driven = shaped & velocity.present & (inverse_mass == 0.0)
         pushed = np.hypot(*velocity["linear"][driven].T) + np.abs(velocity["angular"][driven])
         fastest = float(speed.max()) + 2.0 * float(pushed.max(initial=0.0))
-        fastest += math.sqrt(2.0 * max(stored, 0.0) * float(inverse_mass[rows].max()))
-        low, high = (position - radius[:, None]).min(axis=0), (position + radius[:, None]).max(axis=0)
+        if stored > 0.0:
+            fastest += math.sqrt(2.0 * stored * float(inverse_mass[rows].max()))
+        around = radius[:, None]
+        low, high = (position - around).min(axis=0), (position + around).max(axis=0)
         return cls(position, radius, speed, low, high, fastest, _gravity(state))
 
-    def meets(self, other: Extent, h: float) -> bool:
-        """Whether a body of this island may meet one of another soon, in steps of ``h`` seconds."""
-        soon = max(NEAR_S, NEAR_STEPS * h)
-        fall = self.gravity * soon * soon
-        if self._apart(other) > (self.fastest + other.fastest) * soon + fall:
-            return False
-        few, many = (self, other) if len(self.radius) < len(other.radius) else (other, self)
-        for position, radius, speed in zip(few.position, few.radius, few.speed, strict=True):
-            gap = np.hypot(*(many.position - position).T) - many.radius - radius
-            if (gap <= (many.speed + speed) * soon + fall).any():
-                return True
-        return False
-
     def steps_apart(self, other: Extent, h: float) -> int:
-        """Return how many steps of ``h`` seconds are made before :meth:`meets` may be true."""
-        soon, steps = max(NEAR_S, NEAR_STEPS * h), _MAX_STEPS
-        gap = self._apart(other)
-        while steps > 1:
-            span = steps * h
-            speed = self.fastest + other.fastest + 2.0 * self.gravity * span
-            if gap > _SAFETY * speed * (span + soon) + self.gravity * soon * soon:
+        """Return how many steps of ``h`` seconds it is certain that no body comes near one of another island.
+
+        Zero means that two may meet soon; whether they do so depends on these two alone.
+        """
+        soon = max(NEAR_S, NEAR_STEPS * h)
+        fall, fastest = self.gravity * soon * soon, self.fastest + other.fastest
+        gap = float(np.maximum(self.low - other.high, other.low - self.high).max())
+        steps = self._steps(gap, fastest, soon, h)
+        if steps > 1:
+            return steps
+        apart = self.position[:, None] - other.position
+        gaps = np.hypot(apart[..., 0], apart[..., 1]) - self.radius[:, None] - other.radius
+        if (gaps <= (self.speed[:, None] + other.speed) * soon + fall).any():
+            return 0
+        return max(1, self._steps(float(gaps.min()), fastest, soon, h))
+
+    def _steps(self, gap: float, fastest: float, soon: float, h: float) -> int:
+        """Return how many steps bodies need at least to be near that are ``gap`` metres apart."""
+        steps = _MAX_STEPS
+        while steps:
+            speed = fastest + 2.0 * self.gravity * steps * h
+            if gap > _SAFETY * speed * (steps * h + soon) + self.gravity * soon * soon:
                 break
             steps //= 2
         return steps
-
-    def _apart(self, other: Extent) -> float:
-        """Return the distance of the boxes along an axis [m], negative where they overlap."""
-        return float(np.maximum(self.low - other.high, other.low - self.high).max())
