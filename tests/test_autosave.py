@@ -20,7 +20,7 @@ from physicslab.desktop.sessions import Session, session_folder
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import circle
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.window.recovery import Recovery
+from physicslab.view.window.recent import Recovery
 from physicslab.view.window.window import Window
 from physicslab.world import World
 

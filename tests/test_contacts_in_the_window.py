@@ -14,7 +14,7 @@ from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import load_scene, read_scene, write_scene
 from physicslab.prefabs import box, circle
-from physicslab.view.panels.readings import method_lines
+from physicslab.view.workbench.figures import method_lines
 from physicslab.world import World
 
 FLOOR, LOWEST, TOP = 1, 2, 11

@@ -15,7 +15,7 @@ from recording import RecordingCanvas
 
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import pendulum
-from physicslab.view.panels.error_study import ErrorStudy
+from physicslab.view.window.lab_process import ErrorStudy
 
 
 def run(asked: str, integrator: str, cpu_ms: float | None, error: float | None) -> dict[str, object]:

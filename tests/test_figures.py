@@ -19,11 +19,10 @@ from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.view.canvas.quantities import percentage, quantity, round_quantity, vector_quantity
 from physicslab.view.canvas.theme import DARK
-from physicslab.view.panels.figures import EnergyWatch, measure_world
-from physicslab.view.panels.scale_bar import draw_scale_bar
+from physicslab.view.overlay.edges import draw_scale_bar
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.workbench import energy_flows
-from physicslab.view.workbench.energy_flows import parts_of
+from physicslab.view.workbench.figures import EnergyWatch, measure_world
+from physicslab.view.workbench.world_panel import parts_of
 from physicslab.world import World
 
 
@@ -166,7 +165,7 @@ def test_a_bar_of_what_is_negative_lies_left_of_its_zero(monkeypatch: pytest.Mon
     def bar(ui: Ui, label: str, value: str, share: float, colour: object, *, zero: float, tip: str) -> None:
         drawn[label] = zero, zero + share
 
-    monkeypatch.setattr(energy_flows, "bar", bar)
+    monkeypatch.setattr(Ui, "bar", bar)
     recorded(load_scene("two_planets"))[0].frames(2)
     (zero, kinetic), (left, stored), (again, total) = (
         drawn[f"{kind} energy"] for kind in ("Kinetic", "Potential", "Total")
@@ -370,7 +369,7 @@ def test_the_scale_bar_is_as_long_as_it_says(scale: float, words: str) -> None:
     desk = Desk(empty_world(), canvas)
     desk.window.camera.scale = scale
     canvas.calls.clear()
-    draw_scale_bar(desk.window.camera, 600, 400, 14, canvas, desk.window.theme)
+    draw_scale_bar(desk.window.drawing, 600, 400)
     assert canvas.words == [words]
     (lines,) = canvas.called("lines")
     assert lines["end"][0][0] - lines["start"][0][0] == pytest.approx(float(words[:-2]) * scale)

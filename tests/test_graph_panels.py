@@ -12,7 +12,7 @@ from plotting import CTRL, SHIFT, ball_of, drawn_lines, graph_of, pause
 
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.controls import dashboard_actions, file_actions
-from physicslab.view.window.plot_data import line_to_show
+from physicslab.view.window.record import line_to_show
 
 
 @pytest.fixture

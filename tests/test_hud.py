@@ -17,7 +17,7 @@ from physicslab.prefabs import box, circle, pendulum
 from physicslab.view.canvas.canvas import Align, Rect, TextStyle
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.panels.figures import FrameMeter
+from physicslab.view.workbench.figures import FrameMeter
 from physicslab.world import World
 
 SIZES = [(1280, 720), (800, 600), (1920, 1080), (1000, 1300), (720, 540), (2560, 1440)]

@@ -15,9 +15,8 @@ from physicslab.components import Mass, Material, Name, Shape, Transform, Veloci
 from physicslab.diagnostics.collision import read_collision
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.controls.controls import CONTROLS
-from physicslab.view.panels.collision_words import AGREES, law_steps, story
-from physicslab.view.window.impact_list import LIMIT, ImpactList
-from physicslab.view.window.microscope import FRAMES
+from physicslab.view.window.impacts import FRAMES, LIMIT, ImpactList
+from physicslab.view.workbench.collision_words import AGREES, law_steps, story
 
 SHIFT = pygame.KMOD_SHIFT
 

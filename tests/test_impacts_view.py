@@ -13,7 +13,7 @@ from recording import RecordingCanvas
 from physicslab.contacts.impact_reader import ImpactReader
 from physicslab.prefabs import circle
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.overlay.impacts import RecentImpacts
+from physicslab.view.overlay.contact_samples import RecentImpacts
 from physicslab.world import World
 
 

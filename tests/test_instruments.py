@@ -27,7 +27,7 @@ from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.measuring import MEASURING_TOOLS
 from physicslab.view.overlay.instruments import angle_between, instrument_of
-from physicslab.view.workbench.stopwatch_panel import arrow_of, crossings_csv
+from physicslab.view.workbench.instrument_panels import arrow_of, crossings_csv
 from physicslab.world import World
 
 CTRL = pygame.KMOD_CTRL

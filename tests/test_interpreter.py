@@ -24,7 +24,7 @@ from desk import bits
 
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.desktop import compiling
-from physicslab.desktop.small_scenes import INTERPRETING_LIMIT, SmallScenes
+from physicslab.desktop.compiling import INTERPRETING_LIMIT, SmallScenes
 from physicslab.diagnostics.account import measure_account
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import WindowConfig

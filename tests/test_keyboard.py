@@ -12,7 +12,8 @@ from physicslab.components import Mass, Shape, Spring, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle
 from physicslab.scenes import SCENES
-from physicslab.view.controls.tools import PALETTE, REMOVE, SPRING, Tool
+from physicslab.view.controls.tool import Tool
+from physicslab.view.controls.tools import PALETTE, REMOVE, SPRING
 
 
 @pytest.fixture

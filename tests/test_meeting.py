@@ -8,13 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from physicslab.kernels.arguments import Sizes
 from physicslab.kernels.events import encounter, meeting
 from physicslab.kernels.events.meeting import Course
 from physicslab.kernels.events.path import FIELDS
 from physicslab.kernels.interpreter import twin_of
 from physicslab.kernels.narrow.outline import Outline
 from physicslab.kernels.records import MANIFOLD
+from physicslab.state.shapes import blank_shapes, with_names
 
 meet_line, meet_circle_circle = compiled(meeting.meet_line), compiled(meeting.meet_circle_circle)
 meet_circle_box, meet_box_box = compiled(meeting.meet_circle_box), compiled(meeting.meet_box_box)
@@ -154,8 +154,12 @@ def test_no_pair_meets_while_it_is_taken_as_apart(
     paths = np.zeros((2, FIELDS))
     paths[1, [0, 2]], paths[1, [4, 6]], paths[0, [4, 6]] = place, rates[:2], rates[2:]
     paths[1, 9] = -9.81 * pulled
-    sizes = Sizes(np.array(kinds), np.array([0.4, 0.3]), np.array([0.6, 1.5]), np.array([0.8, 0.2]))
+    plain = blank_shapes(2)
+    box = np.array(kinds) == 2
+    plain[0][:] = np.where(box, 4, 1), box
+    plain[1][:3] = [0.3, 0.75] * box, [0.4, 0.1] * box, [0.4, 0.3] * ~box
+    shapes = with_names(plain)
     walls, angle = np.array([-5.0, -5.0, 5.0, 5.0]), np.array(angles)
-    apart = time_apart(manifold[0], paths, angle, sizes, walls, now, 1e-10)
-    meets, _ = meeting_of(manifold[0], paths, angle, sizes, walls, now, 0.0, SPAN, 0.0)
+    apart = time_apart(manifold[0], paths, angle, shapes, walls, now, 1e-10)
+    meets, _ = meeting_of(manifold[0], paths, angle, shapes, walls, now, 0.0, SPAN, 0.0)
     assert 0.0 <= apart <= meets

@@ -20,7 +20,7 @@ from pathlib import Path
 from physicslab.files.new_scene import save_last_good
 from physicslab.files.new_scene import save_new_scene
 from physicslab.files.scene import load_scene
-from physicslab.view.controls.scene_files import new_scene_paths
+from physicslab.view.controls.file_actions import new_scene_paths
 folder, start = Path(sys.argv[1]), float(sys.argv[2])
 world = load_scene("drop")
 time.sleep(max(0.0, start - time.time()))

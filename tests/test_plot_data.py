@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from physicslab.view.window import record as record_module
-from physicslab.view.window.plot_data import (
+from physicslab.view.window.record import (
+    Record,
     area_between,
     line_to_show,
     path_to_show,
@@ -15,7 +16,6 @@ from physicslab.view.window.plot_data import (
     slope_between,
     unbroken,
 )  # fmt: skip
-from physicslab.view.window.record import Record
 
 VALUES = st.floats(-1e6, 1e6)
 GAPPY = st.one_of(VALUES, st.just(float("nan")))

@@ -11,7 +11,7 @@ from test_hud import frame, recorded
 from physicslab.components import Held, Velocity
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import circle
-from physicslab.view.controls.scene_files import new_scene_paths, newest_scene
+from physicslab.view.controls.file_actions import new_scene_paths, newest_scene
 
 CTRL = pygame.KMOD_LCTRL
 

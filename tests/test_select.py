@@ -14,7 +14,7 @@ from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import ForceSystem, Stage, at
-from physicslab.view.panels.readings import method_lines
+from physicslab.view.workbench.figures import method_lines
 from physicslab.world import World
 
 

@@ -14,7 +14,7 @@ from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.canvas.display import Display
 from physicslab.view.canvas.drawable_text import MAX_LETTERS
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.panels.panels import broken
+from physicslab.view.overlay.banners import broken
 
 WORDS = {
     "invisible": "\u200b\u200b\u2060\ufeff",

@@ -16,8 +16,8 @@ from physicslab.history import SetField
 from physicslab.lab.accuracy.trust import assess, moments_of
 from physicslab.lab.jobs import result_of
 from physicslab.prefabs import circle, pendulum
-from physicslab.view.panels import trust_watch
-from physicslab.view.panels.trust_watch import BODIES_LIMIT, TrustWatch
+from physicslab.view.window import trust_watch
+from physicslab.view.window.trust_watch import BODIES_LIMIT, TrustWatch
 from physicslab.view.workbench.trust_badge import BADGE
 
 PROGRAM = """

@@ -33,8 +33,9 @@ from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.controls import CONTROLS, Control
-from physicslab.view.controls.tools import HAND, MORE_TOOLS, PALETTE, PAN, SPAWN_TOOLS, TOOLS, Tool
-from physicslab.view.window.recovery import Recovery
+from physicslab.view.controls.tool import Tool
+from physicslab.view.controls.tools import HAND, MORE_TOOLS, PALETTE, PAN, SPAWN_TOOLS, TOOLS
+from physicslab.view.window.recent import Recovery
 from physicslab.view.window.window import LEVELS, Window
 from physicslab.world import World
 

@@ -10,6 +10,7 @@ from physicslab.components.material import Material
 from physicslab.components.meter import Meter
 from physicslab.components.name import Name
 from physicslab.components.note import Note
+from physicslab.components.pin import Pin
 from physicslab.components.protractor import Protractor
 from physicslab.components.ruler import Ruler
 from physicslab.components.shape import Shape
@@ -22,5 +23,5 @@ from physicslab.components.velocity import Velocity
 
 __all__ = [
     "Drag", "Gate", "Graph", "GraphLine", "Held", "Mass", "Material", "Meter", "Name", "Note",
-    "Protractor", "Ruler", "Shape", "Slider", "Spring", "Strobe", "Trail", "Transform", "Velocity",
+    "Pin", "Protractor", "Ruler", "Shape", "Slider", "Spring", "Strobe", "Trail", "Transform", "Velocity",
 ]  # fmt: skip

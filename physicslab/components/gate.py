@@ -1,7 +1,5 @@
 """A light gate: a line that notes what crosses it, and when."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 from physicslab.components.lengths import point

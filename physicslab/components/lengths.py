@@ -1,13 +1,9 @@
 """Fields of components that are points and lengths: their unit, and how large they may be."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from physicslab.ecs.component import field
 from physicslab.ecs.fields import LENGTH_LIMIT
-
-__all__ = ["extent", "point"]
 
 
 def point(x: float, y: float, meaning: str) -> Any:

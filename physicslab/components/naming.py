@@ -1,7 +1,5 @@
 """Names of entities without an id: their kind, in plain words, and their number."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 
@@ -15,8 +13,6 @@ from physicslab.components.trail import Trail
 from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 from physicslab.ecs.text import in_words
-
-__all__ = ["name_by_kinds", "plain_name"]
 
 _OF_BODIES = (Transform, Velocity, Mass, Material, Drag, Trail, Held, Name)
 """Components that do not say what an entity is."""

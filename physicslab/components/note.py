@@ -4,8 +4,6 @@ Instruments have points. Each is two fields: where it is, and the body that it i
 ``place_body``; without a body it is a point of the world.
 """
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 from physicslab.components.lengths import point

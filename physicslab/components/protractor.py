@@ -1,7 +1,5 @@
 """An angle in the world."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 from physicslab.components.lengths import point

@@ -1,16 +1,9 @@
 """Quantities of a body and of the world: names and units, the one list of them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from physicslab.ecs.fields import InvalidValue
-
-__all__ = [
-    "BODY_QUANTITIES", "ENERGY_CAUSES", "MOMENTUM_CAUSES", "QUANTITIES", "UNMEASURED_MOMENTA",
-    "WORLD_QUANTITIES", "Quantity",
-]  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,25 +2,58 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from physicslab.components.lengths import extent
 from physicslab.ecs.component import Component, InvalidValue, component, field
 
-CIRCLE = 1
-"""Code of a circle in the ``kind`` column; 0 is no shape."""
-BOX = 2
-"""Code of a box in the ``kind`` column."""
+
+class Kind(NamedTuple):
+    """A convex shape as data: a core, which sizes stretch, and a radius that rounds it.
+
+    Attributes
+    ----------
+    core : tuple of pairs of floats
+        Its 1 to 8 vertices, counter-clockwise about their centre of mass, in units of ``x`` and ``y``.
+    x, y, radius : str
+        The fields of :class:`Shape` that stretch the core along its axes, and that round it; empty for none.
+    """
+
+    core: tuple[tuple[float, float], ...]
+    x: str = ""
+    y: str = ""
+    radius: str = ""
+
+    @property
+    def sizes(self) -> tuple[str, ...]:
+        """The fields that a shape of this kind has."""
+        return tuple(dict.fromkeys(name for name in (self.radius, self.x, self.y) if name))
+
+
+KINDS = {
+    "circle": Kind(((0.0, 0.0),), radius="radius"),
+    "box": Kind(((0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)), x="width", y="height"),
+}
+"""Every kind of shape. A new one is a row; loops read the table :mod:`physicslab.kernels.geometry.shapes`."""
+CIRCLE, BOX = 1, 2
+"""Codes in the ``kind`` column: their places in the list, from 1 on; 0 is no shape."""
+
+
+def kind_of(code: int) -> Kind:
+    """Return the kind of a code in the ``kind`` column, which must not be 0."""
+    return list(KINDS.values())[code - 1]
 
 
 @component
 class Shape(Component):
     """The outline of a body, centred on its Transform. An entity without it cannot touch anything."""
 
-    kind: str = field(choices=("circle", "box"), fixed=True, meaning="what sort of outline")
+    kind: str = field(choices=tuple(KINDS), fixed=True, meaning="what sort of outline")
     radius: float = extent(0.0, "radius of a circle")
     width: float = extent(0.0, "extent of a box along its own x axis")
     height: float = extent(0.0, "extent of a box along its own y axis")
 
-    SIZES = {"circle": ("radius",), "box": ("width", "height")}  # noqa: RUF012
+    SIZES = {name: kind.sizes for name, kind in KINDS.items()}  # noqa: RUF012
 
     @staticmethod
     def circle(radius: float) -> Shape:

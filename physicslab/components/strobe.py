@@ -1,7 +1,5 @@
 """Positions of a body at regular moments, as pictures by a strobe light show it."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 from physicslab.ecs.component import Component, component, field

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from physicslab.components import Material, Shape, Transform, Velocity
+from physicslab.components import Material, Transform, Velocity
 from physicslab.kernels.arguments import (
     ActingTuple,
     BoundsTuple,
@@ -10,8 +10,9 @@ from physicslab.kernels.arguments import (
     MaterialsTuple,
     MotionTuple,
     NearTuple,
-    SizesTuple,
 )  # fmt: skip
+from physicslab.kernels.constraint.soft_joints import MEASURED, JointsTuple
+from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.state.state import State
 
 
@@ -21,10 +22,9 @@ def motion_of(state: State) -> MotionTuple:
     return (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
 
 
-def sizes_of(state: State) -> SizesTuple:
-    """Return kinds and sizes of shapes."""
-    shape = state.table(Shape)
-    return (shape["kind"], shape["radius"], shape["width"], shape["height"])
+def shapes_of(state: State) -> ShapesTuple:
+    """Return the table of shapes."""
+    return state.bodies.plain_shapes
 
 
 def materials_of(state: State) -> MaterialsTuple:
@@ -42,6 +42,18 @@ def acting_in(state: State) -> ActingTuple:
     """Return the forces of this substep."""
     bodies = state.bodies
     return (bodies.pull, state.has_forces, bodies.unkicked, state.uniform_forces)
+
+
+def joints_in(state: State) -> JointsTuple:
+    """Return the rows of joints."""
+    joints = state.joints
+    joints.refresh(state.entity_index)
+    if len(joints.measured) != len(joints):
+        joints.measured = np.zeros((len(joints), MEASURED))
+    return (
+        joints.a, joints.b, joints.block, joints.anchor_a, joints.anchor_b, joints.axis, joints.impulse,
+        joints.measured,
+    )  # fmt: skip
 
 
 def bounds_of(state: State) -> BoundsTuple:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.components import Mass, Material, Transform, Velocity
 from physicslab.kernels.accounts import CONTACT
 from physicslab.kernels.sleep import edits, islands
 from physicslab.state.state import State
@@ -31,6 +31,8 @@ def check_edits(state: State, *, within: bool = False) -> None:
         sleep.gone = sleep.gone[:0]
         return
     marked = sleep.asleep & state.bodies.sub_integrated
+    if state.joints.refresh(state.entity_index):
+        marked |= sleep.asleep
     if sleep.laws != (state.physics, state.simulation):
         marked |= sleep.asleep
     figures, edited = _figures(state), np.zeros(len(sleep.asleep), np.bool_)
@@ -74,7 +76,11 @@ def wake(state: State, marked: _Marks) -> _Marks:
     """Wake the islands of the ``marked`` bodies, and mark all of them; return which bodies woke."""
     sleep = state.sleep
     a, b, count = _touching(state)
-    islands.join_marked(a, b, count, sleep.asleep, marked)
+    joined = state.joints.edges
+    islands.join_marked(
+        np.concatenate((a, joined[:, 0])), np.concatenate((b, joined[:, 1])),
+        np.concatenate((count, np.ones(len(joined), np.int64))), sleep.asleep, marked,
+    )  # fmt: skip
     woken = marked & sleep.asleep
     sleep.asleep &= ~woken
     sleep.rest[woken] = sleep.slowest[woken] = 0.0
@@ -155,13 +161,13 @@ def all_asleep(state: State) -> bool:
 
 
 def _figures(state: State) -> NDArray[np.float64]:
-    transform, shape, material = state.table(Transform), state.table(Shape), state.table(Material)
-    bodies = state.bodies
+    transform, material = state.table(Transform), state.table(Material)
+    bodies, shapes = state.bodies, state.bodies.shapes
     figures = np.zeros((len(state.sleep.asleep), edits.FIGURES))
     state.compile(state.sleep.kernels)
     edits.note_figures(
         transform["position"], transform["angle"],
-        shape["kind"], shape["radius"], shape["width"], shape["height"],
+        shapes.vertices, shapes.half_x, shapes.half_y, shapes.reach,
         material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,
         state.table(Velocity).present, figures,
     )  # fmt: skip
@@ -195,7 +201,7 @@ def export_rests(state: State) -> list[list[Any]]:
     known: others wake it. Only bodies that a file can restore: those with a Shape that can be moved.
     """
     sleep = state.sleep
-    movable = (state.bodies.inverse_mass > 0.0) & (state.table(Shape)["kind"] != 0)
+    movable = (state.bodies.inverse_mass > 0.0) & (state.bodies.shapes.vertices != 0)
     rows = np.flatnonzero((sleep.asleep | (sleep.rest > 0.0)) & movable)
     columns = (sleep.entities, sleep.asleep, sleep.rest, sleep.slowest, sleep.forces)
     values = zip(*(column[rows].tolist() for column in columns), strict=True)

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.contacts import wide
-from physicslab.contacts.arguments import sizes_of
+from physicslab.contacts.arguments import shapes_of
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.kernels.wide import slots
@@ -26,7 +26,7 @@ def partition(
         contacts.proximity = np.zeros(4 * found, np.uint32)
         contacts.activation_distance = np.zeros(2 * found)
     count, contacts.proximity_count = near_pairs.partition(
-        couples, found, pairs, walls, sizes_of(state), fat, state.bodies.inverse_mass,
+        couples, found, pairs, walls, shapes_of(state), fat, state.bodies.inverse_mass,
         state.entity_index.entities, contacts.manifolds, contacts.recorded, contacts.stale, contacts.table,
         contacts.proximity, contacts.activation_distance,
     )  # fmt: skip

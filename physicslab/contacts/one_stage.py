@@ -6,10 +6,11 @@ from physicslab.contacts.arguments import (
     acting_in,
     bounds_of,
     inverse_in,
+    joints_in,
     materials_of,
     motion_of,
     near_in,
-    sizes_of,
+    shapes_of,
     speculative_margin,
 )
 from physicslab.kernels.arguments import ActingTuple, InverseTuple, MotionTuple, NearTuple, SoftnessTuple
@@ -32,7 +33,7 @@ def do_stage(
     state : State
         Of which everything is taken that is not given.
     part : int
-        One of those for contacts in :mod:`physicslab.kernels.solver.soft`.
+        One of those for contacts and joints in :mod:`physicslab.kernels.solver.soft`.
     h : float
         The time that it covers [s].
     softness : tuple of three floats
@@ -53,9 +54,9 @@ def do_stage(
     rows = np.zeros(0, np.int64)
     sleepers = False, 0, none, _NOTHING, _NOTHING, none, none, rows, _NO_VECTORS, False
     *_, impacts, _, contacts.impulse_dt = soft.advance(
-        1, 1, 0, plan, course, -1, motion, _NOTHING, sizes_of(state), materials_of(state), inverse,
+        1, 1, 0, plan, course, -1, motion, _NOTHING, shapes_of(state), materials_of(state), inverse,
         state.bodies.sub_integrated, acting or acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
-        (0.0, 0.0), np.zeros((8, 0)), bounds_of(state), near, contacts.opened, softness, contacts.impulse_dt,
-        contacts.step_log, np.zeros(soft.COSTS, np.int64),
+        (0.0, 0.0), np.zeros((8, 0)), bounds_of(state), near, joints_in(state), contacts.opened, softness,
+        contacts.impulse_dt, contacts.step_log, np.zeros(soft.COSTS, np.int64),
     )  # fmt: skip
     return int(impacts)

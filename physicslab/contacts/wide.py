@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Material, Shape
-from physicslab.contacts.arguments import inverse_in, materials_of, motion_of, near_in, sizes_of
+from physicslab.components import Material
+from physicslab.contacts.arguments import inverse_in, materials_of, motion_of, near_in, shapes_of
 from physicslab.kernels.wide import graph_colour, restore_slots
 from physicslab.kernels.wide.graph_colour import MIN_WIDE
 from physicslab.kernels.wide.layout import WIDE
@@ -22,7 +22,7 @@ def add_constraints(state: State, h: float) -> None:
     while True:
         came = graph_colour.add_constraints(
             near_in(state), contacts.opened, contacts.sleeping, contacts.inactive, state.sleep.asleep,
-            motion_of(state), sizes_of(state), materials_of(state), inverse_in(state), h,
+            motion_of(state), shapes_of(state), materials_of(state), inverse_in(state), h,
         )  # fmt: skip
         if came != graph_colour.FULL:
             break
@@ -45,7 +45,7 @@ def refill(state: State) -> None:
         for constraints in wide.kinds:
             restore_slots.update_slots(
                 constraints.slots, constraints.count, wide.changed, contacts.manifolds, contacts.points,
-                sizes_of(state), materials_of(state), (bodies.inverse_mass, bodies.inverse_inertia),
+                shapes_of(state), materials_of(state), (bodies.inverse_mass, bodies.inverse_inertia),
             )  # fmt: skip
         _remember(state)
     elif found:
@@ -66,7 +66,7 @@ def fill_again(state: State) -> None:
     for constraints in contacts.wide.kinds:
         constraints.count, restored = restore_slots.restore_slots(
             constraints.slots, contacts.manifolds, contacts.points, contacts.recorded,
-            sizes_of(state), materials_of(state), (bodies.inverse_mass, bodies.inverse_inertia),
+            shapes_of(state), materials_of(state), (bodies.inverse_mass, bodies.inverse_inertia),
         )  # fmt: skip
         constraints.sort()
         contacts.wide.filled += restored
@@ -84,8 +84,8 @@ def _remember(state: State) -> None:
 
 
 def _columns(state: State) -> tuple[NDArray[np.float64], ...]:
-    shape, material, bodies = state.table(Shape), state.table(Material), state.bodies
+    material, bodies, shapes = state.table(Material), state.bodies, state.bodies.shapes
     return (
         bodies.inverse_mass, bodies.inverse_inertia, material["restitution"], material["friction"],
-        shape["radius"], shape["width"], shape["height"],
+        shapes.half_x, shapes.half_y, shapes.radius,
     )  # fmt: skip

@@ -1,16 +1,14 @@
 """Opens the window at once; what is to be shown in it, and numba with it, is imported while it is there."""
 
-from __future__ import annotations
-
 import threading
 import time
 from importlib import import_module
 
 from physicslab.desktop.garbage import loading
+from physicslab.desktop.progress import PAUSE, draw_loading
 from physicslab.ecs.config import WindowConfig
 from physicslab.view.canvas.display import Display, NoScreen, wants_to_leave
 from physicslab.view.canvas.theme import DARK
-from physicslab.view.panels.progress import PAUSE, draw_loading
 
 __all__ = ["FIRST_SCENE", "NoScreen", "open_window"]
 

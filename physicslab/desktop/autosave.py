@@ -1,7 +1,5 @@
 """Saving the state of a window every few seconds, without holding up a frame."""
 
-from __future__ import annotations
-
 import gc
 import threading
 import time
@@ -13,8 +11,6 @@ from physicslab.files.replace import replace_file
 from physicslab.files.snapshot import WorldSnapshot
 from physicslab.files.writer import text_pieces
 from physicslab.world import World
-
-__all__ = ["Autosave"]
 
 
 class Autosave:

@@ -5,13 +5,9 @@ search all of them takes 76 ms, as long as five frames, and happens every few mi
 they are made it happens several times for nothing.
 """
 
-from __future__ import annotations
-
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
-
-__all__ = ["freeze", "loading"]
 
 
 def freeze() -> None:

@@ -1,7 +1,5 @@
 """What the user chose of the window, from one start to the next: colours, text, level, where panels are."""
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path
@@ -15,8 +13,6 @@ from physicslab.view.canvas.drawable_text import encodable
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.window.recent import RecentFiles
 from physicslab.view.window.window import LEVELS, Window
-
-__all__ = ["load_preferences", "save_preferences"]
 
 _MIN_SCALE, _MAX_SCALE = 0.5, 3.0
 """The sizes of text that are taken from a file, as shares of the usual."""

@@ -1,7 +1,5 @@
 """The desktop sandbox: a world in a window, frame by frame."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -30,8 +28,6 @@ from physicslab.view.workbench.hud import Hud
 from physicslab.view.workbench.interface import Interface
 from physicslab.view.workbench.world_view import WorldView
 from physicslab.world import World
-
-__all__ = ["Sandbox"]
 
 _REST_AFTER, _REST_PERIOD = 1.0, 0.1
 """How long [s] nothing is done and nothing moves before pictures are fewer, and the time between two then."""

@@ -1,7 +1,5 @@
 """Runs the sandbox in a window: its scene, its session, its frames."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 from pathlib import Path
 
@@ -18,11 +16,9 @@ from physicslab.files.scene import load_scene
 from physicslab.kernels import working_ns
 from physicslab.scenes import SCENES
 from physicslab.view.canvas.display import Display, ask_to_leave, forget_clicks
-from physicslab.view.window.recovery import Recovery
+from physicslab.view.window.recent import Recovery
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = ["run_window"]
 
 _PREFERENCES = "preferences.json"
 _STILL = 0.5

@@ -23,8 +23,6 @@ from filelock import FileLock, Timeout
 
 from physicslab.files.replace import remove_leftovers
 
-__all__ = ["Session", "session_folder"]
-
 _PATIENCE = 10.0
 """How long [s] the folder's lock is waited for: with eight windows at once it is free within 0.1 s."""
 _INTERVAL = 0.002

@@ -8,8 +8,6 @@ from collections.abc import Callable
 from types import FrameType, TracebackType
 from typing import Any
 
-__all__ = ["Termination"]
-
 _SIGNALS = ("SIGTERM", "SIGHUP", "SIGINT")
 """At a logout or a shutdown, by ``kill``; when the terminal is closed, which Windows lacks; by Ctrl+C."""
 

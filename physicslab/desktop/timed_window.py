@@ -1,7 +1,5 @@
 """A world that is stepped with the systems of a window installed, for the benchmark."""
 
-from __future__ import annotations
-
 import os
 from typing import override
 
@@ -13,8 +11,6 @@ from physicslab.systems.system import Stage
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = ["InWindow"]
 
 _SIZE = (1280, 720)
 _FRAME = 1.0 / 60.0

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from physicslab.components import Held, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.components.name import why_no_id
 from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
@@ -23,12 +24,14 @@ from physicslab.files.checks import (
     shown,
 )
 from physicslab.state.attached import INSTRUMENTS
+from physicslab.state.joints import KINDS
 
 UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""
 
 type _Expected = tuple[tuple[str, ...], tuple[str, ...], str]
 _NEED_TRANSFORM = (Velocity, Mass, Shape, Material, Trail)
+_PLACED = "the id of an entity with a Transform"
 _MAY_REST = (Velocity, Mass, Shape)
 
 
@@ -57,6 +60,7 @@ def check_entities(
 ) -> list[tuple[str | None, list[Component]]]:
     """Return each entity's id and components, in order; they refer to each other by place, from 1."""
     made: list[tuple[str | None, list[Component]]] = []
+    joined: dict[type[Any], dict[tuple[Any, ...], str]] = {}
     expected = {name: _expected(kind) for name, kind in COMPONENTS.items() if kind not in UNSAVED}
     known = ("id", *expected)
     for number, entity in enumerate(entities, start=1):
@@ -71,6 +75,8 @@ def check_entities(
         for component in components:
             if isinstance(component, Spring):
                 _check_ends(component, number, entities, where)
+            elif type(component) in KINDS:
+                _check_joint(component, number, entities, where, joined.setdefault(type(component), {}))
             elif isinstance(component, INSTRUMENTS):
                 _check_points(component, entities, where)
             _check_references(component, entities, where)
@@ -98,6 +104,23 @@ def check_contacts(
             if not is_number(value):
                 raise refusal(f"{where}[{place}]", value, "a finite number")
         mapped.append([*pair, *row[2:]])
+    return mapped
+
+
+def check_joints(
+    rows: object, entities: Sequence[Mapping[str, Any]], ids: Mapping[str, int], source: str
+) -> list[tuple[int, str, list[float]]]:
+    """Return of joints the places, from 1, for ids, their kinds, and their impulses [N s]."""
+    mapped: list[tuple[int, str, list[float]]] = []
+    kinds = [kind.__name__ for kind in KINDS]
+    for where, row in checked_rows(rows, f"{source}: joints", "a list of lists"):
+        if not (isinstance(row, list) and len(row) > 2 and all(map(is_number, row[2:]))):
+            raise refusal(where, row, "a list of an id, a kind of joint and numbers")
+        number = ids.get(row[0], 0) if isinstance(row[0], str) else 0
+        if row[1] not in kinds or not number or row[1] not in entities[number - 1]:
+            allowed = f"the id of an entity with the kind of joint that follows it: {', '.join(kinds)}"
+            raise refusal(where, row, allowed)
+        mapped.append((number, row[1], [float(value) for value in row[2:]]))
     return mapped
 
 
@@ -209,11 +232,30 @@ def _check_points(part: Component, entities: Sequence[Mapping[str, Any]], where:
             raise refusal(place, entities[body - 1].get("id"), "the id of an entity with a Transform")
 
 
+def _check_joint(
+    joint: Any, number: int, entities: Sequence[Mapping[str, Any]], where: str,
+    joined: dict[tuple[Any, ...], str],
+) -> None:  # fmt: skip
+    """Refuse a joint whose ends are not two points with places, or are those of another of its kind."""
+    kind = type(joint).__name__
+    for name in ("a", "b"):
+        end = getattr(joint, name)
+        if end is not None and "Transform" not in entities[end - 1]:
+            raise refusal(f"{where}: {kind}.{name}", entities[end - 1].get("id"), _PLACED)
+    carrier = number if "Transform" in entities[number - 1] else 0
+    ends = (joint.a or carrier, joint.anchor_a), (joint.b or 0, joint.anchor_b)
+    refused = why_not_joined(*ends, joined)
+    if refused is not None:
+        value = entities[joint.b - 1].get("id") if joint.b else None
+        raise refusal(f"{where}: {kind}.{refused[0]}", value, refused[1])
+    joined[key_of(*ends)] = str(entities[number - 1].get("id", f"entity {number}"))
+
+
 def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any]], where: str) -> None:
     for name, given in (("a", spring.a), ("b", spring.b)):
         end = given or (number if name == "a" else None)
         if end is not None and "Transform" not in entities[end - 1]:
             value = entities[end - 1].get("id") if given else None
-            raise refusal(f"{where}: Spring.{name}", value, "the id of an entity with a Transform")
+            raise refusal(f"{where}: Spring.{name}", value, _PLACED)
     if spring.b == (spring.a or number):
         raise refusal(f"{where}: Spring.b", entities[spring.b - 1].get("id"), OTHER_END)

@@ -29,7 +29,7 @@ from physicslab.files.checks import (
     refusal,
     shown,
 )
-from physicslab.files.entities import check_contacts, check_entities, check_ids, check_rests
+from physicslab.files.entities import check_contacts, check_entities, check_ids, check_joints, check_rests
 from physicslab.files.remainders import check_remainders
 from physicslab.integrators import SPLIT_METHODS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
@@ -50,7 +50,7 @@ TITLE_LIMIT = 200
 
 _KEYS = (
     "format", "name", "title", "description", "view", "time", "physics", "simulation", "entities", "contacts",
-    "rests", "solver", "remainders", "islands",
+    "joints", "rests", "solver", "remainders", "islands",
 )  # fmt: skip
 
 
@@ -72,6 +72,8 @@ class SceneDraft:
         The id of each entity and its components. They refer to entities by place in this list, from 1.
     contacts : list of lists of numbers
         The contact solver's memory; the first two numbers of a row are entities, 0 for the bounds.
+    joints : list of (int, str, list of float)
+        Of each joint its entity, its kind, and its impulses in the last substep [N s].
     rests : list of lists of numbers
         What sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
     remainders : dict of int to two lists of six numbers
@@ -92,6 +94,7 @@ class SceneDraft:
     simulation: SimulationConfig
     entities: list[tuple[str | None, list[Component]]]
     contacts: list[list[Any]]
+    joints: list[tuple[int, str, list[float]]]
     rests: list[list[Any]]
     remainders: dict[int, tuple[list[float], list[float]]]
     solver: tuple[float, int, tuple[str, str, int] | None]
@@ -132,13 +135,14 @@ def read_scene(document: object, source: str = "scene") -> World:
         world.spawn(*components, name=id_, entity=number)  # by which springs name bodies that are yet to come
     world.islands.paused = True
     world.contacts.impulse_dt, world.contacts.substep_factor, chosen = draft.solver
-    if draft.contacts or draft.rests or chosen:
+    if draft.contacts or draft.joints or draft.rests or chosen:
         world.synchronise()
         try:
             restore_contacts(world.contacts, draft.contacts)
         except (ValueError, OverflowError) as error:
             esper.switch_world(before)
             raise SceneError(f"{source}: contacts: {error}") from error
+        world.joints.restore(draft.joints)
         restore_rests(world, draft.rests)
     if draft.remainders:
         world.remainders = Remainders.of_bodies(draft.remainders)
@@ -174,6 +178,7 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
         simulation=simulation,
         entities=entities,
         contacts=check_contacts(scene.get("contacts", []), scene["entities"], ids, source),
+        joints=check_joints(scene.get("joints", []), scene["entities"], ids, source),
         rests=check_rests(scene.get("rests", []), scene["entities"], ids, source),
         remainders=check_remainders(scene.get("remainders", []), entities, ids, source),
         solver=_solver(scene.get("solver", {}), simulation, f"{source}: solver"),

@@ -38,6 +38,8 @@ class WorldSnapshot:
         All of them once more, and those with a Shape.
     contacts : Contacts
         What the contact solver remembers.
+    joints : list of (int, str, list of float)
+        Of each joint that has impulses its entity, its kind and these [N s].
     rests : list of lists
         What sleeps, and how long the others have rested.
     remainders : list of lists
@@ -71,6 +73,7 @@ class WorldSnapshot:
         self.contacts: Contacts = (
             world.islands.contacts(world, rescaled=False).as_contacts() if members else copied(world.contacts)
         )
+        self.joints = list(world.joints.kept())
         parts: list[State] = [island.state for island in members] or [world]
         self.rests = [rest for part in parts for rest in export_rests(part)]
         low = {row[0]: row for part in reversed(parts) for row in export_remainders(part)}

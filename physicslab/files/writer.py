@@ -74,7 +74,7 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
         yield
     ids = dict(snapshot.names)
     referred = {end for row in contacts for end in row[:2]} | {rest[0] for rest in snapshot.rests}
-    referred |= {row[0] for row in snapshot.remainders}
+    referred |= {row[0] for row in (*snapshot.remainders, *snapshot.joints)}
     for island in snapshot.islands or ():
         referred |= {*island.bodies, *(int(row[0]) for row in island.driven)}
     ids |= yield from _invented(entities, ids, referred)
@@ -98,7 +98,14 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
         yield
     rests = [[ids[rest[0]], *rest[1:]] for rest in snapshot.rests]
     remainders = [[ids[row[0]], *row[1:]] for row in snapshot.remainders]
-    kept = {"contacts": contacts, "rests": rests, "solver": _solver(snapshot), "remainders": remainders}
+    joints = [[ids[entity], kind, *impulses] for entity, kind, impulses in snapshot.joints]
+    kept = {
+        "contacts": contacts,
+        "joints": joints,
+        "rests": rests,
+        "solver": _solver(snapshot),
+        "remainders": remainders,
+    }
     islands = {} if snapshot.islands is None else {"islands": _islands(snapshot.islands, ids)}
     return document | {key: value for key, value in kept.items() if value} | islands
 

@@ -116,8 +116,8 @@ class Keyframe:
     """
 
     __slots__ = (
-        "_account", "_columns", "_contacts", "_counts", "_forces", "_islands", "_laws", "_own", "_plan",
-        "_rates", "_remainders", "_sleep", "_structure",
+        "_account", "_columns", "_contacts", "_counts", "_forces", "_islands", "_joints", "_laws", "_own",
+        "_plan", "_rates", "_remainders", "_sleep", "_structure",
     )  # fmt: skip
 
     def __init__(self, world: World, last: Keyframe | None = None) -> None:
@@ -153,6 +153,7 @@ class Keyframe:
         before = (last._contacts, last._sleep) if last is not None else (None, None)
         self._contacts: KeptContacts = KeptContacts.of(world.contacts, before[0])
         self._sleep: KeptSleep = KeptSleep.of(world.sleep, before[1])
+        self._joints = list(world.joints.kept())
 
     def arrays(self) -> Iterator[_Array]:
         """Yield every array, for the memory that they take."""
@@ -205,6 +206,7 @@ class Keyframe:
             world.adopt(self._plan)
         self._contacts.restore(world)
         self._sleep.restore(world, rows)
+        world.joints.restore(self._joints)
         for now, then in zip((world.bodies.force, world.bodies.torque), self._forces, strict=True):
             _put(then, now, rows)
         for system, kept in self._own.items():

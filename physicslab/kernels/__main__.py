@@ -4,8 +4,6 @@
 each cost, and says what is over the budget.
 """
 
-from __future__ import annotations
-
 import gc
 import sys
 

@@ -1,13 +1,12 @@
-"""Where the accounts of energy and momentum are, in the array (BOOK, 4) that kernels add to.
+"""The accounts of energy and momentum: an array (BOOK, 4) that kernels add to, by one function.
 
 A row is a cause; its columns are the energy that it has given to the world [J], the momentum (x, y) [N s] and
 the angular momentum about the origin [N m s]. What a cause takes is negative.
 """
 
-__all__ = [
-    "BALANCE", "BEFORE", "BOOK", "CAUSES", "CONTACT", "DAMPING", "EDITS", "ENERGY", "FIELDS", "FRICTION",
-    "GRAVITY", "HAND", "IMPACTS", "JOINTS", "MOTORS", "OVERLAP", "PX", "PY", "SPIN", "SPRINGS", "THRUST",
-]  # fmt: skip
+from typing import Any
+
+from physicslab.kernels import inlined
 
 CAUSES = 13
 (
@@ -22,3 +21,16 @@ ENERGY, PX, PY, SPIN = range(4)
 BALANCE, BEFORE, BOOK = CAUSES, CAUSES + 1, 2 * (CAUSES + 1)
 """Behind the causes there is what the world had after the last step; from ``BEFORE`` on all of that as it was
 before the step at hand."""
+
+
+@inlined
+def book(given: Any, account: int, energy: float, px: float, py: float, spin: float) -> None:
+    """Add energy [J], momentum [N s] and angular momentum about the origin [N m s] to an account.
+
+    Or what all of that is in a second, where it is integrated beside the motion. ``given`` is (n,) float64,
+    or its address; the account begins at ``account``.
+    """
+    given[account + ENERGY] += energy
+    given[account + PX] += px
+    given[account + PY] += py
+    given[account + SPIN] += spin

@@ -4,8 +4,6 @@ The file is a zip archive of the cache's folders and of ``manifest.json``, which
 are programs: an archive is to be trusted like one.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import json
@@ -21,8 +19,6 @@ from typing import Any
 
 from physicslab.kernels.cache import cache_directory
 from physicslab.kernels.keys import current_folders, platform_key, sources_key
-
-__all__ = ["ArchiveError", "pack", "unpack"]
 
 _FORMAT = "physicslab-kernels/1"
 _MANIFEST = "manifest.json"

@@ -11,15 +11,6 @@ from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Couples, Impacts, Manifolds, Points
 from physicslab.kernels.wide.layout import Slots, SlotsTuple
 
-__all__ = [
-    "Acting", "ActingTuple", "Bounds", "BoundsTuple", "Contacts", "Course", "CourseTuple", "Gravity",
-    "GravityTuple", "Inverse", "InverseTuple", "Log", "Materials", "MaterialsTuple", "Motion", "MotionTuple",
-    "Near", "NearTuple", "Packed", "PackedTuple", "Plan", "PlanTuple", "Sizes", "SizesTuple", "Sleepers",
-    "SleepersTuple", "Softness", "SoftnessTuple", "Springs", "SpringsTuple",
-    "named_acting",
-    "named_near",
-]  # fmt: skip
-
 
 class Motion(NamedTuple):
     """Positions (rows, 2) [m], angles [rad], velocities (rows, 2) [m/s] and angular velocities [rad/s]."""
@@ -28,15 +19,6 @@ class Motion(NamedTuple):
     angle: Numbers
     linear: Vectors
     angular: Numbers
-
-
-class Sizes(NamedTuple):
-    """Kinds of shape, and radii, widths and heights [m]."""
-
-    kind: Rows
-    radius: Numbers
-    width: Numbers
-    height: Numbers
 
 
 class Materials(NamedTuple):
@@ -220,7 +202,6 @@ class Sleepers(NamedTuple):
 
 
 MotionTuple = tuple[Vectors, Numbers, Vectors, Numbers]
-SizesTuple = tuple[Rows, Numbers, Numbers, Numbers]
 MaterialsTuple = tuple[Numbers, Numbers]
 InverseTuple = tuple[Numbers, Numbers]
 ActingTuple = tuple[Numbers, bool, Flags, bool]

@@ -6,8 +6,6 @@ and the limits are for that much more. Kernels come in the order of the first la
 function counts for the first that calls it.
 """
 
-from __future__ import annotations
-
 import gc
 import os
 import platform
@@ -21,8 +19,6 @@ from physicslab.kernels.compiler import KERNELS
 from physicslab.kernels.keys import platform_key
 from physicslab.kernels.loading import load, prepare
 from physicslab.kernels.warm import load_all, mark_warm, name_of, rank_of
-
-__all__ = ["LIMIT_EACH_S", "LIMIT_TOTAL_S", "check", "measure", "table"]
 
 LIMIT_TOTAL_S = 60.0
 LIMIT_EACH_S = 6.0

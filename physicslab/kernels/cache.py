@@ -38,8 +38,6 @@ from numba.core.caching import CacheImpl, UserProvidedCacheLocator
 
 from physicslab.kernels.keys import current_folders, folder_of, hash_of
 
-__all__ = ["VARIABLE", "cache_directory", "cached", "is_kept", "mark", "note_use", "prune", "use_directory"]
-
 if numba.core.config.DISABLE_JIT:  # type: ignore[attr-defined]
     raise ImportError(
         "physicslab cannot work while NUMBA_DISABLE_JIT is set: PHYSICSLAB_INTERPRET=1 has its kernels run "

@@ -3,8 +3,6 @@
 What is written here decides on the machine code: an edit invalidates every compiled kernel.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, cast
 
@@ -13,11 +11,6 @@ import numba
 from physicslab.kernels.cache import cached
 from physicslab.kernels.loading import at_first_call, refuse_calls
 from physicslab.kernels.types import signature_of
-
-__all__ = [
-    "FASTMATH", "KERNELS", "allocating", "allocating_kernel", "always_inlined", "fused", "inlined",
-    "inlined_loosely", "kernel",
-]  # fmt: skip
 
 KERNELS: list[Any] = []
 """Every kernel of the modules imported so far, in the order of definition."""

@@ -4,8 +4,6 @@ import numpy as np
 
 from physicslab.kernels import Rows, inlined, kernel
 
-__all__ = ["digest_motion", "digest_sums"]
-
 _FACTOR = 0x2545F4914F6CDD1D
 """Odd, and without a pattern: each word's bits reach the upper bits of the product."""
 

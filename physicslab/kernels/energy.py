@@ -2,8 +2,6 @@
 
 from physicslab.kernels import Numbers, Vectors, inlined, kernel
 
-__all__ = ["moments_of_mass", "motion_totals"]
-
 
 @kernel
 def motion_totals(

@@ -9,8 +9,6 @@ With the environment variable ``PHYSICSLAB_INTERPRET=1`` nothing is compiled, an
 :func:`interpreted` does the same within a ``with`` block.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import time

@@ -5,8 +5,6 @@ key of a module's kernels depends on its source, on the sources of all that it i
 and on what else determines machine code: numba, Python, the processor.
 """
 
-from __future__ import annotations
-
 import hashlib
 import platform
 import re
@@ -20,8 +18,6 @@ import llvmlite
 import llvmlite.binding
 import numba
 import numba.core.config
-
-__all__ = ["current_folders", "depends_on", "folder_of", "hash_of", "platform_key", "sources_key"]
 
 _PACKAGE = __name__.rpartition(".")[0]
 _SOURCES = Path(__file__).parent

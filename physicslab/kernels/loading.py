@@ -1,7 +1,5 @@
 """When kernels are compiled, or loaded from the cache: before they run, at the latest at their first call."""
 
-from __future__ import annotations
-
 import gc
 import itertools
 import secrets
@@ -16,11 +14,6 @@ from numba.core.registry import cpu_target
 
 from physicslab.kernels import cache
 from physicslab.kernels.interpreter import is_forced, stand_in
-
-__all__ = [
-    "ask_before_compiling", "at_first_call", "compile_kernels", "direct_entry", "load", "prepare",
-    "refuse_calls", "seconds_waited", "separate_symbols", "working_ns",
-]  # fmt: skip
 
 type _Ask = Callable[[Sequence[Any]], Collection[Any] | None]
 

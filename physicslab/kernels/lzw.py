@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import inlined, kernel
 
-__all__ = ["CODES", "Bytes", "Children", "pack_lzw"]
-
 Bytes = Annotated[NDArray[np.uint8], uint8[::1]]
 """A uint8 array (n,)."""
 Children = Annotated[NDArray[np.int16], int16[:, ::1]]

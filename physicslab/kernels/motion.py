@@ -4,11 +4,15 @@ import math
 import sys
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
-
-__all__ = [
-    "FARTHEST", "LARGEST", "clear", "damped", "derive_masses", "drift", "find_beyond", "kick", "pack_state",
-    "predict",
-]  # fmt: skip
+from physicslab.kernels.geometry.moments import inertia_of
+from physicslab.kernels.geometry.shapes import (
+    ShapesTuple,
+    SizesTuple,
+    derive_shape,
+    half_thickness,
+    named_shapes,
+)
+from physicslab.kernels.records import Pairs
 
 FARTHEST = 1e300
 """The largest coordinate that a scene may hold [m] (``physicslab.ecs.fields.COORDINATE_LIMIT``)."""
@@ -20,39 +24,30 @@ LARGEST = sys.float_info.max
 def derive_masses(
     has_velocity: Flags, has_mass: Flags, held: Flags,
     mass: Numbers, inertia: Numbers, inertia_given: Flags, fixed_rotation: Flags,
-    kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
+    kind: Rows, sizes: SizesTuple, kinds: Pairs, extents: Vectors, plain_shapes: ShapesTuple,
     angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
     awake_inverse_mass: Numbers, awake_inverse_inertia: Numbers, asleep: Flags,
 ) -> tuple[float, int, int, float]:  # fmt: skip
-    """Compute each row's moment of inertia and its inverse mass [1/kg] and inertia [1/(kg m^2)].
+    """Fill the table of shapes; compute moments of inertia, inverse masses [1/kg] and inertias [1/(kg m^2)].
 
     Returns the ratio of the greatest mass that can be moved to the least, of what has a shape, 1 if none has;
     and the first row of which the moment of inertia is not finite, or -1; and the first row of
     which a size is not above 0, or -1; and the smallest diameter or side of all shapes [m], infinite if
     there are none.
 
-    A disc has I = m r^2 / 2, a box m (w^2 + h^2) / 12. A body without velocity or mass, or one that is
+    A body without velocity or mass, or one that is
     held, has infinite mass; one too small to have an inverse inertia does not turn.
     """
     lightest, heaviest, infinite, sizeless, smallest = 0.0, math.inf, -1, -1, math.inf
+    shapes = named_shapes(plain_shapes)
     for i in range(len(mass)):
-        if kind[i] == 1:
-            sized = 0.0 < radius[i] < math.inf
-            smallest = min(smallest, 2.0 * radius[i])
-        elif kind[i] == 2:
-            sized = 0.0 < width[i] < math.inf and 0.0 < height[i] < math.inf
-            smallest = min(smallest, min(width[i], height[i]))
-        else:
-            sized = True
+        sized = derive_shape(i, kind, sizes, kinds, extents, shapes)
+        if kind[i] != 0:
+            smallest = min(smallest, 2.0 * half_thickness(shapes, i))
         if sizeless < 0 and not sized:
             sizeless = i
         if not inertia_given[i]:
-            if kind[i] == 1:
-                inertia[i] = 0.5 * mass[i] * radius[i] * radius[i]
-            elif kind[i] == 2:
-                inertia[i] = mass[i] * (width[i] * width[i] + height[i] * height[i]) / 12.0
-            else:
-                inertia[i] = 0.0
+            inertia[i] = inertia_of(shapes, i, mass[i])
         moves_freely = has_velocity[i] and has_mass[i] and not held[i]
         inverse_mass[i] = 1.0 / mass[i] if moves_freely else 0.0
         turns_freely = moves_freely and inertia[i] > 0.0 and not fixed_rotation[i]

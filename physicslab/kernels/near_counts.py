@@ -1,10 +1,5 @@
 """Where the counts of near pairs are, in the array that kernels keep them in."""
 
-__all__ = [
-    "ACTIVE", "BOX_BLOCKS", "COUNTED", "DISC_BLOCKS", "ENERGETIC", "LEFT", "LOGGED", "LOWERED",
-    "OUTSIDE", "PROXIMITY", "RECORDED", "SCALAR", "SLEEPING", "UNORDERED", "WIDE_COUNT",
-]  # fmt: skip
-
 COUNTED = 14
 (
     PROXIMITY, RECORDED, SCALAR, SLEEPING, ACTIVE, LEFT, WIDE_COUNT, DISC_BLOCKS, BOX_BLOCKS, UNORDERED,

@@ -4,8 +4,6 @@ import math
 
 from physicslab.kernels import Flags, Numbers, kernel
 
-__all__ = ["find_outside"]
-
 
 @kernel
 def find_outside(

@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import Flags, Numbers, Vectors, inlined, kernel
 
-__all__ = ["Colours", "Pixels", "paint_boxes", "paint_discs", "paint_lines", "paint_strokes"]
-
 Pixels = Annotated[NDArray[np.uint32], uint32[:, ::1]]
 """A uint32 array (height, width): a picture."""
 Colours = Annotated[NDArray[np.uint32], uint32[::1]]

@@ -6,10 +6,6 @@ import numpy as np
 from numba import from_dtype, int64, uint32
 from numpy.typing import NDArray
 
-__all__ = [
-    "IMPACT", "MANIFOLD", "POINT", "Couples", "Impacts", "Manifold", "Manifolds", "Pairs", "Point", "Points",
-]  # fmt: skip
-
 MANIFOLD = np.dtype(
     [
         ("entity_a", np.int64),  # 0 is the world's bounds

@@ -4,8 +4,6 @@ Compiled code rounds every operation by itself and raises nothing: a root of -1 
 zero is infinite. So do these, in float64, and so gives the interpreter the same bits.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from functools import cache
@@ -14,8 +12,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-__all__ = ["Memory", "Records", "arithmetic", "math_functions", "stand_in_of", "stands_in_for"]
 
 _INT64_MIN = -(2**63)
 """What a number becomes that no int64 can hold."""

@@ -11,8 +11,6 @@ from physicslab.kernels import Rows, inlined
 from physicslab.kernels.stand_ins import stands_in_for
 from physicslab.kernels.twins import endless
 
-__all__ = ["charge", "ticks"]
-
 
 def _read_clock(_typing: Any) -> Any:
 

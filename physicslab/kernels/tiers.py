@@ -21,8 +21,6 @@ from numba.extending import is_jitted
 from physicslab.kernels import cache, interpreter
 from physicslab.kernels.loading import ask_before_compiling, load
 
-__all__ = ["Tiers", "compile_seconds"]
-
 _PER_BYTE = 2.0e-4
 """Time [s] to compile a byte of Python's bytecode: 41 s for all kernels on an AMD EPYC of 2026."""
 _FIRST = 1.0

@@ -20,8 +20,6 @@ from numpy.typing import NDArray
 from physicslab.kernels import inlined, kernel
 from physicslab.kernels.raster import Pixels
 
-__all__ = ["Coverage", "Indices", "Vertices", "paint_triangles"]
-
 Vertices = Annotated[NDArray[np.float32], float32[:, ::1]]
 """A float32 array (n, 5): x, y [px], u, v (0 to 1), and four bytes of colour."""
 Colours = Annotated[NDArray[np.uint32], uint32[:, ::1]]

@@ -1,7 +1,5 @@
 """Kernels as plain Python: the same code, in which all that it calls is Python too."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable
@@ -15,8 +13,6 @@ from numba.core.extending import _Intrinsic
 from numba.extending import is_jitted
 
 from physicslab.kernels.stand_ins import arithmetic, math_functions, stand_in_of
-
-__all__ = ["Overdue", "endless", "patience", "twin_of"]
 
 _VECTORS = "physicslab.kernels.wide.interpreted"
 """Where the stand-ins of vectors are: they are imported when the first kernel is interpreted."""

@@ -1,7 +1,5 @@
 """The types that kernels take, as annotations, and the signatures that follow from them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
@@ -9,8 +7,6 @@ import numba
 import numpy as np
 from numba import boolean, float64, int64, void
 from numpy.typing import NDArray
-
-__all__ = ["Flags", "Numbers", "Rows", "Vectors", "signature_of"]
 
 Numbers = Annotated[NDArray[np.float64], float64[::1]]
 """A float64 array (n,)."""

@@ -20,8 +20,6 @@ from physicslab import kernels
 from physicslab.kernels import cache
 from physicslab.kernels.keys import current_folders
 
-__all__ = ["Progress", "Warmup", "is_warm", "load_all", "mark_warm", "name_of", "rank_of"]
-
 _WORKERS_LIMIT = 4
 _FIRST = (
     "raster",

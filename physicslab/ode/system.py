@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.kernels.accounts import DAMPING, ENERGY, SPIN
+from physicslab.kernels.constraint.joint_rows import RANK, constrain, forces_of, project
 from physicslab.kernels.forces.bookings import ACCOUNTS, END
+from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import PLAIN_LIMIT
 from physicslab.ode.bookings import BookKeeper, book_in_python
-from physicslab.state.packed import StateLayout
+from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem, Stage
@@ -182,6 +184,8 @@ class OdeSystem:
         """Put the state back into the tables; what no force turns has turned steadily for ``span`` s."""
         self._raise()
         layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
+        if self._joints is not None:
+            self._hold_together(state, self._joints)
         self._write(state, self.q, self.v)
         self._book(state)
         n = layout.moving_count
@@ -200,6 +204,15 @@ class OdeSystem:
             transform["angle"][steady] += spin * np.where(free, -np.expm1(-c * span) / c, span)
             velocity["angular"][steady] = np.where(free, spin * np.exp(-c * span), spin)
             self._book_steady(state, spin, c * span)
+
+    def _hold_together(self, state: State, rows: PackedForce) -> None:
+        """Put together again what joints hold together, and find their forces there."""
+        n = self.layout.moving_count
+        low = self._low or (np.zeros(n), np.zeros(n))
+        project(self.q, self.v, *low, rows.parameters, rows.indices)
+        add_forces(self.q, self.v, np.zeros(len(self.q)), self.calls)
+        state.joints.force[:] = forces_of(rows.parameters, rows.indices)
+        state.joints.rank = int(rows.indices[RANK])
 
     def _book(self, state: State) -> None:
         """Book what causes have given since the state was gathered."""
@@ -266,6 +279,7 @@ class OdeSystem:
             for force in forces
             if force.resistance is not None
         ]
+        self._joints = next((force for force in forces if force.kernel is constrain), None)
         self._measured = [(system, force) for system, force in packed if force and force.steepest is not None]
         noted = [force.parameters[force.steepest :][:1] for _, force in self._measured]
         self.steepness = noted[0] if noted else np.zeros(1)
@@ -273,8 +287,10 @@ class OdeSystem:
         booked = [call for system, force in packed if force for call in book.around(system, force)]
         self._kept: list[Any] = [*booked, *resisting, damping]  # while C may read them
         kernels = [force.kernel for force in (*booked, *damping)]
-        state.compile([*kernels, *(kernel for kernel, _, _ in resisting)])
-        rows = [force.call for force in booked]
+        joining = (project, add_forces) if self._joints is not None else ()
+        state.compile([*kernels, *(kernel for kernel, _, _ in resisting), *joining])
+        last = [force.call for force in booked if force is self._joints]  # they follow from all others
+        rows = [force.call for force in booked if force is not self._joints]
         against = [(kernel.address, n.ctypes.data, indices.ctypes.data) for kernel, n, indices in resisting]
         self.resistances = np.array(against, np.int64).reshape(-1, 3)
         python = [system for system, force in packed if force is None]
@@ -282,6 +298,7 @@ class OdeSystem:
             callback = _CALLBACK(self._caller(state, python, book, size))
             self._kept.append(callback)
             rows.append((ctypes.cast(callback, ctypes.c_void_p).value or 0, 0, 0))
+        rows += last
         self.calls = np.array(rows, np.int64).reshape(-1, 3)
         self.damped_calls = np.array([*rows, *(force.call for force in damping)], np.int64).reshape(-1, 3)
 

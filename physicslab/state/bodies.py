@@ -6,6 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.kernels.geometry.shapes import ShapesTuple
+from physicslab.state.shapes import blank_shapes, with_names
+
 
 class Bodies:
     """Inverse masses, and the forces of this substep, one row an entity.
@@ -31,6 +34,10 @@ class Bodies:
         What :func:`physicslab.state.masses.derive_masses` takes, and for which rows.
     checked : tuple of arrays
         The columns of numbers that are checked before each step.
+    shapes : Shapes
+        The table of shapes, as :func:`physicslab.state.masses.derive_masses` derives it from components.
+    plain_shapes : tuple of arrays
+        The same as kernels take it.
     sub_integrated : bool array (rows,)
         The rows with a method of their own between contacts (:class:`physicslab.stepping.split_forces`).
     unkicked : bool array (rows,)
@@ -39,7 +46,7 @@ class Bodies:
 
     def __init__(self) -> None:
         self.unequal, self.smallest = False, math.inf
-        self.columns: tuple[object, tuple[NDArray[Any], ...]]
+        self.columns: tuple[object, tuple[Any, ...]]
         self.checked: tuple[NDArray[Any], ...] = ()
         self.resize(0)
 
@@ -49,6 +56,8 @@ class Bodies:
         self.pull: NDArray[np.float64] = np.zeros(3 * rows)
         self.force, self.torque = self.pull[: 2 * rows].reshape(rows, 2), self.pull[2 * rows :]
         self.packed: NDArray[np.float64] = np.zeros((3, 3 * rows + 1))
+        self.plain_shapes: ShapesTuple = blank_shapes(rows)
+        self.shapes = with_names(self.plain_shapes)
         self.inverse_mass: NDArray[np.float64] = np.zeros(rows)
         self.inverse_inertia: NDArray[np.float64] = np.zeros(rows)
         self.awake_inverse_mass: NDArray[np.float64] = np.zeros(rows)

@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
-from physicslab.components.shape import CIRCLE
+from physicslab.components.shape import kind_of
 from physicslab.ecs.component import InvalidValue
 from physicslab.kernels import direct_entry, motion, ranges
 from physicslab.kernels.solver import impulse
+from physicslab.state.shapes import EXTENTS, KINDS, sizes_in
 from physicslab.state.state import State
 
 _INERTIA = next(spec for spec in Mass.FIELDS if spec.name == "inertia")
@@ -60,13 +61,13 @@ def derive_masses(state: State) -> None:
     bodies.unequal = ratio > impulse.HEAVY_RATIO
 
 
-def _columns(state: State) -> tuple[NDArray[Any], ...]:
+def _columns(state: State) -> tuple[Any, ...]:
     """Return what masses are derived from, and the arrays that receive them."""
     mass, shape, velocity, bodies = state.table(Mass), state.table(Shape), state.table(Velocity), state.bodies
     return (
         velocity.present, mass.present, state.table(Held).present,
         mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
-        shape["kind"], shape["radius"], shape["width"], shape["height"], velocity["angular"],
+        shape["kind"], sizes_in(shape), KINDS, EXTENTS, bodies.plain_shapes, velocity["angular"],
         bodies.inverse_mass, bodies.inverse_inertia,
         bodies.awake_inverse_mass, bodies.awake_inverse_inertia, state.sleep.asleep,
     )  # fmt: skip
@@ -101,7 +102,7 @@ def _refuse_number(state: State, row: int) -> None:
 def _refuse_size(state: State, row: int) -> None:
     """Refuse a size that was written to a column and would keep a kernel from ever returning."""
     shape = state.table(Shape)
-    needed = ("radius",) if shape["kind"][row] == CIRCLE else ("width", "height")
+    needed = kind_of(int(shape["kind"][row])).sizes
     for spec in Shape.FIELDS:
         size = float(shape[spec.name][row]) if spec.name in needed else 1.0
         if not 0.0 < size < math.inf:

@@ -22,6 +22,7 @@ from physicslab.state.account import Account
 from physicslab.state.bodies import Bodies
 from physicslab.state.checkpoint import Checkpoint
 from physicslab.state.contacts import Contacts
+from physicslab.state.joints import Joints
 from physicslab.state.remainders import NO_REMAINDERS, Remainders
 from physicslab.state.sleep import Sleep
 
@@ -83,6 +84,8 @@ class State:
         Masses and forces, a row an entity.
     contacts : Contacts
         The near pairs.
+    joints : Joints
+        What holds bodies together, as rows of constraints.
     fastest_rates : dict of str to float
         Of force systems the fastest rate [rad/s] that was met within steps since the motion was last edited.
     remainders : Remainders
@@ -97,11 +100,43 @@ class State:
 
     # An attribute that is misspelt, or belongs elsewhere, would be kept and do nothing.
     __slots__ = (
-        "__weakref__", "_names", "_physics", "_simulation", "_waited_before", "account", "bodies",
-        "brought_back", "checkpoint", "collisions", "contacts", "context", "description", "entity_index",
-        "event_driven", "fastest_rates", "force_evaluations", "generation", "has_forces", "in_step",
-        "kick_before_contacts", "moment", "motion_edits", "name", "remainders", "revision", "rigid_contacts",
-        "sleep", "stale", "step_divisions", "steps", "substeps", "time", "title", "uniform_forces", "view",
+        "__weakref__",
+        "_names",
+        "_physics",
+        "_simulation",
+        "_waited_before",
+        "account",
+        "bodies",
+        "brought_back",
+        "checkpoint",
+        "collisions",
+        "contacts",
+        "context",
+        "description",
+        "entity_index",
+        "event_driven",
+        "fastest_rates",
+        "force_evaluations",
+        "generation",
+        "has_forces",
+        "in_step",
+        "joints",
+        "kick_before_contacts",
+        "moment",
+        "motion_edits",
+        "name",
+        "remainders",
+        "revision",
+        "rigid_contacts",
+        "sleep",
+        "stale",
+        "step_divisions",
+        "steps",
+        "substeps",
+        "time",
+        "title",
+        "uniform_forces",
+        "view",
         "window",
     )  # fmt: skip
 
@@ -123,6 +158,7 @@ class State:
         self.window, self.kick_before_contacts, self.moment = (-0.5, 0.5), 0.5, 0.0
         self.entity_index = EntityIndex()
         self.bodies, self.contacts, self.sleep = Bodies(), Contacts(), Sleep()
+        self.joints = Joints()
         self.remainders: Remainders = NO_REMAINDERS
         self.fastest_rates: dict[str, float] = {}
         self.checkpoint = Checkpoint()

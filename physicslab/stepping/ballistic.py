@@ -11,6 +11,7 @@ from physicslab.state.state import State
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.joint import JointSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
@@ -77,6 +78,8 @@ def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:
                     if attracts
                     else f"the force of {system.name} is no uniform acceleration"
                 )
+        elif isinstance(system, JointSystem):
+            return "joints hold bodies together, which are left to rigid contacts"
         elif not (system.is_engine or type(system).marked().keys() <= _OBSERVING):
             return f"{system.name} acts within the step"
     return None
@@ -105,6 +108,8 @@ def pairs_that_may_meet(state: State) -> NDArray[np.int64]:
     inverse_mass = state.bodies.inverse_mass[shaped]
     i, j = np.triu_indices(len(shaped), 1)
     meets = (inverse_mass[i] > 0.0) | (inverse_mass[j] > 0.0)
+    if len(state.joints.apart):
+        meets &= state.joints.may_touch(shaped[i], shaped[j])
     bodies = np.stack((shaped[i[meets]], shaped[j[meets]], np.full(int(meets.sum()), -1)), axis=1)
     walled = np.zeros((0, 3), np.int64)
     if state.physics.bounds is not None:

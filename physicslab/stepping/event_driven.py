@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Transform, Velocity
-from physicslab.contacts.arguments import bounds_of, materials_of, motion_of, sizes_of
+from physicslab.contacts.arguments import bounds_of, materials_of, motion_of, shapes_of
 from physicslab.contacts.near_pairs import list_all
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.events import events, path
@@ -190,7 +190,7 @@ class EventDriven:
         made, impacts, why = events.run_events(
             contacts.manifolds, contacts.points, contacts.recorded,
             self._paths, self._mode, self._face, self._apart, self._due,
-            self._impact_positions, motion_of(state), sizes_of(state), materials_of(state),
+            self._impact_positions, motion_of(state), shapes_of(state), materials_of(state),
             (bodies.inverse_mass, bodies.inverse_inertia), self._bounds,
             state.account.sums, contacts.log, contacts.logged, state.time, span, steps,
         )  # fmt: skip

@@ -14,9 +14,15 @@ from physicslab.stepping.fastest_body import fastest_body
 from physicslab.stepping.plan import StepPlan, tolerance_for
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.joint import JointSystem
 from physicslab.systems.schedule import Schedule
 
 __all__ = ["Flow", "NotSmooth"]
+
+
+_PROJECTED = 16
+"""Steps after which what joints hold together is put there again, by a method that chooses its steps: it is
+apart by no more than the method errs by then."""
 
 
 class NotSmooth(ArithmeticError):
@@ -34,8 +40,9 @@ class Flow:
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._plan, self._method = schedule, plan, plan.integrator
-        self._ode = OdeSystem(state, schedule.forces, kicked=self._method.kicks)
+        self._ode = OdeSystem(state, schedule.smooth_forces, kicked=self._method.kicks)
         self._ode.tolerance = tolerance_for(state, schedule.forces)
+        self._joined = schedule.find(JointSystem) is not None
         self.kernels: tuple[Any, ...] = self._method.kernels
         self.reason = plan.reason
 
@@ -55,13 +62,22 @@ class Flow:
     @property
     def whole(self) -> bool:
         """Whether a run of any length is one step of the method."""
-        return self._method.chooses_steps
+        return self._method.chooses_steps and not self._joined
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make all of the steps in one compiled loop."""
         exact = self._method.chooses_steps or math.isinf(self._method.order)
         parts = 1 if exact else divisions(state, h)
-        self._flow(state, h / parts, parts * steps)
+        together = parts * steps
+        if self._joined:
+            together = _PROJECTED if self._method.chooses_steps else 1
+        start = state.time
+        try:
+            for made in range(0, parts * steps, together):
+                state.time = start + made * h / parts
+                self._flow(state, h / parts, min(together, parts * steps - made))
+        finally:
+            state.time = start
         check_finite(state, state.time + h * steps)
         return Advance(steps, parts)
 

@@ -181,6 +181,18 @@ def copy_rows(state: State, part: State, there: Rows, own: Rows) -> None:
             column[own[has]] = whole[there[has]]
 
 
+def copy_joints(part: State, state: State) -> None:
+    """Copy what the joints of a part hold bodies with to those of the whole world."""
+    if len(part.joints):
+        first = {(joint.entity, joint.kind): joint.first for joint in state.joints.joints}
+        for joint in part.joints.joints:
+            there = first[joint.entity, joint.kind]
+            own = slice(joint.first, joint.first + joint.size)
+            for name in ("impulse", "force"):
+                getattr(state.joints, name)[there : there + joint.size] = getattr(part.joints, name)[own]
+        state.joints.rank = part.joints.rank
+
+
 def numbers_of(state: State) -> list[NDArray[Any]]:
     """Return every column that motion may depend on."""
     tables = state.entity_index.tables.items()

@@ -24,7 +24,16 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.state.masses import Diverged
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import State
-from physicslab.stepping.island import Island, Part, Rows, fill, join_logs, numbers_of, rows_changed
+from physicslab.stepping.island import (
+    Island,
+    Part,
+    Rows,
+    copy_joints,
+    fill,
+    join_logs,
+    numbers_of,
+    rows_changed,
+)
 from physicslab.stepping.partition import MAX_BODIES, MAX_ISLANDS, groups_of, join, movable_in, why_whole
 from physicslab.stepping.plan import outlived
 from physicslab.stepping.stepper import Advance
@@ -227,6 +236,7 @@ class Islands:
         rows = np.flatnonzero(driven)
         for n, island in enumerate(self.members):
             island.write_back(state, rows if n == 0 else rows[:0])
+            copy_joints(island.state, state)
         state.sleep.count = int(np.count_nonzero(state.sleep.asleep))
         self._left = b"".join(numbers_of(state))
         own, whole = weakref.ref(self), weakref.ref(state)
@@ -379,6 +389,7 @@ class Islands:
         KeptContacts.joined(kept, part.contacts.counts).restore(part)
         for source in sources:
             carry_sleep(source, part)
+        part.joints.restore([kept for source in sources for kept in source.joints.kept()])
         part.remainders = _joined_remainders([source.remainders for source in sources])
         return island
 
@@ -435,6 +446,7 @@ class Islands:
             self.contacts(state).restore(state)
             for island in self.members:
                 carry_sleep(island.state, state)
+            state.joints.restore([kept for island in self.members for kept in island.state.joints.kept()])
             state.remainders = _joined_remainders([island.state.remainders for island in self.members])
         state.contacts.source, self.members, self._left = None, (), b""
 

@@ -112,7 +112,7 @@ def _labels(state: State, schedule: Schedule, rows: Rows) -> Rows:
     place = np.full(len(state.entity_index), -1)
     place[rows] = np.arange(len(rows))
     pairs = [couples for force in schedule.forces if (couples := force.couples(state)) is not None]
-    ends = place[np.concatenate(pairs)] if pairs else np.zeros((0, 2), np.int64)
+    ends = place[np.concatenate([state.joints.edges, *pairs])]
     return join(labels, labels[ends[(ends >= 0).all(axis=1)]].tolist())
 
 

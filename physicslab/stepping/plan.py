@@ -256,8 +256,10 @@ def _in_python(state: State, schedule: Schedule) -> StepPlan:
 def _best(state: State, schedule: Schedule) -> StepPlan:
     """Return the method for a world in which nothing but forces acts."""
     substeps, h = state.simulation.substeps, state.simulation.dt
-    forces = schedule.forces
+    forces = schedule.smooth_forces
     python = schedule.interpreted
+    if len(state.joints):
+        return StepPlan(DOP853, _joined(state), 1, smooth=True)
     if python:
         return _in_python(state, schedule)
     try:
@@ -363,6 +365,11 @@ def _why_singular(state: State, forces: Sequence[ForceSystem]) -> str | None:
 def _sees_velocity(state: State, forces: Sequence[ForceSystem]) -> bool:
     turns = state.physics.angular_damping > 0.0 and any(len(force.turned(state)) for force in forces)
     return state.physics.linear_damping > 0.0 or turns or any(force.sees_velocity(state) for force in forces)
+
+
+def _joined(state: State) -> str:
+    """Return why bodies on joints move as they do."""
+    return f"joints hold bodies by {len(state.joints)} equations, which are solved with those of the motion"
 
 
 def _too_fast(rate: float) -> str:

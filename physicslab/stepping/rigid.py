@@ -70,7 +70,7 @@ class Rigid:
         self._schedule = schedule
         self.reason = plan.contact_reason
         causes = (FRICTION, CONTACT, HAND) if _is_anything_driven(state) else (FRICTION, CONTACT)
-        self._ode = OdeSystem(state, schedule.forces, every_row=True, also=causes)
+        self._ode = OdeSystem(state, schedule.smooth_forces, every_row=True, also=causes)
         self._pairs = pairs_that_may_meet(state)
         self._records = RigidRecords(self._pairs)
         self._refused, self.left_to_soft, self.why_soft = -1, 0, ""

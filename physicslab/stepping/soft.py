@@ -102,6 +102,8 @@ class Soft:
         if self.hooks:
             self._end_step(state, h)
         keep_places(state)
+        if len(state.joints):
+            state.joints.force[:] = state.joints.impulse / (contacts.impulse_dt or span.h)
         if single:
             factors = (system.substep_factor(state) for system in self._schedule.running)
             contacts.substep_factor = max(factors, default=1)

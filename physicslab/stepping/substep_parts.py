@@ -14,6 +14,7 @@ from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.joint import JointSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.sleep import SleepSystem
@@ -141,7 +142,7 @@ class SubstepParts:
         """Add the work of the systems of a stage."""
         kind, part = _COMPILED[stage]
         also = SleepSystem if stage is Stage.CONTACT else kind
-        others = [system for system in systems if type(system) not in (kind, also)]
+        others = [system for system in systems if type(system) not in (kind, also, JointSystem)]
         accounts, run = self.accounts, self._run
         if self.compiled and not others:
             self._part(part, share)

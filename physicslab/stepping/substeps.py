@@ -14,10 +14,11 @@ from physicslab.contacts.arguments import (
     acting_in,
     bounds_of,
     inverse_in,
+    joints_in,
     materials_of,
     motion_of,
     near_in,
-    sizes_of,
+    shapes_of,
     speculative_margin,
 )
 from physicslab.contacts.islands import all_asleep
@@ -35,6 +36,7 @@ from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.joint import JointSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.sleep import SleepSystem
@@ -48,9 +50,10 @@ _KERNELS = (
 )  # fmt: skip
 _COSTS: dict[type[System], int] = {
     AccelerateSystem: soft.ACCELERATE, IntegrateSystem: soft.INTEGRATE, BroadPhaseSystem: soft.BROAD_PHASE,
-    ContactSystem: soft.CONTACT, ResolveSystem: soft.RESOLVE, SleepSystem: soft.SLEEP,
+    ContactSystem: soft.CONTACT, ResolveSystem: soft.RESOLVE, JointSystem: soft.RESOLVE,
+    SleepSystem: soft.SLEEP,
 }  # fmt: skip
-"""Where the loop keeps what their work costs; that of forces is in one."""
+"""Where the loop keeps what their work costs; that of forces is in one, and so is that of all impulses."""
 
 
 class Span(NamedTuple):
@@ -90,6 +93,7 @@ class Substeps:
         self._schedule = schedule
         self._contact, self._sleep = schedule.find(ContactSystem), schedule.find(SleepSystem)
         self._broad_phase, resolve = schedule.find(BroadPhaseSystem), schedule.find(ResolveSystem)
+        self._joined = resolve is not None and schedule.find(JointSystem) is not None
         self._softness = (0.0, 0.0, 0.0) if resolve is None else resolve.softness
         made = SubstepParts(state, schedule, plan)
         self.split, self.uniform, self.hooks = made.split, made.uniform, tuple(made.reasons)
@@ -229,8 +233,8 @@ class Substeps:
         if self._broad_phase is not None:
             fat = self._broad_phase.fat
         return (
-            *motion, packed, self._springs, sleepers, damping, fat, bounds, near_in(state), contacts.opened,
-            self._softness, contacts.impulse_dt, contacts.step_log, self._cost,
+            *motion, packed, self._springs, sleepers, damping, fat, bounds, near_in(state), joints_in(state),
+            contacts.opened, self._softness, contacts.impulse_dt, contacts.step_log, self._cost,
         )  # fmt: skip
 
     def _addresses(self, state: State) -> NDArray[np.int64]:
@@ -249,7 +253,7 @@ class Substeps:
             accounts.gravity.y, speculative_margin(state, h), accounts.other,
         )  # fmt: skip
         columns = (
-            motion_of(state), state.checkpoint.numbers, sizes_of(state), materials_of(state),
+            motion_of(state), state.checkpoint.numbers, shapes_of(state), materials_of(state),
             inverse_in(state), bodies.sub_integrated, acting_in(state), gravity,
         )  # fmt: skip
         laws = (physics.linear_damping, physics.angular_damping), np.zeros((8, 0)), bounds_of(state)
@@ -270,6 +274,7 @@ class Substeps:
                 place, shared = soft.GRAVITY, self._forces
             else:
                 place = _COSTS[type(system)]
+                shared = 2 if place == soft.RESOLVE and self._joined else 1
             once = isinstance(system, SleepSystem) and not self._hooked
             timing.calls += self._substeps * calls + self._steps * once
             timing.nanoseconds += self._nanoseconds * costs[place] // (total * shared)

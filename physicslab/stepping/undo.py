@@ -58,4 +58,5 @@ def go_back(state: State) -> None:
     state.remainders = state.checkpoint.remainders
     state.account.go_back()
     state.contacts.clear()  # what a failed step left there may not be finite either
+    state.joints.impulse[:] = 0.0
     wake_all(state)  # no contact supports any body now

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
-from physicslab.contacts.arguments import motion_of, near_in, sizes_of, speculative_margin
+from physicslab.contacts.arguments import motion_of, near_in, shapes_of, speculative_margin
 from physicslab.contacts.near_pairs import partition
 from physicslab.kernels.broad import grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes, still_holds
@@ -29,9 +29,22 @@ def nothing_to_touch(state: State) -> str | None:
         return "no Shape in the scene"
     if not moving:
         return "nothing that has a Shape moves"
-    if shapes == 1 and state.physics.bounds is None:
+    if state.physics.bounds is not None:
+        return None
+    if shapes == 1:
         return "only one Shape in the scene, and no bounds"
+    if len(state.joints.apart) and shapes <= _FEW and not _may_any_touch(state):
+        return "all pairs that could meet are on joints, and pass through each other"
     return None
+
+
+def _may_any_touch(state: State) -> bool:
+    """Whether any two bodies may meet that no joint keeps from touching each other."""
+    shaped = state.batch(Shape, Transform).rows
+    i, j = np.triu_indices(len(shaped), 1)
+    a, b = shaped[i], shaped[j]
+    moves = state.table(Velocity).present
+    return bool((state.joints.may_touch(a, b) & (moves[a] | moves[b])).any())
 
 
 def _lookahead(sleepers: int, awake: int) -> float:
@@ -144,7 +157,8 @@ class BroadPhaseSystem(System):
     def search(self, state: State, h: float) -> None:
         """Update the list of near pairs, where it is not valid any more."""
         self.follow_rows(state)
-        if not still_holds(*motion_of(state), *sizes_of(state), self.fat, h, speculative_margin(state, h)):
+        motion, shapes = motion_of(state), shapes_of(state)
+        if not still_holds(motion, shapes, self.fat, h, speculative_margin(state, h)):
             self.list_pairs(state, h)
 
     def list_pairs(self, state: State, h: float) -> None:
@@ -156,15 +170,17 @@ class BroadPhaseSystem(System):
 
     def _add_pairs(self, state: State, h: float, ahead: float) -> bool:
         """Add the new pairs of those bodies; return whether that was possible."""
-        left, kind = self.leavers, state.table(Shape)["kind"]
-        if len(kind) <= _FEW or _sparse(state) or left.crowded or state.contacts.stale:
+        left, vertices = self.leavers, state.bodies.shapes.vertices
+        if len(vertices) <= _FEW or _sparse(state) or left.crowded or state.contacts.stale:
+            return False
+        if len(state.joints.apart):  # which the search for new pairs does not know
             return False
         if left.indexed is None:
             left.indexed = leaving.index_bodies(
-                self.boxes, kind, left.first, left.body, left.home_x, left.home_y
+                self.boxes, vertices, left.first, left.body, left.home_x, left.home_y
             )
         left.number = leaving.add_pairs(
-            near_in(state), motion_of(state), sizes_of(state), state.bodies.inverse_mass,
+            near_in(state), motion_of(state), shapes_of(state), state.bodies.inverse_mass,
             self.fat, self.boxes, left.moved, left.number, state.physics.bounds is not None, self.bounds,
             left.first, left.body, left.home_x, left.home_y, left.indexed,
             h, ahead, speculative_margin(state, h),
@@ -174,20 +190,25 @@ class BroadPhaseSystem(System):
     def _list_all(self, state: State, awake: NDArray[np.float64], ahead: float, margin: float) -> None:
         """List all near pairs again."""
         share = math.inf if _sparse(state) else HIT_SHARE
-        fat_boxes(motion_of(state), sizes_of(state), awake, self.fat, self.boxes, ahead, share, margin)
+        fat_boxes(motion_of(state), shapes_of(state), awake, self.fat, self.boxes, ahead, share, margin)
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
-        found, walls = self._count_pairs(state.table(Shape)["kind"], inverse_mass, bounded)
+        found, walls = self._count_pairs(state.bodies.shapes.vertices, inverse_mass, bounded)
+        if len(state.joints.apart):
+            couples = self._couples[: 2 * found].reshape(-1, 2)
+            couples = couples[state.joints.may_touch(couples[:, 0], couples[:, 1])]
+            found = len(couples)
+            self._couples[: 2 * found] = couples.ravel()
         self.leavers.begin()
         partition(state, self._couples, found, self._pairs, walls, self.fat)
 
     def _count_pairs(
-        self, kind: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool
+        self, vertices: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool
     ) -> tuple[int, int]:
         """Find the pairs, with more room where it is too little; return how many of bodies, of walls."""
         while True:
             found, walls, self.leavers.crowded = grid.find_pairs(
-                self.boxes, self.fat, kind, inverse_mass, bounded, self.bounds, self._pairs, self._couples
+                self.boxes, self.fat, vertices, inverse_mass, bounded, self.bounds, self._pairs, self._couples
             )
             if 2 * found <= len(self._couples) and found + walls <= len(self._pairs):
                 return found, walls

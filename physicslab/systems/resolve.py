@@ -37,7 +37,9 @@ class ResolveSystem(System):
 
     def why_left_out(self, state: State) -> str | None:
         """Needed where two things could ever meet."""
-        return nothing_to_touch(state)
+        reason = nothing_to_touch(state)
+        state.joints.beside_contacts = reason is None
+        return reason
 
     def substep_factor(self, state: State) -> int:
         """Return the factor for far heavier loads, which need a stiffer contact spring and shorter substeps.

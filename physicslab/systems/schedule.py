@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import working_ns
 from physicslab.state.state import State
+from physicslab.systems.joint import JointSystem
 from physicslab.systems.system import ForceSystem, Stage, System
 
 
@@ -46,6 +47,8 @@ class Schedule:
         The others, each with the reason.
     forces : tuple of ForceSystem
         The force systems among those that run.
+    smooth_forces : tuple of ForceSystem
+        Those that act in smooth motion: behind them the forces of joints, where there are any.
     interpreted : tuple of str
         The names of those that no kernel computes, and Python does.
     observer : System, optional
@@ -59,6 +62,7 @@ class Schedule:
         self.running: tuple[System, ...] = ()
         self.left_out: tuple[LeftOut, ...] = ()
         self.forces: tuple[ForceSystem, ...] = ()
+        self.smooth_forces: tuple[ForceSystem, ...] = ()
         self.interpreted: tuple[str, ...] = ()
         self.observer: System | None = None
         self._timings: dict[str, Timing] = {}
@@ -106,6 +110,8 @@ class Schedule:
                 left_out.append(LeftOut(system.name, reason))
         self.running, self.left_out = tuple(running), tuple(left_out)
         self.forces = tuple(system for system in running if isinstance(system, ForceSystem))
+        joined = [system.smooth for system in running if isinstance(system, JointSystem)]
+        self.smooth_forces = (*self.forces, *joined)
         self.interpreted = tuple(force.name for force in self.forces if not type(force).packs())
         self.observer = next((system for system in running if system.observes()), None)
         self._calls = {stage: [] for stage in Stage}

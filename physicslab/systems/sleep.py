@@ -110,13 +110,13 @@ class SleepSystem(System):
 
     def count_rest(self, state: State, h: float) -> None:
         """Count at the end of a step how long bodies have rested; put islands to sleep where it is enough."""
-        sleep, velocity, shape = state.sleep, state.table(Velocity), state.table(Shape)
+        sleep, velocity = state.sleep, state.table(Velocity)
         if sleep.has_external_writers:
             check_edits(state, within=True)
         if islands.count_rest(
             velocity["linear"], velocity["angular"],
-            shape["kind"], shape["radius"], shape["width"], shape["height"],
-            state.bodies.inverse_mass, state.bodies.sub_integrated, sleep.asleep, sleep.rest, sleep.slowest,
+            state.bodies.shapes.reach, state.bodies.inverse_mass, state.bodies.sub_integrated,
+            sleep.asleep, sleep.rest, sleep.slowest,
             min(h, state.simulation.dt),  # of a divided step only the end is observed
         ):  # fmt: skip
             self.put_islands_to_sleep(state, h)
@@ -137,9 +137,9 @@ class SleepSystem(System):
         contacts, velocity, held = state.contacts, state.table(Velocity), np.zeros(len(ready), np.bool_)
         impulse_dt = contacts.impulse_dt or state.simulation.dt / state.simulation.substeps
         islands.find_held(
-            contacts.manifolds, contacts.points, contacts.recorded, impulse_dt, state.table(Shape)["kind"],
+            contacts.manifolds, contacts.points, contacts.recorded, impulse_dt, state.bodies.shapes.vertices,
             state.bodies.inverse_mass, state.bodies.force, velocity["linear"], velocity["angular"],
-            ready, held,
+            state.joints.edges.ravel(), ready, held,
         )  # fmt: skip
         return held
 

@@ -1,10 +1,9 @@
 """Springs and dampers between bodies, or a body and a fixed point."""
 
-import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Mass, Name, Spring, Transform, Velocity
+from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.vector import rotated
@@ -13,6 +12,7 @@ from physicslab.kernels.forces import bookings, packed_forces, springs
 from physicslab.kernels.forces.resistance import damper_resistance
 from physicslab.state.packed import PackedForce, StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
+from physicslab.systems.joint import remove_lost
 from physicslab.systems.system import ForceSystem
 
 _NOTHING = 1e-9
@@ -38,24 +38,12 @@ class SpringSystem(ForceSystem):
         InvalidValue
             If an end never was an entity, or is one without a Transform; or if both are the same.
         """
-        self._rows, self._a, self._b = rows, a, b = spring_ends(state)
-        placed = state.table(Transform).present
-        lost_a, lost_b = (a < 0) | ~placed[a], (b < 0) | ~(placed[b] | (b == 0))
-        spring, entities = state.table(Spring), state.batch(Spring).entities
+        self._rows, self._a, self._b = _, a, b = spring_ends(state)
+        entities = state.batch(Spring).entities
         for i in np.flatnonzero((a == b) & (a > 0)).tolist():
             end = int(state.entity_index.entities[b[i]])
             raise InvalidValue(f"{state.label(int(entities[i]))}: Spring", "b", end, OTHER_END)
-        for i in np.flatnonzero(lost_a | lost_b).tolist():
-            entity, name = int(entities[i]), "a" if lost_a[i] else "b"
-            if not (esper.entity_exists(entity) and esper.has_component(entity, Spring)):
-                continue  # removed by an earlier call, before rows were numbered again
-            end = int(spring[name][rows[i]]) or entity
-            if end in state.entity_index.row_of or end > state.entity_index.newest:
-                raise InvalidValue(f"{state.label(entity)}: Spring", name, end, "an entity with a Transform")
-            esper.remove_component(entity, Spring)
-            left: tuple[object, ...] = esper.components_for_entity(entity)
-            if all(isinstance(component, Name) for component in left):
-                esper.delete_entity(entity, immediate=True)
+        remove_lost(state, Spring, a, b)
 
     def turned(self, state: State) -> NDArray[np.int64]:
         """Return the rows that springs hold away from their middle."""

@@ -6,6 +6,7 @@ from physicslab.systems.drag import DragSystem
 from physicslab.systems.gate import GateSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.joint import JointSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.spring import SpringSystem
@@ -18,6 +19,7 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     SpringSystem,
     DragSystem,
     IntegrateSystem,
+    JointSystem,
     BroadPhaseSystem,
     ContactSystem,
     SleepSystem,

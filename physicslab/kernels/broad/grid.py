@@ -279,7 +279,7 @@ def _level(
 
 @allocating_kernel
 def find_pairs(
-    boxes: Vectors, fat: Vectors, kind: Rows, inverse_mass: Numbers,
+    boxes: Vectors, fat: Vectors, vertices: Rows, inverse_mass: Numbers,
     bounded: bool, bounds: Numbers, pairs: Pairs, couples: Couples,
 ) -> tuple[int, int, bool]:  # fmt: skip
     """Find the pairs whose fat boxes overlap, each once; return how many of bodies there are, and of walls.
@@ -291,13 +291,13 @@ def find_pairs(
     pairs (0, row, wall), written to ``pairs``. Where either has no room, the numbers are larger than that,
     and no less than is needed.
     """
-    n = len(kind)
+    n = len(vertices)
     members = np.empty(n, np.int64)
     larges = np.empty(n, np.int64)
     search = Search(boxes, fat, inverse_mass, couples, np.zeros(n, np.int64))
     count, found, walls = 0, 0, 0
     for i in range(n):
-        if kind[i] == 0:
+        if vertices[i] == 0:
             continue
         members[count] = i
         count += 1

@@ -11,10 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, fused, inlined, kernel
-from physicslab.kernels.arguments import Motion, MotionTuple, Near, NearTuple, Sizes, SizesTuple, named_near
+from physicslab.kernels.arguments import Motion, MotionTuple, Near, NearTuple, named_near
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fatten, left, usual_speed
 from physicslab.kernels.broad.grid import cell_at
 from physicslab.kernels.broad.near_pairs import beside, distance_to_activate, make_blank
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.near_counts import PROXIMITY, RECORDED, SCALAR, UNORDERED
 
 __all__ = ["add_pairs", "index_bodies"]
@@ -67,16 +68,16 @@ def _bucket(ix: int, iy: int, mask: int) -> int:
 
 @allocating_kernel
 def index_bodies(
-    boxes: Vectors, kind: Rows, first: Rows, body: Rows, home_x: Rows, home_y: Rows
+    boxes: Vectors, vertices: Rows, first: Rows, body: Rows, home_x: Rows, home_y: Rows
 ) -> tuple[int, int, float]:
     """Sort bodies by the cells of their fat boxes' centres; ``first`` has a power of two of buckets, and one.
 
     Returns how many fit a cell, how many there are in all, and the size of the smallest cells [m].
     """
-    n, mask = len(kind), len(first) - 2
+    n, mask = len(vertices), len(first) - 2
     inverse_sizes, count = 0.0, 0
     for i in range(n):
-        if kind[i] != 0:
+        if vertices[i] != 0:
             inverse_sizes += 1.0 / max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1])
             count += 1
     # The harmonic mean goes by the small bodies, which are many, and not by the few walls.
@@ -86,7 +87,7 @@ def index_bodies(
     first[:] = 0
     smalls = 0
     for i in range(n):
-        if kind[i] == 0:
+        if vertices[i] == 0:
             continue
         level = _level_of(max(boxes[i, 2] - boxes[i, 0], boxes[i, 3] - boxes[i, 1]), cell)
         if level < _LEVELS:
@@ -104,7 +105,7 @@ def index_bodies(
             entry = fill[where[i]]
             fill[where[i]] = entry + 1
             body[entry], home_x[entry], home_y[entry] = i, cells[i, 0], cells[i, 1]
-        elif kind[i] != 0:
+        elif vertices[i] != 0:
             body[larges] = i
             larges += 1
     return smalls, count, cell
@@ -128,7 +129,7 @@ class Leaver(NamedTuple):
 
 @inlined
 def _pair(
-    leaver: Leaver, j: int, near: Near, sizes: Sizes, fat: Vectors, boxes: Vectors, moved: Flags,
+    leaver: Leaver, j: int, near: Near, shapes: Shapes, fat: Vectors, boxes: Vectors, moved: Flags,
     inverse_mass: Numbers,
 ) -> None:  # fmt: skip
     """List the pair of a leaver and of body j, if it is new and either can be moved."""
@@ -137,7 +138,7 @@ def _pair(
         return
     distance = distance_to_activate(fat, i, j)
     # If the boxes overlapped before, it is listed, unless it was left out as beside a long body.
-    left_out = distance == math.inf and leaver.first and not moved[j] and beside(sizes, fat, i, j)
+    left_out = distance == math.inf and leaver.first and not moved[j] and beside(shapes, fat, i, j)
     if _overlap(leaver.before, boxes, j) and not left_out:
         return
     k = near.counts[PROXIMITY]
@@ -168,7 +169,7 @@ def _meet_walls(leaver: Leaver, near: Near, bounds: Numbers) -> None:
 
 @fused
 def _list_leaver(
-    leaver: Leaver, growth: float, index: Index, near: Near, sizes: Sizes, fat: Vectors, boxes: Vectors,
+    leaver: Leaver, growth: float, index: Index, near: Near, shapes: Shapes, fat: Vectors, boxes: Vectors,
     moved: Flags, inverse_mass: Numbers,
 ) -> bool:  # fmt: skip
     """List the new pairs of one body; return whether that can be done. Boxes may have grown by ``growth``."""
@@ -187,15 +188,15 @@ def _list_leaver(
                 at = _bucket(home, iy, mask)
                 for q in range(first[at], first[at + 1]):
                     if home_x[q] == home and home_y[q] == iy:
-                        _pair(leaver, body[q], near, sizes, fat, boxes, moved, inverse_mass)
+                        _pair(leaver, body[q], near, shapes, fat, boxes, moved, inverse_mass)
     for q in range(smalls, count):
-        _pair(leaver, body[q], near, sizes, fat, boxes, moved, inverse_mass)
+        _pair(leaver, body[q], near, shapes, fat, boxes, moved, inverse_mass)
     return True
 
 
 @kernel
 def add_pairs(
-    plain_near: NearTuple, plain_motion: MotionTuple, plain_sizes: SizesTuple, inverse_mass: Numbers,
+    plain_near: NearTuple, plain_motion: MotionTuple, plain_shapes: ShapesTuple, inverse_mass: Numbers,
     fat: Vectors, boxes: Vectors, moved: Flags, already: int, bounded: bool, bounds: Numbers,
     first: Rows, body: Rows, home_x: Rows, home_y: Rows, found: tuple[int, int, float],
     h: float, ahead: float, speculative_margin: float,
@@ -207,14 +208,14 @@ def add_pairs(
     :func:`index_bodies`. Returns how many there are now, or -1 where all pairs must be listed again: too many
     have left, or there is no room.
     """
-    near, motion, sizes = named_near(plain_near), Motion(*plain_motion), Sizes(*plain_sizes)
+    near, motion, shapes = named_near(plain_near), Motion(*plain_motion), named_shapes(plain_shapes)
     index = Index(first, body, home_x, home_y, found[0], found[1], found[2])
     rows, counts = len(motion.angle), near.counts
     if index.bodies - index.smalls > _MAX_LARGE + rows // 16:
         return -1
     before = counts[PROXIMITY], counts[RECORDED], counts[SCALAR]
     already = _add_pairs(
-        near, motion, sizes, inverse_mass, fat, boxes, moved, already, bounded, bounds, index, h, ahead,
+        near, motion, shapes, inverse_mass, fat, boxes, moved, already, bounded, bounds, index, h, ahead,
         speculative_margin,
     )  # fmt: skip
     if already < 0:
@@ -224,25 +225,25 @@ def add_pairs(
 
 @inlined
 def _add_pairs(
-    near: Near, motion: Motion, sizes: Sizes, inverse_mass: Numbers, fat: Vectors, boxes: Vectors,
+    near: Near, motion: Motion, shapes: Shapes, inverse_mass: Numbers, fat: Vectors, boxes: Vectors,
     moved: Flags, already: int, bounded: bool, bounds: Numbers, index: Index, h: float, ahead: float,
     speculative_margin: float,
 ) -> int:  # fmt: skip
     """Do what :func:`add_pairs` describes; where it is given up, counts are too large."""
     rows, counts, growth = len(motion.angle), near.counts, 0.0
-    limit, usual = rows // _BODIES + counts[RECORDED] // _RECORDS, usual_speed(motion, sizes)
+    limit, usual = rows // _BODIES + counts[RECORDED] // _RECORDS, usual_speed(motion, shapes)
     for i in range(rows):
         if moved[i]:
             growth = max(growth, fat[5, i])
     for i in range(rows):
-        if not left(i, motion, sizes, fat, h, _SOON * h, speculative_margin):
+        if not left(i, motion, shapes, fat, h, _SOON * h, speculative_margin):
             continue
         if not fat[3, i] > 0.0 or (not moved[i] and already >= limit):
             return -1
         before = boxes[i, 0], boxes[i, 1], boxes[i, 2], boxes[i, 3]
         old = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i], fat[6, i], fat[7, i]
         hit = usual if inverse_mass[i] > 0.0 else 0.0
-        x0, y0, x1, y1 = fatten(i, motion, sizes, fat, ahead, hit, HIT_SHARE, speculative_margin)
+        x0, y0, x1, y1 = fatten(i, motion, shapes, fat, ahead, hit, HIT_SHARE, speculative_margin)
         new = fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i], fat[6, i], fat[7, i]
         if new[3] != old[3]:
             return -1
@@ -254,7 +255,7 @@ def _add_pairs(
         # Which long bodies it was beside goes by where it was when all pairs were listed.
         fat[0, i], fat[1, i], fat[2, i], fat[4, i] = old[0], old[1], old[2], old[4]
         fat[6, i], fat[7, i] = old[5], old[6]
-        done = _list_leaver(leaver, growth, index, near, sizes, fat, boxes, moved, inverse_mass)
+        done = _list_leaver(leaver, growth, index, near, shapes, fat, boxes, moved, inverse_mass)
         if bounded and inverse_mass[i] > 0.0:
             _meet_walls(leaver, near, bounds)
         fat[0, i], fat[1, i], fat[2, i], fat[4, i] = new[0], new[1], new[2], new[4]

@@ -10,8 +10,8 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
-from physicslab.kernels.arguments import Sizes, SizesTuple
 from physicslab.kernels.broad.fat_boxes import CORNERWISE
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.narrow.contact import ACTIVATION_RATIO
 from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Points
 
@@ -74,20 +74,20 @@ def _note_known(manifolds: Manifolds, count: int, table: Rows) -> None:
 
 
 @inlined
-def beside(sizes: Sizes, fat: Vectors, one: int, other: int) -> bool:
+def beside(shapes: Shapes, fat: Vectors, one: int, other: int) -> bool:
     """Whether the smaller of two bodies stays beside the other, though it is in the upright box around that.
 
     Both may leave the places for which the fat boxes were made by no more than their margins.
     """
     long, small = (one, other) if fat[3, one] > fat[3, other] else (other, one)
-    if sizes.kind[long] != 2:
+    if shapes.vertices[long] < 2:
         return False
     c, s = math.cos(fat[2, long]), math.sin(fat[2, long])
     x, y = fat[0, small] - fat[0, long], fat[1, small] - fat[1, long]
     ways = abs(fat[6, long]) + abs(fat[7, long]) + abs(fat[6, small]) + abs(fat[7, small])
-    clear = fat[3, small] + CORNERWISE * (fat[4, long] + fat[4, small]) + ways
+    clear = fat[3, small] + shapes.radius[long] + CORNERWISE * (fat[4, long] + fat[4, small]) + ways
     across, up = abs(c * x + s * y), abs(c * y - s * x)
-    return bool((across > 0.5 * sizes.width[long] + clear) | (up > 0.5 * sizes.height[long] + clear))
+    return bool((across > shapes.half_x[long] + clear) | (up > shapes.half_y[long] + clear))
 
 
 @inlined
@@ -106,7 +106,7 @@ def distance_to_activate(fat: Vectors, a: int, b: int) -> float:
 @allocating_kernel
 def partition(
     couples: Couples, found: int, pairs: Pairs, walls: int,
-    plain_sizes: SizesTuple, fat: Vectors, inverse_mass: Numbers, entities: Rows,
+    plain_shapes: ShapesTuple, fat: Vectors, inverse_mass: Numbers, entities: Rows,
     manifolds: Manifolds, known: int, stale: bool, table: Rows, proximity: Couples,
     activation_distance: Numbers,
 ) -> tuple[int, int]:  # fmt: skip
@@ -121,8 +121,8 @@ def partition(
     Of a long body and a short one that are not ``beside`` each other, the record is made at once.
     """
     _note_known(manifolds, known, table)
-    sizes = Sizes(*plain_sizes)
-    mask, n = _mask(known), len(sizes.kind)
+    shapes = named_shapes(plain_shapes)
+    mask, n = _mask(known), len(shapes.vertices)
     recorded = np.full(n, stale)
     if not stale:
         for q in range(known):
@@ -145,7 +145,7 @@ def partition(
                 activation_distance[proximity_count] = distance
                 proximity_count += 1
                 continue
-            if beside(sizes, fat, a, b):
+            if beside(shapes, fat, a, b):
                 continue
         pairs[kept, 0], pairs[kept, 1], pairs[kept, 2] = a, b, -1
         kept += 1

@@ -12,12 +12,6 @@ from typing import NamedTuple
 from physicslab.kernels import inlined
 from physicslab.kernels.constraint.pair import PairInverseMass, PointState, response
 
-__all__ = [
-    "ENERGETIC", "LOWERED", "NEWTON", "ImpactImpulses", "PairResponse", "PointResponse", "RestitutionSearch",
-    "begin_search", "narrow_search", "newton_impulse", "newton_impulses", "pair_response", "point_response",
-    "solve_impact", "solve_impact_of_two", "stronge_impulse",
-]  # fmt: skip
-
 NEWTON, ENERGETIC, LOWERED = range(3)
 """The law of an impact: Newton's; Stronge's, or Newton's with a lower restitution, where it makes energy."""
 _ENERGY_TOLERANCE = 1e-13

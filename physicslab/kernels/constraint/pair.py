@@ -11,13 +11,6 @@ from physicslab.kernels.arguments import Inverse
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.wide.float64x8 import Wide
 
-__all__ = [
-    "ContactFrame", "MomentArms", "PairInverseMass", "PairVelocity", "PointState", "after_impulse",
-    "after_impulse_at", "along_and_across", "frame_of", "impulse_at", "inverse_mass_of", "mean_velocity",
-    "moment_arms", "moments_of", "point_state", "point_velocity", "put_velocity", "response",
-    "velocity_of",
-]  # fmt: skip
-
 
 class PairVelocity[N: (float, Wide)](NamedTuple):
     """Velocities [m/s] and angular velocities [rad/s] of A and of B."""

@@ -3,7 +3,6 @@
 import math
 
 from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
-from physicslab.kernels.arguments import Sizes
 from physicslab.kernels.events.meeting import (
     Course,
     box_normal,
@@ -13,6 +12,7 @@ from physicslab.kernels.events.meeting import (
     meet_line,
 )
 from physicslab.kernels.events.path import place, seen_from, velocity
+from physicslab.kernels.geometry.shapes import BOX, Shapes
 from physicslab.kernels.narrow.manifold import circle_box
 from physicslab.kernels.narrow.outline import Outline, Way, outline_of
 from physicslab.kernels.narrow.pair import touch_wall, touch_with_circle
@@ -56,14 +56,14 @@ def _meet_wall(
 
 @inlined
 def meeting_of(
-    manifold: Manifold, paths: Vectors, angle: Numbers, sizes: Sizes, walls: Numbers,
+    manifold: Manifold, paths: Vectors, angle: Numbers, shapes: Shapes, walls: Numbers,
     now: float, low: float, span: float, min_speed: float,
 ) -> tuple[float, int]:  # fmt: skip
     """Return in how many seconds from ``now + low`` a pair meets, and along which normal of two boxes."""
-    two = outline_of(manifold.b, angle, sizes)
+    two = outline_of(manifold.b, angle, shapes)
     if manifold.wall >= 0:
         return _meet_wall(manifold, paths, two, walls, now, low, min_speed), 0
-    one = outline_of(manifold.a, angle, sizes)
+    one = outline_of(manifold.a, angle, shapes)
     course = seen_from(paths, manifold.a, manifold.b, now, low)
     if not (one.box or two.box):
         return meet_circle_circle(course, one.radius + two.radius, span, min_speed), 0
@@ -80,13 +80,13 @@ def meeting_of(
 
 
 @inlined
-def _half_extents(i: int, angle: Numbers, sizes: Sizes) -> tuple[float, float]:
+def _half_extents(i: int, angle: Numbers, shapes: Shapes) -> tuple[float, float]:
     """Return how far row i reaches from its middle along x and y [m], or more."""
-    if sizes.kind[i] != 2:
-        return sizes.radius[i], sizes.radius[i]
+    if shapes.first[i] != BOX:
+        return shapes.radius[i], shapes.radius[i]
     if angle[i] == 0.0:
-        return 0.5 * sizes.width[i], 0.5 * sizes.height[i]
-    either = 0.5 * (sizes.width[i] + sizes.height[i])
+        return shapes.half_x[i], shapes.half_y[i]
+    either = shapes.half_x[i] + shapes.half_y[i]
     return either, either
 
 
@@ -98,14 +98,15 @@ def _time_open(gap: float, speed: float, pull: float) -> float:
 
 @always_inlined
 def time_apart(
-    manifold: Manifold, paths: Vectors, angle: Numbers, sizes: Sizes, walls: Numbers, now: float, error: float
-) -> float:
+    manifold: Manifold, paths: Vectors, angle: Numbers, shapes: Shapes, walls: Numbers, now: float,
+    error: float,
+) -> float:  # fmt: skip
     """Return for how many seconds from ``now`` on a pair surely is apart, whose place is known to ``error``.
 
     By the rectangles about both, along each axis: cheap, and never longer than until the pair meets.
     """
     a, b, wall = manifold.a, manifold.b, manifold.wall
-    half_x, half_y = _half_extents(b, angle, sizes)
+    half_x, half_y = _half_extents(b, angle, shapes)
     s = now - paths[b, 10]
     x, y = (
         paths[b, 0] + s * (paths[b, 4] + 0.5 * s * paths[b, 8]),
@@ -120,7 +121,7 @@ def time_apart(
     s = now - paths[a, 10]
     x -= paths[a, 0] + s * (paths[a, 4] + 0.5 * s * paths[a, 8])
     y -= paths[a, 2] + s * (paths[a, 6] + 0.5 * s * paths[a, 9])
-    other_x, other_y = _half_extents(a, angle, sizes)
+    other_x, other_y = _half_extents(a, angle, shapes)
     sign = math.copysign(1.0, x)
     vx, wx = vx - (paths[a, 4] + s * paths[a, 8]), wx - paths[a, 8]
     apart = _time_open(abs(x) - half_x - other_x - error, sign * vx, sign * wx)
@@ -139,14 +140,14 @@ def _size(body: Outline) -> float:
 
 @inlined
 def gap_of(
-    manifold: Manifold, paths: Vectors, angle: Numbers, sizes: Sizes, walls: Numbers
+    manifold: Manifold, paths: Vectors, angle: Numbers, shapes: Shapes, walls: Numbers
 ) -> tuple[float, float]:
     """Return the gap of a pair at the start of its paths, and the size of the smaller body [m]."""
     a, b = manifold.a, manifold.b
-    two = outline_of(b, angle, sizes)
+    two = outline_of(b, angle, shapes)
     if manifold.wall >= 0:
         return _wall_gap(manifold, paths[b, 0], paths[b, 2], two, walls)[0], _size(two)
-    one = outline_of(a, angle, sizes)
+    one = outline_of(a, angle, shapes)
     size = min(_size(two), _size(one))
     dx, dy = paths[b, 0] - paths[a, 0], paths[b, 2] - paths[a, 2]
     if not (one.box or two.box):
@@ -165,14 +166,14 @@ def gap_of(
 @inlined
 def touch_pair(
     manifold: Manifold, first: Point, second: Point, face: int, x: float, y: float, dx: float, dy: float,
-    angle: Numbers, sizes: Sizes, walls: Numbers,
+    angle: Numbers, shapes: Shapes, walls: Numbers,
 ) -> None:  # fmt: skip
     """Fill normal, points and arms of a pair that meets, B at (x, y) and (dx, dy) from A."""
-    two = outline_of(manifold.b, angle, sizes)
+    two = outline_of(manifold.b, angle, shapes)
     if manifold.wall >= 0:
         touch_wall(manifold, first, second, Way(x, y, 0.0, 0.0), 0.0, 0.0, two, walls)
         return
-    one = outline_of(manifold.a, angle, sizes)
+    one = outline_of(manifold.a, angle, shapes)
     if one.box and two.box:
         nx, ny, _ = box_normal(face, one, two)
         _put_boxes(

@@ -21,13 +21,12 @@ from physicslab.kernels.arguments import (
     MaterialsTuple,
     Motion,
     MotionTuple,
-    Sizes,
-    SizesTuple,
 )
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of
 from physicslab.kernels.events.encounter import gap_of, meeting_of, time_apart, touch_pair
 from physicslab.kernels.events.path import advance_to, begin, place, seen_from
 from physicslab.kernels.events.path_impact import path_velocity, resolve_ballistic_impacts
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.narrow.contact import effective_masses, mix
 from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.records import Impacts, Manifolds, Points
@@ -73,7 +72,7 @@ class Flight(NamedTuple):
 
     Records and points of the pairs, and how many there are; paths, modes and motions of the bodies; of each
     pair the face, the first step in which it may meet, when it meets in this one, and where B was at its last
-    impact; then sizes, masses and bounds, and the account that impacts and gravity add to.
+    impact; then shapes, masses and bounds, and the account that impacts and gravity add to.
     """
 
     manifolds: Manifolds
@@ -86,7 +85,7 @@ class Flight(NamedTuple):
     apart: Rows
     due: Vectors
     impact_position: Vectors
-    sizes: Sizes
+    shapes: Shapes
     inverse: Inverse
     bounds: Bounds
     account: Vectors
@@ -113,13 +112,13 @@ def _begin_all(flight: Flight, step: int, span: float, left: int) -> tuple[int, 
     distance that rounding may make until pairs that are apart are looked at again [m].
     """
     paths, mode, due, (position, angle, linear, _) = flight.paths, flight.mode, flight.due, flight.motion
-    why, fastest, farthest, sizes, time = DONE, 0.0, 0.0, flight.sizes, min(float(left), _AHEAD) * span
+    why, fastest, farthest, shapes, time = DONE, 0.0, 0.0, flight.shapes, min(float(left), _AHEAD) * span
     for i in range(len(mode)):
         begin(paths, i, position[i, 0], position[i, 1], linear[i, 0], linear[i, 1])
         speed = abs(linear[i, 0]) + abs(linear[i, 1])
         fastest = max(fastest, speed)
         way = time * (speed + time * (abs(paths[i, 8]) + abs(paths[i, 9])))
-        size = sizes.radius[i] + sizes.width[i] + sizes.height[i]
+        size = shapes.radius[i] + 2.0 * (shapes.half_x[i] + shapes.half_y[i])
         farthest = max(farthest, abs(position[i, 0]) + abs(position[i, 1]) + size + way)
     rounding = _ROUNDING * farthest
     for p in range(flight.pairs):
@@ -134,7 +133,7 @@ def _begin_all(flight: Flight, step: int, span: float, left: int) -> tuple[int, 
         flight.apart[p] = _first_step(flight, p, step, 0.0, span, left, rounding)
         if flight.apart[p] > step:
             continue
-        gap, size = gap_of(manifold, paths, angle, flight.sizes, flight.bounds.walls)
+        gap, size = gap_of(manifold, paths, angle, flight.shapes, flight.bounds.walls)
         if gap < -DEEP * size:
             why = OVERLAP
     return why, _MIN_SPEED_RATIO * fastest, rounding
@@ -147,7 +146,7 @@ def _first_step(
     """Return the first of the ``left`` steps from ``step`` on in which a pair may meet, seen from ``now``."""
     steps = min(float(left), _AHEAD)
     time = now + time_apart(
-        flight.manifolds[p], flight.paths, flight.motion.angle, flight.sizes, flight.bounds.walls, now,
+        flight.manifolds[p], flight.paths, flight.motion.angle, flight.shapes, flight.bounds.walls, now,
         rounding,
     )  # fmt: skip
     return step + int(min(time / span, steps))
@@ -202,7 +201,7 @@ def _meet(
     mix(manifold, materials, flight.bounds)
     dx, dy, ux, uy, wx, wy = seen_from(paths, a, b, now, low)
     x, _, y, _ = place(paths, b, now, low)
-    touch_pair(manifold, one, two, flight.face[p], x, y, dx, dy, angle, flight.sizes, flight.bounds.walls)
+    touch_pair(manifold, one, two, flight.face[p], x, y, dx, dy, angle, flight.shapes, flight.bounds.walls)
     effective_masses(manifold, flight.points, p, flight.inverse)
     nx, ny = manifold.normal_x, manifold.normal_y
     approach = -(ux * nx + uy * ny)
@@ -254,8 +253,8 @@ def _end_all(flight: Flight, now: float, low: float) -> None:
 @kernel
 def run_events(
     manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, apart: Rows,
-    due: Vectors, impact_position: Vectors, motion: MotionTuple, sizes: SizesTuple, materials: MaterialsTuple,
-    inverse: InverseTuple, bounds: BoundsTuple,
+    due: Vectors, impact_position: Vectors, motion: MotionTuple, shapes: ShapesTuple,
+    materials: MaterialsTuple, inverse: InverseTuple, bounds: BoundsTuple,
     account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Move bodies from impact to impact for ``steps`` times ``span`` s, or until one rests or meets two.
@@ -290,7 +289,7 @@ def run_events(
     now, low, impacts, within, made, why = 0.0, 0.0, 0, 0, 0, DONE
     flight = Flight(
         manifolds, points, count, paths, mode, Motion(*motion), face, apart, due,
-        impact_position, Sizes(*sizes), Inverse(*inverse), Bounds(*bounds), account,
+        impact_position, named_shapes(shapes), Inverse(*inverse), Bounds(*bounds), account,
     )  # fmt: skip
     mixed = Materials(*materials)
     apart[:count] = 0
@@ -349,7 +348,7 @@ def _predict_pairs(
             if flight.apart[p] > step:
                 continue
         t, flight.face[p] = meeting_of(
-            manifold, flight.paths, flight.motion.angle, flight.sizes, flight.bounds.walls, now, low,
+            manifold, flight.paths, flight.motion.angle, flight.shapes, flight.bounds.walls, now, low,
             span - now, min_speed,
         )  # fmt: skip
         if t < math.inf:

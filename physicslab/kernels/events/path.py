@@ -6,7 +6,7 @@ impacts it is evaluated in closed form, so that no error adds up, however many i
 """
 
 from physicslab.kernels import Numbers, Vectors, inlined
-from physicslab.kernels.accounts import GRAVITY, PX, PY, SPIN
+from physicslab.kernels.accounts import GRAVITY, book
 from physicslab.kernels.events.meeting import Course
 from physicslab.kernels.ode.compensated import add_pair, multiply
 
@@ -83,9 +83,7 @@ def advance_to(
         paths[i, _X] + 0.5 * s * paths[i, _VX],
         paths[i, _X + 2] + 0.5 * s * paths[i, _VX + 2],
     )
-    account[GRAVITY, PX] += px
-    account[GRAVITY, PY] += py
-    account[GRAVITY, SPIN] += middle_x * py - middle_y * px
+    book(account[GRAVITY], 0, 0.0, px, py, middle_x * py - middle_y * px)
     x, x_low, y, y_low = place(paths, i, now, low)
     vx, vx_low, vy, vy_low = velocity(paths, i, now, low)
     paths[i, _X], paths[i, _X + 1], paths[i, _X + 2], paths[i, _X + 3] = x, x_low, y, y_low

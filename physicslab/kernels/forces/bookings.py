@@ -13,14 +13,9 @@ moment of inertia.
 from typing import Any
 
 from physicslab.kernels import Numbers, Rows, fused, inlined
-from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
+from physicslab.kernels.accounts import book
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.ode.fall_shares import fall_shares
-
-__all__ = [
-    "ACCOUNTS", "ALL_MOVED", "A_MOVES", "A_TURNS", "BODIES", "B_MOVES", "B_TURNS", "CLOCK", "DAMPED", "END",
-    "KEPT", "book_damping", "book_kick", "book_open_spring", "gather", "keep_pull", "resist",
-]  # fmt: skip
 
 CLOCK, END, BODIES, DAMPED, KEPT = range(5)
 """What :attr:`physicslab.ode.system.OdeSystem.places` holds: where the time is; where the accounts behind it
@@ -75,13 +70,9 @@ def book_open_spring(
             at, dx, dy, fx, fy = b, -dx, -dy, -fx, -fy
             if moved & B_MOVES == 0:
                 return
-        force[store + PX] += fx
-        force[store + PY] += fy
-        force[store + SPIN] += q[at] * fy - q[at + 1] * fx
+        book(force, store, 0.0, fx, fy, q[at] * fy - q[at + 1] * fx)
         if damp >= 0:
-            force[damp + PX] += dx
-            force[damp + PY] += dy
-            force[damp + SPIN] += q[at] * dy - q[at + 1] * dx
+            book(force, damp, 0.0, dx, dy, q[at] * dy - q[at + 1] * dx)
         return
     torque_a, torque_b = ax * fy - ay * fx, bx * fy - by * fx
     slow_a, slow_b = ax * damper_y - ay * damper_x, bx * damper_y - by * damper_x
@@ -107,13 +98,9 @@ def book_open_spring(
             spin, d_spin = spin - torque_b, d_spin - slow_b
         else:
             work += torque_b * v[turn_b]
-    force[store + PX] += px - dx
-    force[store + PY] += py - dy
-    force[store + SPIN] += spin - d_spin
+    book(force, store, 0.0, px - dx, py - dy, spin - d_spin)
     if damp >= 0:
-        force[damp + PX] += dx
-        force[damp + PY] += dy
-        force[damp + SPIN] += d_spin
+        book(force, damp, 0.0, dx, dy, d_spin)
     if hand >= 0:
         force[hand] += work
 
@@ -146,9 +133,7 @@ def gather(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-d
     if indices[1] != 0 and kept < 0:
         force[account] += sign * power
     if indices[2] != 0:
-        force[account + PX] += sign * px
-        force[account + PY] += sign * py
-        force[account + SPIN] += sign * spin
+        book(force, account, 0.0, sign * px, sign * py, sign * spin)
 
 
 @force_kernel
@@ -171,25 +156,19 @@ def resist(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-d
         torque = parameters[i] * v[i]
         power += torque * v[i]
         spin += torque
-    force[account] -= power
-    force[account + PX] -= px
-    force[account + PY] -= py
-    force[account + SPIN] -= spin
+    book(force, account, -power, -px, -py, -spin)
 
 
 @fused
 def book_damping(v: Numbers, places: Rows, q: Numbers, i: int, energy: float, impulse: float) -> None:
     """Book the energy and the impulse of damping on coordinate ``i``."""
     account = places[DAMPED]
-    v[account + ENERGY] += energy
     if i >= 2 * places[BODIES]:
-        v[account + SPIN] += impulse
+        book(v, account, energy, 0.0, 0.0, impulse)
     elif i % 2 == 0:
-        v[account + PX] += impulse
-        v[account + SPIN] -= q[i + 1] * impulse
+        book(v, account, energy, impulse, 0.0, -q[i + 1] * impulse)
     else:
-        v[account + PY] += impulse
-        v[account + SPIN] += q[i - 1] * impulse
+        book(v, account, energy, 0.0, impulse, q[i - 1] * impulse)
 
 
 @fused

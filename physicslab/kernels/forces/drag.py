@@ -4,8 +4,6 @@ import math
 
 from physicslab.kernels import inlined
 
-__all__ = ["drag_factor"]
-
 
 @inlined
 def drag_factor(vx: float, vy: float, linear: float, quadratic: float) -> float:

@@ -12,8 +12,6 @@ is all that V loses: f . (span v) = V(start) - V(end) (Gonzalez, J. Nonlinear Sc
 return their value at the middle.
 """
 
-from __future__ import annotations
-
 import ctypes
 from collections.abc import Callable
 from functools import cached_property
@@ -30,8 +28,6 @@ from numpy.typing import NDArray
 from physicslab.kernels import KERNELS, Numbers, cached, inlined, kernel
 from physicslab.kernels.stand_ins import Memory, stands_in_for
 from physicslab.kernels.twins import endless, twin_of
-
-__all__ = ["Calls", "ForceKernel", "accelerate", "accelerate_over", "add_forces", "force_kernel"]
 
 Calls = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, 3): of each force the address, and those of its numbers and of its whole numbers."""

@@ -11,17 +11,6 @@ from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, inline
 from physicslab.kernels.forces.pairwise import attract_pairwise, depth_of_pairs
 from physicslab.kernels.forces.tree_pull import attract_by_tree, depth_by_tree
 
-__all__ = [
-    "PLAIN_LIMIT",
-    "TREE_THRESHOLD",
-    "attract",
-    "fastest_fall",
-    "inverse_cube",
-    "planet_potential",
-    "uniform_gravity",
-    "uniform_potential",
-]  # fmt: skip
-
 PLAIN_LIMIT = 100
 """Largest number of bodies for which pairs are summed one by one, each rounded by itself.
 

@@ -10,14 +10,12 @@ from typing import Any
 import numpy as np
 
 from physicslab.kernels import allocating, always_inlined
-from physicslab.kernels.accounts import PX, PY, SPIN
+from physicslab.kernels.accounts import book
 from physicslab.kernels.forces.bookings import book_open_spring, keep_pull
 from physicslab.kernels.forces.drag import drag_factor
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.forces.gravity import PLAIN_LIMIT, attract, inverse_cube
 from physicslab.kernels.forces.springs import mean_spring_pull, spring_pull, turn_over, turned
-
-__all__ = ["drag", "planet_gravity", "springs", "uniform_gravity"]
 
 
 @force_kernel
@@ -48,9 +46,8 @@ def uniform_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-
         my += mass * q[i + 1]
     if account < 0:
         return
-    force[account + PX] += parameters[2 + n] * gx
-    force[account + PY] += parameters[2 + n] * gy
-    force[account + SPIN] += (mx + other_mx) * gy - (my + other_my) * gx
+    spin = (mx + other_mx) * gy - (my + other_my) * gx
+    book(force, account, 0.0, parameters[2 + n] * gx, parameters[2 + n] * gy, spin)
 
 
 @allocating
@@ -212,7 +209,4 @@ def drag(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def
                 force[kept + i] -= fx
                 force[kept + i + 1] -= fy
     if account >= 0:
-        force[account] -= power if kept < 0 else 0.0
-        force[account + PX] -= px
-        force[account + PY] -= py
-        force[account + SPIN] -= spin
+        book(force, account, -power if kept < 0 else 0.0, -px, -py, -spin)

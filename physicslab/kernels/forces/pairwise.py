@@ -21,10 +21,6 @@ from numba.extending import intrinsic
 from physicslab.kernels import Numbers, allocating, inlined_loosely
 from physicslab.kernels.stand_ins import stands_in_for
 
-__all__ = [
-    "attract_pairwise", "depth_of", "depth_of_pairs", "depth_terms", "inverse_root", "pull_of", "pull_terms",
-]  # fmt: skip
-
 TILE = 64
 """Bodies in a tile: two of them, forces and all, are 5 kB, which the innermost cache holds."""
 _GUESS = 0x5FE6EB50C7B537A9

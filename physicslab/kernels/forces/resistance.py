@@ -11,8 +11,6 @@ import math
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.forces.springs import turn_over, turned
 
-__all__ = ["damper_resistance", "drag_resistance"]
-
 
 @force_kernel
 def drag_resistance(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]

@@ -4,8 +4,6 @@ import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, kernel
 
-__all__ = ["mean_spring_pull", "spring_potential", "spring_pull", "turn_over", "turned"]
-
 
 @always_inlined
 def turned(angle: float, anchor_x: float, anchor_y: float) -> tuple[float, float]:

@@ -12,10 +12,6 @@ import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined
 
-__all__ = [
-    "COLUMNS", "HIGH_X", "HIGH_Y", "LOW_X", "LOW_Y", "MASS", "RADIUS", "X", "Y", "grow", "levels_of",
-]  # fmt: skip
-
 LEAF = 24
 """Bodies in a leaf, at most; at least half as many where there are more."""
 LOW_X, HIGH_X, LOW_Y, HIGH_Y, MASS, X, Y, XX, XY, YY, RADIUS = range(11)

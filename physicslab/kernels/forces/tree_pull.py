@@ -19,22 +19,8 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, inlined_loosely
+from physicslab.kernels.forces import tree
 from physicslab.kernels.forces.pairwise import depth_of, depth_terms, inverse_root, pull_of, pull_terms
-from physicslab.kernels.forces.tree import (
-    COLUMNS,
-    HIGH_X,
-    HIGH_Y,
-    LOW_X,
-    LOW_Y,
-    MASS,
-    RADIUS,
-    X,
-    Y,
-    grow,
-    levels_of,
-)
-
-__all__ = ["MAX_ERROR", "RMS_ERROR", "THETA", "attract_by_tree", "depth_by_tree"]
 
 THETA = 0.17
 """How wide a node may be that is taken whole: its radius by its distance. Errors go as its power 3.5."""
@@ -55,9 +41,9 @@ def _choose(
     while depth > 0:
         depth -= 1
         k = stack[depth]
-        dx = max(home[LOW_X] - nodes[k, X], nodes[k, X] - home[HIGH_X], 0.0)
-        dy = max(home[LOW_Y] - nodes[k, Y], nodes[k, Y] - home[HIGH_Y], 0.0)
-        distance, radius = math.sqrt(dx * dx + dy * dy), nodes[k, RADIUS]
+        dx = max(home[tree.LOW_X] - nodes[k, tree.X], nodes[k, tree.X] - home[tree.HIGH_X], 0.0)
+        dy = max(home[tree.LOW_Y] - nodes[k, tree.Y], nodes[k, tree.Y] - home[tree.HIGH_Y], 0.0)
+        distance, radius = math.sqrt(dx * dx + dy * dy), nodes[k, tree.RADIUS]
         if radius < THETA * distance and distance > radius + clear:
             whole[wholes] = k
             wholes += 1
@@ -104,7 +90,7 @@ def _depth_of_nodes(far: Vectors, count: int, at_x: float, at_y: float, added: f
 def _room(n: int, levels: int) -> tuple[Rows, Vectors, Vectors, Vectors, Rows]:
     """Return room for the tree of n bodies, the two lists of what pulls on a leaf, and the search for it."""
     leaves = 1 << levels
-    nodes, far, near = np.empty((2 * leaves - 1, COLUMNS)), np.empty((6, leaves)), np.empty((3, n))
+    nodes, far, near = np.empty((2 * leaves - 1, tree.COLUMNS)), np.empty((6, leaves)), np.empty((3, n))
     return np.arange(n), nodes, far, near, np.empty(levels + 2 + 2 * leaves, np.int64)
 
 
@@ -122,7 +108,7 @@ def _collect(
     wholes, opens = _choose(nodes, levels, leaf, clear, scratch[:deep], whole, opened)
     for j in range(wholes):
         for column in range(6):
-            far[column, j] = nodes[whole[j], MASS + column]
+            far[column, j] = nodes[whole[j], tree.MASS + column]
     count, own = 0, 0
     for other in opened[:opens]:
         own = count if other == leaf else own
@@ -138,9 +124,9 @@ def attract_by_tree(
 ) -> None:
     """Set ``ax``, ``ay`` [kg/m^2] to the pull of all others on a unit mass at each of (n,) bodies."""
     added, cap = pull_terms(softening, plummer)
-    n, levels = len(x), levels_of(len(x))
+    n, levels = len(x), tree.levels_of(len(x))
     order, nodes, far, near, scratch = _room(n, levels)
-    grow(x, y, mass, order, nodes, levels)
+    tree.grow(x, y, mass, order, nodes, levels)
     for leaf in range(1 << levels):
         wholes, nears, _ = _collect(
             x, y, mass, order, nodes, levels, leaf, 0.0 if plummer else softening, scratch, far, near
@@ -156,9 +142,9 @@ def attract_by_tree(
 def depth_by_tree(x: Numbers, y: Numbers, mass: Numbers, softening: float, plummer: bool) -> float:
     """Return the sum of m_a m_b times the depth [kg^2/m] over every pair of (n,) bodies."""
     added, near2, inverse = depth_terms(softening, plummer)
-    n, levels = len(x), levels_of(len(x))
+    n, levels = len(x), tree.levels_of(len(x))
     order, nodes, far, near, scratch = _room(n, levels)
-    grow(x, y, mass, order, nodes, levels)
+    tree.grow(x, y, mass, order, nodes, levels)
     total = 0.0
     for leaf in range(1 << levels):
         wholes, nears, own = _collect(

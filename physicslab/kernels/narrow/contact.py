@@ -3,8 +3,9 @@
 import math
 
 from physicslab.kernels import Rows, Vectors, always_inlined, fused, inlined
-from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near, Sizes
+from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment_arms, response
+from physicslab.kernels.geometry.shapes import BOX, Shapes
 from physicslab.kernels.narrow.outline import Way, kept_outline
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Point, Points
@@ -73,18 +74,18 @@ def mix(manifold: Manifold, materials: Materials, bounds: Bounds) -> None:
 
 @fused
 def _too_far(
-    manifold: Manifold, way: Way, motion: Motion, sizes: Sizes, bounds: Bounds, speculative_margin: float
+    manifold: Manifold, way: Way, motion: Motion, shapes: Shapes, bounds: Bounds, speculative_margin: float
 ) -> bool:
     """Whether a disc is too far from another one, or from a wall, for this substep, as most near ones are."""
     dx, dy, ux, uy = way
     a, b, wall = manifold.a, manifold.b, manifold.wall
     if wall < 0:
-        reach = ACTIVATION_RATIO * (sizes.radius[a] + sizes.radius[b]) + abs(ux) + abs(uy)
+        reach = ACTIVATION_RATIO * (shapes.radius[a] + shapes.radius[b]) + abs(ux) + abs(uy)
         reach = reach + speculative_margin
         return bool(dx * dx + dy * dy > reach * reach)
     away = motion.position[b, wall % 2] - bounds.walls[wall]
-    clear = (away if wall < 2 else -away) - sizes.radius[b]
-    margin = ACTIVATION_RATIO * CONTACT_MARGIN * sizes.radius[b] + abs(ux) + abs(uy)
+    clear = (away if wall < 2 else -away) - shapes.radius[b]
+    margin = ACTIVATION_RATIO * CONTACT_MARGIN * shapes.radius[b] + abs(ux) + abs(uy)
     return bool(clear > margin + speculative_margin)
 
 
@@ -104,7 +105,7 @@ def forget_points(one: Point, two: Point) -> None:
 
 @fused
 def _look_up(
-    manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, sizes: Sizes,
+    manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, shapes: Shapes,
     h: float, speculative_margin: float, tolerance: float, circular: bool,
 ) -> int:  # fmt: skip
     """Use what was found of a pair with a box, if they have hardly moved against each other.
@@ -114,28 +115,27 @@ def _look_up(
     known of them now. Where that is nothing, their present pose is recorded, for which their points are to be
     found.
     """
-    a, b, width, height, angle = manifold.a, manifold.b, sizes.width, sizes.height, motion.angle
-    radius = sizes.radius
-    size, sizes_of_both = min(width[b], height[b]), width[b] + 2.0 * height[b]
+    a, b, half_x, half_y, angle = manifold.a, manifold.b, shapes.half_x, shapes.half_y, motion.angle
+    radius = shapes.radius
+    size, of_both = 2.0 * min(half_x[b], half_y[b]), 2.0 * half_x[b] + 4.0 * half_y[b]
     if manifold.wall < 0:
-        size = min(size, min(width[a], height[a]))
-        sizes_of_both += 3.0 * width[a] + 5.0 * height[a]
+        size = min(size, 2.0 * min(half_x[a], half_y[a]))
+        of_both += 6.0 * half_x[a] + 10.0 * half_y[a]
     travel = abs(way.ux) + abs(way.uy)
     if circular:
-        spin = abs(motion.angular[a]) * (width[a] + height[a]) + abs(motion.angular[b]) * (
-            width[b] + height[b]
-        )
-        travel += 0.5 * h * spin  # how far a corner comes
-        size = min(max(0.5 * width[a], radius[a]), max(0.5 * width[b], radius[b]))
-        sizes_of_both += 7.0 * radius[a] + 11.0 * radius[b]
+        spin = abs(motion.angular[a]) * (half_x[a] + half_y[a])
+        spin += abs(motion.angular[b]) * (half_x[b] + half_y[b])
+        travel += h * spin  # how far a corner comes
+        size = min(max(half_x[a], radius[a]), max(half_x[b], radius[b]))
+        of_both += 7.0 * radius[a] + 11.0 * radius[b]
     moved_x, moved_y = way.dx - manifold.base_x, way.dy - manifold.base_y
     turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
     slow = travel <= 0.5 * CONTACT_MARGIN * size
-    if manifold.found == 2 and manifold.base_sizes == sizes_of_both:
+    if manifold.found == 2 and manifold.base_sizes == of_both:
         if manifold.count == 0:
             # A lower bound of their gap now, however they have moved since.
-            turned = abs(turn_a) * (width[a] + height[a]) + abs(turn_b) * (width[b] + height[b])
-            nearest = manifold.gap - abs(moved_x) - abs(moved_y) - 0.5 * turned - 0.0025 * size
+            turned = abs(turn_a) * (half_x[a] + half_y[a]) + abs(turn_b) * (half_x[b] + half_y[b])
+            nearest = manifold.gap - abs(moved_x) - abs(moved_y) - turned - 0.0025 * size
             if nearest > CONTACT_MARGIN * size + travel + speculative_margin:
                 return _APART
         elif not circular and (
@@ -147,26 +147,26 @@ def _look_up(
             follow_pose(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
             return _KEPT
     note_pose(manifold, way.dx, way.dy, angle[a], angle[b])
-    manifold.base_sizes = sizes_of_both
+    manifold.base_sizes = of_both
     manifold.found = 2 if slow else 1
     return _OUTDATED
 
 
 @fused
 def _in_place(
-    manifold: Manifold, point: Point, way: Way, motion: Motion, sizes: Sizes, speculative_margin: float
+    manifold: Manifold, point: Point, way: Way, motion: Motion, shapes: Shapes, speculative_margin: float
 ) -> bool:
     """Whether a pair with a disc is, to the last bit, where its point was found, and presses on it.
 
     To find it again would give the same.
     """
-    a, b, angle, kind = manifold.a, manifold.b, motion.angle, sizes.kind
+    a, b, angle, first = manifold.a, manifold.b, motion.angle, shapes.first
     return bool(
         manifold.found == AS_FOUND
         and way.dx == manifold.base_x
         and way.dy == manifold.base_y
-        and (kind[a] != 2 or angle[a] == manifold.base_angle_a)
-        and (kind[b] != 2 or angle[b] == manifold.base_angle_b)
+        and (first[a] != BOX or angle[a] == manifold.base_angle_a)
+        and (first[b] != BOX or angle[b] == manifold.base_angle_b)
         and point.normal_impulse > 0.0
         and point.found_separation < CONTACT_MARGIN * 0.5 * manifold.size + speculative_margin
     )
@@ -174,19 +174,19 @@ def _in_place(
 
 @fused
 def touch(
-    manifold: Manifold, one: Point, two: Point, way: Way, motion: Motion, sizes: Sizes, bounds: Bounds,
+    manifold: Manifold, one: Point, two: Point, way: Way, motion: Motion, shapes: Shapes, bounds: Bounds,
     rotations: Vectors, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Find the points of a pair, of whatever shapes."""
     b = manifold.b
-    body = kept_outline(b, motion.angle, sizes, rotations)
+    body = kept_outline(b, motion.angle, shapes, rotations)
     if manifold.wall >= 0:
         farthest = math.sqrt(body.half_x * body.half_x + body.half_y * body.half_y)
         spin = abs(motion.angular[b]) * h * farthest
         place = Way(motion.position[b, 0], motion.position[b, 1], way.ux, way.uy)
         touch_wall(manifold, one, two, place, spin, speculative_margin, body, bounds.walls)
         return
-    other = kept_outline(manifold.a, motion.angle, sizes, rotations)
+    other = kept_outline(manifold.a, motion.angle, shapes, rotations)
     if other.box and body.box:
         touch_boxes(manifold, one, two, way, start, speculative_margin, other, body)
     else:
@@ -222,7 +222,7 @@ def _has_few_rows(entities: Rows) -> bool:
 
 @always_inlined
 def find_contacts(
-    near: Near, count: int, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse,
+    near: Near, count: int, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse,
     bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
 ) -> int:  # fmt: skip
     """Find or refresh the contact points of the ``count`` scalar pairs; return how many have any.
@@ -255,27 +255,27 @@ def find_contacts(
             position[b, 0] - position[a, 0], position[b, 1] - position[a, 1],
             (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h,
         )  # fmt: skip
-        boxes = int(sizes.kind[a] == 2) + int(sizes.kind[b] == 2)
+        boxes = int(shapes.first[a] == BOX) + int(shapes.first[b] == BOX)
         walled = manifold.wall >= 0
         circular = not walled and boxes == 1
-        round_pair = not had_points and (sizes.kind[b] != 2 if walled else boxes == 0)
-        if round_pair and _too_far(manifold, way, motion, sizes, bounds, speculative_margin):
+        round_pair = not had_points and (shapes.first[b] != BOX if walled else boxes == 0)
+        if round_pair and _too_far(manifold, way, motion, shapes, bounds, speculative_margin):
             continue
         manifold.offset_x, manifold.offset_y = way.dx, way.dy
         known = _OUTDATED
         with_disc = not walled and boxes < 2
-        if with_disc and not first and _in_place(manifold, one, way, motion, sizes, speculative_margin):
+        if with_disc and not first and _in_place(manifold, one, way, motion, shapes, speculative_margin):
             one.separation = one.found_separation
             known = _KEPT
-        elif sizes.kind[b] == 2 if walled else boxes > 0:
+        elif shapes.first[b] == BOX if walled else boxes > 0:
             known = _look_up(
-                manifold, near.points, p, way, motion, sizes, h, speculative_margin, tolerance, circular
+                manifold, near.points, p, way, motion, shapes, h, speculative_margin, tolerance, circular
             )
             if known == _APART:
                 continue
         if known == _OUTDATED:
             touch(
-                manifold, one, two, way, motion, sizes, bounds, near.rotations, h, start, speculative_margin
+                manifold, one, two, way, motion, shapes, bounds, near.rotations, h, start, speculative_margin
             )
             if with_disc:
                 if not circular:

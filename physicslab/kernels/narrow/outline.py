@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Vectors, fused, inlined
-from physicslab.kernels.arguments import Sizes
+from physicslab.kernels.geometry.shapes import BOX, Shapes
 
 __all__ = ["Outline", "Way", "kept_outline", "outline_of", "turned"]
 
@@ -30,22 +30,22 @@ class Way(NamedTuple):
 
 
 @fused
-def outline_of(i: int, angle: Numbers, sizes: Sizes) -> Outline:
+def outline_of(i: int, angle: Numbers, shapes: Shapes) -> Outline:
     """Return the outline of row i."""
-    box = sizes.kind[i] == 2
+    box = shapes.first[i] == BOX
     c, s = (math.cos(angle[i]), math.sin(angle[i])) if box else (1.0, 0.0)
-    return Outline(box, c, s, 0.5 * sizes.width[i], 0.5 * sizes.height[i], sizes.radius[i])
+    return Outline(box, c, s, shapes.half_x[i], shapes.half_y[i], shapes.radius[i])
 
 
 @fused
-def kept_outline(i: int, angle: Numbers, sizes: Sizes, rotations: Vectors) -> Outline:
+def kept_outline(i: int, angle: Numbers, shapes: Shapes, rotations: Vectors) -> Outline:
     """Return the same; ``rotations`` (rows, 3) keeps each box's angle, its cosine and its sine."""
-    box = sizes.kind[i] == 2
+    box = shapes.first[i] == BOX
     if box and rotations[i, 0] != angle[i]:
         rotations[i, 0] = angle[i]
         rotations[i, 1], rotations[i, 2] = math.cos(angle[i]), math.sin(angle[i])
     c, s = (rotations[i, 1], rotations[i, 2]) if box else (1.0, 0.0)
-    return Outline(box, c, s, 0.5 * sizes.width[i], 0.5 * sizes.height[i], sizes.radius[i])
+    return Outline(box, c, s, shapes.half_x[i], shapes.half_y[i], shapes.radius[i])
 
 
 @inlined

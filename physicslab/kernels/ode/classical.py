@@ -7,8 +7,6 @@ from physicslab.kernels.forces.bookings import CLOCK, END
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add
 
-__all__ = ["rk4"]
-
 
 @allocating_kernel
 def rk4(

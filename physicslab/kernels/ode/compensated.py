@@ -2,8 +2,6 @@
 
 from physicslab.kernels import inlined
 
-__all__ = ["add", "add_pair", "multiply"]
-
 
 @inlined
 def add(value: float, low: float, change: float) -> tuple[float, float]:

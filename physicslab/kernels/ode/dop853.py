@@ -19,11 +19,6 @@ from physicslab.kernels.ode.dop853_tableau import (
     WEIGHTS_LOW,
 )
 
-__all__ = [
-    "EXHAUSTED", "NOT_FINITE", "TOO_SHORT", "dop853", "first_step", "largest", "make_stages",
-    "step_error", "total",
-]  # fmt: skip
-
 TOO_SHORT = -1
 """What is returned where no step is short enough."""
 NOT_FINITE = -2

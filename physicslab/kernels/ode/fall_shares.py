@@ -4,8 +4,6 @@ import math
 
 from physicslab.kernels import inlined
 
-__all__ = ["fall_shares"]
-
 
 @inlined
 def fall_shares(z: float) -> tuple[float, float, float]:

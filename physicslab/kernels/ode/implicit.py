@@ -10,8 +10,6 @@ from physicslab.kernels.forces.force_calls import Calls, accelerate_over
 from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.ode.dop853 import largest
 
-__all__ = ["implicit_midpoint"]
-
 _MAX_ITERATIONS = 40
 _PARTS = 1024
 """Largest number of parts of a step that is halved where Newton's method does not converge."""

@@ -5,8 +5,6 @@ import math
 from physicslab.kernels import Vectors, inlined, kernel
 from physicslab.kernels.ode.fall_shares import fall_shares
 
-__all__ = ["propagate", "response"]
-
 
 @inlined
 def response(rate2: float, drag: float, t: float) -> tuple[float, float]:

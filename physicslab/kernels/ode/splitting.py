@@ -9,8 +9,6 @@ from physicslab.kernels.forces.bookings import CLOCK, END, KEPT, book_kick
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add
 
-__all__ = ["split"]
-
 
 @allocating_kernel
 def split(

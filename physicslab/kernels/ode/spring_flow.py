@@ -8,12 +8,10 @@ on a body is always added up in the same order.
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
-from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, PX, PY, SPIN, SPRINGS
+from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, SPRINGS, book
 from physicslab.kernels.arguments import Motion, Springs
 from physicslab.kernels.wide.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
 from physicslab.kernels.wide.layout import WIDE
-
-__all__ = ["HEAD", "KNOWN", "MAX_TURN", "SIZES", "TURNS_FAST", "WEIGHT", "flow_springs"]
 
 TURNS_FAST = -1
 """What is returned where a spring is too short, or turns too far, for steps of this length."""
@@ -253,11 +251,8 @@ def flow_springs(motion: Motion, springs: Springs, span: float, account: Vectors
     places.known[0] = 1.0 if made >= 0 else 0.0
     if made >= 0:
         _scatter(places, motion, span)
-        account[SPRINGS, PX] += given[BY_SPRINGS]
-        account[SPRINGS, PY] += given[BY_SPRINGS + 1]
-        account[SPRINGS, SPIN] += given[BY_SPRINGS + 2]
+        book(account[SPRINGS], 0, 0.0, given[BY_SPRINGS], given[BY_SPRINGS + 1], given[BY_SPRINGS + 2])
         account[HAND, ENERGY] += given[BY_HAND]
-        account[GRAVITY, PX] += numbers[WEIGHT] * span
-        account[GRAVITY, PY] += numbers[WEIGHT + 1] * span
-        account[GRAVITY, SPIN] += given[BY_GRAVITY]
+        fallen_x, fallen_y = numbers[WEIGHT] * span, numbers[WEIGHT + 1] * span
+        book(account[GRAVITY], 0, 0.0, fallen_x, fallen_y, given[BY_GRAVITY])
     return made

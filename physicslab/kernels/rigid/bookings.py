@@ -1,7 +1,7 @@
 """What contact forces give in a second, and impulses at once, by account."""
 
 from physicslab.kernels import Numbers, inlined
-from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
+from physicslab.kernels.accounts import ENERGY, SPIN, book
 from physicslab.kernels.rigid.equations import STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     CONTACTS,
@@ -47,9 +47,7 @@ def book_contacts(
             x, y, turning = 2 * body, 2 * body + 1, 2 * rows + body
             torque = sign * (across * measures[i, NA + side] - along * measures[i, TA + side])
             if scene.inverse_mass[x] > 0.0:
-                given[contacts + PX] += sign * fx
-                given[contacts + PY] += sign * fy
-                given[contacts + SPIN] += sign * (q[x] * fy - q[y] * fx)
+                book(given, contacts, 0.0, sign * fx, sign * fy, sign * (q[x] * fy - q[y] * fx))
             else:
                 work -= sign * (fx * v[x] + fy * v[y])
             if scene.inverse_mass[turning] > 0.0:
@@ -77,7 +75,4 @@ def book_speeds(scene: Scene, q: Numbers, v: Numbers, sign: float) -> None:
             momentum = v[turning] / scene.inverse_mass[turning]
             energy += 0.5 * momentum * v[turning]
             spin += momentum
-    v[contacts + ENERGY] += sign * energy
-    v[contacts + PX] += sign * px
-    v[contacts + PY] += sign * py
-    v[contacts + SPIN] += sign * spin
+    book(v, contacts, sign * energy, sign * px, sign * py, sign * spin)

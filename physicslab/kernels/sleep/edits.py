@@ -4,13 +4,11 @@ import math
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, kernel
 
-__all__ = ["FIGURES", "INVERSE_MASS", "find_edited", "find_overlapped", "find_pushed", "note_figures"]
-
 FIGURES = 12
 """How many numbers describe where a body is and what it is made of."""
 INVERSE_MASS = 9
 """Index of the inverse mass among them."""
-_KIND, _MOVES = 3, 11
+_VERTICES, _REACH, _MOVES = 3, 4, 11
 _MARGIN = 1.05
 """Factor by which circles around bodies are enlarged, for rounding and gaps."""
 _SAME = 1e-6
@@ -19,15 +17,15 @@ _SAME = 1e-6
 
 @kernel
 def note_figures(
-    position: Vectors, angle: Numbers, kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
-    restitution: Numbers, friction: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers, moves: Flags,
-    figures: Vectors,
+    position: Vectors, angle: Numbers, vertices: Rows, half_x: Numbers, half_y: Numbers, reach: Numbers,
+    restitution: Numbers, friction: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
+    moves: Flags, figures: Vectors,
 ) -> None:  # fmt: skip
     """Write down where every body is and what it is made of."""
     for i in range(len(angle)):
         figures[i, 0], figures[i, 1], figures[i, 2] = position[i, 0], position[i, 1], angle[i]
-        figures[i, _KIND], figures[i, 4] = kind[i], radius[i]
-        figures[i, 5], figures[i, 6] = width[i], height[i]
+        figures[i, _VERTICES], figures[i, _REACH] = vertices[i], reach[i]
+        figures[i, 5], figures[i, 6] = half_x[i], half_y[i]
         figures[i, 7], figures[i, 8] = restitution[i], friction[i]
         figures[i, INVERSE_MASS], figures[i, 10] = inverse_mass[i], inverse_inertia[i]
         figures[i, _MOVES] = 1.0 if moves[i] else 0.0
@@ -52,12 +50,12 @@ def find_edited(
         if asleep[i]:
             edited[i] = linear[i, 0] != 0.0 or linear[i, 1] != 0.0 or angular[i] != 0.0
         else:
-            shaped = figures[i, _KIND] != 0.0 or kept[i, _KIND] != 0.0
+            shaped = figures[i, _VERTICES] != 0.0 or kept[i, _VERTICES] != 0.0
             fixed = figures[i, INVERSE_MASS] == 0.0 or kept[i, INVERSE_MASS] == 0.0
             if not (shaped and fixed):
                 continue
             if within and figures[i, _MOVES] != 0.0:
-                first = _KIND
+                first = _VERTICES
         for k in range(first, FIGURES):
             if figures[i, k] != kept[i, k]:
                 edited[i] = True
@@ -70,13 +68,11 @@ def find_overlapped(figures: Vectors, causes: Rows, asleep: Flags, marked: Flags
     """Mark the sleeping bodies that the bodies ``causes`` may touch, by the circles around them."""
     for k in range(len(causes)):
         c = causes[k]
-        if figures[c, _KIND] == 0.0:
+        if figures[c, _VERTICES] == 0.0:
             continue
-        reach = figures[c, 4] + 0.5 * math.sqrt(figures[c, 5] * figures[c, 5] + figures[c, 6] * figures[c, 6])
         for i in range(len(asleep)):
             if asleep[i]:
-                w, h = figures[i, 5], figures[i, 6]
-                both = _MARGIN * (reach + figures[i, 4] + 0.5 * math.sqrt(w * w + h * h))
+                both = _MARGIN * (figures[c, _REACH] + figures[i, _REACH])
                 x, y = figures[i, 0] - figures[c, 0], figures[i, 1] - figures[c, 1]
                 if x * x + y * y <= both * both:
                     marked[i] = True

@@ -8,8 +8,6 @@ from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating, alloca
 from physicslab.kernels.constraint.pair import frame_of, point_velocity, velocity_of
 from physicslab.kernels.records import Manifold, Manifolds, Points
 
-__all__ = ["READY", "REST", "SLOW", "count_rest", "find_held", "find_touched", "join_marked", "list_sleeping"]
-
 REST = 0.5
 """How long [s] a body must have been slow before it may sleep."""
 SLOW = 0.05
@@ -21,7 +19,7 @@ _PERIOD = 0.1
 _STOPS_WITHIN = 1e-5
 """Way, as a share of the smaller body's size, within which friction must stop what is to sleep."""
 _STILL = 1e-6
-"""Speed along a surface, in sizes of the smaller body a second, below which it counts as none."""
+"""Speed along a surface, in shapes of the smaller body a second, below which it counts as none."""
 _ROLLING = 1e-2
 """The same for a disc that rolls: nothing stops it, and without a limit strays would keep piles awake."""
 _LEVEL = 1e-6
@@ -41,8 +39,8 @@ READY = REST - _ROUNDING
 
 @kernel
 def count_rest(
-    linear: Vectors, angular: Numbers, kind: Rows, radius: Numbers, width: Numbers, height: Numbers,
-    inverse_mass: Numbers, sub_integrated: Flags, asleep: Flags, rest: Numbers, slowest: Numbers, h: float,
+    linear: Vectors, angular: Numbers, reach: Numbers, inverse_mass: Numbers, sub_integrated: Flags,
+    asleep: Flags, rest: Numbers, slowest: Numbers, h: float,
 ) -> bool:  # fmt: skip
     """Count for a step of h how long each body has been slow; return whether islands are to be checked.
 
@@ -53,11 +51,12 @@ def count_rest(
     for i in range(len(rest)):
         if asleep[i]:
             continue
-        if kind[i] == 0 or inverse_mass[i] == 0.0 or sub_integrated[i]:
+        if reach[i] == 0.0 or inverse_mass[i] == 0.0 or sub_integrated[i]:
             rest[i] = slowest[i] = 0.0
             continue
-        reach = radius[i] if kind[i] == 1 else 0.5 * math.sqrt(width[i] * width[i] + height[i] * height[i])
-        speed = math.sqrt(linear[i, 0] * linear[i, 0] + linear[i, 1] * linear[i, 1]) + abs(angular[i]) * reach
+        speed = (
+            math.sqrt(linear[i, 0] * linear[i, 0] + linear[i, 1] * linear[i, 1]) + abs(angular[i]) * reach[i]
+        )
         if not speed < SLOW or (rest[i] > 0.0 and speed > slowest[i] + _GAIN):
             rest[i] = slowest[i] = 0.0
             continue
@@ -138,7 +137,7 @@ def _rolls(
 
 @allocating
 def _mark_moving(
-    manifolds: Manifolds, points: Points, pairs: int, impulse_dt: float, kind: Rows,
+    manifolds: Manifolds, points: Points, pairs: int, impulse_dt: float, vertices: Rows,
     inverse_mass: Numbers, force: Vectors, linear: Vectors, angular: Numbers, moving: Flags,
 ) -> None:  # fmt: skip
     """Mark the bodies that go on moving: friction does not stop them soon, or they slide or roll freely.
@@ -177,7 +176,7 @@ def _mark_moving(
         if inverse_mass[i] == 0.0 or load[i] <= 0.0:
             continue
         p = carrier[i]
-        free = kind[i] == 1 and not caged[i]
+        free = vertices[i] == 1 and not caged[i]
         main = manifolds[p]
         fixed = inverse_mass[main.a] == 0.0 or inverse_mass[main.b] == 0.0
         if not sticks[i] or (free and _rolls(main, i, fixed, points, p, force, linear, angular)):
@@ -186,24 +185,32 @@ def _mark_moving(
 
 @allocating_kernel
 def find_held(
-    manifolds: Manifolds, points: Points, pairs: int, impulse_dt: float, kind: Rows,
-    inverse_mass: Numbers, force: Vectors, linear: Vectors, angular: Numbers, ready: Flags, held: Flags,
+    manifolds: Manifolds, points: Points, pairs: int, impulse_dt: float, vertices: Rows,
+    inverse_mass: Numbers, force: Vectors, linear: Vectors, angular: Numbers, edges: Rows, ready: Flags,
+    held: Flags,
 ) -> int:  # fmt: skip
     """Mark the bodies of islands that may sleep; return how many there are.
 
+    Bodies that touch each other are one island, and so are those that joints hold together: ``edges`` (2 n,)
+    are their rows.
+
     All bodies of such an island are ``ready``, none had an impact in this step, friction holds or soon stops
-    all of them, and one of them is pressed with friction against a fixed body at rest: without friction or
-    support it would move on for ever. ``impulse_dt`` is the time [s] over which the points' impulses act.
+    all of them, and one of them is on a joint to a fixed body at rest, or pressed against one with friction:
+    without friction or support it would move on for ever. ``impulse_dt`` is the time [s] over which the
+    points' impulses act.
     """
     parent = np.arange(len(inverse_mass))
     for p in range(pairs):
         manifold = manifolds[p]
         if manifold.count > 0 and inverse_mass[manifold.a] > 0.0 and inverse_mass[manifold.b] > 0.0:
             _join(parent, manifold.a, manifold.b)
+    for k in range(0, len(edges), 2):
+        if inverse_mass[edges[k]] > 0.0 and inverse_mass[edges[k + 1]] > 0.0:
+            _join(parent, edges[k], edges[k + 1])
     restless = np.zeros(len(inverse_mass), np.bool_)
     supported = np.zeros(len(inverse_mass), np.bool_)
     moving = ~ready
-    _mark_moving(manifolds, points, pairs, impulse_dt, kind, inverse_mass, force, linear, angular, moving)
+    _mark_moving(manifolds, points, pairs, impulse_dt, vertices, inverse_mass, force, linear, angular, moving)
     for i in range(len(inverse_mass)):
         if inverse_mass[i] > 0.0 and moving[i]:
             restless[_root(parent, i)] = True
@@ -227,6 +234,14 @@ def find_held(
             loaded = points[2 * p].normal_impulse > 0.0
             if loaded or (manifold.count == 2 and points[2 * p + 1].normal_impulse > 0.0):
                 supported[island] = True
+    for k in range(0, len(edges), 2):
+        body, other = edges[k], edges[k + 1]
+        if inverse_mass[body] == 0.0:
+            body, other = other, body
+        if inverse_mass[body] > 0.0 and inverse_mass[other] == 0.0:
+            still = linear[other, 0] == 0.0 and linear[other, 1] == 0.0 and angular[other] == 0.0
+            supported[_root(parent, body)] |= still
+            restless[_root(parent, body)] |= not still
     found = 0
     for i in range(len(inverse_mass)):
         island = _root(parent, i)

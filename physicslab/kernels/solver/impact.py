@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from physicslab.kernels import always_inlined, fused, inlined
 from physicslab.kernels.accounts import IMPACTS
-from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion, Sizes
+from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion
 from physicslab.kernels.constraint.impact_law import (
     ENERGETIC,
     LOWERED,
@@ -27,6 +27,7 @@ from physicslab.kernels.constraint.pair import (
     put_velocity,
     velocity_of,
 )
+from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.impact_log import (
     ImpactPoints,
@@ -37,8 +38,6 @@ from physicslab.kernels.solver.impact_log import (
 )
 from physicslab.kernels.solver.impact_pose import is_known, meeting_at
 from physicslab.kernels.solver.impulse import follow_drift
-
-__all__ = ["resolve_impacts"]
 
 _MAX_SWEEPS = 32
 """Largest number of sweeps over the impacts of a substep; those left are treated as inelastic."""
@@ -104,11 +103,11 @@ def _meeting_time(separation: float, v: float, pull: float, window: Window, load
 
 
 @inlined
-def _frame(manifold: Manifold, point: Point, motion: Motion, sizes: Sizes, t: float) -> ContactFrame[float]:
+def _frame(manifold: Manifold, point: Point, motion: Motion, shapes: Shapes, t: float) -> ContactFrame[float]:
     """Return the normal and the arms of a point at the time t from now."""
-    if is_known(manifold, motion, sizes):
+    if is_known(manifold, motion, shapes):
         return frame_of(manifold, point)
-    return meeting_at(manifold, point, motion, sizes, t)
+    return meeting_at(manifold, point, motion, shapes, t)
 
 
 @inlined
@@ -121,7 +120,7 @@ def _note_point(point: Point, v: float, normal: float, tangent: float) -> None:
 
 @always_inlined
 def _exchange(
-    manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, motion: Motion, sizes: Sizes,
+    manifold: Manifold, one: Point, two: Point, meets_1: bool, meets_2: bool, motion: Motion, shapes: Shapes,
     mass: PairInverseMass[float], before: PairVelocity[float], t: float,
 ) -> tuple[ImpactPoints, float, int]:  # fmt: skip
     """Resolve the impact of a pair at the time t, with normal, arms and the speeds ``before`` of that time.
@@ -131,10 +130,10 @@ def _exchange(
     """
     e, mu = manifold.restitution, manifold.friction
     point = one if meets_1 else two
-    frame = _frame(manifold, point, motion, sizes, t)
+    frame = _frame(manifold, point, motion, shapes, t)
     at = point_state(frame, before)
     if meets_1 and meets_2:
-        frame2 = _frame(manifold, two, motion, sizes, t)
+        frame2 = _frame(manifold, two, motion, shapes, t)
         at2 = point_state(frame2, before)
         impulses, used = solve_impact_of_two(pair_response(at, at2, mass), e, mu)
         _note_point(one, at.v, impulses.normal1, impulses.tangent1)
@@ -212,7 +211,7 @@ def _note(
 
 @inlined
 def _resolve_pair(
-    manifold: Manifold, one: Point, two: Point, motion: Motion, sizes: Sizes, inverse: Inverse,
+    manifold: Manifold, one: Point, two: Point, motion: Motion, shapes: Shapes, inverse: Inverse,
     acting: Acting, t1: float, t2: float, forced: bool, log: Log, number: int,
 ) -> tuple[bool, int]:  # fmt: skip
     """Bounce a pair of which one point meets, or both do, at ``t1`` and ``t2`` from now.
@@ -225,7 +224,7 @@ def _resolve_pair(
     a, b, since = manifold.a, manifold.b, t if forced else 0.0
     mass, old = inverse_mass_of(inverse, a, b), velocity_of(motion.linear, motion.angular, a, b)
     before = _gained(old, a, b, mass, acting, since)
-    points, approach, law = _exchange(manifold, one, two, meets_1, meets_2, motion, sizes, mass, before, t)
+    points, approach, law = _exchange(manifold, one, two, meets_1, meets_2, motion, shapes, mass, before, t)
     met = points.impulses.normal1 + points.impulses.normal2 > 0.0
     if met:
         new = after_impulse_at(old, mass, points.one, points.impulses.normal1, points.impulses.tangent1)
@@ -267,8 +266,8 @@ def _forced(
 
 @fused
 def _resolve_once(
-    contacts: Contacts, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log, logged: int,
-    h: float, window: Window, again: bool,
+    contacts: Contacts, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
+    logged: int, h: float, window: Window, again: bool,
 ) -> tuple[int, int, int, int, bool]:  # fmt: skip
     """Resolve the pairs one after the other; inelastic ones are resolved once, and not ``again``.
 
@@ -311,7 +310,7 @@ def _resolve_once(
         t1, t2 = _meeting_times(manifold, one, two, motion, Approach(v1, v2, pull, resting_speed), window)
         if abs(t1) < math.inf or abs(t2) < math.inf:
             met, law = _resolve_pair(
-                manifold, one, two, motion, sizes, inverse, acting, t1, t2, window.start < 0.0, log,
+                manifold, one, two, motion, shapes, inverse, acting, t1, t2, window.start < 0.0, log,
                 logged + bounced,
             )  # fmt: skip
             bounced += 1 if met else 0
@@ -324,8 +323,8 @@ def _resolve_once(
 
 @always_inlined
 def resolve_impacts(
-    contacts: Contacts, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log, logged: int,
-    h: float, start: float, end: float,
+    contacts: Contacts, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
+    logged: int, h: float, start: float, end: float,
 ) -> tuple[int, int, int, int]:  # fmt: skip
     """Bounce the pairs that meet in this substep, each at its own time.
 
@@ -347,7 +346,7 @@ def resolve_impacts(
     window = Window(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
     for sweep in range(_MAX_SWEEPS):
         bounced, left, stronge, less, elastic = _resolve_once(
-            contacts, motion, sizes, inverse, acting, log, logged + impacts, h, window, sweep > 0
+            contacts, motion, shapes, inverse, acting, log, logged + impacts, h, window, sweep > 0
         )
         impacts += bounced
         energetic += stronge

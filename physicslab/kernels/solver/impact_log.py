@@ -8,7 +8,7 @@ over all points is the change of the kinetic energy, exactly.
 from typing import NamedTuple
 
 from physicslab.kernels import Vectors, always_inlined, inlined
-from physicslab.kernels.accounts import ENERGY, FRICTION, HAND, IMPACTS, PX, PY, SPIN
+from physicslab.kernels.accounts import ENERGY, FRICTION, HAND, IMPACTS, SPIN, book
 from physicslab.kernels.constraint.impact_law import ImpactImpulses
 from physicslab.kernels.constraint.pair import (
     ContactFrame,
@@ -20,10 +20,6 @@ from physicslab.kernels.constraint.pair import (
     point_state,
 )
 from physicslab.kernels.records import Impacts, Manifold
-
-__all__ = [
-    "ImpactPoints", "Pair", "Pose", "book_impact", "book_outside", "pair_of", "shares_of", "write_impact",
-]  # fmt: skip
 
 
 class Pair(NamedTuple):
@@ -140,9 +136,7 @@ def book_outside(
         turned = pose.ax * py - pose.ay * px - (moment_a if mass.inertia_a > 0.0 else 0.0)
     cause = HAND if driven else row
     account[HAND, ENERGY] += power
-    account[cause, PX] += px
-    account[cause, PY] += py
-    account[cause, SPIN] += turned
+    book(account[cause], 0, 0.0, px, py, turned)
 
 
 @inlined

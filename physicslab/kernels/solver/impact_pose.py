@@ -3,15 +3,13 @@
 import math
 
 from physicslab.kernels import fused, inlined
-from physicslab.kernels.arguments import Motion, Sizes
+from physicslab.kernels.arguments import Motion
 from physicslab.kernels.constraint.pair import ContactFrame
+from physicslab.kernels.geometry.shapes import BOX, Shapes
 from physicslab.kernels.narrow.manifold import circle_box
 from physicslab.kernels.narrow.outline import Outline
 from physicslab.kernels.records import Manifold, Point
 
-__all__ = ["is_known", "meeting_at"]
-
-_BOX = 2
 _FLIPPED = 33
 """From this number on the features of two boxes are corners of A on a face of B."""
 
@@ -36,15 +34,13 @@ def _apart(a: int, b: int, motion: Motion, t: float) -> tuple[float, float]:
 
 
 @inlined
-def _circle_on_box(circle: int, box: int, motion: Motion, sizes: Sizes, t: float) -> ContactFrame[float]:
+def _circle_on_box(circle: int, box: int, motion: Motion, shapes: Shapes, t: float) -> ContactFrame[float]:
     """Return where a circle, as B, meets a box, as A, that turns."""
     angle = motion.angle[box] + t * motion.angular[box]
-    outline = Outline(
-        True, math.cos(angle), math.sin(angle), 0.5 * sizes.width[box], 0.5 * sizes.height[box], 0.0
-    )
+    outline = Outline(True, math.cos(angle), math.sin(angle), shapes.half_x[box], shapes.half_y[box], 0.0)
     dx, dy = _apart(box, circle, motion, t)
-    nx, ny, _px, _py, _separation = circle_box(dx, dy, outline, sizes.radius[circle])
-    arm_x, arm_y = -sizes.radius[circle] * nx, -sizes.radius[circle] * ny
+    nx, ny, _px, _py, _separation = circle_box(dx, dy, outline, shapes.radius[circle])
+    arm_x, arm_y = -shapes.radius[circle] * nx, -shapes.radius[circle] * ny
     return ContactFrame(nx, ny, dx + arm_x, dy + arm_y, arm_x, arm_y)
 
 
@@ -68,29 +64,29 @@ def _corner_on_face(manifold: Manifold, point: Point, motion: Motion, t: float) 
 
 
 @fused
-def is_known(manifold: Manifold, motion: Motion, sizes: Sizes) -> bool:
+def is_known(manifold: Manifold, motion: Motion, shapes: Shapes) -> bool:
     """Whether normal and arms of a pair are those of the moment at which it meets: of discs they are.
 
     A box must not turn for that.
     """
     a, b = manifold.a, manifold.b
-    if sizes.kind[b] != _BOX:
-        return bool(manifold.wall >= 0 or sizes.kind[a] != _BOX or motion.angular[a] == 0.0)
-    return bool(manifold.wall < 0 and sizes.kind[a] != _BOX and motion.angular[b] == 0.0)
+    if shapes.first[b] != BOX:
+        return bool(manifold.wall >= 0 or shapes.first[a] != BOX or motion.angular[a] == 0.0)
+    return bool(manifold.wall < 0 and shapes.first[a] != BOX and motion.angular[b] == 0.0)
 
 
 @inlined
 def meeting_at(
-    manifold: Manifold, point: Point, motion: Motion, sizes: Sizes, t: float
+    manifold: Manifold, point: Point, motion: Motion, shapes: Shapes, t: float
 ) -> ContactFrame[float]:
     """Return where a pair that is not known meets at the time t from now, each body moving as it does now.
 
     Both arms lead to one point: angular momentum is kept to rounding.
     """
     a, b, walled = manifold.a, manifold.b, manifold.wall >= 0
-    if sizes.kind[b] != _BOX:
-        return _circle_on_box(b, a, motion, sizes, t)
-    if not walled and sizes.kind[a] != _BOX:
-        nx, ny, ax, ay, bx, by = _circle_on_box(a, b, motion, sizes, t)
+    if shapes.first[b] != BOX:
+        return _circle_on_box(b, a, motion, shapes, t)
+    if not walled and shapes.first[a] != BOX:
+        nx, ny, ax, ay, bx, by = _circle_on_box(a, b, motion, shapes, t)
         return ContactFrame(-nx, -ny, bx, by, ax, ay)
     return _corner_on_face(manifold, point, motion, t)

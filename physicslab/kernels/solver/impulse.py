@@ -3,7 +3,7 @@
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, fused, inlined, kernel
-from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION
+from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION, JOINTS
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
 from physicslab.kernels.constraint.pair import (
     after_impulse_at,
@@ -13,17 +13,21 @@ from physicslab.kernels.constraint.pair import (
     put_velocity,
     velocity_of,
 )
+from physicslab.kernels.constraint.soft_joints import (
+    Joints,
+    JointSoftness,
+    begin_joints,
+    book_momentum,
+    joint_softness,
+    sweep_joints,
+    warm_start_joints,
+    work_of_joints,
+)
 from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.solver.sweep import sweep
 from physicslab.kernels.solver.work import book_relaxed, book_solved, take_means
 from physicslab.kernels.wide.solve import SoftConstraint, sweep_wide, warm_start_wide
-
-__all__ = [
-    "HEAVY_RATIO", "MAX_SUBSTEP_FACTOR", "deepest", "follow_drift", 
-    "relax", "solve", "sweeps_of", "worst_load_ratio",
-]  # fmt: skip
-
 
 _MAX_SWEEPS = 16
 """Sweeps of a substep over few contacts: with a spring as stiff as they carry, cubes of 2 cm stand."""
@@ -56,14 +60,15 @@ def _warm_start(contacts: Contacts, motion: Motion, inverse: Inverse, warm_start
 
 
 @inlined
-def sweeps_of(near: Near, iterations: int) -> int:
+def sweeps_of(near: Near, rows: int, iterations: int) -> int:
     """Return how many sweeps a substep makes at most: ``iterations``, or by the number of contacts if 0.
 
-    Few contacts are solved nearly to the end, for little more time; a crowd is swept once.
+    So many ``rows`` of joints are solved with them. A few are solved nearly to the end, for little more time;
+    a crowd is swept once.
     """
     if iterations > 0:
         return iterations
-    number = near.counts[ACTIVE] + near.counts[WIDE_COUNT]
+    number = near.counts[ACTIVE] + near.counts[WIDE_COUNT] + rows
     sweeps: int = max(1, min(_MAX_SWEEPS, _CONTACT_SWEEPS // max(number, 1)))
     return sweeps
 
@@ -88,24 +93,33 @@ def _soft_constraint(softness: Softness, acting: Acting, h: float, sweeps: int) 
 
 @fused
 def solve(
-    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
-    h: float, warm_start_scale: float, sweeps: int,
+    contacts: Contacts, near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting,
+    softness: Softness, h: float, warm_start_scale: float, sweeps: int,
 ) -> None:  # fmt: skip
     """Start from the last substep's impulses, then go through all contacts, correcting overlap.
 
     ``warm_start_scale`` is the ratio of this substep to the last one: the impulses of resting contacts grow
     by that factor. What they do is booked by :func:`relax`, where the points are looked at again.
     """
+    joined, loose, stiff = len(joints.impulse) > 0, False, JointSoftness(0.0, 1.0, 0.0)
+    if joined:
+        begin_joints(joints, motion, inverse, acting, h)
+        warm_start_joints(joints, motion, inverse, warm_start_scale)
+        stiff = joint_softness(h, sweeps)
     _warm_start(contacts, motion, inverse, warm_start_scale)
     if near.counts[WIDE_COUNT] > 0:
         warm_start_wide(near, motion, warm_start_scale)
     soft = _soft_constraint(softness, acting, h, sweeps)
     for n in range(sweeps):
+        if joined:
+            loose, _ = sweep_joints(joints, motion, inverse, stiff)
         unsettled, _, _ = sweep(contacts, motion, inverse, soft, n % 2 == 1, False)
         if near.counts[WIDE_COUNT] > 0:
             sweep_wide(near, motion, 0.0, soft, False)
-        elif not unsettled:
+        elif not (unsettled or loose):
             break
+    if joined:
+        book_momentum(joints, motion, inverse, near.account, True)
 
 
 @always_inlined
@@ -122,8 +136,9 @@ def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
 
 @fused
 def relax(
-    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float, sweeps: int
-) -> None:
+    contacts: Contacts, near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting,
+    h: float, sweeps: int,
+) -> None:  # fmt: skip
     """Go through all contacts without correction, so that pushing bodies apart leaves no velocity behind.
 
     ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call. The work
@@ -135,15 +150,25 @@ def relax(
     if crowd:
         take_means(near, motion)
     rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0), h
+    joined, loose, held, stiff = len(joints.impulse) > 0, False, 0.0, JointSoftness(0.0, 1.0, 0.0)
+    if joined:
+        near.account[JOINTS, ENERGY] += work_of_joints(joints, motion, True)
+        begin_joints(joints, motion, inverse, acting, 0.0)
     for n in range(sweeps):
+        if joined:
+            loose, work = sweep_joints(joints, motion, inverse, stiff)
+            held += work
         unsettled, push, rub = sweep(contacts, motion, inverse, rigid, n % 2 == 1, crowd)
         pressed, friction_work = pressed + push, friction_work + rub
         if crowd:
             push, rub = sweep_wide(near, motion, drift, rigid, True)
             pressed, friction_work, drift = pressed + push, friction_work + rub, 0.0
-        elif not unsettled:
+        elif not (unsettled or loose):
             break
     push, rub = book_relaxed(contacts, near, motion, inverse)
+    if joined:
+        near.account[JOINTS, ENERGY] += held if crowd else work_of_joints(joints, motion, False)
+        book_momentum(joints, motion, inverse, near.account, False)
     if not crowd:
         pressed, friction_work = pressed + push, friction_work + rub
     # Friction gives no energy: where sliding turns round within a substep, or friction holds a body that is

@@ -7,21 +7,8 @@ from physicslab.kernels.accounts import ENERGY, OVERLAP, SPIN
 from physicslab.kernels.arguments import Acting, Contacts, Motion, Near
 from physicslab.kernels.near_counts import DISC_BLOCKS, OUTSIDE
 from physicslab.kernels.records import Manifold, Points
+from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.float64x8 import lesser, mask_bits, take
-from physicslab.kernels.wide.layout import (
-    DISC,
-    NORMAL_X,
-    NORMAL_Y,
-    ONE,
-    SEPARATION,
-    SIZE,
-    TWO,
-    WIDE,
-    Slots,
-    rows_of,
-)
-
-__all__ = ["BEYOND", "any_deep", "separate"]
 
 _DEEP = 0.1
 """Share beyond which overlap is resolved by moving bodies."""
@@ -40,13 +27,13 @@ def _lowest(manifold: Manifold, points: Points, p: int) -> float:
 
 
 @fused
-def _deep_slots(slots: Slots, k: int) -> int:
+def _deep_slots(slots: L.Slots, k: int) -> int:
     """Return the slots of a block that overlap deeply, as bits."""
-    at = k * rows_of(slots.kind)
-    lowest = take(slots.data, at + ONE + SEPARATION)
-    if slots.kind != DISC:
-        lowest = lesser(lowest, take(slots.data, at + TWO + SEPARATION))
-    return mask_bits(lowest < -_DEEP * take(slots.data, at + SIZE))
+    at = k * L.rows_of(slots.kind)
+    lowest = take(slots.data, at + L.ONE + L.SEPARATION)
+    if slots.kind != L.DISC:
+        lowest = lesser(lowest, take(slots.data, at + L.TWO + L.SEPARATION))
+    return mask_bits(lowest < -_DEEP * take(slots.data, at + L.SIZE))
 
 
 @always_inlined
@@ -137,18 +124,18 @@ def _move_wide(near: Near, position: Vectors, before: Vectors, inverse_mass: Num
         data = slots.data
         for k in range(near.counts[DISC_BLOCKS + slots.kind]):
             deep = _deep_slots(slots, k)
-            for place in range(WIDE):
+            for place in range(L.WIDE):
                 if not (deep >> place) & 1:
                     continue
-                at = k * rows_of(slots.kind) + place
-                if slots.a[k * WIDE + place] == 0:  # the world itself: a wall
+                at = k * L.rows_of(slots.kind) + place
+                if slots.a[k * L.WIDE + place] == 0:  # the world itself: a wall
                     near.counts[OUTSIDE] = 1
-                lowest = data[at + ONE + SEPARATION]
-                if slots.kind != DISC:
-                    lowest = min(lowest, data[at + TWO + SEPARATION])
+                lowest = data[at + L.ONE + L.SEPARATION]
+                if slots.kind != L.DISC:
+                    lowest = min(lowest, data[at + L.TWO + L.SEPARATION])
                 _move(
-                    slots.a[k * WIDE + place], slots.b[k * WIDE + place], data[at + NORMAL_X],
-                    data[at + NORMAL_Y], lowest, data[at + SIZE], position, before, inverse_mass, back,
+                    slots.a[k * L.WIDE + place], slots.b[k * L.WIDE + place], data[at + L.NORMAL_X],
+                    data[at + L.NORMAL_Y], lowest, data[at + L.SIZE], position, before, inverse_mass, back,
                 )  # fmt: skip
 
 

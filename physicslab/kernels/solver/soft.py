@@ -6,7 +6,7 @@ list pairs, to wake bodies, or at a stage where systems act that no kernel compu
 """
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.accounts import BALANCE, BEFORE, ENERGY, PX, PY, SPIN
+from physicslab.kernels.accounts import BALANCE, BEFORE, ENERGY, PX, PY, SPIN, book
 from physicslab.kernels.arguments import (
     Acting,
     ActingTuple,
@@ -29,8 +29,6 @@ from physicslab.kernels.arguments import (
     PackedTuple,
     Plan,
     PlanTuple,
-    Sizes,
-    SizesTuple,
     Sleepers,
     SleepersTuple,
     Softness,
@@ -40,10 +38,12 @@ from physicslab.kernels.arguments import (
     named_acting,
     named_near,
 )
-from physicslab.kernels.broad.fat_boxes import still_holds
+from physicslab.kernels.broad.fat_boxes import all_inside
+from physicslab.kernels.constraint.soft_joints import Joints, JointsTuple
 from physicslab.kernels.energy import moments_of_mass, motion_totals
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import uniform_gravity
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
 from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
 from physicslab.kernels.ode.spring_flow import flow_springs
@@ -114,12 +114,10 @@ def _balance(account: Vectors, motion: Motion, gravity: Gravity, cause: int) -> 
     energy = translation + rotation
     energy += -(gravity.gx * mx + gravity.gy * my)
     if cause >= 0:
-        account[cause, ENERGY] += energy - account[BALANCE, ENERGY]
-        account[cause, PX] += px - account[BALANCE, PX]
-        account[cause, PY] += py - account[BALANCE, PY]
-        account[cause, SPIN] += spin - account[BALANCE, SPIN]
-    account[BALANCE, ENERGY], account[BALANCE, PX] = energy, px
-    account[BALANCE, PY], account[BALANCE, SPIN] = py, spin
+        last = account[BALANCE]
+        book(account[cause], 0, energy - last[ENERGY], px - last[PX], py - last[PY], spin - last[SPIN])
+    account[BALANCE] = 0.0
+    book(account[BALANCE], 0, energy, px, py, spin)
 
 
 @inlined
@@ -149,7 +147,7 @@ def _woken(near: Near, motion: Motion, inverse: Inverse, acting: Acting, sleeper
 
 @inlined
 def _made_wide(
-    near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, sleepers: Sleepers,
+    near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, sleepers: Sleepers,
     opened: Rows, h: float,
 ) -> bool:  # fmt: skip
     """Put steady contacts into blocks; return whether there was room for them."""
@@ -158,7 +156,7 @@ def _made_wide(
     came = SPARSE  # the first blocks are made in Python
     if near.counts[WIDE_COUNT] > 0:
         came = add_to_blocks(
-            near, opened, sleepers.pairs, sleepers.inactive, sleepers.asleep, motion, sizes, materials,
+            near, opened, sleepers.pairs, sleepers.inactive, sleepers.asleep, motion, shapes, materials,
             inverse, h,
         )  # fmt: skip
     return came == ADDED
@@ -167,10 +165,10 @@ def _made_wide(
 @inlined
 def _advance(
     steps: int, substep: int, part: int, plan: Plan, course: Course, cause: int,
-    motion: Motion, kept: Numbers, sizes: Sizes, materials: Materials, inverse: Inverse,
+    motion: Motion, kept: Numbers, shapes: Shapes, materials: Materials, inverse: Inverse,
     sub_integrated: Flags, acting: Acting, gravity: Gravity, packed: Packed, springs: Springs,
-    sleepers: Sleepers, damping: tuple[float, float], fat: Vectors, bounds: Bounds, near: Near, opened: Rows,
-    softness: Softness, impulse_dt: float, impacts: Impacts, cost: Rows,
+    sleepers: Sleepers, damping: tuple[float, float], fat: Vectors, bounds: Bounds, near: Near,
+    joints: Joints, opened: Rows, softness: Softness, impulse_dt: float, impacts: Impacts, cost: Rows,
 ) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
     """Advance by steps, beginning at a part of a substep, as :func:`advance` describes."""
     position, angle, linear, angular = motion
@@ -235,21 +233,27 @@ def _advance(
                     )  # fmt: skip
                 now = charge(cost, ACCELERATE, now)
             elif what == PAIRS:
-                holds = still_holds(
-                    position, angle, linear, angular, sizes.kind, sizes.radius, sizes.width, sizes.height,
-                    fat, span, gravity.margin,
-                )  # fmt: skip
+                holds = all_inside(motion, shapes, fat, span, gravity.margin)
                 now = charge(cost, BROAD_PHASE, now)
                 why = ALL if holds else PAIRS_STALE
             elif what == FIND:
                 first = substep == plan.first
                 find_touching(
-                    near, motion, sizes, materials, inverse, bounds, first, span, course.start, gravity.margin
+                    near,
+                    motion,
+                    shapes,
+                    materials,
+                    inverse,
+                    bounds,
+                    first,
+                    span,
+                    course.start,
+                    gravity.margin,
                 )
                 now = charge(cost, CONTACT, now)
             elif what == WIDEN:
                 if substep == plan.first:
-                    room = _made_wide(near, motion, sizes, materials, inverse, sleepers, opened, span)
+                    room = _made_wide(near, motion, shapes, materials, inverse, sleepers, opened, span)
                     now = charge(cost, CONTACT, now)
                     why = ALL if room else BLOCKS_FULL
             elif what == WAKE:
@@ -259,7 +263,7 @@ def _advance(
             elif what == IMPACTS:
                 moment = plan.time + done * plan.dt + (substep + course.middle) * h
                 came = resolve_all_impacts(
-                    near, motion, sizes, inverse, acting, Log(impacts, moment, account), span,
+                    near, motion, shapes, inverse, acting, Log(impacts, moment, account), span,
                     course.start * span, course.end * span,
                 )  # fmt: skip
                 bounced += came
@@ -271,13 +275,15 @@ def _advance(
                     sub_integrated, acting.unkicked, span,
                 )  # fmt: skip
             elif what == SOLVE:
-                impulse_dt = press(near, motion, inverse, acting, softness, span, impulse_dt, plan.iterations)
+                impulse_dt = press(
+                    near, joints, motion, inverse, acting, softness, span, impulse_dt, plan.iterations
+                )
                 now = charge(cost, RESOLVE, now)
             elif what == RELAX:
                 if part + 1 < len(course.parts) and course.parts[part + 1] == OVERLAP:
                     for i in range(len(angle)):
                         packed.state[2, 2 * i], packed.state[2, 2 * i + 1] = position[i, 0], position[i, 1]
-                relax(near, motion, inverse, acting, softness, span, plan.iterations)
+                relax(near, joints, motion, inverse, acting, softness, span, plan.iterations)
                 weighed = False
                 now = charge(cost, RESOLVE, now)
             elif what == HOOK or _moved(motion, packed.state[2]):
@@ -297,9 +303,8 @@ def _advance(
             done, finished, pending = done + 1, bounced, ALL
             if sleepers.on:
                 check = count_rest(
-                    linear, angular, sizes.kind, sizes.radius, sizes.width, sizes.height,
-                    gravity.inverse_mass, sub_integrated, sleepers.asleep, sleepers.rest, sleepers.slowest,
-                    plan.rested,
+                    linear, angular, shapes.reach, gravity.inverse_mass, sub_integrated, sleepers.asleep,
+                    sleepers.rest, sleepers.slowest, plan.rested,
                 )  # fmt: skip
                 now = charge(cost, SLEEP, now)
                 pending = SLEEP_PENDING if check else ALL
@@ -313,11 +318,11 @@ def _advance(
 @kernel
 def advance(
     steps: int, substep: int, part: int, plan: PlanTuple, course: CourseTuple, cause: int,
-    motion: MotionTuple, kept: Numbers, sizes: SizesTuple, materials: MaterialsTuple,
+    motion: MotionTuple, kept: Numbers, shapes: ShapesTuple, materials: MaterialsTuple,
     inverse: InverseTuple, sub_integrated: Flags, acting: ActingTuple, gravity: GravityTuple,
     packed: PackedTuple, springs: SpringsTuple, sleepers: SleepersTuple, damping: tuple[float, float],
-    fat: Vectors, bounds: BoundsTuple, near: NearTuple, opened: Rows, softness: SoftnessTuple,
-    impulse_dt: float, impacts: Impacts, cost: Rows,
+    fat: Vectors, bounds: BoundsTuple, near: NearTuple, joints: JointsTuple, opened: Rows,
+    softness: SoftnessTuple, impulse_dt: float, impacts: Impacts, cost: Rows,
 ) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
     """Advance by ``steps`` steps, beginning at a part of a substep.
 
@@ -336,9 +341,9 @@ def advance(
         _balance(of.account, moved, masses, cause)
     ended = _advance(
         steps, substep, part, Plan(*plan), along, cause, moved, kept,
-        Sizes(*sizes), Materials(*materials), Inverse(*inverse), sub_integrated,
+        named_shapes(shapes), Materials(*materials), Inverse(*inverse), sub_integrated,
         named_acting(acting), masses, Packed(*packed), Springs(*springs), Sleepers(*sleepers), damping, fat,
-        Bounds(*bounds), of, opened, Softness(*softness), impulse_dt, impacts, cost,
+        Bounds(*bounds), of, Joints(*joints), opened, Softness(*softness), impulse_dt, impacts, cost,
     )  # fmt: skip
     if not along.hooked:
         _balance(of.account, moved, masses, -1)

@@ -10,10 +10,11 @@ from physicslab.kernels.arguments import (
     Materials,
     Motion,
     Near,
-    Sizes,
     Softness,
 )
 from physicslab.kernels.broad.near_pairs import activate, sort_scalar
+from physicslab.kernels.constraint.soft_joints import Joints
+from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.narrow.contact import find_contacts
 from physicslab.kernels.near_counts import (
     ACTIVE,
@@ -35,8 +36,6 @@ from physicslab.kernels.solver.work import book_slots, note_velocities
 from physicslab.kernels.wide.refresh import refresh
 from physicslab.kernels.wide.slots import wake
 
-__all__ = ["find_touching", "press", "relax", "resolve_all_impacts"]
-
 
 @fused
 def _contacts(near: Near) -> Contacts:
@@ -44,9 +43,16 @@ def _contacts(near: Near) -> Contacts:
     return Contacts(near.manifolds, near.points, near.touching, near.counts[ACTIVE])
 
 
+@fused
+def _solved(near: Near) -> Contacts:
+    """Return the scalar pairs that impulses act at in this substep: none where all are left to impacts."""
+    number = near.counts[ACTIVE] if near.counts[LEFT] + near.counts[WIDE_COUNT] > 0 else 0
+    return Contacts(near.manifolds, near.points, near.touching, number)
+
+
 @always_inlined
 def find_touching(
-    near: Near, motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, bounds: Bounds,
+    near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, bounds: Bounds,
     first: bool, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Find where wide contacts touch now, activate proximity pairs, then find where scalar ones touch.
@@ -58,7 +64,7 @@ def find_touching(
     if counts[WIDE_COUNT] > 0:
         before = counts[SCALAR]
         for slots in (near.discs, near.boxes):
-            refresh(slots, near, motion, sizes, inverse, bounds, first, h, start, speculative_margin)
+            refresh(slots, near, motion, shapes, inverse, bounds, first, h, start, speculative_margin)
         came = counts[SCALAR] - before
         counts[WIDE_COUNT] -= came
         if came > 0:
@@ -71,13 +77,13 @@ def find_touching(
         scalar, counts[SCALAR], near.entities, motion.position, motion.linear, h, speculative_margin,
     )  # fmt: skip
     counts[ACTIVE] = find_contacts(
-        near, counts[SCALAR], motion, sizes, materials, inverse, bounds, first, h, start, speculative_margin
+        near, counts[SCALAR], motion, shapes, materials, inverse, bounds, first, h, start, speculative_margin
     )
 
 
 @always_inlined
 def resolve_all_impacts(
-    near: Near, motion: Motion, sizes: Sizes, inverse: Inverse, acting: Acting, log: Log,
+    near: Near, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
     h: float, start: float, end: float,
 ) -> int:  # fmt: skip
     """Bounce what meets between ``start`` and ``end`` [s] from now; return how many impacts there were.
@@ -88,7 +94,7 @@ def resolve_all_impacts(
     counts[LEFT] = 0
     while counts[ACTIVE] > 0:
         came, counts[LEFT], energetic, lowered = resolve_impacts(
-            _contacts(near), motion, sizes, inverse, acting, log, counts[LOGGED], h, start, end
+            _contacts(near), motion, shapes, inverse, acting, log, counts[LOGGED], h, start, end
         )
         impacts += came
         counts[ENERGETIC] += energetic
@@ -116,20 +122,20 @@ def _warm_start_scale(h: float, impulse_dt: float) -> float:
 
 @fused
 def press(
-    near: Near, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
+    near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
     h: float, impulse_dt: float, iterations: int,
 ) -> float:  # fmt: skip
-    """Find the impulses that keep bodies apart and correct some of the overlap.
+    """Find the impulses that keep bodies apart and joints together, and correct some of the error.
 
-    ``impulse_dt`` is the time [s] over which the points' impulses act; returns the new one.
+    ``impulse_dt`` is the time [s] over which the impulses act; returns the new one.
     """
-    if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
+    if near.counts[LEFT] + near.counts[WIDE_COUNT] + len(joints.impulse) == 0:
         return impulse_dt
     scale = _warm_start_scale(h, impulse_dt)
-    sweeps = impulse.sweeps_of(near, iterations)
-    contacts = _contacts(near)
+    sweeps = impulse.sweeps_of(near, len(joints.impulse), iterations)
+    contacts = _solved(near)
     note_velocities(contacts, near, motion, inverse, acting, h)
-    impulse.solve(contacts, near, motion, inverse, acting, softness, h, scale, sweeps)
+    impulse.solve(contacts, near, joints, motion, inverse, acting, softness, h, scale, sweeps)
     if near.counts[WIDE_COUNT] > 0:
         book_slots(near, motion, inverse, acting, h, True)
     return h
@@ -138,6 +144,7 @@ def press(
 @fused
 def relax(
     near: Near,
+    joints: Joints,
     motion: Motion,
     inverse: Inverse,
     acting: Acting,
@@ -145,11 +152,12 @@ def relax(
     h: float,
     iterations: int,
 ) -> None:
-    """Remove the velocity that came from correcting overlap, ``h`` seconds after :func:`press`."""
-    if near.counts[LEFT] + near.counts[WIDE_COUNT] == 0:
+    """Remove the velocity that came from correcting errors, ``h`` seconds after :func:`press`."""
+    if near.counts[LEFT] + near.counts[WIDE_COUNT] + len(joints.impulse) == 0:
         return
-    contacts = _contacts(near)
-    impulse.relax(contacts, near, motion, inverse, acting, h, impulse.sweeps_of(near, iterations))
+    contacts = _solved(near)
+    sweeps = impulse.sweeps_of(near, len(joints.impulse), iterations)
+    impulse.relax(contacts, near, joints, motion, inverse, acting, h, sweeps)
     if near.counts[WIDE_COUNT] > 0:
         book_slots(near, motion, inverse, acting, h, False)
     if any_deep(contacts, near):  # to count references to all these arrays takes as long as ten contacts

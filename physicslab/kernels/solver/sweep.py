@@ -28,8 +28,6 @@ from physicslab.kernels.wide.solve import (
     work_of,
 )
 
-__all__ = ["sweep"]
-
 _SETTLED = 1e-10
 """Share of a normal impulse by which an impulse may still change where sweeps come to their end."""
 

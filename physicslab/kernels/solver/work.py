@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, inlined, kernel
-from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, PX, PY, SPIN
+from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, SPIN, book
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
 from physicslab.kernels.constraint.pair import (
     along_and_across,
@@ -25,25 +25,8 @@ from physicslab.kernels.constraint.pair import (
 from physicslab.kernels.motion import damped
 from physicslab.kernels.near_counts import DISC_BLOCKS, WIDE_COUNT
 from physicslab.kernels.solver.impact_log import Pose, book_outside
-from physicslab.kernels.wide.layout import (
-    BOX,
-    IMPULSE,
-    NORMAL_X,
-    NORMAL_Y,
-    ONE,
-    TANGENT_IMPULSE,
-    TWO,
-    WIDE,
-    Slots,
-    rows_of,
-)
+from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.solve import slot_frame
-
-__all__ = [
-    "book_damping", "book_gravity", "book_kick", "book_relaxed", "book_slots", "book_solved",
-    "note_velocities", "take_means",
-]  # fmt: skip
-
 
 _unsigned: Any = np.uint64
 """Makes an index of which no loop tests whether it counts from the end: that takes as long as the work."""
@@ -198,9 +181,7 @@ def _given(
 @inlined
 def _book_given(near: Near, given: Given) -> None:
     """Book what fixed bodies give."""
-    near.account[CONTACT, PX] += given.px
-    near.account[CONTACT, PY] += given.py
-    near.account[CONTACT, SPIN] += given.spin
+    book(near.account[CONTACT], 0, 0.0, given.px, given.py, given.spin)
 
 
 @always_inlined
@@ -235,10 +216,10 @@ def book_relaxed(contacts: Contacts, near: Near, motion: Motion, inverse: Invers
 
 
 @always_inlined
-def _slot_impulse(slots: Slots, at: int, point: int) -> tuple[float, float, float, float]:
+def _slot_impulse(slots: L.Slots, at: int, point: int) -> tuple[float, float, float, float]:
     """Return the impulse at a point of a slot [N s], and its moments about both centres [N m s]."""
     frame, impulses = slot_frame(slots, at, point), at + point
-    normal, tangent = slots.data[impulses + IMPULSE], slots.data[impulses + TANGENT_IMPULSE]
+    normal, tangent = slots.data[impulses + L.IMPULSE], slots.data[impulses + L.TANGENT_IMPULSE]
     px, py = impulse_at(frame.nx, frame.ny, normal, tangent)
     moment_a, moment_b = moments_of(frame, px, py)
     return px, py, moment_a, moment_b
@@ -254,24 +235,24 @@ def book_slots(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: 
     """
     given = Given(0.0, 0.0, 0.0)
     for slots in (near.discs, near.boxes):
-        rows = rows_of(slots.kind)
+        rows = L.rows_of(slots.kind)
         for k in range(near.counts[DISC_BLOCKS + slots.kind]):
             if not slots.outside[k]:
                 continue
-            for slot in range(k * WIDE, (k + 1) * WIDE):
-                a, b, at = _unsigned(slots.a[slot]), _unsigned(slots.b[slot]), k * rows + slot - k * WIDE
+            for slot in range(k * L.WIDE, (k + 1) * L.WIDE):
+                a, b, at = _unsigned(slots.a[slot]), _unsigned(slots.b[slot]), k * rows + slot - k * L.WIDE
                 if slots.pair[slot] < 0 or (inverse.inertia[a] > 0.0 and inverse.inertia[b] > 0.0):
                     continue
                 noted, j = near.noted, 2 * slots.pair[slot]
-                px, py, turn_a, turn_b = _slot_impulse(slots, at, ONE)
-                if slots.kind == BOX:
-                    x, y, moment_a, moment_b = _slot_impulse(slots, at, TWO)
+                px, py, turn_a, turn_b = _slot_impulse(slots, at, L.ONE)
+                if slots.kind == L.BOX:
+                    x, y, moment_a, moment_b = _slot_impulse(slots, at, L.TWO)
                     px, py, turn_a, turn_b = px + x, py + y, turn_a + moment_a, turn_b + moment_b
                 moved, sign = (b, 1.0) if inverse.mass[a] == 0.0 else (a, -1.0)
                 here_x, here_y = sign * motion.position[moved, 0], sign * motion.position[moved, 1]
                 if solved:
                     if acting.uniform:
-                        nx, ny = slots.data[at + NORMAL_X], slots.data[at + NORMAL_Y]
+                        nx, ny = slots.data[at + L.NORMAL_X], slots.data[at + L.NORMAL_Y]
                         ax, ay = _pull(a, b, inverse, acting)
                         pull, across = along_and_across(nx, ny, ax, ay)
                         push, rub = along_and_across(nx, ny, px, py)
@@ -292,9 +273,7 @@ def book_gravity(
     account: Vectors, total: float, mx: float, my: float, gx: float, gy: float, h: float
 ) -> None:
     """Book the impulse of uniform gravity in ``h`` seconds on a mass of such moments."""
-    account[GRAVITY, PX] += h * total * gx
-    account[GRAVITY, PY] += h * total * gy
-    account[GRAVITY, SPIN] += h * (mx * gy - my * gx)
+    book(account[GRAVITY], 0, 0.0, h * total * gx, h * total * gy, h * (mx * gy - my * gx))
 
 
 @kernel
@@ -308,18 +287,14 @@ def book_kick(
     for i in range(len(mass)):
         if inverse_mass[i] > 0.0 and not sub_integrated[i]:
             wx, wy, x, y = mass[i] * gx, mass[i] * gy, position[i, 0], position[i, 1]
-            account[GRAVITY, PX] += h * wx
-            account[GRAVITY, PY] += h * wy
-            account[GRAVITY, SPIN] += h * (x * wy - y * wx)
+            book(account[GRAVITY], 0, 0.0, h * wx, h * wy, h * (x * wy - y * wx))
             fx, fy = force[i, 0] - wx, force[i, 1] - wy
             px += h * fx
             py += h * fy
             spin += h * (x * fy - y * fx)
             if inverse_inertia[i] > 0.0:
                 spin += h * torque[i]
-    account[other, PX] += px
-    account[other, PY] += py
-    account[other, SPIN] += spin
+    book(account[other], 0, 0.0, px, py, spin)
 
 
 @inlined
@@ -359,7 +334,4 @@ def book_damping(
         if inverse_inertia[i] > 0.0:
             turn, inertia = torque[i] * inverse_inertia[i], 1.0 / inverse_inertia[i]
             turned, around = _damped_change(angular[i], turn, angular_decay, angular_gain, h, later, inertia)
-        account[DAMPING, ENERGY] += along + across + around
-        account[DAMPING, PX] += px
-        account[DAMPING, PY] += py
-        account[DAMPING, SPIN] += x * py - y * px + turned
+        book(account[DAMPING], 0, along + across + around, px, py, x * py - y * px + turned)

@@ -19,25 +19,6 @@ from numba.extending import intrinsic, lower_builtin, models, register_model
 from physicslab.kernels import Numbers, Rows, Vectors
 from physicslab.kernels.wide.layout import WIDE
 
-__all__ = [
-    "Mask",
-    "Wide",
-    "choose",
-    "everywhere",
-    "greater",
-    "lesser",
-    "mask_bits",
-    "put",
-    "put_numbers",
-    "put_vectors",
-    "root",
-    "size_of",
-    "sum_of",
-    "take",
-    "take_numbers",
-    "take_vectors",
-]  # fmt: skip
-
 
 class Wide:
     """Eight float64 values. A plain number beside one is used eight times."""

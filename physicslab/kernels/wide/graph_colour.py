@@ -12,11 +12,10 @@ from physicslab.kernels.arguments import (
     MotionTuple,
     Near,
     NearTuple,
-    Sizes,
-    SizesTuple,
     named_near,
 )
 from physicslab.kernels.broad.near_pairs import sort_scalar
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.narrow.contact import note_pose
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.near_counts import (
@@ -33,8 +32,6 @@ from physicslab.kernels.records import Manifold, Manifolds, Point
 from physicslab.kernels.wide.layout import BOX, WIDE, Masks, Slots, rows_of
 from physicslab.kernels.wide.restore_slots import fill_slot, is_of_kind
 from physicslab.kernels.wide.slots import COLOURS, clear_slot, list_scalar
-
-__all__ = ["ADDED", "FULL", "MIN_WIDE", "SPARSE", "add_constraints", "add_to_blocks", "sort_blocks"]
 
 MIN_WIDE = 64
 """Smallest number of contacts for which blocks are made: solving fewer takes less time than sorting them."""
@@ -134,7 +131,7 @@ def _first_colour(used: Masks, i: int, j: int, inverse_mass: Numbers) -> int:
 
 @inlined
 def _assign_colours(
-    slots: Slots, blocks: int, opened: Rows, near: Near, motion: Motion, sizes: Sizes, materials: Materials,
+    slots: Slots, blocks: int, opened: Rows, near: Near, motion: Motion, shapes: Shapes, materials: Materials,
     inverse: Inverse, asleep: Flags, h: float,
 ) -> tuple[int, int]:  # fmt: skip
     """Put the steady contacts of one kind into blocks; return how many blocks there are, and how many came.
@@ -148,7 +145,7 @@ def _assign_colours(
     for k in range(near.counts[ACTIVE]):
         p = near.touching[k]
         manifold = near.manifolds[p]
-        if not _may_enter(slots, near, p, motion, sizes.kind, asleep, h):
+        if not _may_enter(slots, near, p, motion, shapes.vertices, asleep, h):
             continue
         c = _first_colour(slots.used, manifold.a, manifold.b, inverse.mass)
         if c == COLOURS:
@@ -172,7 +169,7 @@ def _assign_colours(
                 manifold, manifold.offset_x, manifold.offset_y, motion.angle[manifold.a],
                 motion.angle[manifold.b],
             )  # fmt: skip
-        fill_slot(slots, slot, c, near.manifolds, near.points, p, sizes, materials, inverse)
+        fill_slot(slots, slot, c, near.manifolds, near.points, p, shapes, materials, inverse)
         came += 1
     return blocks, came
 
@@ -223,7 +220,7 @@ def _has_room(slots: Slots, blocks: int, active: int) -> bool:
 @inlined
 def add_to_blocks(
     near: Near, opened: Rows, sleeping: Rows, inactive: Flags, asleep: Flags,
-    motion: Motion, sizes: Sizes, materials: Materials, inverse: Inverse, h: float,
+    motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, h: float,
 ) -> int:  # fmt: skip
     """Put steady contacts into blocks, as :func:`add_constraints` describes."""
     counts, discs, boxes = near.counts, near.discs, near.boxes
@@ -247,7 +244,7 @@ def add_to_blocks(
         for slots in (discs, boxes):
             which = DISC_BLOCKS + slots.kind
             counts[which], more = _assign_colours(
-                slots, counts[which], opened, near, motion, sizes, materials, inverse, asleep, h
+                slots, counts[which], opened, near, motion, shapes, materials, inverse, asleep, h
             )
             came += more
     if came > 0:
@@ -266,7 +263,7 @@ def add_to_blocks(
 @kernel
 def add_constraints(
     plain_near: NearTuple, opened: Rows, sleeping: Rows, inactive: Flags, asleep: Flags,
-    plain_motion: MotionTuple, plain_sizes: SizesTuple, plain_materials: MaterialsTuple,
+    plain_motion: MotionTuple, plain_shapes: ShapesTuple, plain_materials: MaterialsTuple,
     plain_inverse: InverseTuple, h: float,
 ) -> int:  # fmt: skip
     """Put steady contacts into blocks; return what must be done first if that is not possible.
@@ -277,5 +274,5 @@ def add_constraints(
     """
     return add_to_blocks(
         named_near(plain_near), opened, sleeping, inactive, asleep, Motion(*plain_motion),
-        Sizes(*plain_sizes), Materials(*plain_materials), Inverse(*plain_inverse), h,
+        named_shapes(plain_shapes), Materials(*plain_materials), Inverse(*plain_inverse), h,
     )  # fmt: skip

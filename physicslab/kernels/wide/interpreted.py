@@ -1,7 +1,5 @@
 """Eight numbers as one in plain Python: an array (8,) stands in for each vector of :mod:`.float64x8`."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

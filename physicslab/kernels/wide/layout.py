@@ -13,14 +13,6 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import Flags, Numbers, Rows, fused
 
-__all__ = [
-    "ANGLE_A", "ANGLE_B", "ARM_AX", "ARM_AY", "ARM_BX", "ARM_BY", "BASE_X", "BASE_Y", "BOX", "BOX_ROWS",
-    "DISC", "DISC_ROWS", "FOUND", "FRICTION", "IMPULSE", "INERTIA_A", "INERTIA_B", "MASS",
-    "MASS_A", "MASS_B", "NORMAL_X", "NORMAL_Y", "ONE", "RADIUS_A", "RADIUS_B", "RESTITUTION", "SEPARATION",
-    "SIZE", "TANGENT_IMPULSE", "TANGENT_MASS", "TURNS_A", "TURNS_B", "TWO", "WIDE", "Masks",
-    "Slots", "SlotsTuple", "rows_of",
-]  # fmt: skip
-
 WIDE = 8
 """Slots of a block."""
 DISC, BOX = 0, 1

@@ -1,7 +1,8 @@
 """Where wide contacts touch now, eight at a time; those that are not steady any more become scalar."""
 
 from physicslab.kernels import Numbers, fused, inlined, kernel
-from physicslab.kernels.arguments import Bounds, Inverse, Motion, Near, Sizes
+from physicslab.kernels.arguments import Bounds, Inverse, Motion, Near
+from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.narrow.contact import (
     CACHE_TOLERANCE,
     CACHE_TURN_TOLERANCE,
@@ -14,6 +15,7 @@ from physicslab.kernels.narrow.contact import (
 from physicslab.kernels.narrow.outline import Way
 from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.near_counts import DISC_BLOCKS, SCALAR
+from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.float64x8 import (
     Wide,
     choose,
@@ -25,40 +27,8 @@ from physicslab.kernels.wide.float64x8 import (
     take_numbers,
     take_vectors,
 )
-from physicslab.kernels.wide.layout import (
-    ANGLE_A,
-    ANGLE_B,
-    ARM_AX,
-    ARM_AY,
-    ARM_BX,
-    ARM_BY,
-    BASE_X,
-    BASE_Y,
-    BOX,
-    BOX_ROWS,
-    DISC,
-    DISC_ROWS,
-    FOUND,
-    IMPULSE,
-    NORMAL_X,
-    NORMAL_Y,
-    ONE,
-    RADIUS_A,
-    RADIUS_B,
-    RESTITUTION,
-    SEPARATION,
-    SIZE,
-    TURNS_A,
-    TURNS_B,
-    TWO,
-    WIDE,
-    Slots,
-    rows_of,
-)  # fmt: skip
 from physicslab.kernels.wide.restore_slots import fill_points
 from physicslab.kernels.wide.slots import empty_slot, set_scalar, store_slot
-
-__all__ = ["deepest_wide", "refresh"]
 
 _WITHIN_STEP = 100.0
 """Multiple of the tolerances of points beyond which a wide contact becomes scalar within a step."""
@@ -67,41 +37,41 @@ _ONE_SPOT = 1e-300
 
 
 @fused
-def _restless(slots: Slots, k: int, motion: Motion, h: float) -> int:
+def _restless(slots: L.Slots, k: int, motion: Motion, h: float) -> int:
     """Return the slots of a block whose bodies move too far for their size in a substep, as bits.
 
     What does not press on each other may meet within it, and bounce at a time and with a normal that are
     to be found.
     """
-    vax, vay = take_vectors(motion.linear, slots.a, k * WIDE)
-    vbx, vby = take_vectors(motion.linear, slots.b, k * WIDE)
-    at = k * rows_of(slots.kind)
-    size = take(slots.data, at + SIZE)
-    pressed = take(slots.data, at + ONE + IMPULSE)
+    vax, vay = take_vectors(motion.linear, slots.a, k * L.WIDE)
+    vbx, vby = take_vectors(motion.linear, slots.b, k * L.WIDE)
+    at = k * L.rows_of(slots.kind)
+    size = take(slots.data, at + L.SIZE)
+    pressed = take(slots.data, at + L.ONE + L.IMPULSE)
     limit = CONTACT_MARGIN * size
-    if slots.kind == DISC:
-        limit = choose(take(slots.data, at + RESTITUTION) > 0.0, SWEEP_THRESHOLD * size, limit)
+    if slots.kind == L.DISC:
+        limit = choose(take(slots.data, at + L.RESTITUTION) > 0.0, SWEEP_THRESHOLD * size, limit)
     else:
-        pressed = pressed + take(slots.data, at + TWO + IMPULSE)
+        pressed = pressed + take(slots.data, at + L.TWO + L.IMPULSE)
     limit = choose(pressed > 0.0, WIDE_SHARE * size, limit)
     ux, uy = (vbx - vax) * h, (vby - vay) * h
     return mask_bits(ux * ux + uy * uy > limit * limit)
 
 
 @fused
-def _refresh_discs(slots: Slots, k: int, motion: Motion, speculative_margin: float) -> int:
+def _refresh_discs(slots: L.Slots, k: int, motion: Motion, speculative_margin: float) -> int:
     """Find normals and separations of a block of discs; return which are apart."""
-    data, at = slots.data, k * DISC_ROWS
-    xa, ya = take_vectors(motion.position, slots.a, k * WIDE)
-    xb, yb = take_vectors(motion.position, slots.b, k * WIDE)
+    data, at = slots.data, k * L.DISC_ROWS
+    xa, ya = take_vectors(motion.position, slots.a, k * L.WIDE)
+    xb, yb = take_vectors(motion.position, slots.b, k * L.WIDE)
     dx, dy = xb - xa, yb - ya
     distance = root(dx * dx + dy * dy)
-    size, ra, rb = take(data, at + SIZE), take(data, at + RADIUS_A), take(data, at + RADIUS_B)
+    size, ra, rb = take(data, at + L.SIZE), take(data, at + L.RADIUS_A), take(data, at + L.RADIUS_B)
     separation = distance - ra - rb
     scale = choose(distance > 0.0, 1.0 / distance, 0.0)
-    put(data, at + NORMAL_X, dx * scale)
-    put(data, at + NORMAL_Y, dy * scale)
-    put(data, at + ONE + SEPARATION, separation)
+    put(data, at + L.NORMAL_X, dx * scale)
+    put(data, at + L.NORMAL_Y, dy * scale)
+    put(data, at + L.ONE + L.SEPARATION, separation)
     apart = separation > 0.5 * CONTACT_MARGIN * size + speculative_margin
     on_one_spot = distance < _ONE_SPOT
     return mask_bits((apart | on_one_spot) & (ra > 0.0))
@@ -112,31 +82,31 @@ def _follow(
     data: Numbers, point: int, x: Wide, y: Wide, nx: Wide, ny: Wide, turn_a: Wide, turn_b: Wide
 ) -> None:
     """Update the separations of points, to second order in how far the pairs have moved and turned."""
-    rax, ray = take(data, point + ARM_AX), take(data, point + ARM_AY)
-    rbx, rby = take(data, point + ARM_BX), take(data, point + ARM_BY)
+    rax, ray = take(data, point + L.ARM_AX), take(data, point + L.ARM_AY)
+    rbx, rby = take(data, point + L.ARM_BX), take(data, point + L.ARM_BY)
     ax, ay = turn_a * (-ray - 0.5 * turn_a * rax), turn_a * (rax - 0.5 * turn_a * ray)
     bx, by = turn_b * (-rby - 0.5 * turn_b * rbx), turn_b * (rbx - 0.5 * turn_b * rby)
-    separation = take(data, point + FOUND) + (x + bx - ax) * nx + (y + by - ay) * ny
-    put(data, point + SEPARATION, separation)
+    separation = take(data, point + L.FOUND) + (x + bx - ax) * nx + (y + by - ay) * ny
+    put(data, point + L.SEPARATION, separation)
 
 
 @fused
-def _refresh_boxes(slots: Slots, k: int, motion: Motion, tolerance: float) -> int:
+def _refresh_boxes(slots: L.Slots, k: int, motion: Motion, tolerance: float) -> int:
     """Update the separations of a block with boxes; return whose points to find again.
 
     ``tolerance`` is a share of :data:`CACHE_TOLERANCE` and :data:`CACHE_TURN_TOLERANCE`.
     """
-    data, at = slots.data, k * BOX_ROWS
-    xa, ya = take_vectors(motion.position, slots.a, k * WIDE)
-    xb, yb = take_vectors(motion.position, slots.b, k * WIDE)
-    nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
-    x, y = xb - xa - take(data, at + BASE_X), yb - ya - take(data, at + BASE_Y)
-    turn_a = take_numbers(motion.angle, slots.a, k * WIDE) - take(data, at + ANGLE_A)
-    turn_b = take_numbers(motion.angle, slots.b, k * WIDE) - take(data, at + ANGLE_B)
-    turn_a, turn_b = turn_a * take(data, at + TURNS_A), turn_b * take(data, at + TURNS_B)
-    _follow(data, at + ONE, x, y, nx, ny, turn_a, turn_b)
-    _follow(data, at + TWO, x, y, nx, ny, turn_a, turn_b)
-    size = take(data, at + SIZE)
+    data, at = slots.data, k * L.BOX_ROWS
+    xa, ya = take_vectors(motion.position, slots.a, k * L.WIDE)
+    xb, yb = take_vectors(motion.position, slots.b, k * L.WIDE)
+    nx, ny = take(data, at + L.NORMAL_X), take(data, at + L.NORMAL_Y)
+    x, y = xb - xa - take(data, at + L.BASE_X), yb - ya - take(data, at + L.BASE_Y)
+    turn_a = take_numbers(motion.angle, slots.a, k * L.WIDE) - take(data, at + L.ANGLE_A)
+    turn_b = take_numbers(motion.angle, slots.b, k * L.WIDE) - take(data, at + L.ANGLE_B)
+    turn_a, turn_b = turn_a * take(data, at + L.TURNS_A), turn_b * take(data, at + L.TURNS_B)
+    _follow(data, at + L.ONE, x, y, nx, ny, turn_a, turn_b)
+    _follow(data, at + L.TWO, x, y, nx, ny, turn_a, turn_b)
+    size = take(data, at + L.SIZE)
     moved = (
         (size_of(x) + size_of(y) > tolerance * CACHE_TOLERANCE * size)
         | (size_of(turn_a) > tolerance * CACHE_TURN_TOLERANCE)
@@ -147,7 +117,7 @@ def _refresh_boxes(slots: Slots, k: int, motion: Motion, tolerance: float) -> in
 
 @fused
 def _find_again(
-    slots: Slots, slot: int, near: Near, motion: Motion, sizes: Sizes, inverse: Inverse,
+    slots: L.Slots, slot: int, near: Near, motion: Motion, shapes: Shapes, inverse: Inverse,
     bounds: Bounds, h: float, start: float, speculative_margin: float,
 ) -> bool:  # fmt: skip
     """Find the points of a slot's pair in its present pose; return whether it keeps its slot."""
@@ -160,7 +130,7 @@ def _find_again(
         (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h,
     )  # fmt: skip
     manifold.offset_x, manifold.offset_y = way.dx, way.dy
-    touch(manifold, one, two, way, motion, sizes, bounds, near.rotations, h, start, speculative_margin)
+    touch(manifold, one, two, way, motion, shapes, bounds, near.rotations, h, start, speculative_margin)
     if manifold.count == 0 or manifold.swept != 0:
         if manifold.count == 0:
             forget_points(one, two)
@@ -175,7 +145,7 @@ def _find_again(
 
 @inlined
 def refresh(
-    slots: Slots, near: Near, motion: Motion, sizes: Sizes, inverse: Inverse,
+    slots: L.Slots, near: Near, motion: Motion, shapes: Shapes, inverse: Inverse,
     bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Find where the contacts of all blocks of a kind touch now.
@@ -187,7 +157,7 @@ def refresh(
     tolerance = WIDE_TOLERANCE if first else _WITHIN_STEP
     for k in range(near.counts[DISC_BLOCKS + slots.kind]):
         lost, moved = _restless(slots, k, motion, h) if first else 0, 0
-        if slots.kind == DISC:
+        if slots.kind == L.DISC:
             lost |= _refresh_discs(slots, k, motion, speculative_margin)
         else:
             moved = _refresh_boxes(slots, k, motion, tolerance)
@@ -195,23 +165,23 @@ def refresh(
         if lost != 0:
             _lose(slots, k, lost, near)
         if first and moved & ~lost != 0:
-            for place in range(WIDE):
-                slot = k * WIDE + place
+            for place in range(L.WIDE):
+                slot = k * L.WIDE + place
                 p = slots.pair[slot]
                 if p < 0 or not (moved >> place) & 1:
                     continue
                 if not _find_again(
-                    slots, slot, near, motion, sizes, inverse, bounds, h, start, speculative_margin
+                    slots, slot, near, motion, shapes, inverse, bounds, h, start, speculative_margin
                 ):
                     near.scalar[near.counts[SCALAR]] = p
                     near.counts[SCALAR] += 1
 
 
 @inlined
-def _lose(slots: Slots, k: int, lost: int, near: Near) -> None:
+def _lose(slots: L.Slots, k: int, lost: int, near: Near) -> None:
     """Make the slots of a block that are ``lost`` scalar."""
-    for place in range(WIDE):
-        slot = k * WIDE + place
+    for place in range(L.WIDE):
+        slot = k * L.WIDE + place
         p = slots.pair[slot]
         if p >= 0 and (lost >> place) & 1:
             near.scalar[near.counts[SCALAR]] = p
@@ -222,10 +192,10 @@ def _lose(slots: Slots, k: int, lost: int, near: Near) -> None:
 @kernel
 def deepest_wide(kind: int, data: Numbers, blocks: int) -> float:
     """Return the deepest overlap in all blocks of a kind [m]."""
-    rows, depth = rows_of(kind), 0.0
+    rows, depth = L.rows_of(kind), 0.0
     for k in range(blocks):
-        for slot in range(WIDE):
-            depth = max(depth, -data[k * rows + ONE + SEPARATION + slot])
-            if kind == BOX:
-                depth = max(depth, -data[k * rows + TWO + SEPARATION + slot])
+        for slot in range(L.WIDE):
+            depth = max(depth, -data[k * rows + L.ONE + L.SEPARATION + slot])
+            if kind == L.BOX:
+                depth = max(depth, -data[k * rows + L.TWO + L.SEPARATION + slot])
     return depth

@@ -10,113 +10,73 @@ from physicslab.kernels.arguments import (
     InverseTuple,
     Materials,
     MaterialsTuple,
-    Sizes,
-    SizesTuple,
 )
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.narrow.contact import effective_masses
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
-from physicslab.kernels.wide.layout import (
-    ANGLE_A,
-    ANGLE_B,
-    ARM_AX,
-    ARM_AY,
-    ARM_BX,
-    ARM_BY,
-    BASE_X,
-    BASE_Y,
-    DISC,
-    FOUND,
-    FRICTION,
-    IMPULSE,
-    INERTIA_A,
-    INERTIA_B,
-    MASS,
-    MASS_A,
-    MASS_B,
-    NORMAL_X,
-    NORMAL_Y,
-    ONE,
-    RADIUS_A,
-    RADIUS_B,
-    RESTITUTION,
-    SEPARATION,
-    SIZE,
-    TANGENT_IMPULSE,
-    TANGENT_MASS,
-    TURNS_A,
-    TURNS_B,
-    TWO,
-    WIDE,
-    Slots,
-    SlotsTuple,
-    rows_of,
-)  # fmt: skip
+from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.slots import clear_slot, store_slot
-
-__all__ = [
-    "fill_points", "fill_slot", "is_of_kind", "outdated", "remember", "restore_slots", "update_slots",
-]  # fmt: skip
 
 
 @inlined
 def _fill_common(data: Numbers, at: int, manifold: Manifold, inverse: Inverse) -> None:
     a, b = manifold.a, manifold.b
-    data[at + NORMAL_X], data[at + NORMAL_Y] = manifold.normal_x, manifold.normal_y
-    data[at + FRICTION], data[at + SIZE] = manifold.friction, manifold.size
-    data[at + MASS_A], data[at + MASS_B] = inverse.mass[a], inverse.mass[b]
-    data[at + INERTIA_A], data[at + INERTIA_B] = inverse.inertia[a], inverse.inertia[b]
+    data[at + L.NORMAL_X], data[at + L.NORMAL_Y] = manifold.normal_x, manifold.normal_y
+    data[at + L.FRICTION], data[at + L.SIZE] = manifold.friction, manifold.size
+    data[at + L.MASS_A], data[at + L.MASS_B] = inverse.mass[a], inverse.mass[b]
+    data[at + L.INERTIA_A], data[at + L.INERTIA_B] = inverse.inertia[a], inverse.inertia[b]
 
 
 @inlined
 def _fill_point(data: Numbers, at: int, point: Point) -> None:
-    data[at + IMPULSE], data[at + TANGENT_IMPULSE] = point.normal_impulse, point.tangent_impulse
-    data[at + MASS], data[at + TANGENT_MASS] = point.normal_mass, point.tangent_mass
-    data[at + SEPARATION] = point.separation
+    data[at + L.IMPULSE], data[at + L.TANGENT_IMPULSE] = point.normal_impulse, point.tangent_impulse
+    data[at + L.MASS], data[at + L.TANGENT_MASS] = point.normal_mass, point.tangent_mass
+    data[at + L.SEPARATION] = point.separation
 
 
 @inlined
 def _fill_arms(data: Numbers, at: int, point: Point) -> None:
-    data[at + ARM_AX], data[at + ARM_AY] = point.arm_ax, point.arm_ay
-    data[at + ARM_BX], data[at + ARM_BY] = point.arm_bx, point.arm_by
-    data[at + FOUND] = point.found_separation
+    data[at + L.ARM_AX], data[at + L.ARM_AY] = point.arm_ax, point.arm_ay
+    data[at + L.ARM_BX], data[at + L.ARM_BY] = point.arm_bx, point.arm_by
+    data[at + L.FOUND] = point.found_separation
 
 
 @inlined
 def fill_slot(
-    slots: Slots, slot: int, colour: int, manifolds: Manifolds, points: Points, p: int,
-    sizes: Sizes, materials: Materials, inverse: Inverse,
+    slots: L.Slots, slot: int, colour: int, manifolds: Manifolds, points: Points, p: int,
+    shapes: Shapes, materials: Materials, inverse: Inverse,
 ) -> None:  # fmt: skip
     """Put a pair into a free slot of a block of that colour."""
-    data, at = slots.data, slot // WIDE * rows_of(slots.kind) + slot % WIDE
+    data, at = slots.data, slot // L.WIDE * L.rows_of(slots.kind) + slot % L.WIDE
     manifold, one, two = manifolds[p], points[2 * p], points[2 * p + 1]
-    i, j, radius = manifold.a, manifold.b, sizes.radius
+    i, j, radius = manifold.a, manifold.b, shapes.radius
     manifold.restitution = min(materials.restitution[i], materials.restitution[j])
     manifold.friction = math.sqrt(materials.friction[i] * materials.friction[j])
-    if slots.kind == DISC:
+    if slots.kind == L.DISC:
         manifold.size, manifold.swept = 2.0 * min(radius[i], radius[j]), 0
     else:
         effective_masses(manifold, points, p, inverse)
     _fill_common(data, at, manifold, inverse)
-    _fill_point(data, at + ONE, one)
-    if slots.kind == DISC:
+    _fill_point(data, at + L.ONE, one)
+    if slots.kind == L.DISC:
         ra, rb, linear = radius[i], radius[j], inverse.mass[i] + inverse.mass[j]
-        data[at + RADIUS_A], data[at + RADIUS_B], data[at + RESTITUTION] = ra, rb, manifold.restitution
-        data[at + ONE + MASS] = 1.0 / linear
-        data[at + ONE + TANGENT_MASS] = 1.0 / (
+        data[at + L.RADIUS_A], data[at + L.RADIUS_B], data[at + L.RESTITUTION] = ra, rb, manifold.restitution
+        data[at + L.ONE + L.MASS] = 1.0 / linear
+        data[at + L.ONE + L.TANGENT_MASS] = 1.0 / (
             linear + inverse.inertia[i] * ra * ra + inverse.inertia[j] * rb * rb
         )
     else:
-        data[at + BASE_X], data[at + BASE_Y] = manifold.base_x, manifold.base_y
-        data[at + ANGLE_A], data[at + ANGLE_B] = manifold.base_angle_a, manifold.base_angle_b
-        data[at + TURNS_A] = 1.0 if sizes.kind[i] == 2 else 0.0
-        data[at + TURNS_B] = 1.0 if sizes.kind[j] == 2 else 0.0
-        _fill_arms(data, at + ONE, one)
+        data[at + L.BASE_X], data[at + L.BASE_Y] = manifold.base_x, manifold.base_y
+        data[at + L.ANGLE_A], data[at + L.ANGLE_B] = manifold.base_angle_a, manifold.base_angle_b
+        data[at + L.TURNS_A] = 1.0 if shapes.vertices[i] > 1 else 0.0
+        data[at + L.TURNS_B] = 1.0 if shapes.vertices[j] > 1 else 0.0
+        _fill_arms(data, at + L.ONE, one)
         if manifold.count == 2:
-            _fill_point(data, at + TWO, two)
-            _fill_arms(data, at + TWO, two)
+            _fill_point(data, at + L.TWO, two)
+            _fill_arms(data, at + L.TWO, two)
     slots.a[slot], slots.b[slot], slots.pair[slot] = i, j, p
     if inverse.inertia[i] == 0.0 or inverse.inertia[j] == 0.0:
-        slots.outside[slot // WIDE] = True
+        slots.outside[slot // L.WIDE] = True
     bit = np.uint64(1) << np.uint64(colour)
     slots.used[i] |= bit
     slots.used[j] |= bit
@@ -124,35 +84,35 @@ def fill_slot(
 
 
 @inlined
-def fill_points(slots: Slots, slot: int, manifold: Manifold, one: Point, two: Point) -> None:
+def fill_points(slots: L.Slots, slot: int, manifold: Manifold, one: Point, two: Point) -> None:
     """Write the points of a pair with a box, found again, into the slot that it has."""
-    data, at = slots.data, slot // WIDE * rows_of(slots.kind) + slot % WIDE
-    data[at + NORMAL_X], data[at + NORMAL_Y] = manifold.normal_x, manifold.normal_y
-    data[at + BASE_X], data[at + BASE_Y] = manifold.base_x, manifold.base_y
-    data[at + ANGLE_A], data[at + ANGLE_B] = manifold.base_angle_a, manifold.base_angle_b
-    _fill_point(data, at + ONE, one)
-    _fill_arms(data, at + ONE, one)
+    data, at = slots.data, slot // L.WIDE * L.rows_of(slots.kind) + slot % L.WIDE
+    data[at + L.NORMAL_X], data[at + L.NORMAL_Y] = manifold.normal_x, manifold.normal_y
+    data[at + L.BASE_X], data[at + L.BASE_Y] = manifold.base_x, manifold.base_y
+    data[at + L.ANGLE_A], data[at + L.ANGLE_B] = manifold.base_angle_a, manifold.base_angle_b
+    _fill_point(data, at + L.ONE, one)
+    _fill_arms(data, at + L.ONE, one)
     if manifold.count == 2:
-        _fill_point(data, at + TWO, two)
-        _fill_arms(data, at + TWO, two)
+        _fill_point(data, at + L.TWO, two)
+        _fill_arms(data, at + L.TWO, two)
     else:
-        for row in range(0, BASE_X - TWO, WIDE):
-            data[at + TWO + row] = 0.0
-        data[at + TWO + SEPARATION] = data[at + TWO + FOUND] = 1.0
+        for row in range(0, L.BASE_X - L.TWO, L.WIDE):
+            data[at + L.TWO + row] = 0.0
+        data[at + L.TWO + L.SEPARATION] = data[at + L.TWO + L.FOUND] = 1.0
 
 
 @inlined
 def is_of_kind(kind: int, one: int, other: int) -> bool:
     """Whether blocks of a kind are for pairs of such shapes."""
     discs = one == 1 and other == 1
-    return discs if kind == DISC else not discs and one != 0 and other != 0
+    return discs if kind == L.DISC else not discs and one != 0 and other != 0
 
 
 @inlined
-def _may_hold(slots: Slots, slot: int, manifold: Manifold, shape: Rows, inverse_mass: Numbers) -> bool:
+def _may_hold(slots: L.Slots, slot: int, manifold: Manifold, shape: Rows, inverse_mass: Numbers) -> bool:
     """Whether a pair can be in the slot that its record names."""
     i, j = manifold.a, manifold.b
-    bit = np.uint64(1) << np.uint64(slots.colour[slot // WIDE])
+    bit = np.uint64(1) << np.uint64(slots.colour[slot // L.WIDE])
     taken = (slots.used[i] if inverse_mass[i] > 0.0 else np.uint64(0)) | (
         slots.used[j] if inverse_mass[j] > 0.0 else np.uint64(0)
     )
@@ -163,28 +123,28 @@ def _may_hold(slots: Slots, slot: int, manifold: Manifold, shape: Rows, inverse_
 
 @kernel
 def restore_slots(
-    plain: SlotsTuple, manifolds: Manifolds, points: Points, pairs: int, plain_sizes: SizesTuple,
+    plain: L.SlotsTuple, manifolds: Manifolds, points: Points, pairs: int, plain_shapes: ShapesTuple,
     plain_materials: MaterialsTuple, plain_inverse: InverseTuple,
 ) -> tuple[int, int]:  # fmt: skip
     """Put the pairs whose records name a slot back there; return how many blocks and slots there are.
 
     A pair that cannot be there, as in a file that was edited by hand, stays scalar.
     """
-    slots, sizes, materials = Slots(*plain), Sizes(*plain_sizes), Materials(*plain_materials)
+    slots, shapes, materials = L.Slots(*plain), named_shapes(plain_shapes), Materials(*plain_materials)
     inverse, blocks, restored = Inverse(*plain_inverse), 0, 0
     for p in range(pairs):
         if manifolds[p].slot >= 0 and manifolds[p].slot % 2 == slots.kind:
-            blocks = max(blocks, manifolds[p].slot // 2 // WIDE + 1)
-    for slot in range(blocks * WIDE):
+            blocks = max(blocks, manifolds[p].slot // 2 // L.WIDE + 1)
+    for slot in range(blocks * L.WIDE):
         clear_slot(slots, slot)
     for p in range(pairs):
         manifold = manifolds[p]
         if manifold.slot < 0 or manifold.slot % 2 != slots.kind:
             continue
         slot = manifold.slot // 2
-        if _may_hold(slots, slot, manifold, sizes.kind, inverse.mass):
+        if _may_hold(slots, slot, manifold, shapes.vertices, inverse.mass):
             fill_slot(
-                slots, slot, slots.colour[slot // WIDE], manifolds, points, p, sizes, materials, inverse
+                slots, slot, slots.colour[slot // L.WIDE], manifolds, points, p, shapes, materials, inverse
             )
             restored += 1
         else:
@@ -195,19 +155,19 @@ def restore_slots(
 @kernel
 def remember(
     made_of: Vectors, inverse_mass: Numbers, inverse_inertia: Numbers, restitution: Numbers,
-    friction: Numbers, radius: Numbers, width: Numbers, height: Numbers,
+    friction: Numbers, half_x: Numbers, half_y: Numbers, radius: Numbers,
 ) -> None:  # fmt: skip
     """Write what slots hold of each body into ``made_of`` (rows, 7)."""
     for i in range(len(made_of)):
         made_of[i, 0], made_of[i, 1], made_of[i, 2] = inverse_mass[i], inverse_inertia[i], restitution[i]
-        made_of[i, 3], made_of[i, 4] = friction[i], radius[i]
-        made_of[i, 5], made_of[i, 6] = width[i], height[i]
+        made_of[i, 3], made_of[i, 4] = friction[i], half_x[i]
+        made_of[i, 5], made_of[i, 6] = half_y[i], radius[i]
 
 
 @kernel
 def outdated(
     made_of: Vectors, changed: Flags, inverse_mass: Numbers, inverse_inertia: Numbers, restitution: Numbers,
-    friction: Numbers, radius: Numbers, width: Numbers, height: Numbers,
+    friction: Numbers, half_x: Numbers, half_y: Numbers, radius: Numbers,
 ) -> int:  # fmt: skip
     """Mark the bodies of which any of that has been ``changed`` (rows,) since :func:`remember`.
 
@@ -219,7 +179,7 @@ def outdated(
     found = 0
     for i in range(len(made_of)):
         fixed = (made_of[i, 0] == 0.0) != (inverse_mass[i] == 0.0)
-        sized = (made_of[i, 4] != radius[i]) | (made_of[i, 5] != width[i]) | (made_of[i, 6] != height[i])
+        sized = (made_of[i, 4] != half_x[i]) | (made_of[i, 5] != half_y[i]) | (made_of[i, 6] != radius[i])
         weighs = (made_of[i, 0] != inverse_mass[i]) | (made_of[i, 1] != inverse_inertia[i])
         changed[i] = weighs | (made_of[i, 2] != restitution[i]) | (made_of[i, 3] != friction[i])
         found = max(found, 2 if fixed | sized else (1 if changed[i] else 0))
@@ -228,16 +188,16 @@ def outdated(
 
 @kernel
 def update_slots(
-    plain: SlotsTuple, blocks: int, changed: Flags, manifolds: Manifolds, points: Points,
-    plain_sizes: SizesTuple, plain_materials: MaterialsTuple, plain_inverse: InverseTuple,
+    plain: L.SlotsTuple, blocks: int, changed: Flags, manifolds: Manifolds, points: Points,
+    plain_shapes: ShapesTuple, plain_materials: MaterialsTuple, plain_inverse: InverseTuple,
 ) -> None:  # fmt: skip
     """Fill the slots of the ``changed`` bodies again, with their impulses, masses and materials of now."""
-    slots, sizes, materials = Slots(*plain), Sizes(*plain_sizes), Materials(*plain_materials)
+    slots, shapes, materials = L.Slots(*plain), named_shapes(plain_shapes), Materials(*plain_materials)
     inverse = Inverse(*plain_inverse)
-    for slot in range(blocks * WIDE):
+    for slot in range(blocks * L.WIDE):
         p = slots.pair[slot]
         if p >= 0 and (changed[slots.a[slot]] or changed[slots.b[slot]]):
             store_slot(slots, slot, manifolds, points)
             fill_slot(
-                slots, slot, slots.colour[slot // WIDE], manifolds, points, p, sizes, materials, inverse
+                slots, slot, slots.colour[slot // L.WIDE], manifolds, points, p, shapes, materials, inverse
             )

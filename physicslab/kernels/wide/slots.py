@@ -10,82 +10,58 @@ from physicslab.kernels.constraint.pair import point_state, velocity_of
 from physicslab.kernels.narrow.contact import AS_FOUND, follow_pose
 from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, SCALAR
 from physicslab.kernels.records import Manifolds, Points
-from physicslab.kernels.wide.layout import (
-    DISC,
-    FOUND,
-    IMPULSE,
-    MASS,
-    NORMAL_X,
-    NORMAL_Y,
-    ONE,
-    RADIUS_A,
-    RADIUS_B,
-    SEPARATION,
-    SIZE,
-    TANGENT_IMPULSE,
-    TANGENT_MASS,
-    TURNS_A,
-    TURNS_B,
-    TWO,
-    WIDE,
-    Slots,
-    SlotsTuple,
-    rows_of,
-)  # fmt: skip
+from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.solve import slot_frame
-
-__all__ = [
-    "COLOURS", "clear_slot", "empty_slot", "follow_pairs", "list_scalar", "release", "set_scalar", "store",
-    "store_slot", "wake",
-]  # fmt: skip
 
 COLOURS = 64
 """Largest number of blocks that may move one body; its further contacts stay scalar."""
 
 
 @inlined
-def clear_slot(slots: Slots, slot: int) -> None:
+def clear_slot(slots: L.Slots, slot: int) -> None:
     """Clear a slot: it moves no body, and no check ever selects it."""
-    rows = rows_of(slots.kind)
-    k, place = slot // WIDE, slot % WIDE
+    rows = L.rows_of(slots.kind)
+    k, place = slot // L.WIDE, slot % L.WIDE
     block = slots.data[k * rows : (k + 1) * rows]
-    for row in range(0, rows, WIDE):
+    for row in range(0, rows, L.WIDE):
         block[row + place] = 0.0
-    block[SIZE + place] = block[NORMAL_X + place] = block[ONE + SEPARATION + place] = 1.0
-    if slots.kind == DISC:
-        block[RADIUS_A + place] = block[RADIUS_B + place] = -0.5
+    block[L.SIZE + place] = block[L.NORMAL_X + place] = block[L.ONE + L.SEPARATION + place] = 1.0
+    if slots.kind == L.DISC:
+        block[L.RADIUS_A + place] = block[L.RADIUS_B + place] = -0.5
     else:
-        block[TWO + SEPARATION + place] = block[ONE + FOUND + place] = block[TWO + FOUND + place] = 1.0
+        block[L.TWO + L.SEPARATION + place] = block[L.ONE + L.FOUND + place] = block[
+            L.TWO + L.FOUND + place
+        ] = 1.0
     slots.a[slot] = slots.b[slot] = 0
     slots.pair[slot] = -1
 
 
 @inlined
-def store_slot(slots: Slots, slot: int, manifolds: Manifolds, points: Points) -> None:
+def store_slot(slots: L.Slots, slot: int, manifolds: Manifolds, points: Points) -> None:
     """Write what the slot holds, impulses above all, into the records of its pair."""
     data, p = slots.data, slots.pair[slot]
-    at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
+    at = slot // L.WIDE * L.rows_of(slots.kind) + slot % L.WIDE
     manifold = manifolds[p]
     manifold.offset_x = manifold.offset_y = 0.0  # a slot has none: it would be as old as the contact
     for j in range(manifold.count):
         point = points[2 * p + j]
-        base = at + (ONE if j == 0 else TWO)
-        point.normal_impulse, point.tangent_impulse = data[base + IMPULSE], data[base + TANGENT_IMPULSE]
-        point.separation = data[base + SEPARATION]
-    if slots.kind == DISC:
-        nx, ny, point = data[at + NORMAL_X], data[at + NORMAL_Y], points[2 * p]
+        base = at + (L.ONE if j == 0 else L.TWO)
+        point.normal_impulse, point.tangent_impulse = data[base + L.IMPULSE], data[base + L.TANGENT_IMPULSE]
+        point.separation = data[base + L.SEPARATION]
+    if slots.kind == L.DISC:
+        nx, ny, point = data[at + L.NORMAL_X], data[at + L.NORMAL_Y], points[2 * p]
         point.found_separation = point.separation
         manifold.normal_x, manifold.normal_y = nx, ny
-        point.arm_ax, point.arm_ay = data[at + RADIUS_A] * nx, data[at + RADIUS_A] * ny
-        point.arm_bx, point.arm_by = -data[at + RADIUS_B] * nx, -data[at + RADIUS_B] * ny
-        point.normal_mass, point.tangent_mass = data[at + ONE + MASS], data[at + ONE + TANGENT_MASS]
+        point.arm_ax, point.arm_ay = data[at + L.RADIUS_A] * nx, data[at + L.RADIUS_A] * ny
+        point.arm_bx, point.arm_by = -data[at + L.RADIUS_B] * nx, -data[at + L.RADIUS_B] * ny
+        point.normal_mass, point.tangent_mass = data[at + L.ONE + L.MASS], data[at + L.ONE + L.TANGENT_MASS]
 
 
 @kernel
-def store(plain: SlotsTuple, blocks: int, manifolds: Manifolds, points: Points) -> None:
+def store(plain: L.SlotsTuple, blocks: int, manifolds: Manifolds, points: Points) -> None:
     """Write what every slot holds into the records of its pair; the slots stay in use."""
-    slots = Slots(*plain)
-    for slot in range(blocks * WIDE):
+    slots = L.Slots(*plain)
+    for slot in range(blocks * L.WIDE):
         if slots.pair[slot] >= 0:
             store_slot(slots, slot, manifolds, points)
 
@@ -114,10 +90,10 @@ def list_scalar(
 
 
 @kernel
-def release(plain: SlotsTuple, blocks: int, manifolds: Manifolds, points: Points, asleep: Flags) -> int:
+def release(plain: L.SlotsTuple, blocks: int, manifolds: Manifolds, points: Points, asleep: Flags) -> int:
     """Write the slots of sleeping bodies to their records and empty them; return how many."""
-    slots, released = Slots(*plain), 0
-    for slot in range(blocks * WIDE):
+    slots, released = L.Slots(*plain), 0
+    for slot in range(blocks * L.WIDE):
         if slots.pair[slot] >= 0 and (asleep[slots.a[slot]] or asleep[slots.b[slot]]):
             set_scalar(slots, slot, manifolds, points)
             released += 1
@@ -125,37 +101,37 @@ def release(plain: SlotsTuple, blocks: int, manifolds: Manifolds, points: Points
 
 
 @allocating_kernel
-def follow_pairs(plain: SlotsTuple, blocks: int, manifolds: Manifolds, pairs: int) -> int:
+def follow_pairs(plain: L.SlotsTuple, blocks: int, manifolds: Manifolds, pairs: int) -> int:
     """Find the new numbers of the slots' pairs after a broad phase; return how many slots are in use.
 
     A slot whose pair is not near any more is emptied.
     """
-    slots, kept = Slots(*plain), 0
-    before = slots.pair[: blocks * WIDE].copy()
-    for slot in range(blocks * WIDE):
+    slots, kept = L.Slots(*plain), 0
+    before = slots.pair[: blocks * L.WIDE].copy()
+    for slot in range(blocks * L.WIDE):
         slots.pair[slot] = -1
     for p in range(pairs):
         slot = manifolds[p].slot
         if slot >= 0 and slot % 2 == slots.kind:
             slots.pair[slot // 2] = p
             kept += 1
-    for slot in range(blocks * WIDE):
+    for slot in range(blocks * L.WIDE):
         if before[slot] >= 0 and slots.pair[slot] < 0:
             empty_slot(slots, slot)
     return kept
 
 
 @inlined
-def empty_slot(slots: Slots, slot: int) -> None:
+def empty_slot(slots: L.Slots, slot: int) -> None:
     """Empty a slot, and free its colour for the bodies."""
-    bit = np.uint64(1) << np.uint64(slots.colour[slot // WIDE])
+    bit = np.uint64(1) << np.uint64(slots.colour[slot // L.WIDE])
     slots.used[slots.a[slot]] &= ~bit
     slots.used[slots.b[slot]] &= ~bit
     clear_slot(slots, slot)
 
 
 @inlined
-def set_scalar(slots: Slots, slot: int, manifolds: Manifolds, points: Points) -> None:
+def set_scalar(slots: L.Slots, slot: int, manifolds: Manifolds, points: Points) -> None:
     """Write a slot to the records of its pair, which is scalar from now on, and empty it."""
     store_slot(slots, slot, manifolds, points)
     manifold = manifolds[slots.pair[slot]]
@@ -177,17 +153,17 @@ def _resting_speed(a: int, b: int, motion: Motion, acting: Acting, inverse: Inve
 
 
 @inlined
-def _approach(slots: Slots, slot: int, count: int, motion: Motion) -> float:
+def _approach(slots: L.Slots, slot: int, count: int, motion: Motion) -> float:
     """Return the lowest speed along the normal of the ``count`` points of a slot, or 0 [m/s]."""
-    at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
+    at = slot // L.WIDE * L.rows_of(slots.kind) + slot % L.WIDE
     v, lowest = velocity_of(motion.linear, motion.angular, slots.a[slot], slots.b[slot]), 0.0
     for k in range(count):
-        lowest = min(lowest, point_state(slot_frame(slots, at, ONE if k == 0 else TWO), v).v)
+        lowest = min(lowest, point_state(slot_frame(slots, at, L.ONE if k == 0 else L.TWO), v).v)
     return lowest
 
 
 @inlined
-def _measure_now(slots: Slots, slot: int, manifolds: Manifolds, points: Points, motion: Motion) -> None:
+def _measure_now(slots: L.Slots, slot: int, manifolds: Manifolds, points: Points, motion: Motion) -> None:
     """Bring the separations of a pair that had a slot up to date after impacts have moved bodies.
 
     A slot has no offset: that of the record is as old as the contact.
@@ -196,19 +172,19 @@ def _measure_now(slots: Slots, slot: int, manifolds: Manifolds, points: Points, 
     manifold, one = manifolds[p], points[2 * p]
     i, j = manifold.a, manifold.b
     dx, dy = position[j, 0] - position[i, 0], position[j, 1] - position[i, 1]
-    at = slot // WIDE * rows_of(slots.kind) + slot % WIDE
-    if slots.kind == DISC:
+    at = slot // L.WIDE * L.rows_of(slots.kind) + slot % L.WIDE
+    if slots.kind == L.DISC:
         along = dx * manifold.normal_x + dy * manifold.normal_y
-        one.separation = along - data[at + RADIUS_A] - data[at + RADIUS_B]
+        one.separation = along - data[at + L.RADIUS_A] - data[at + L.RADIUS_B]
     else:
-        turn_a = data[at + TURNS_A] * (angle[i] - manifold.base_angle_a)
-        turn_b = data[at + TURNS_B] * (angle[j] - manifold.base_angle_b)
+        turn_a = data[at + L.TURNS_A] * (angle[i] - manifold.base_angle_a)
+        turn_b = data[at + L.TURNS_B] * (angle[j] - manifold.base_angle_b)
         follow_pose(manifold, points, p, dx - manifold.base_x, dy - manifold.base_y, turn_a, turn_b)
     manifold.offset_x, manifold.offset_y = dx, dy
 
 
 @allocating
-def wake(slots: Slots, near: Near, motion: Motion, acting: Acting, inverse: Inverse, h: float) -> None:
+def wake(slots: L.Slots, near: Near, motion: Motion, acting: Acting, inverse: Inverse, h: float) -> None:
     """Make those contacts scalar that may bounce, approach faster than rest, and have a body with an impact.
 
     They are added to the scalar pairs and to those of them that touch.
@@ -219,7 +195,7 @@ def wake(slots: Slots, near: Near, motion: Motion, acting: Acting, inverse: Inve
         manifold = manifolds[near.touching[k]]
         if manifold.impact_count > 0:
             had_impact[manifold.a] = had_impact[manifold.b] = True
-    for slot in range(counts[DISC_BLOCKS + slots.kind] * WIDE):
+    for slot in range(counts[DISC_BLOCKS + slots.kind] * L.WIDE):
         p, i, j = slots.pair[slot], slots.a[slot], slots.b[slot]
         if p < 0 or not (had_impact[i] | had_impact[j]) or manifolds[p].restitution == 0.0:
             continue

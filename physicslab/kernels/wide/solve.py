@@ -16,6 +16,7 @@ from physicslab.kernels.constraint.pair import (
     response,
 )
 from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
+from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.float64x8 import (
     Wide,
     choose,
@@ -30,40 +31,6 @@ from physicslab.kernels.wide.float64x8 import (
     take_numbers,
     take_vectors,
 )
-from physicslab.kernels.wide.layout import (
-    ARM_AX,
-    ARM_AY,
-    ARM_BX,
-    ARM_BY,
-    BOX_ROWS,
-    DISC,
-    DISC_ROWS,
-    FRICTION,
-    IMPULSE,
-    INERTIA_A,
-    INERTIA_B,
-    MASS,
-    MASS_A,
-    MASS_B,
-    NORMAL_X,
-    NORMAL_Y,
-    ONE,
-    RADIUS_A,
-    RADIUS_B,
-    SEPARATION,
-    SIZE,
-    TANGENT_IMPULSE,
-    TANGENT_MASS,
-    TWO,
-    WIDE,
-    Slots,
-)  # fmt: skip
-
-__all__ = [
-    "DEEPER", "SOFT", "SoftConstraint", "free_change", "held_by_friction", "mean_velocities",
-    "one_normal", "slot_frame", "sweep_wide", "two_frictions", "two_normals", "warm_start_wide",
-    "work_of",
-]  # fmt: skip
 
 SOFT = 0.02
 """Share of the smaller body's size that the contact spring corrects at its full rate, in addition to what the
@@ -190,69 +157,69 @@ def _free_change(
     data: Numbers, point: int, size: Wide, v: Wide, drift: float, soft: SoftConstraint
 ) -> tuple[Wide, Wide]:
     """Update the separations of points by the velocity; return what :func:`free_change` does."""
-    separation = take(data, point + SEPARATION)
+    separation = take(data, point + L.SEPARATION)
     if drift != 0.0:
         separation = separation + drift * v
-        put(data, point + SEPARATION, separation)
-    return free_change(take(data, point + IMPULSE), take(data, point + MASS), v, separation, size, soft)
+        put(data, point + L.SEPARATION, separation)
+    return free_change(take(data, point + L.IMPULSE), take(data, point + L.MASS), v, separation, size, soft)
 
 
 @fused
 def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide:
     """Update the tangential impulses, at most mu times the normal ones; return their change [N s]."""
-    limit, friction_impulse = friction * take(data, point + IMPULSE), take(data, point + TANGENT_IMPULSE)
-    total = held_by_friction(friction_impulse, take(data, point + TANGENT_MASS), v, limit)
-    put(data, point + TANGENT_IMPULSE, total)
+    limit, friction_impulse = friction * take(data, point + L.IMPULSE), take(data, point + L.TANGENT_IMPULSE)
+    total = held_by_friction(friction_impulse, take(data, point + L.TANGENT_MASS), v, limit)
+    put(data, point + L.TANGENT_IMPULSE, total)
     return total - friction_impulse
 
 
 @fused
-def _velocities(slots: Slots, k: int, linear: Vectors, angular: Numbers) -> PairVelocity[Wide]:
+def _velocities(slots: L.Slots, k: int, linear: Vectors, angular: Numbers) -> PairVelocity[Wide]:
     """Return the velocities and angular velocities of A and of B in a block."""
-    ax, ay = take_vectors(linear, slots.a, k * WIDE)
-    bx, by = take_vectors(linear, slots.b, k * WIDE)
-    wa, wb = take_numbers(angular, slots.a, k * WIDE), take_numbers(angular, slots.b, k * WIDE)
+    ax, ay = take_vectors(linear, slots.a, k * L.WIDE)
+    bx, by = take_vectors(linear, slots.b, k * L.WIDE)
+    wa, wb = take_numbers(angular, slots.a, k * L.WIDE), take_numbers(angular, slots.b, k * L.WIDE)
     return PairVelocity(ax, ay, wa, bx, by, wb)
 
 
 @fused
-def mean_velocities(slots: Slots, k: int, mean: Mean) -> PairVelocity[Wide]:
+def mean_velocities(slots: L.Slots, k: int, mean: Mean) -> PairVelocity[Wide]:
     """Return the mean velocities in a block, of before and after impulses."""
     return _velocities(slots, k, mean.linear, mean.angular)
 
 
 @fused
-def _put_velocities(slots: Slots, k: int, motion: Motion, v: PairVelocity[Wide]) -> None:
+def _put_velocities(slots: L.Slots, k: int, motion: Motion, v: PairVelocity[Wide]) -> None:
     """Write the velocities of A and of B in a block."""
-    put_vectors(motion.linear, slots.a, k * WIDE, v.ax, v.ay)
-    put_vectors(motion.linear, slots.b, k * WIDE, v.bx, v.by)
-    put_numbers(motion.angular, slots.a, k * WIDE, v.wa)
-    put_numbers(motion.angular, slots.b, k * WIDE, v.wb)
+    put_vectors(motion.linear, slots.a, k * L.WIDE, v.ax, v.ay)
+    put_vectors(motion.linear, slots.b, k * L.WIDE, v.bx, v.by)
+    put_numbers(motion.angular, slots.a, k * L.WIDE, v.wa)
+    put_numbers(motion.angular, slots.b, k * L.WIDE, v.wb)
 
 
 @fused
 def _sweep_discs(
-    slots: Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint, booked: bool
+    slots: L.Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint, booked: bool
 ) -> Work:
     """Solve a block of discs; normal impulses turn no disc, so friction does not depend on them.
 
     Where it is ``booked`` this returns the work of the sweep's impulses; where there is a ``drift`` also that
     of those so far, at the ``mean`` velocities.
     """
-    data, at = slots.data, k * DISC_ROWS
+    data, at = slots.data, k * L.DISC_ROWS
     v = _velocities(slots, k, motion.linear, motion.angular)
-    nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
-    ra, rb = take(data, at + RADIUS_A), take(data, at + RADIUS_B)
-    impulse, tangent = take(data, at + ONE + IMPULSE), take(data, at + ONE + TANGENT_IMPULSE)
+    nx, ny = take(data, at + L.NORMAL_X), take(data, at + L.NORMAL_Y)
+    ra, rb = take(data, at + L.RADIUS_A), take(data, at + L.RADIUS_B)
+    impulse, tangent = take(data, at + L.ONE + L.IMPULSE), take(data, at + L.ONE + L.TANGENT_IMPULSE)
     approach, across = along_and_across(nx, ny, v.bx - v.ax, v.by - v.ay)
     across = across - rb * v.wb - ra * v.wa
-    change, _ = _free_change(data, at + ONE, take(data, at + SIZE), approach, drift, soft)
+    change, _ = _free_change(data, at + L.ONE, take(data, at + L.SIZE), approach, drift, soft)
     push = one_normal(impulse, change)
-    put(data, at + ONE + IMPULSE, impulse + push)
-    friction_impulse = _update_friction(data, at + ONE, take(data, at + FRICTION), across)
+    put(data, at + L.ONE + L.IMPULSE, impulse + push)
+    friction_impulse = _update_friction(data, at + L.ONE, take(data, at + L.FRICTION), across)
     px, py = impulse_at(nx, ny, push, friction_impulse)
-    ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
-    ia, ib = take(data, at + INERTIA_A), take(data, at + INERTIA_B)
+    ma, mb = take(data, at + L.MASS_A), take(data, at + L.MASS_B)
+    ia, ib = take(data, at + L.INERTIA_A), take(data, at + L.INERTIA_B)
     answer = PairInverseMass(ma, ia * ra, mb, ib * rb)  # of discs, to a tangential impulse
     after = after_impulse(v, answer, px, py, friction_impulse, -friction_impulse)
     _put_velocities(slots, k, motion, after)
@@ -274,25 +241,30 @@ def _sweep_discs(
 @fused
 def _frame(data: Numbers, point: int, nx: Wide, ny: Wide) -> ContactFrame[Wide]:
     """Return normals, and the arms of points."""
-    ax, ay = take(data, point + ARM_AX), take(data, point + ARM_AY)
-    return ContactFrame(nx, ny, ax, ay, take(data, point + ARM_BX), take(data, point + ARM_BY))
+    ax, ay = take(data, point + L.ARM_AX), take(data, point + L.ARM_AY)
+    return ContactFrame(nx, ny, ax, ay, take(data, point + L.ARM_BX), take(data, point + L.ARM_BY))
 
 
 @always_inlined
-def slot_frame(slots: Slots, at: int, point: int) -> ContactFrame[float]:
+def slot_frame(slots: L.Slots, at: int, point: int) -> ContactFrame[float]:
     """Return the normal and the arms of a point, ``ONE`` or ``TWO``, of a single slot that is at ``at``."""
     data, base = slots.data, at + point
-    nx, ny = data[at + NORMAL_X], data[at + NORMAL_Y]
-    if slots.kind == DISC:
-        ra, rb = data[at + RADIUS_A], data[at + RADIUS_B]
+    nx, ny = data[at + L.NORMAL_X], data[at + L.NORMAL_Y]
+    if slots.kind == L.DISC:
+        ra, rb = data[at + L.RADIUS_A], data[at + L.RADIUS_B]
         return ContactFrame(nx, ny, ra * nx, ra * ny, -rb * nx, -rb * ny)
-    ax, ay, bx, by = data[base + ARM_AX], data[base + ARM_AY], data[base + ARM_BX], data[base + ARM_BY]
+    ax, ay, bx, by = (
+        data[base + L.ARM_AX],
+        data[base + L.ARM_AY],
+        data[base + L.ARM_BX],
+        data[base + L.ARM_BY],
+    )
     return ContactFrame(nx, ny, ax, ay, bx, by)
 
 
 @fused
 def _sweep_boxes(
-    slots: Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint, booked: bool
+    slots: L.Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint, booked: bool
 ) -> Work:
     """Solve a block of boxes: both normal impulses, then both points' friction.
 
@@ -300,24 +272,24 @@ def _sweep_boxes(
     added (by the effective mass between them), which is a shorter dependency than the bodies' velocities.
     Returns what :func:`_sweep_discs` does.
     """
-    data, at = slots.data, k * BOX_ROWS
+    data, at = slots.data, k * L.BOX_ROWS
     v = _velocities(slots, k, motion.linear, motion.angular)
-    nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
-    ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
-    ia, ib = take(data, at + INERTIA_A), take(data, at + INERTIA_B)
-    size, friction = take(data, at + SIZE), take(data, at + FRICTION)
+    nx, ny = take(data, at + L.NORMAL_X), take(data, at + L.NORMAL_Y)
+    ma, mb = take(data, at + L.MASS_A), take(data, at + L.MASS_B)
+    ia, ib = take(data, at + L.INERTIA_A), take(data, at + L.INERTIA_B)
+    size, friction = take(data, at + L.SIZE), take(data, at + L.FRICTION)
     mass = PairInverseMass(ma, ia, mb, ib)
-    n1a, n1b, t1a, t1b = moment_arms(_frame(data, at + ONE, nx, ny))
-    n2a, n2b, t2a, t2b = moment_arms(_frame(data, at + TWO, nx, ny))
+    n1a, n1b, t1a, t1b = moment_arms(_frame(data, at + L.ONE, nx, ny))
+    n2a, n2b, t2a, t2b = moment_arms(_frame(data, at + L.TWO, nx, ny))
     along, across = along_and_across(nx, ny, v.bx - v.ax, v.by - v.ay)
     approach1, approach2 = along + v.wb * n1b - v.wa * n1a, along + v.wb * n2b - v.wa * n2a
-    change1, mass1 = _free_change(data, at + ONE, size, approach1, drift, soft)
-    change2, mass2 = _free_change(data, at + TWO, size, approach2, drift, soft)
-    impulse1, impulse2 = take(data, at + ONE + IMPULSE), take(data, at + TWO + IMPULSE)
+    change1, mass1 = _free_change(data, at + L.ONE, size, approach1, drift, soft)
+    change2, mass2 = _free_change(data, at + L.TWO, size, approach2, drift, soft)
+    impulse1, impulse2 = take(data, at + L.ONE + L.IMPULSE), take(data, at + L.TWO + L.IMPULSE)
     between = response(ma + mb, ia, ib, n1a, n1b, n2a, n2b)
     push1, push2 = two_normals(impulse1, impulse2, change1, change2, mass1, mass2, between)
-    put(data, at + ONE + IMPULSE, impulse1 + push1)
-    put(data, at + TWO + IMPULSE, impulse2 + push2)
+    put(data, at + L.ONE + L.IMPULSE, impulse1 + push1)
+    put(data, at + L.TWO + L.IMPULSE, impulse2 + push2)
     turn_a, turn_b = n1a * push1 + n2a * push2, n1b * push1 + n2b * push2
     wa, wb = v.wa - ia * turn_a, v.wb + ib * turn_b
     pressed, friction_work = everywhere(0.0), everywhere(0.0)
@@ -325,16 +297,19 @@ def _sweep_boxes(
         pressed = work_of(
             push1 * approach1 + push2 * approach2, push1 + push2, turn_a, turn_b, ma + mb, ia, ib
         )
-    tangent1, tangent2 = take(data, at + ONE + TANGENT_IMPULSE), take(data, at + TWO + TANGENT_IMPULSE)
+    tangent1, tangent2 = (
+        take(data, at + L.ONE + L.TANGENT_IMPULSE),
+        take(data, at + L.TWO + L.TANGENT_IMPULSE),
+    )
     sliding1, sliding2 = across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a
     friction1, friction2 = two_frictions(
         tangent1, tangent2, sliding1, sliding2,
-        take(data, at + ONE + TANGENT_MASS), take(data, at + TWO + TANGENT_MASS),
+        take(data, at + L.ONE + L.TANGENT_MASS), take(data, at + L.TWO + L.TANGENT_MASS),
         friction * (impulse1 + push1), friction * (impulse2 + push2),
         response(ma + mb, ia, ib, t1a, t1b, t2a, t2b),
     )  # fmt: skip
-    put(data, at + ONE + TANGENT_IMPULSE, tangent1 + friction1)
-    put(data, at + TWO + TANGENT_IMPULSE, tangent2 + friction2)
+    put(data, at + L.ONE + L.TANGENT_IMPULSE, tangent1 + friction1)
+    put(data, at + L.TWO + L.TANGENT_IMPULSE, tangent2 + friction2)
     push, friction_impulse = push1 + push2, friction1 + friction2
     px, py = impulse_at(nx, ny, push, friction_impulse)
     turn_a, turn_b = t1a * friction1 + t2a * friction2, t1b * friction1 + t2b * friction2
@@ -380,43 +355,43 @@ def _warm_start(
     data: Numbers, point: int, nx: Wide, ny: Wide, warm_start_scale: float
 ) -> tuple[Wide, Wide, Wide]:
     """Scale the impulses of a point; return their sum [N s], and the tangential one."""
-    impulse, friction_impulse = take(data, point + IMPULSE), take(data, point + TANGENT_IMPULSE)
+    impulse, friction_impulse = take(data, point + L.IMPULSE), take(data, point + L.TANGENT_IMPULSE)
     if warm_start_scale != 1.0:
         impulse, friction_impulse = warm_start_scale * impulse, warm_start_scale * friction_impulse
-        put(data, point + IMPULSE, impulse)
-        put(data, point + TANGENT_IMPULSE, friction_impulse)
+        put(data, point + L.IMPULSE, impulse)
+        put(data, point + L.TANGENT_IMPULSE, friction_impulse)
     px, py = impulse_at(nx, ny, impulse, friction_impulse)
     return px, py, friction_impulse
 
 
 @fused
-def _start_discs(slots: Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
-    data, at = slots.data, k * DISC_ROWS
+def _start_discs(slots: L.Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
+    data, at = slots.data, k * L.DISC_ROWS
     v = _velocities(slots, k, motion.linear, motion.angular)
     px, py, friction_impulse = _warm_start(
-        data, at + ONE, take(data, at + NORMAL_X), take(data, at + NORMAL_Y), warm_start_scale
+        data, at + L.ONE, take(data, at + L.NORMAL_X), take(data, at + L.NORMAL_Y), warm_start_scale
     )
-    ma, mb = take(data, at + MASS_A), take(data, at + MASS_B)
-    ra, rb = take(data, at + RADIUS_A), take(data, at + RADIUS_B)
-    answer = PairInverseMass(ma, take(data, at + INERTIA_A) * ra, mb, take(data, at + INERTIA_B) * rb)
+    ma, mb = take(data, at + L.MASS_A), take(data, at + L.MASS_B)
+    ra, rb = take(data, at + L.RADIUS_A), take(data, at + L.RADIUS_B)
+    answer = PairInverseMass(ma, take(data, at + L.INERTIA_A) * ra, mb, take(data, at + L.INERTIA_B) * rb)
     after = after_impulse(v, answer, px, py, friction_impulse, -friction_impulse)
     _put_velocities(slots, k, motion, after)
 
 
 @fused
-def _start_boxes(slots: Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
-    data, at = slots.data, k * BOX_ROWS
+def _start_boxes(slots: L.Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
+    data, at = slots.data, k * L.BOX_ROWS
     v = _velocities(slots, k, motion.linear, motion.angular)
-    nx, ny = take(data, at + NORMAL_X), take(data, at + NORMAL_Y)
-    x1, y1, _ = _warm_start(data, at + ONE, nx, ny, warm_start_scale)
-    x2, y2, _ = _warm_start(data, at + TWO, nx, ny, warm_start_scale)
-    turn1_a, turn1_b = moments_of(_frame(data, at + ONE, nx, ny), x1, y1)
-    turn2_a, turn2_b = moments_of(_frame(data, at + TWO, nx, ny), x2, y2)
+    nx, ny = take(data, at + L.NORMAL_X), take(data, at + L.NORMAL_Y)
+    x1, y1, _ = _warm_start(data, at + L.ONE, nx, ny, warm_start_scale)
+    x2, y2, _ = _warm_start(data, at + L.TWO, nx, ny, warm_start_scale)
+    turn1_a, turn1_b = moments_of(_frame(data, at + L.ONE, nx, ny), x1, y1)
+    turn2_a, turn2_b = moments_of(_frame(data, at + L.TWO, nx, ny), x2, y2)
     mass = PairInverseMass(
-        take(data, at + MASS_A),
-        take(data, at + INERTIA_A),
-        take(data, at + MASS_B),
-        take(data, at + INERTIA_B),
+        take(data, at + L.MASS_A),
+        take(data, at + L.INERTIA_A),
+        take(data, at + L.MASS_B),
+        take(data, at + L.INERTIA_B),
     )
     after = after_impulse(v, mass, x1 + x2, y1 + y2, turn1_a + turn2_a, turn1_b + turn2_b)
     _put_velocities(slots, k, motion, after)

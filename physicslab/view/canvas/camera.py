@@ -1,14 +1,10 @@
 """The camera: the one place where metres become pixels."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.canvas import Rect
-
-__all__ = ["Camera", "Extent"]
 
 type Extent = tuple[float, float, float, float]
 """A part of the world: ``(xmin, ymin, xmax, ymax)`` [m]."""

@@ -14,9 +14,6 @@ from physicslab.view.canvas.theme import Colour
 if TYPE_CHECKING:
     import pygame
 
-__all__ = [
-    "Align", "Canvas", "Look", "Numbers", "Painter", "Points", "Rect", "TextStyle", "is_within",
-]  # fmt: skip
 
 type Numbers = NDArray[np.float64]
 """A float64 array (n,)."""

@@ -21,8 +21,6 @@ from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
 
-__all__ = ["Display", "NoScreen", "ask_to_leave", "forget_clicks", "wants_to_leave"]
-
 _INVISIBLE = ("dummy", "offscreen")
 """Drivers of SDL without a window."""
 _WITHOUT_WINDOW = "physicslab run SCENE needs none"

@@ -1,12 +1,8 @@
 """Text as a font can draw it: scene files and file names may hold any letter, and any number of them."""
 
-from __future__ import annotations
-
 import re
 import unicodedata
 from functools import lru_cache
-
-__all__ = ["MAX_LETTERS", "drawable", "encodable", "shortened"]
 
 MAX_LETTERS = 1000
 """Longer text is cut: no line, no caption and no message is read beyond that."""

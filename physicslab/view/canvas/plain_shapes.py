@@ -4,8 +4,6 @@ Edges are rough and places rounded to pixels; what cannot move is filled with a 
 a hatch. Anything far outside the picture is cut off first, or pygame would go through all of its rows.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 
@@ -14,8 +12,6 @@ import pygame
 from numpy.typing import NDArray
 
 from physicslab.view.canvas.canvas import Look, Numbers, Points
-
-__all__ = ["draw_boxes", "draw_discs", "draw_strokes"]
 
 _LARGE = 200.0
 """Radius [px] from which a disc is drawn as a polygon, which can be cut off."""

@@ -1,7 +1,5 @@
 """A canvas on a pygame surface."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -12,8 +10,6 @@ from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points,
 from physicslab.view.canvas.plain_shapes import draw_boxes, draw_discs, draw_strokes
 from physicslab.view.canvas.surface_cache import SurfaceCache
 from physicslab.view.canvas.theme import Colour
-
-__all__ = ["PygameCanvas"]
 
 _RIM = 1.6
 """Width of the rims [px]."""

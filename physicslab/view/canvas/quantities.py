@@ -1,16 +1,9 @@
 """Numbers with units, as people read them; units of slopes and areas."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 
 from physicslab.ecs.vector import Vector2
-
-__all__ = [
-    "ROUNDING", "percentage", "product", "quantity", "quotient", "round_quantity", "rounded_up",
-    "vector_quantity", "without_rounding", "written_unit",
-]  # fmt: skip
 
 ROUNDING = 1e-12
 """Share of what a number is a part of below which it is rounding."""

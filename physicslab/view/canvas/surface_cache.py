@@ -1,7 +1,5 @@
 """Pictures of words and panels, made once and used for as long as they are wanted again."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 from collections import OrderedDict
@@ -14,8 +12,6 @@ import pygame
 from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.theme import NOTHING, Colour
-
-__all__ = ["SurfaceCache", "rounded"]
 
 _RAISED = re.compile("([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 _PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")

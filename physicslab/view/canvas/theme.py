@@ -1,11 +1,7 @@
 """Every colour there is."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
-
-__all__ = ["DARK", "HIGH_CONTRAST", "NOTHING", "PROJECTOR", "THEMES", "Colour", "Theme", "mixed"]
 
 type Colour = tuple[int, int, int]
 """Red, green and blue, 0 to 255."""

@@ -1,64 +1,22 @@
 """Actions of the user, one function each, for all keys and buttons."""
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from physicslab.components import Held, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Remove, SetField, SetPhysics, Spawn
+from physicslab.systems.gravity import GravitySystem
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.measuring import nudged
-from physicslab.view.controls.tools import HAND, Tool
+from physicslab.view.controls.tool import Tool
+from physicslab.view.controls.tools import HAND
 from physicslab.view.overlay.instruments import instruments_of
-from physicslab.view.panels.laws import has_gravity
-from physicslab.view.window.window import Action, Window
+from physicslab.view.window.window import OPENED, Action, Window
 from physicslab.world import World
-
-__all__ = [
-    "choose_tool",
-    "clear",
-    "close",
-    "copy_selected",
-    "duplicate_selected",
-    "enlarge",
-    "faster",
-    "fit",
-    "go_home",
-    "larger_text",
-    "leave",
-    "next_theme",
-    "nudger",
-    "paste",
-    "redo",
-    "reduce",
-    "reset_layout",
-    "seek",
-    "select_all",
-    "select_next",
-    "slower",
-    "smaller_text",
-    "step",
-    "step_back",
-    "toggle_arrows",
-    "toggle_gravity",
-    "toggle_impulses",
-    "toggle_pause",
-    "toggle_planets",
-    "toggle_scales",
-    "toggle_snapping",
-    "toggle_trails",
-    "turner",
-    "undo",
-    "zoom",
-    "zoom_in",
-    "zoom_out",
-]  # fmt: skip
 
 _ZOOM_STEP = 3.0
 """How many notches of the wheel a key or a button zooms by."""
@@ -244,18 +202,11 @@ def leave(world: World, window: Window) -> None:
 
 
 def _close_panel(window: Window) -> bool:
-    """Close the first panel of these that is open; return whether there is one."""
-    panels: tuple[tuple[Any, str, bool | None], ...] = (
-        (window, "help", False), (window, "shows_gallery", False), (window.filming, "choosing", False),
-        (window, "opening", None), (window, "naming", None), (window, "lists_history", False),
-        (window.microscope, "record", None), (window.impacts, "shown", False),
-        (window.error_study, "shown", False),
-    )  # fmt: skip
-    for owner, name, closed in panels:
-        if getattr(owner, name) is not closed:
-            setattr(owner, name, closed)
-            return True
-    return False
+    """Close the first panel that is open of those that Esc closes; return whether there is one."""
+    panel = next((panel for panel in OPENED if window.is_open(panel) and panel != "shows_stopwatch"), None)
+    if panel is not None:
+        window.closing_of(panel)()
+    return panel is not None
 
 
 def close(world: World, window: Window) -> None:
@@ -398,3 +349,25 @@ def _width(world: World, entity: int) -> float:
         return 0.5
     shape = world.component(entity, Shape)
     return 1.1 * (2.0 * shape.radius if shape.kind == "circle" else math.hypot(shape.width, shape.height))
+
+
+# ---- laws in words -----------------------------------------------------------------------------------------
+
+
+def has_gravity(world: World) -> bool:
+    """Whether the world has a system that applies the law of gravity; a world may be made without one."""
+    return any(isinstance(system, GravitySystem) for system in world.schedule.systems)
+
+
+def gravity_in_words(world: World) -> str:
+    """Return the law of gravity, with its constant; "none" where no system applies it."""
+    physics = world.physics
+    if not has_gravity(world):
+        return "none: no GravitySystem"
+    if physics.gravity_mode == "none" or (physics.gravity_mode == "linear" and not physics.gravity):
+        return "off"
+    if physics.gravity_mode == "planet":
+        return f"G = {physics.G:.4g} N m²/kg²"
+    if physics.gravity.x == 0.0:
+        return f"{abs(physics.gravity.y):.4g} m/s² {'down' if physics.gravity.y < 0.0 else 'up'}"
+    return f"({physics.gravity.x:.3g}, {physics.gravity.y:.3g}) m/s²"

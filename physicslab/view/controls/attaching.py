@@ -1,7 +1,5 @@
 """Springs made from a list: between the bodies that are selected, or from one to a point above it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 
@@ -13,8 +11,6 @@ from physicslab.view.canvas.quantities import quantity
 from physicslab.view.window.spring_tool import spring_between
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
-
-__all__ = ["attachments"]
 
 _ABOVE = 1.5
 """How far above a body the point is that it is hung from [m]."""

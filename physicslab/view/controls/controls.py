@@ -1,20 +1,23 @@
 """The controls in one table: what keys do, and what the menus and the help show."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
+import pygame
+
 from physicslab.components import Strobe, Trail
+from physicslab.view.canvas.canvas import is_within
 from physicslab.view.controls import (
     actions,
+    controls,
     dashboard_actions,
     file_actions,
     history_actions,
     impact_actions,
-    keyboard,
 )
+from physicslab.view.controls.actions import has_gravity, nudger, turner
 from physicslab.view.controls.measuring import (
     GATE,
     NOTE,
@@ -25,21 +28,95 @@ from physicslab.view.controls.measuring import (
     toggle_strobes,
 )
 from physicslab.view.controls.spawning import spawn_pendulum
+from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import (
     HAND,
     PAN,
     SPAWN_TOOLS,
     SPRING,
-    Tool,
+    TOOLS,
     begin_spring,
     end_spring,
     remove_selected,
 )
-from physicslab.view.panels.laws import has_gravity
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
-__all__ = ["CONTROLS", "KEYS", "RELEASES", "Control"]
+# ---- without a mouse: keys move the cursor, click, and go to menus and panels ------------------------------
+
+
+_STEP = 10
+"""How far an arrow moves the cursor [px]; with Shift held by one."""
+
+
+def open_menu(world: World, window: Window) -> None:
+    """Open the first menu."""
+    window.keys_go_to = "menu"
+
+
+def walk(world: World, window: Window) -> None:
+    """Let keys go through the buttons and fields of the next panel."""
+    window.keys_go_to = "panel"
+
+
+def enter(world: World, window: Window) -> None:
+    """Go to the first field of the selection; without one, click with the tool at the cursor.
+
+    A tool that is dragged is pressed by one Enter and let go by the next.
+    """
+    if window.selection.entities and not window.presses_by_key:
+        window.keys_go_to = "fields"
+        return
+    place, tool = _cursor(window), TOOLS[window.tool]
+    if not window.presses_by_key:
+        _post(pygame.MOUSEBUTTONDOWN, place, button=pygame.BUTTON_LEFT)
+    if window.presses_by_key or not tool.drags:
+        _post(pygame.MOUSEBUTTONUP, place, button=pygame.BUTTON_LEFT)
+    window.presses_by_key = tool.drags and not window.presses_by_key
+
+
+def _cursor(window: Window) -> tuple[int, int]:
+    """Return where the cursor is [px]; where it was not in the world yet, that is the middle of it."""
+    inside = window.has_pointed and is_within(window.pointer, window.room())
+    x, y = window.pointer if inside else window.middle
+    return round(x), round(y)
+
+
+def _post(kind: int, place: tuple[int, int], **more: Any) -> None:
+    """Post an event of the mouse, as the mouse itself does."""
+    pygame.event.post(pygame.Event(kind, pos=place, touch=False, by_key=True, **more))
+
+
+def _arrow(across: int, down: int, step: int) -> Action:
+    """Return what moves all that is selected by a pixel; without one, the cursor by a step.
+
+    With Shift held, an arrow to the side turns the selection.
+    """
+    nudge = turner(-across) if step == 1 and across else nudger(across, -down)
+
+    def move(world: World, window: Window) -> None:
+        if window.selection.entities and not window.presses_by_key:
+            nudge(world, window)
+            return
+        left, top, width, height = window.room()
+        x, y = _cursor(window)
+        x = min(max(x + step * across, left), left + width - 1)
+        y = min(max(y + step * down, top), top + height - 1)
+        _post(pygame.MOUSEMOTION, (x, y), rel=(0, 0), buttons=(int(window.presses_by_key), 0, 0))
+
+    return move
+
+
+ARROWS = {
+    f"{held}{name}": _arrow(across, down, step)
+    for name, across, down in (("left", -1, 0), ("right", 1, 0), ("up", 0, -1), ("down", 0, 1))
+    for held, step in (("", _STEP), ("shift+", 1))
+}
+"""The action of each arrow, alone and with Shift held, by its name in SDL."""
+
+
+# ---- the table ---------------------------------------------------------------------------------------------
+
 
 type State = Callable[[World, Window], bool]
 
@@ -104,18 +181,11 @@ class Control:
 
 def _switch(label: str, does: str, key: str, flag: str, group: str, tip: str) -> Control:
     """Return what turns a flag of the window on and off, such as ``"pace.slow_motion"``."""
-    path, _, name = flag.rpartition(".")
-
-    def owner(window: Window) -> Any:
-        return getattr(window, path) if path else window
-
-    def toggle(world: World, window: Window) -> None:
-        setattr(owner(window), name, not getattr(owner(window), name))
-
-    def is_on(world: World, window: Window) -> bool:
-        return bool(getattr(owner(window), name))
-
-    return Control(label, does, key, toggle, group=group, tip=tip, state=is_on)
+    state = attrgetter(flag)
+    return Control(
+        label, does, key, lambda _, window: window.put(flag, not state(window)), group=group, tip=tip,
+        state=lambda _, window: bool(state(window)),
+    )  # fmt: skip
 
 
 def _gravity_is(world: World, mode: str) -> bool:
@@ -145,11 +215,11 @@ CONTROLS: tuple[Control, ...] = (
             tip="Paste the copy at the cursor"),
     Control("Ctrl+A", "select all", "ctrl+a", actions.select_all, group="edit", tip="Select all bodies"),
     Control("N", "next body", "n", actions.select_next, group="edit", tip="Select the next body"),
-    Control("Arrows", "move the selection", "left", keyboard.ARROWS["left"], group="edit",
+    Control("Arrows", "move the selection", "left", controls.ARROWS["left"], group="edit",
             tip="Move the selection by a pixel; without one, the cursor"),
-    Control("Enter", "edit, or click", "return", keyboard.enter, also=("enter",), group="edit",
+    Control("Enter", "edit, or click", "return", controls.enter, also=("enter",), group="edit",
             tip="Edit the numbers of the selection; without one, click with the tool at the cursor"),
-    Control("Shift+Arrows", "turn the selection", "shift+left", keyboard.ARROWS["shift+left"],
+    Control("Shift+Arrows", "turn the selection", "shift+left", controls.ARROWS["shift+left"],
             group="edit", tip="Turn the selection by a degree; by 15 degrees if angles snap"),
     Control("Q", "snap", "q", actions.toggle_snapping, group="edit",
             state=lambda _, window: window.snapping.on,
@@ -248,9 +318,9 @@ CONTROLS: tuple[Control, ...] = (
             tip="All text smaller"),
     Control("F2", "other colours", "f2", actions.next_theme, group="window",
             tip="Colours: dark, high contrast, projector"),
-    Control("F6", "next panel", "f6", keyboard.walk, group="window",
+    Control("F6", "next panel", "f6", controls.walk, group="window",
             tip="Go through the buttons and fields of the next panel with Tab and arrows; Esc goes back"),
-    Control("F10", "menus", "f10", keyboard.open_menu, group="window",
+    Control("F10", "menus", "f10", controls.open_menu, group="window",
             tip="Open the menus: arrows, Enter, Esc. So does Alt alone"),
     Control("F7", "reset layout", "f7", actions.reset_layout, group="window",
             tip="Reset the layout of windows"),
@@ -266,7 +336,7 @@ KEYS: dict[str, Action] = {
     if key and control.action is not None
 }
 """The action of each key when it is pressed, by its name in SDL."""
-KEYS |= keyboard.ARROWS
+KEYS |= controls.ARROWS
 
 RELEASES: dict[str, Action] = {
     control.key: control.release for control in CONTROLS if control.release is not None

@@ -1,7 +1,5 @@
 """Actions on graphs, meters and sliders: each is an edit, so that it is saved and undone."""
 
-from __future__ import annotations
-
 import csv
 import io
 import math
@@ -24,11 +22,6 @@ from physicslab.view.window.placing import refused_change
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = [
-    "add_meter", "add_slider", "change", "close_graph", "go_to", "plot_phase", "plot_selected", "remove",
-    "save_picture", "save_table", "slide", "table_of", "toggle_line", "usual_range",
-]  # fmt: skip
 
 _ENERGIES = ("kinetic energy", "potential energy", "total energy")
 _LIMIT = 8

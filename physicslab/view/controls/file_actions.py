@@ -1,7 +1,8 @@
 """Actions on scene files, films and pictures of the window."""
 
-from __future__ import annotations
-
+import itertools
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 from physicslab.ecs.fields import InvalidValue
@@ -9,16 +10,90 @@ from physicslab.ecs.text import printable
 from physicslab.export.film import ENDINGS
 from physicslab.files.new_scene import file_stem, save_new_scene
 from physicslab.files.replace import create_file
-from physicslab.files.scene import SceneError, load_scene, save_scene
-from physicslab.view.controls.scene_files import is_recording, new_paths, new_scene_paths, newest_scene
+from physicslab.files.scene import SceneError, load_scene, open_plain, save_scene
 from physicslab.view.window.filming import FROM_NOW
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
-__all__ = [
-    "begin_film", "begin_open", "begin_save_as", "open_from_list", "open_named", "open_scene", "reopen",
-    "request_screenshot", "restart", "save", "save_new", "save_under", "study_error", "toggle_film",
-]  # fmt: skip
+# ---- which files there are ---------------------------------------------------------------------------------
+
+
+_MARK = b"physicslab-scene/"
+"""The beginning of the format of a scene file."""
+_HEAD = 4096
+"""Bytes at the beginning of a file in which it says what it is."""
+_RECORDING = b"physicslab-recording/"
+"""And that of a recording, which holds a scene too."""
+
+
+def new_scene_paths(directory: Path, name: str) -> Iterator[Path]:
+    """Yield paths to save a scene under: its name, as far as a file may bear it, and a number from 1.
+
+    A number at the end of the name is taken for one that was given here.
+    """
+    return new_paths(directory, file_stem(re.sub(r"-\d+$", "", name)), ".json")
+
+
+def new_paths(directory: Path, stem: str, ending: str) -> Iterator[Path]:
+    """Yield paths of a stem, numbered from 1."""
+    return (directory / f"{stem}-{number}{ending}" for number in itertools.count(1))
+
+
+def scene_files(directory: Path) -> list[Path]:
+    """Return every file that is marked as a scene, the one that was written last first.
+
+    One that cannot be read is among them: opening it shows why.
+    """
+
+    def offered(path: Path) -> bool:
+        try:
+            return _is_marked(path)
+        except (OSError, SceneError):
+            return True
+
+    return [path for path in reversed(_by_age(directory)) if offered(path)]
+
+
+def newest_scene(directory: Path) -> Path | None:
+    """Return the scene file that was written last, or ``None`` if there is none.
+
+    If no file is marked as a scene, it is the newest JSON file: opening it shows its error.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be read.
+    """
+    files = _by_age(directory)
+    scenes = [path for path in files if _is_marked(path)]
+    candidates = scenes or files
+    return candidates[-1] if candidates else None
+
+
+def is_recording(path: Path) -> bool:
+    """Whether a file is marked as a recording; not if it cannot be read."""
+    try:
+        return _RECORDING in _head(path)
+    except (OSError, ValueError):
+        return False
+
+
+def _by_age(directory: Path) -> list[Path]:
+    return sorted(filter(Path.is_file, directory.glob("*.json")), key=lambda path: path.stat().st_mtime_ns)
+
+
+def _is_marked(path: Path) -> bool:
+    head = _head(path)
+    return _MARK in head and _RECORDING not in head
+
+
+def _head(path: Path) -> bytes:
+    """Return the beginning of a plain file."""
+    with open_plain(path, path.name) as file:
+        return file.read(_HEAD)
+
+
+# ---- actions -----------------------------------------------------------------------------------------------
 
 
 def save(world: World, window: Window) -> None:

@@ -1,18 +1,14 @@
 """Actions on the history: switch branches, save all of it in a file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from physicslab.ecs.text import printable
 from physicslab.files.new_scene import file_stem
 from physicslab.files.scene import SceneError
 from physicslab.history import Branch
-from physicslab.view.controls.scene_files import new_paths
+from physicslab.view.controls.file_actions import new_paths
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = ["ENDING", "branch_words", "next_branch", "save_recording", "switch"]
 
 ENDING = ".replay"
 """The suffix of recordings: they are not offered as scenes."""

@@ -1,7 +1,5 @@
 """Actions on impacts: list them, look at one closely, pause at the next."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from physicslab.components import Velocity
@@ -11,8 +9,6 @@ from physicslab.view.controls.file_actions import save_new
 from physicslab.view.controls.picking import body_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = ["clicked_impact", "close_up", "go_beside", "pause_at_next", "run_slowly", "save_table"]
 
 _REACH = 14.0
 """How near to the mark of an impact a click need be [px]."""

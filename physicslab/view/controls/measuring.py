@@ -1,7 +1,5 @@
 """Rulers, protractors, gates, notes and strobes by mouse and keys."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any
@@ -18,12 +16,6 @@ from physicslab.view.overlay.instruments import instrument_of
 from physicslab.view.window.measuring import Spot, Writing, made
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
-
-__all__ = [
-    "GATE", "MEASURING_TOOLS", "NOTE", "PROTRACTOR", "RULER", "detached", "follow_pointer", "keep_note",
-    "let_instrument_go", "measuring", "nudged", "spot_of", "take_end", "take_instrument", "toggle_stopwatch",
-    "toggle_strobes", "write_note",
-]  # fmt: skip
 
 _CLICK = 4.0
 """How far apart a press and a release are at most that are a click [px]."""

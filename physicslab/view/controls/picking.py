@@ -1,7 +1,5 @@
 """Which body or instrument is at a place on the screen."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 
@@ -16,8 +14,6 @@ from physicslab.view.overlay.instruments import Instrument, instruments_of
 from physicslab.view.picture.bodies import POINT_RADIUS, body_rows
 from physicslab.view.picture.springs import ends_of
 from physicslab.world import World
-
-__all__ = ["body_at", "centre_near", "directions_near", "instrument_at", "point_at", "spring_at"]
 
 type Rows = NDArray[np.int64]
 type Numbers = NDArray[np.float64]

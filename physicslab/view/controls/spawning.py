@@ -1,7 +1,5 @@
 """Bodies that can be put into the world at the cursor."""
 
-from __future__ import annotations
-
 import copy
 import functools
 import math
@@ -9,17 +7,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from physicslab.components import Spring, Transform
+from physicslab.contacts.outlines import Outlines
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Spawn
 from physicslab.prefabs import binary, box, chain, circle, container, pendulum, pile, pyramid, stack
-from physicslab.view.window.placing import Outlines, outlines_of, refused_place
+from physicslab.view.window.placing import outlines_of, refused_place
 from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.spring_tool import rod_stiffness
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = ["CIRCLE", "SPAWNS", "Spawnable", "spawn_box", "spawn_pendulum"]
 
 _RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
 _SIZES = ((0.5, 0.5), (0.8, 0.4), (0.4, 0.7), (0.6, 0.6), (1.0, 0.3))

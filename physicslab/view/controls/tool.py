@@ -1,13 +1,9 @@
-"""The interface of a tool: the actions of a press and a release of the left button in the world."""
-
-from __future__ import annotations
+"""The interface of a tool: the actions of a press and a release of the left button; its icon."""
 
 from dataclasses import dataclass
 
 from physicslab.view.controls.spawning import Spawnable
 from physicslab.view.window.window import Action
-
-__all__ = ["Tool"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,3 +35,14 @@ class Tool:
     drags: bool = False
     spawn: Spawnable | None = None
     prompts: tuple[str, ...] = ()
+
+
+ICONS = {
+    "select": "\uf25a", "circle": "\uf111", "box": "\uf0c8", "block": "\uf068", "pendulum": "\uf5cd",
+    "chain": "\uf0c1", "spring": "\uf83e", "remove": "\uf12d", "ruler": "\uf545",
+    "protractor": "\uf568", "gate": "\uf11e", "note": "\uf249", "pan": "\uf0b2",
+    "more": "\uf141", "stack": "\uf5fd", "pyramid": "\uf5ee", "heap": "\uf1ce", "pit": "\uf5ee",
+    "binary": "\uf753", "play": "\uf04b", "pause": "\uf04c", "step": "\uf051", "back": "\uf048",
+    "restart": "\uf2f9", "undo": "\uf0e2", "redo": "\uf01e",
+}  # fmt: skip
+"""Each icon by its name; most names are those of tools."""

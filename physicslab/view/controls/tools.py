@@ -1,7 +1,5 @@
 """Tools, the actions of the left mouse button in the world: one at a time, named in the window."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from physicslab.components import Spring, Transform, Velocity
@@ -13,11 +11,6 @@ from physicslab.view.controls.tool import Tool
 from physicslab.view.window.pins import pin_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = [
-    "HAND", "MORE_TOOLS", "PALETTE", "PAN", "REMOVE", "SELECT", "SPAWN_TOOLS", "SPRING", "TOOLS", "Tool",
-    "begin_spring", "end_spring", "remove_selected",
-]  # fmt: skip
 
 
 def _nothing(world: World, window: Window) -> None:

@@ -1,7 +1,5 @@
 """SDL's events, turned into what they do to the world and to the window."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -11,10 +9,9 @@ from physicslab.components import Held, Shape, Transform
 from physicslab.contacts.outlines import Outlines
 from physicslab.ecs.vector import Vector2
 from physicslab.view.controls import actions
-from physicslab.view.controls.controls import KEYS, RELEASES
+from physicslab.view.controls.controls import KEYS, RELEASES, open_menu
 from physicslab.view.controls.file_actions import open_scene
 from physicslab.view.controls.impact_actions import clicked_impact, close_up
-from physicslab.view.controls.keyboard import open_menu
 from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.spawning import spawn_box
@@ -24,8 +21,6 @@ from physicslab.view.window.changing import set_end
 from physicslab.view.window.placing import outlines_of
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
-
-__all__ = ["WindowEvents", "follow_snapping"]
 
 _BY_PRINT = ("+", "-", ".", ",", "[", "]")
 """Keys that go by what they print: on other keyboards they are elsewhere, or need AltGr."""

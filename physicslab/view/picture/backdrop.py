@@ -1,7 +1,5 @@
 """The backdrop: a grid, and the walls of the world."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -10,8 +8,6 @@ from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
 from physicslab.view.canvas.quantities import rounded_up
 from physicslab.view.canvas.theme import Theme
-
-__all__ = ["draw_bounds", "draw_grid", "grid_spacing"]
 
 _MIN_SPACING = 45.0
 """Least distance of grid lines [px]."""

@@ -1,7 +1,5 @@
 """Bodies as they appear on the screen: where, how large, in what colours."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -14,8 +12,6 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look
 from physicslab.view.canvas.theme import Theme
 from physicslab.world import World
-
-__all__ = ["POINT_RADIUS", "BodyRows", "body_rows", "draw_bodies", "own_colour"]
 
 type Rows = NDArray[np.int64]
 

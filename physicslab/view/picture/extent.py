@@ -1,7 +1,5 @@
 """The part of a world in which there is something to see."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,8 +7,6 @@ from physicslab.components import Shape, Spring, Transform, Velocity
 from physicslab.view.canvas.camera import Extent
 from physicslab.view.picture.bodies import body_rows
 from physicslab.world import World
-
-__all__ = ["extent_of"]
 
 type Boxes = NDArray[np.float64]
 """A float64 array (n, 4): xmin, ymin, xmax, ymax [m]."""

@@ -1,7 +1,5 @@
 """The whole picture of a world, and a file of it, without a window or a display."""
 
-from __future__ import annotations
-
 import os
 from typing import BinaryIO
 
@@ -19,8 +17,6 @@ from physicslab.view.picture.springs import draw_springs
 from physicslab.view.picture.strobe import draw_strobes
 from physicslab.view.picture.trails import draw_trails
 from physicslab.world import World
-
-__all__ = ["draw_world", "picture_of", "save_png"]
 
 _WINDOW = WindowConfig()
 

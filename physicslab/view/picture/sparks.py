@@ -1,7 +1,5 @@
 """Sparks that fly where bodies hit each other: a matter of the window, not of the world."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -10,8 +8,6 @@ from numpy.typing import NDArray
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
 from physicslab.view.canvas.theme import Theme
-
-__all__ = ["Sparks"]
 
 _MAX_SPARKS = 400
 """The oldest sparks make room for new ones beyond that number."""

@@ -1,7 +1,5 @@
 """Springs as coils, and the pins that hold them."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,8 +8,6 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look, Points
 from physicslab.view.canvas.theme import Theme
 from physicslab.world import World
-
-__all__ = ["coil", "draw_springs", "ends_of"]
 
 _TURN = 13.0
 """About how long a turn of a coil is at rest [px]."""

@@ -1,7 +1,5 @@
 """Strobe pictures: bodies once more where they were at regular moments, faintly."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np
@@ -15,8 +13,6 @@ from physicslab.view.canvas.canvas import Canvas, Look
 from physicslab.view.canvas.theme import Theme, mixed
 from physicslab.view.picture.bodies import POINT_RADIUS, own_colour
 from physicslab.world import World
-
-__all__ = ["draw_strobes"]
 
 _FILL, _RIM = 0.16, 0.55
 """Shares of a body's colour in the copies of it, the rest being background."""

@@ -1,7 +1,5 @@
 """Trails: where bodies have been, fading with age, and the switch that turns them on."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np
@@ -14,8 +12,6 @@ from physicslab.view.canvas.canvas import Canvas, Points
 from physicslab.view.canvas.theme import Theme, mixed
 from physicslab.view.picture.bodies import own_colour
 from physicslab.world import World
-
-__all__ = ["TrailSwitch", "draw_trails"]
 
 _SHADES = 16
 """Steps in which a trail fades."""

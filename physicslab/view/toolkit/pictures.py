@@ -1,7 +1,5 @@
 """Draw lists of Dear ImGui as pictures that are kept for as long as the lists stay the same."""
 
-from __future__ import annotations
-
 import ctypes
 import math
 from dataclasses import dataclass
@@ -15,8 +13,6 @@ from numpy.typing import NDArray
 from physicslab.kernels import compile_kernels
 from physicslab.kernels.triangles import paint_triangles
 from physicslab.view.canvas.theme import Colour
-
-__all__ = ["Pictures"]
 
 _VERTEX_BYTES = 20
 """Place, place in the texture and colour: what ``ImDrawVert`` takes."""

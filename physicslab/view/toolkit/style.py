@@ -1,7 +1,5 @@
 """The theme as Dear ImGui and ImPlot take it, and the fonts of panels."""
 
-from __future__ import annotations
-
 import importlib.util
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,8 +7,6 @@ from pathlib import Path
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from physicslab.view.canvas.theme import Colour, Theme, mixed
-
-__all__ = ["Fonts", "add_fonts", "apply_theme", "as_vector", "bar_height", "packed"]
 
 
 @dataclass(frozen=True, slots=True)

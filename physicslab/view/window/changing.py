@@ -1,7 +1,5 @@
 """Edits of the selection: one command for all of it, or one sentence that says why it is refused."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
 
@@ -28,11 +26,6 @@ from physicslab.view.window.placing import refused_change
 from physicslab.view.window.points import local_point, point_of
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = [
-    "addable", "change_fields", "give", "name_entity", "plain_kind", "removable", "set_end",
-    "take",
-]  # fmt: skip
 
 _SIZE = 0.25
 """Radius of a shape that a body is given, half the width of a box [m]."""

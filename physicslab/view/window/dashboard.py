@@ -1,7 +1,5 @@
 """Graphs, meters and sliders as a window shows them, and what it records for them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from weakref import WeakKeyDictionary
@@ -11,11 +9,8 @@ from physicslab.components.graph import TIME
 from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.component import Component
 from physicslab.history import History
-from physicslab.view.window.past_samples import PastSamples
-from physicslab.view.window.record import Key, Record
+from physicslab.view.window.record import Key, PastSamples, Record
 from physicslab.world import World
-
-__all__ = ["PANELS", "Dashboard", "GraphShown", "LineShown", "MeterShown", "SliderShown", "carried_over"]
 
 PANELS: tuple[type[Component], ...] = (Graph, GraphLine, Meter, Slider)
 """The components that are panels of the window."""

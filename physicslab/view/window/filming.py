@@ -14,7 +14,6 @@ from physicslab.world import World
 if TYPE_CHECKING:
     import pygame
 
-__all__ = ["ALL", "BACK", "FORWARD", "FROM_NOW", "Filming"]
 
 ALL, BACK = "All that was run", "From the start to here"
 FORWARD, FROM_NOW = "From here to the end", "From now on, until F9"

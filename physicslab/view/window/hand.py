@@ -1,7 +1,5 @@
 """The hand that takes hold of a body, moves it, and lets it go or throws it."""
 
-from __future__ import annotations
-
 import math
 from collections import deque
 from collections.abc import Callable
@@ -20,8 +18,6 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, RemoveComponent, SetField
 from physicslab.view.window.placing import free_way, outlines_of
 from physicslab.world import World
-
-__all__ = ["Hand"]
 
 _ALONG, _MAX_BEHIND = 0.3, 24
 """A body is behind another where the way to it points at least so much along; so many are looked at."""

@@ -1,7 +1,5 @@
 """The handles of the selection: size, angle and velocity, to be dragged while paused."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal
@@ -13,8 +11,6 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.window.edits import Edits
 from physicslab.world import World
-
-__all__ = ["Handle", "Handles"]
 
 type Kind = Literal["size", "angle", "velocity"]
 

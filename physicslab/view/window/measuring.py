@@ -1,7 +1,5 @@
 """Instruments that are being placed, dragged or written; they are in the world once that is done."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,8 +11,6 @@ from physicslab.view.canvas.canvas import Rect
 from physicslab.view.overlay.instruments import Instrument, Overrides
 from physicslab.view.overlay.labels import Labels
 from physicslab.world import World
-
-__all__ = ["Measuring", "Spot", "Writing"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,10 +1,6 @@
 """From frames of any length to steps of one length."""
 
-from __future__ import annotations
-
 import math
-
-__all__ = ["Pace"]
 
 
 class Pace:

@@ -1,7 +1,5 @@
 """Pins: the fixed ends of springs, which can be dragged."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -15,8 +13,6 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.window.edits import Edits
 from physicslab.world import World
-
-__all__ = ["Pins", "pin_at"]
 
 _CATCH = 8.0
 """How near to a pin a press need be [px]."""

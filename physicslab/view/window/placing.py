@@ -1,7 +1,5 @@
 """Whether there is room for what is to be made."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 
@@ -14,8 +12,6 @@ from physicslab.contacts.outlines import Outlines, overlap, overlapping
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
-
-__all__ = ["Outlines", "free_way", "outlines_of", "refused_change", "refused_place"]
 
 _ALLOWED = 1e-3
 """Overlap [m] that is no obstacle: what is put down on a floor by eye."""

@@ -1,13 +1,9 @@
 """Points of bodies: in a body's own frame, and in the world."""
 
-from __future__ import annotations
-
 from physicslab.components import Shape, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.state.attached import local_point as in_frame
 from physicslab.world import World
-
-__all__ = ["local_point", "point_of"]
 
 
 def point_of(world: World, body: int | None, anchor: Vector2) -> Vector2:

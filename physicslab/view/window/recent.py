@@ -1,11 +1,13 @@
-"""The files that were opened or saved last."""
+"""Files of earlier sessions: opened or saved last, and left by sessions that ended without closing."""
 
-from __future__ import annotations
-
-from collections.abc import Iterable
+import os
+import time
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Protocol
 
-__all__ = ["RecentFiles"]
+from physicslab.files.scene import load_scene
+from physicslab.world import World
 
 _LIMIT = 10
 """How many are kept."""
@@ -44,3 +46,75 @@ def _is_there(path: Path) -> bool:
         return path.is_file()
     except (OSError, ValueError):
         return False
+
+
+class AbandonedSession(Protocol):
+    """The state that a session has left, and the lock on it."""
+
+    @property
+    def path(self) -> Path:
+        """The scene file that holds the state."""
+
+    def end(self) -> None:
+        """Remove the state for good."""
+
+    def release(self) -> None:
+        """Leave the state to the next start."""
+
+
+class Recovery:
+    """The sessions that ended without closing, the newest on offer; none is opened before it is chosen.
+
+    Parameters
+    ----------
+    abandoned : sequence of AbandonedSession
+        The newest first. Those on which no decision was made are offered again at the next start.
+    own : path, optional
+        Where this window keeps its own state.
+    """
+
+    def __init__(self, abandoned: Sequence[AbandonedSession] = (), own: Path | None = None) -> None:
+        self._left, self._own = list(abandoned), own
+
+    @property
+    def offered(self) -> bool:
+        """Whether there is something to decide on."""
+        return bool(self._left)
+
+    @property
+    def words(self) -> str:
+        """The message about the session on offer."""
+        try:
+            saved = time.localtime(self._left[0].path.stat().st_mtime)
+        except (IndexError, OSError):
+            return "Your last session is kept"
+        return f"Your last session is kept, as of {time.strftime('%d %b %H:%M', saved)}"
+
+    def restore(self) -> World:
+        """Return the world of the session on offer.
+
+        Its file becomes that of this window, so that it is not lost if this one ends badly too.
+
+        Raises
+        ------
+        SceneError, InvalidValue, OSError
+            If it cannot be read; it stays on offer.
+        """
+        session = self._left[0]
+        world = load_scene(session.path)
+        world.synchronise()
+        if self._own is not None:
+            os.replace(session.path, self._own)
+            session.end()
+        self.leave()
+        return world
+
+    def discard(self) -> None:
+        """Remove the session on offer for good; an older one is offered next."""
+        self._left.pop(0).end()
+
+    def leave(self) -> None:
+        """Leave the sessions on which no decision was made to the next start."""
+        for session in self._left:
+            session.release()
+        self._left = []

@@ -1,13 +1,9 @@
 """Properties of bodies that are made with the mouse."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import ClassVar
 
 from physicslab.ecs.fields import LENGTH_LIMIT, Field
-
-__all__ = ["Recipe"]
 
 
 @dataclass(frozen=True, slots=True)

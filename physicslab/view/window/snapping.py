@@ -1,7 +1,5 @@
 """Places that snap: to the edges and middles of other bodies, and else to the grid."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from dataclasses import dataclass
 
@@ -15,8 +13,6 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.picture.backdrop import grid_spacing
 from physicslab.view.window.placing import outlines_of
 from physicslab.world import World
-
-__all__ = ["Mark", "Snapped", "Snapping", "extent_about", "snapped"]
 
 _NEAR = 9.0
 """How near the edge of another body must be for a place to snap to it [px]."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
 from typing import Concatenate
 
@@ -13,33 +14,29 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import History
 from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas, Rect
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.theme import DARK, Theme
+from physicslab.view.overlay.free_body import Measured
 from physicslab.view.overlay.overlays import Overlays
-from physicslab.view.panels.error_study import ErrorStudy
-from physicslab.view.panels.trust_watch import TrustWatch
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
 from physicslab.view.window.dashboard import Dashboard
-from physicslab.view.window.edits import Edits
+from physicslab.view.window.edits import Edits, Selection
 from physicslab.view.window.filming import Filming
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
-from physicslab.view.window.impact_list import ImpactList
-from physicslab.view.window.measured import Measured
+from physicslab.view.window.impacts import ImpactList, Microscope
+from physicslab.view.window.lab_process import ErrorStudy
 from physicslab.view.window.measuring import Measuring
-from physicslab.view.window.microscope import Microscope
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.pins import Pins
-from physicslab.view.window.recent import RecentFiles
+from physicslab.view.window.recent import RecentFiles, Recovery
 from physicslab.view.window.recipe import Recipe
-from physicslab.view.window.recovery import Recovery
-from physicslab.view.window.selection import Selection
 from physicslab.view.window.snapping import Snapping
 from physicslab.view.window.spring_tool import SpringTool
+from physicslab.view.window.trust_watch import TrustWatch
 from physicslab.world import World
-
-__all__ = ["LEVELS", "Action", "Left", "Picking", "Window"]
 
 type Action = Callable[[World, Window], object]
 """The action of a click or a key."""
@@ -52,6 +49,12 @@ LEVELS = {
     "Engineer": "Methods, systems and their cost",
 }
 """How much the panel at the right shows, with what each level is for."""
+OPENED: dict[str, object] = {
+    "help": False, "shows_gallery": False, "filming.choosing": False, "opening": None, "naming": None,
+    "lists_history": False, "microscope.record": None, "impacts.shown": False, "error_study.shown": False,
+    "shows_stopwatch": False,
+}  # fmt: skip
+"""Panels that can be closed: what of the window says that they are open, and its value when they are not."""
 _AROUND = 0.04
 """Room left around the world, as a share of what the panels leave."""
 
@@ -276,6 +279,13 @@ class Window:
         self._room: Rect | None = None
 
     @property
+    def drawing(self) -> Drawing:
+        """What the world is drawn with; text is larger in a larger window, times the chosen scale."""
+        width, height = self.canvas.size
+        size = round(min(max(min(height / 48, width / 80), 12), 20) * self.text_scale)
+        return Drawing(self.canvas, self.camera, self.theme, size)
+
+    @property
     def middle(self) -> tuple[float, float]:
         """The middle of what is left for the world [px]."""
         left, top, width, height = self.room()
@@ -295,6 +305,19 @@ class Window:
     def notice(self) -> str:
         """The message that is shown for a few seconds; empty when there is none."""
         return self._notice if self.now < self._notice_until else ""
+
+    def put(self, path: str, value: object) -> None:
+        """Give a part of the state another value, by its path from the window, as ``"pace.paused"``."""
+        owner, _, name = path.rpartition(".")
+        setattr(attrgetter(owner)(self) if owner else self, name, value)
+
+    def is_open(self, panel: str) -> bool:
+        """Whether a panel is open, one of ``OPENED``."""
+        return attrgetter(panel)(self) is not OPENED[panel]
+
+    def closing_of(self, panel: str) -> Callable[[], None]:
+        """Return what closes a panel, one of ``OPENED``."""
+        return lambda: self.put(panel, OPENED[panel])
 
     def has_unsaved(self, world: World) -> bool:
         """Whether the world was edited since it was opened or saved."""

@@ -1,7 +1,5 @@
 """The plot of a graph: its lines, those of the run before, and its cursors."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -14,18 +12,15 @@ from physicslab.diagnostics.scales import scales_of
 from physicslab.view.canvas.quantities import ROUNDING, written_unit
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.controls import dashboard_actions
-from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.style import as_vector, packed
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.dashboard import GraphShown
-from physicslab.view.window.plot_data import line_to_show, path_to_show, range_to_show, unbroken
-from physicslab.view.window.record import Key, Record
+from physicslab.view.window.record import Key, Record, line_to_show, path_to_show, range_to_show, unbroken
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_readings import colours_of, line_name
 from physicslab.view.workbench.quantity_menu import scale_of
 from physicslab.world import World
-
-__all__ = ["GraphPlot"]
 
 type _Numbers = NDArray[np.float64]
 type _Drawn = tuple[_Numbers, _Numbers]

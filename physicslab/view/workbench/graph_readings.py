@@ -1,7 +1,5 @@
 """Readings beside a plot: each line with its value, slopes and areas between two moments."""
 
-from __future__ import annotations
-
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 
@@ -14,13 +12,10 @@ from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import GraphShown
-from physicslab.view.window.plot_data import area_between, slope_between
-from physicslab.view.window.record import Key
+from physicslab.view.window.record import Key, area_between, slope_between
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.quantity_menu import named_key, scale_of, unit_of
 from physicslab.world import World
-
-__all__ = ["build_cursors", "build_moment", "build_readings", "colours_of", "line_name"]
 
 _VALUE = "-0.0000"
 """As wide as most values are: what follows stays in its place while they change."""

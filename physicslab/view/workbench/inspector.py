@@ -1,30 +1,158 @@
-"""The selection, in numbers that can be changed: made from the fields of its components."""
+"""The selection, in numbers that can be changed, and in values derived from them."""
 
-from __future__ import annotations
-
+import math
 from functools import partial
 
+import numpy as np
 from imgui_bundle import imgui
 
-from physicslab.components import Drag, Held, Mass, Name, Shape, Strobe, Trail, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Name, Shape, Spring, Strobe, Trail, Transform, Velocity
 from physicslab.components.name import why_no_id
+from physicslab.diagnostics.free_body import LastStep
+from physicslab.diagnostics.period import SpringState, gives_way, period_of, spring_state
+from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field, InvalidValue
+from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.quantities import quantity, vector_quantity, without_rounding
 from physicslab.view.controls.actions import duplicate_selected
 from physicslab.view.controls.attaching import attachments
 from physicslab.view.controls.dashboard_actions import plot_selected
 from physicslab.view.controls.tools import remove_selected
+from physicslab.view.overlay.free_body import Measured
 from physicslab.view.overlay.instruments import readings_of
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window import changing
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.component_rows import ORDER, ComponentRows
-from physicslab.view.workbench.derived_rows import build_derived, build_forces, build_pairs
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.view.workbench.trust_badge import build_body_digits
 from physicslab.world import World
 
-__all__ = ["Inspector"]
+# ---- derived values: they are shown and cannot be changed --------------------------------------------------
+
+
+_ROUNDING = 1e-9
+"""A sum of forces below this share of the largest is treated as zero."""
+
+
+def build_derived(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
+    """Write the speed, momentum, energies and period of a body, or the state of a spring.
+
+    Parts are left out if ``is_brief``.
+    """
+    if world.has(entity, Spring):
+        _build_spring(ui, spring_state(world, entity))
+        give = gives_way(world, entity)
+        if give is not None:
+            tip = "This rod is a stiff spring: weight lengthens it by this much, a wide swing by more"
+            ui.row("Gives way", quantity(1e3 * give, "mm"), tip)
+    if world.has(entity, Velocity):
+        _build_motion(ui, world, entity, is_brief=is_brief)
+    period = period_of(world, entity)
+    if period is not None:
+        ui.row("Period", quantity(period.seconds, "s"), period.law)
+
+
+def _build_motion(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
+    velocity = world.component(entity, Velocity)
+    scales = scales_of(world)
+    linear = velocity.linear if without_rounding(velocity.linear.magnitude, scales["m/s"]) else Vector2()
+    angular = without_rounding(velocity.angular, scales["rad/s"])
+    ui.rule(0.2)
+    speed = linear.magnitude
+    ui.row("Speed", quantity(speed, "m/s"))
+    if speed > 0.0 and not is_brief:
+        ui.row("Direction", f"{math.degrees(linear.angle):.1f}°", "counter-clockwise from the right")
+    if not world.has(entity, Mass):
+        return
+    mass = world.component(entity, Mass)
+    row = world.entity_index.row_of[entity]
+    ui.row("Momentum", quantity(mass.mass * speed, "kg m/s"))
+    if not is_brief:
+        ui.row("as a vector", vector_quantity(mass.mass * linear, "kg m/s"), lesser=True)
+    energy = without_rounding(0.5 * mass.mass * speed**2, scales["J"])
+    inverse = float(world.bodies.inverse_inertia[row])
+    spin = without_rounding(0.5 * angular**2 / inverse, scales["J"]) if inverse > 0.0 else 0.0
+    ui.row("Kinetic energy", quantity(energy + spin, "J"))
+    if spin and np.isfinite(spin) and not is_brief:
+        ui.row("of turning", quantity(spin, "J"), lesser=True)
+
+
+def _build_spring(ui: Ui, state: SpringState | None) -> None:
+    if state is None:
+        return
+    ui.rule(0.2)
+    ui.row("Length", quantity(state.length, "m"))
+    ui.row(
+        "Longer by",
+        quantity(without_rounding(state.extension, state.length), "m"),
+        "than at rest; negative if it is shorter",
+    )
+    pulls = "pulls its ends together" if state.force >= 0.0 else "pushes its ends apart"
+    ui.row("Spring force", quantity(abs(state.force), "N"), pulls)
+    ui.row("Energy stored", quantity(state.energy, "J"))
+
+
+def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
+    """Write the forces on a body and their sum, beside its mass times its acceleration; then the impulses.
+
+    The forces are those that the free-body diagram (V) draws. Where it is brief, impulses are left out.
+    """
+    step = measured.step
+    if not measured.forces and step is None:
+        return
+    ui.rule(0.2)
+    ui.faint("Forces on it")
+    for one in measured.forces:
+        ui.row(one.name.capitalize(), quantity(one.force.magnitude, "N"), vector_quantity(one.force, "N"))
+    total = measured.net
+    largest = max((one.force.magnitude for one in measured.forces), default=0.0)
+    _vector_row(ui, "Sum", total, largest, "N", "The sum of all forces")
+    if step is None:
+        return
+    largest = max(largest, step.inertia.magnitude)
+    tip = "Mass times mean acceleration in the last step, without impacts"
+    _vector_row(ui, "m a", step.inertia, largest, "N", tip)
+    tip = "The sum is of now, the acceleration of the last step"
+    _vector_row(ui, "Difference", total - step.inertia, largest, "N", tip)
+    if not is_brief:
+        _build_impulses(ui, step)
+
+
+def build_pairs(ui: Ui, measured: Measured) -> None:
+    """Write the friction and the restitution of each pair of surfaces that a body is one of."""
+    for one in measured.forces:
+        if one.pair is not None:
+            other, friction, restitution = one.pair
+            ui.faint(f"With {other}: mu = {friction:.4g}, e = {restitution:.4g}")
+            ui.tip("For this pair mu is the root of both frictions multiplied, e the smaller restitution")
+
+
+def _build_impulses(ui: Ui, step: LastStep) -> None:
+    """Write the impulses of the last step, their sum, and the change of momentum."""
+    ui.gap(0.2)
+    ui.faint(f"Impulses in the last step, of {quantity(step.dt, 's')}")
+    parts = step.impulses
+    largest = max((impulse.magnitude for impulse in parts.values()), default=0.0)
+    largest = max(largest, step.change.magnitude)
+    for name, impulse in parts.items():
+        _vector_row(ui, name.capitalize(), impulse, largest, "N s", "")
+    _vector_row(ui, "Sum of impulses", sum(parts.values(), Vector2()), largest, "N s", "All of the above")
+    _vector_row(ui, "Change of momentum", step.change, largest, "kg m/s", "From before the step to after it")
+    tip = "The difference: forces of contacts and springs are not the same all through a step"
+    _vector_row(ui, "Not accounted for", step.difference, largest, "N s", tip)
+
+
+def _vector_row(ui: Ui, label: str, value: Vector2, largest: float, unit: str, tip: str) -> None:
+    """Write how large a vector is; rounding beside the ``largest`` is treated as zero."""
+    shown = value.magnitude if value.magnitude > _ROUNDING * largest else 0.0
+    words = f"{tip}: {vector_quantity(value, unit)}" if tip else vector_quantity(value, unit)
+    ui.row(label, quantity(shown, unit), words)
+
+
+# ---- the panel ---------------------------------------------------------------------------------------------
+
 
 _LABELS = 0.36
 """Share of the panel's width that labels take."""
@@ -41,114 +169,88 @@ _SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
 """Components that are one click away; all others are in a list."""
 
 
-class Inspector:
-    """The rows of the selection. One body: all its fields; several: what they have in common."""
+def build_inspector(ui: Ui, numbers: NumberFields, world: World, window: Window) -> None:
+    """Build the rows of the selection. One body: all its fields; several: what they have in common."""
+    chosen, is_brief = window.selection.entities, window.level == "Explore"
+    first, is_one = chosen[-1], len(chosen) == 1
+    numbers.share = _LABELS
+    ui.heading(world.label(first) if is_one else f"{len(chosen)} selected")
+    ui.faint(_kind(world, first) if is_one else "Changes go to all of them")
+    if is_one:
+        _build_name(ui, numbers, world, window, first)
+    kinds = [
+        type(held)
+        for held in world.components(first)
+        if isinstance(held, Component)
+        and not isinstance(held, Held)
+        and all(world.has(other, type(held)) for other in chosen)
+    ]
+    rows = ComponentRows(ui, numbers, world, window)
+    for kind in sorted(kinds, key=lambda kind: ORDER.get(kind, len(ORDER))):
+        rows.build(kind)
+    if is_one:
+        for label, value in readings_of(world, first):
+            ui.row(label, value)
+        build_derived(ui, world, first, is_brief=is_brief)
+        build_body_digits(ui, world, window, first)
+        if not is_brief or window.overlays.arrows:
+            build_forces(ui, window.measured, is_brief=window.level != "Engineer")
+        build_pairs(ui, window.measured)
+    _build_components(ui, world, window)
+    _build_buttons(ui, world, window)
 
-    def __init__(self) -> None:
-        self._numbers = NumberFields(_LABELS)
-        self._rows = ComponentRows(self._numbers)
-        self._shown: tuple[object, ...] = ()
 
-    def build(self, ui: Ui, world: World, window: Window) -> None:
-        """Build it for the selection."""
-        chosen = window.selection.entities
-        if self._shown != (world, chosen):
-            self._shown = world, chosen
-            self._numbers.clear()
-        first = chosen[-1]
-        ui.heading(world.label(first) if len(chosen) == 1 else f"{len(chosen)} selected")
-        ui.faint(_kind(world, first) if len(chosen) == 1 else "Changes go to all of them")
-        if len(chosen) == 1:
-            self._build_name(ui, world, window, first)
-        kinds = [
-            type(held)
-            for held in world.components(first)
-            if isinstance(held, Component)
-            and not isinstance(held, Held)
-            and all(world.has(other, type(held)) for other in chosen)
-        ]
-        for kind in sorted(kinds, key=lambda kind: ORDER.get(kind, len(ORDER))):
-            self._rows.build(ui, world, window, kind)
-        if len(chosen) == 1:
-            for label, value in readings_of(world, first):
-                ui.row(label, value)
-            build_derived(ui, world, first, is_brief=window.level == "Explore")
-            build_body_digits(ui, world, window, first)
-            if window.level != "Explore" or window.overlays.arrows:
-                build_forces(ui, window.measured, is_brief=window.level != "Engineer")
-            build_pairs(ui, window.measured)
-        self._build_components(ui, world, window)
-        self._build_buttons(ui, world, window)
+def _build_name(ui: Ui, numbers: NumberFields, world: World, window: Window, entity: int) -> None:
+    """Build the row of a name."""
 
-    def finish(self, window: Window) -> str:
-        """Take over what is half written in a field, and return why it is refused; empty where it is not.
+    def commit(name: str) -> None:
+        if name:
+            _check_name(world, entity, name)
+        window.do_first(changing.name_entity, entity, name)
 
-        Text for bodies that are shown no more is dropped.
-        """
-        if self._shown != (window.edits.world, window.selection.entities):
-            self._numbers.clear()
-        return self._numbers.finish()
+    held = world.component(entity, Name).id if world.has(entity, Name) else ""
+    numbers.row(ui, "Name", "Name", _NAME, held, commit)
 
-    def _build_name(self, ui: Ui, world: World, window: Window, entity: int) -> None:
-        """Build the row of a name."""
 
-        def commit(name: str) -> None:
-            if name:
-                _check_name(world, entity, name)
-            window.do_first(changing.name_entity, entity, name)
+def _build_components(ui: Ui, world: World, window: Window) -> None:
+    """Build what components can be added, and which can be taken away."""
+    chosen = window.selection.entities
+    if not all(world.has(entity, Transform) for entity in chosen):
+        return
+    ui.rule(0.2)
+    width = imgui.get_content_region_avail().x
+    for n, (kind, words, tip) in enumerate(_SWITCHES):
+        if n % 2 and _SECOND_COLUMN * width + ui.checkbox_width(words) <= width:
+            imgui.same_line(_SECOND_COLUMN * width + imgui.get_style().window_padding.x)
+        on = all(world.has(entity, kind) for entity in chosen)
+        if ui.checkbox(words, on, tip):
+            if on:
+                window.do_next(changing.take, chosen, kind)
+            else:
+                window.do_next(changing.give, chosen, partial(_made, kind))
+    with ui.list("Add ...", "Properties that can be added") as shown:
+        for words, (meaning, make) in (changing.addable(world, chosen) if shown else {}).items():
+            ui.item(f"add {words}", changing.give, chosen, make, tip=meaning, shown=f"{words}: {meaning}")
+    imgui.same_line()
+    with ui.list("Take away ...", "Properties that it has") as shown:
+        for words, (meaning, kind) in (changing.removable(world, chosen) if shown else {}).items():
+            ui.item(f"no {words}", changing.take, chosen, kind, tip=meaning, shown=f"{words}: {meaning}")
+    ui.same_line_if_room("Plot")
+    ui.button("Plot", "Its speed and position against time", plot_selected)
 
-        held = world.component(entity, Name).id if world.has(entity, Name) else ""
-        self._numbers.row(ui, "Name", "Name", _NAME, held, commit)
 
-    # ---- components ----------------------------------------------------------------------------------------
-
-    def _build_components(self, ui: Ui, world: World, window: Window) -> None:
-        """Build what components can be added, and which can be taken away."""
-        chosen = window.selection.entities
-        if not all(world.has(entity, Transform) for entity in chosen):
-            return
-        ui.gap(0.2)
-        ui.rule()
-        width = imgui.get_content_region_avail().x
-        for n, (kind, words, tip) in enumerate(_SWITCHES):
-            if n % 2 and _SECOND_COLUMN * width + ui.checkbox_width(words) <= width:
-                imgui.same_line(_SECOND_COLUMN * width + imgui.get_style().window_padding.x)
-            on = all(world.has(entity, kind) for entity in chosen)
-            if ui.checkbox(words, on, tip):
-                if on:
-                    window.do_next(changing.take, chosen, kind)
-                else:
-                    window.do_next(changing.give, chosen, partial(_made, kind))
-        with ui.list("Add ...", "Properties that can be added") as shown:
-            for words, (meaning, make) in (changing.addable(world, chosen) if shown else {}).items():
-                if ui.item(f"add {words}", tip=meaning, shown=f"{words}: {meaning}"):
-                    window.do_next(changing.give, chosen, make)
-        imgui.same_line()
-        with ui.list("Take away ...", "Properties that it has") as shown:
-            for words, (meaning, kind) in (changing.removable(world, chosen) if shown else {}).items():
-                if ui.item(f"no {words}", tip=meaning, shown=f"{words}: {meaning}"):
-                    window.do_next(changing.take, chosen, kind)
-        ui.same_line_if_room("Plot")
-        if ui.button("Plot", "Its speed and position against time"):
-            window.do_next(plot_selected)
-
-    @staticmethod
-    def _build_buttons(ui: Ui, world: World, window: Window) -> None:
-        ui.gap(0.2)
-        attached = attachments(world, window.selection.entities)
-        for n, (words, (tip, action)) in enumerate(attached.items()):
-            if n:
-                ui.same_line_if_room(words)
-            if ui.button(words, tip):
-                window.do_next(action)
-        if ui.button("Duplicate", "A copy beside it (Ctrl+D)"):
-            window.do_next(duplicate_selected)
-        imgui.same_line()
-        if ui.button("Delete", "Remove the selection (Del)"):
-            window.do_next(remove_selected)
-        ui.same_line_if_room("Done")
-        if ui.button("Done", "Select nothing (Esc)"):
-            window.do_next(lambda _, window: window.selection.clear())
+def _build_buttons(ui: Ui, world: World, window: Window) -> None:
+    ui.gap(0.2)
+    attached = attachments(world, window.selection.entities)
+    for n, (words, (tip, action)) in enumerate(attached.items()):
+        if n:
+            ui.same_line_if_room(words)
+        ui.button(words, tip, action)
+    ui.button("Duplicate", "A copy beside it (Ctrl+D)", duplicate_selected)
+    imgui.same_line()
+    ui.button("Delete", "Remove the selection (Del)", remove_selected)
+    ui.same_line_if_room("Done")
+    ui.button("Done", "Select nothing (Esc)", lambda _, window: window.selection.clear())
 
 
 def _made(kind: type[Component], entity: int) -> Component:

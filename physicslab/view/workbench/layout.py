@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.toolkit.style import bar_height
 
-__all__ = ["Layout"]
-
 _PALETTE, _SIDE, _TRANSPORT = 6.9, 16.8, 3.0
 """Widths of the palette and the side panel, height of the transport, in heights of the text."""
 _MIN_WORLD = 0.34

@@ -1,13 +1,9 @@
 """Places of graphs, meters and sliders: beside each other, in the room that the other panels leave."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from physicslab.view.canvas.canvas import Rect
-
-__all__ = ["Small", "bar_at_top", "has_room", "is_bar", "places"]
 
 _GRAPH = (27.0, 20.0)
 """Width and height that a graph has where there is room, in heights of the text."""

@@ -1,7 +1,5 @@
 """Menus from which a quantity of a body, or of the world, is chosen."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 
@@ -12,8 +10,6 @@ from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = ["build_quantities", "named_key", "scale_of", "unit_of"]
 
 _OFFERED = 24
 """Bodies that a menu lists beside those that are selected or shown already."""

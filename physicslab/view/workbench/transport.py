@@ -1,21 +1,19 @@
-"""The transport at the bottom: start again, step back, play, step, how fast time runs, and the time line."""
-
-from __future__ import annotations
+"""Time: the transport at the bottom with the time line, and the history, a list to click."""
 
 from collections.abc import Sequence
 
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import actions, file_actions
-from physicslab.view.controls.icons import ICONS
+from physicslab.view.controls.history_actions import branch_words, switch
+from physicslab.view.controls.tool import ICONS
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = ["build_transport"]
 
 _SPEEDS = {"4x": 4.0, "2x": 2.0, "1x": 1.0, "1/2x": 0.5, "1/4x": 0.25, "1/8x": 0.125, "1/16x": 0.0625}
 _HINT = "Drag: throw  ·  Left: circle  ·  Right: box  ·  Space: pause  ·  F1: keys"
@@ -31,24 +29,17 @@ def build_transport(ui: Ui, rect: Rect, world: World, window: Window) -> None:
     """Build the row of buttons, the time line and the hint."""
     with ui.panel("transport", rect, padded=False):
         pace, size, icons = window.pace, ui.size, ICONS
-        height, narrow = _HEIGHT * size, _NARROW * size
+        height = _HEIGHT * size
         imgui.set_cursor_pos_y(max(0.5 * (rect[3] - height), 0.0))
-        if ui.button("Restart", "Restart this scene (Ctrl+R)", shown=icons["restart"], size=(narrow, height)):
-            window.do_next(file_actions.restart)
-        imgui.same_line()
-        if ui.button(
-            "Step back", "Pause, and go back by one step (B)", shown=icons["back"], size=(narrow, height)
+        play = ("Play", "play") if pace.paused else ("Pause", "pause")
+        for label, tip, action, shown, width in (
+            ("Restart", "Restart this scene (Ctrl+R)", file_actions.restart, icons["restart"], _NARROW),
+            ("Step back", "Pause, and go back by one step (B)", actions.step_back, icons["back"], _NARROW),
+            (play[0], f"{play[0]} (Space)", actions.toggle_pause, f"{icons[play[1]]}  {play[0]}", _WIDE),
+            ("Step", "Pause, and make one step (.)", actions.step, icons["step"], _NARROW),
         ):
-            window.do_next(actions.step_back)
-        imgui.same_line()
-        label, icon = ("Play", "play") if pace.paused else ("Pause", "pause")
-        words = f"{icons[icon]}  {label}"
-        if ui.button(label, f"{label} (Space)", shown=words, on=True, size=(_WIDE * size, height)):
-            window.do_next(actions.toggle_pause)
-        imgui.same_line()
-        if ui.button("Step", "Pause, and make one step (.)", shown=icons["step"], size=(narrow, height)):
-            window.do_next(actions.step)
-        imgui.same_line()
+            ui.button(label, tip, action, shown=shown, on=width == _WIDE, size=(width * size, height))
+            imgui.same_line()
         imgui.push_style_var_y(imgui.StyleVar_.frame_padding, 0.5 * (height - imgui.get_font_size()))
         _build_speed(ui, pace, window)
         imgui.same_line()
@@ -119,3 +110,57 @@ def _mark_moments(ui: Ui, window: Window, first: int, last: int) -> None:
         paper = imgui.get_window_draw_list()
         paper.add_line(ImVec2(x, low.y), ImVec2(x, high.y), packed(ui.theme.heading), 2.0)
         ui.words.append(f"mark at {time:.3f} s")
+
+
+# ---- the history -------------------------------------------------------------------------------------------
+
+
+_LIST_WIDTH, _LIST_HEIGHT, _LINE = 17.0, 20.0, 1.5
+"""Size of the lists, and height of a line of the lower one, in heights of the text."""
+_LETTERS = 34
+"""How much of a branch is written in its line; the rest is in its tip."""
+
+
+def build_history(ui: Ui, world: World, window: Window) -> None:
+    """Build the list in a window of its own."""
+    history = window.edits.history
+    entries, done = history.entries, history.position
+    left, top, _, _ = window.room()
+    width, height = ui.fitted(_LIST_WIDTH * ui.size, _LIST_HEIGHT * ui.size)
+    place = left + 0.5 * width + ui.size, top + 0.5 * height + 4.0 * ui.size
+    with ui.floating("History", place, window.closing_of("lists_history"), docks=True):
+        ui.button("Undo", "Undo the last edit or run (Ctrl+Z)", actions.undo, enabled=done > 0)
+        imgui.same_line()
+        ui.button("Redo", "Redo what was undone (Ctrl+Y)", actions.redo, enabled=done < len(entries))
+        below = _LINE * (len(history.branches) + 2) * ui.size if history.branches else 0.0
+        room = ui.extent(width, height)
+        if imgui.begin_child("entries", ImVec2(room.x, max(room.y - below, 3.0 * ui.size))):
+            ui.selectable("As it was opened", _go_to, 0, on=done == 0, faint=False)
+            for n, entry in enumerate(entries, start=1):
+                ui.selectable(f"{n}. {entry.words}", _go_to, n, on=n == done, faint=not entry.done)
+        imgui.end_child()
+        _build_branches(ui, window)
+
+
+def _build_branches(ui: Ui, window: Window) -> None:
+    """Build a line for each branch: when it leaves what is listed above, and what was done in it."""
+    history = window.edits.history
+    if not history.branches:
+        return
+    ui.rule()
+    ui.heading("Other branches")
+    ui.tip("Edits and runs that a change in the past replaced; Ctrl+B switches from one to the next")
+    for n, branch in enumerate(history.branches, start=1):
+        words = branch_words(branch, history.start)
+        ui.selectable(f"{n}. {shortened(words, _LETTERS)}", switch, branch)
+        ui.tip(words)
+
+
+def _go_to(world: World, window: Window, entry: int) -> None:
+    """Take back or put back edits and runs until so many are done."""
+    history = window.edits.history
+    window.pause_for_history(world)
+    while history.position > entry and history.undo() is not None:
+        pass
+    while history.position < entry and history.redo() is not None:
+        pass

@@ -1,19 +1,14 @@
 """How many digits can be relied on: a badge in the bar of menus, which opens, and a line of the inspector."""
 
-from __future__ import annotations
-
 import math
 
 from imgui_bundle import ImVec2, imgui
 
-from physicslab.view.panels.trust_watch import RUNS, Finding, TrustWatch
-from physicslab.view.toolkit.bars import bar
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.trust_watch import RUNS, Finding, TrustWatch
 from physicslab.view.window.window import Window
 from physicslab.world import World
-
-__all__ = ["BADGE", "badge_width", "build_badge", "build_body_digits"]
 
 BADGE = "Digits to trust"
 """By what the badge is found."""
@@ -181,9 +176,13 @@ def _build_details(ui: Ui, world: World, window: Window) -> None:
         ui.faint(f"They were not checked for longer: {trust.failure}")
     if trust.running:
         ui.gap(0.2)
-        bar(ui, "Checking", f"{trust.share:.0%}", trust.share, ui.theme.accent)
+        ui.bar("Checking", f"{trust.share:.0%}", trust.share, ui.theme.accent)
     elif not trust.wanted:
         ui.faint(f"It computes the scene about {RUNS} times over, beside the window: frames have priority.")
     ui.rule()
-    if ui.item("Check digits", on=trust.wanted, tip="In a separate process, again as time goes on"):
-        window.do_next(lambda _, window: window.trust.toggle())
+    ui.item(
+        "Check digits",
+        lambda _, window: window.trust.toggle(),
+        on=trust.wanted,
+        tip="In a separate process, again as time goes on",
+    )

@@ -1,23 +1,188 @@
-"""The world in figures: few in plain words first, more for those who measure, all for engineers."""
+"""The world in figures: its energies, where they come from and go, its gravity."""
 
-from __future__ import annotations
-
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from imgui_bundle import imgui
+from imgui_bundle.imgui import ImVec2
 
+from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetPhysics
-from physicslab.view.canvas.quantities import quantity, without_rounding
-from physicslab.view.panels.figures import WorldFigures
-from physicslab.view.panels.laws import gravity_in_words, has_gravity
-from physicslab.view.panels.panels import Line
+from physicslab.view.canvas.quantities import quantity, round_quantity, without_rounding
+from physicslab.view.canvas.theme import Colour, Theme
+from physicslab.view.controls.actions import gravity_in_words, has_gravity
+from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import LEVELS, Window
-from physicslab.view.workbench.energy_flows import build_energies
+from physicslab.view.workbench.figures import Line, WorldFigures
 from physicslab.world import World
 
-__all__ = ["build_figures", "build_levels", "build_world"]
+# ---- energies ----------------------------------------------------------------------------------------------
+
+
+_VISIBLE = 1e-3
+"""Share of the energy exchanged below which a flow is left out of the words; other levels have its figure."""
+_SMALL = 1e-9
+"""Share that is not worth a word, even where there is nothing else."""
+_VERBS = {True: "Given", False: "Taken"}
+_ZERO_TIP = (
+    "The energy of gravity is zero at y = 0 and negative below, that of bodies which attract each other zero "
+    "infinitely far apart, that of a spring zero at its rest length: here, in graphs and in files"
+)
+_ERROR_TIP = (
+    "The change without a cause. It comes from computing in steps, not from physics: "
+    "shorter steps make it smaller"
+)
+_COLOURS = {"impacts": 4, "friction": 5, "damping": 6, "contact": 2, "overlap": 3, "fields": 1}
+"""Which of the colours of bodies an account has; they can be told apart by the colour-blind, too."""
+_BEYOND = 0.25
+"""Share of what is below zero that bars have room for above it."""
+_LABEL = 0.85
+"""Height of the names on the bar, in heights of the text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A part of a bar: its name, its energy [J], which may be below zero, and its colour."""
+
+    name: str
+    energy: float
+    colour: Colour
+
+
+def _visible(figures: WorldFigures) -> list[tuple[str, float]]:
+    """Return the flows that are a visible share of the energy, or else the largest that is no rounding."""
+    audit = figures.audit
+    found = [flow for flow in flows(audit.notable) if abs(audit.share(flow[1])) >= _SMALL]
+    visible = [flow for flow in found if abs(audit.share(flow[1])) >= _VISIBLE]
+    return visible or sorted(found, key=lambda flow: -abs(flow[1]))[:1]
+
+
+def _named(name: str, figures: WorldFigures) -> str:
+    if name != "hand":
+        return ACCOUNT_WORDS[name]
+    if figures.held:
+        return "in the hand"
+    return "hand, driven bodies" if figures.driven else "hand"
+
+
+def flow_words(figures: WorldFigures) -> str:
+    """Return in one line what gave energy and what took some since the accounts began."""
+    words: dict[bool, list[str]] = {True: [], False: []}
+    for name, value in _visible(figures):
+        words[value > 0.0].append(f"{_named(name, figures)} {_short(abs(value))}")
+    sides = (f"{verb}: {', '.join(words[gives])}" for gives, verb in _VERBS.items() if words[gives])
+    return ". ".join(sides) or "Nothing gives or takes energy"
+
+
+def _short(energy: float) -> str:
+    """Return an energy to three figures."""
+    if 1e-3 <= energy < 1e5:
+        return f"{float(f'{energy:.3g}'):g} J"
+    return quantity(energy, "J")
+
+
+def parts_of(figures: WorldFigures, theme: Theme) -> tuple[list[Part], list[Part]]:
+    """Return of what the energy came, and where it is: two lists whose sums differ by the error alone.
+
+    The energy at the start and the potential energy have the zero that all figures have, and may be below it.
+    """
+    audit = figures.audit
+    came = [Part("at the start", audit.account.start.energy, theme.faint)]
+    went = [
+        Part("kinetic", audit.latest.kinetic, theme.velocity),
+        Part("potential", audit.latest.stored, theme.force),
+    ]
+    for name, value in flows(audit.notable):
+        colour = theme.bodies[_COLOURS[name]] if name in _COLOURS else theme.kinematic
+        (came if value > 0.0 else went).append(Part(_named(name, figures), abs(value), colour))
+    return came, went
+
+
+def build_energies(ui: Ui, figures: WorldFigures, *, error: bool) -> None:
+    """Build the energies, bars of where they come from and are, and the ``error`` if that is wanted."""
+    _build_sums(ui, figures)
+    came, went = parts_of(figures, ui.theme)
+    if len(came) > 1:
+        _build_bar(ui, "Where the energy came from", came)
+    _build_bar(ui, "Where the energy is now", went)
+    ui.faint(flow_words(figures))
+    if error:
+        ui.row("Error of the method", _rounded(figures.audit.account.energy["numerical"]), _ERROR_TIP)
+
+
+def _build_sums(ui: Ui, figures: WorldFigures) -> None:
+    """Build kinetic, potential and total energy, each as a bar from the line that is zero for all three."""
+    energy, theme = figures.energy, ui.theme
+    rows = [("Kinetic energy", energy.kinetic, theme.velocity, "")]
+    if energy.potential:
+        rows.append(("Potential energy", energy.stored, theme.force, _ZERO_TIP))
+        rows.append(("Total energy", energy.total, theme.normal_impulse, ""))
+    low, high = (limit(0.0, *(value for _, value, _, _ in rows)) for limit in (min, max))
+    high = max(high, -_BEYOND * low)  # what is below zero is seen to be
+    scale = max(high - low, 1e-300)
+    for label, value, colour, tip in rows:
+        ui.bar(label, figures.joules(value), value / scale, colour, zero=-low / scale, tip=tip)
+
+
+def _rounded(energy: float) -> str:
+    """Return an error: of one figure there is enough."""
+    written = round_quantity if energy and math.isfinite(energy) else quantity
+    return written(energy, "J")
+
+
+def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
+    """Build a bar as wide as the panel, in parts as long as their energies; what has room is named on it.
+
+    Parts below zero lie to the left of a line, the others to its right.
+    """
+    whole = sum(abs(part.energy) for part in parts)
+    if whole == 0.0:
+        return
+    ui.faint(title, wrapped=False)
+    width, height = imgui.get_content_region_avail().x, round(1.25 * ui.size)
+    corner, paper = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
+    end = ImVec2(corner.x + width, corner.y + height)
+    paper.add_rect_filled(corner, end, packed(ui.theme.key))
+    if not 0.0 < whole < math.inf:
+        parts = []
+    left = corner.x
+    for part in sorted(parts, key=lambda part: part.energy >= 0.0):
+        long = abs(part.energy) / whole * width
+        if long >= 1.0:
+            high = left + max(long - 1.0, 1.0)
+            paper.add_rect_filled(
+                ImVec2(left, corner.y), ImVec2(high, corner.y + height), packed(part.colour)
+            )
+            name = part.name if part.energy >= 0.0 else f"-{part.name}"
+            _write_name(ui, name, (left, corner.y, high - left, height))
+        left += long
+    zero = corner.x + sum(max(-part.energy, 0.0) for part in parts) / whole * width
+    if zero > corner.x:
+        ui.zero_line(zero, corner.y, height)
+    imgui.dummy(ImVec2(width, height))
+    figures = [f"{part.name} {quantity(part.energy, 'J')}" for part in parts]
+    ui.tip(". ".join(("; ".join(figures), _ZERO_TIP)))
+
+
+def _write_name(ui: Ui, name: str, rect: tuple[float, float, float, float]) -> None:
+    """Write a name into the middle of a part of the bar, or its first letters where there is less room."""
+    left, top, width, height = rect
+    imgui.push_font(None, _LABEL * ui.size)
+    for words in (name, name[:3], name[:1].strip("-")):
+        needed = imgui.calc_text_size(words)
+        if needed.x + 2.0 <= width:
+            place = ImVec2(left + 0.5 * (width - needed.x), top + 0.5 * (height - needed.y))
+            imgui.get_window_draw_list().add_text(place, packed(ui.theme.background), words)
+            ui.words.append(words)
+            break
+    imgui.pop_font()
+
+
+# ---- the panel ---------------------------------------------------------------------------------------------
+
 
 _PLANETS = {"Earth": 9.81, "Moon": 1.62, "Mars": 3.71, "Jupiter": 24.79, "none": 0.0}
 """The pull of gravity at the surface [m/s^2]; NASA's planetary fact sheets."""

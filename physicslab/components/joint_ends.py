@@ -1,0 +1,52 @@
+"""The fields that every joint has: the two bodies, where it holds them, and whether these collide."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from physicslab.components.lengths import point
+from physicslab.ecs.component import field
+
+type End = tuple[int, Sequence[float]]
+"""A body and its anchor [m]; 0 is the world."""
+
+
+def first_end() -> Any:
+    """Describe the body A of a joint."""
+    meaning = "first body; where absent the entity that carries the joint, the world if that has no place"
+    return field(default=None, fixed=True, meaning=meaning)
+
+
+def second_end() -> Any:
+    """Describe the body B of a joint."""
+    return field(default=None, fixed=True, meaning="second body; a fixed point of the world where absent")
+
+
+def anchor_of_first() -> Any:
+    """Describe the point at which a joint holds A [m]."""
+    return point(0.0, 0.0, "where it holds A, in A's own frame, or a point of the world")
+
+
+def anchor_of_second() -> Any:
+    """Describe the point at which a joint holds B [m]."""
+    return point(0.0, 0.0, "where it holds B, in B's own frame, or a point of the world")
+
+
+def collides() -> Any:
+    """Describe whether the two bodies of a joint touch each other."""
+    return field(default=False, fixed=True, meaning="whether A and B touch each other")
+
+
+def key_of(first: End, second: End) -> tuple[Any, ...]:
+    """Return what is equal for two joints of the same points."""
+    return tuple(sorted((body, *map(float, anchor)) for body, anchor in (first, second)))
+
+
+def why_not_joined(first: End, second: End, known: Mapping[tuple[Any, ...], str]) -> tuple[str, str] | None:
+    """Return which field keeps two ends from being joined, and what it must be; ``None`` if nothing does.
+
+    ``known`` are the joints of a kind so far, by :func:`key_of` their ends, with what to call each.
+    """
+    if first[0] == second[0]:
+        return "b", "another entity than a" if first[0] else "a body where a is a point of the world"
+    other = known.get(key_of(first, second))
+    return None if other is None else ("b", f"other points than those that {other} joins")

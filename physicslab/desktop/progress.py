@@ -1,0 +1,61 @@
+"""The window while it loads, and while kernels are compiled."""
+
+from physicslab.view.canvas.canvas import Canvas, TextStyle
+from physicslab.view.canvas.theme import Theme
+
+PAUSE = 0.05
+"""Time [s] between two looks at whether what is shown here has changed, or the user has done anything."""
+_WIDTH, _HEIGHT = 460, 14
+_MARGIN = 10
+"""Around the panel in the corner [px]."""
+
+
+def draw_loading(canvas: Canvas, theme: Theme, remark: str) -> None:
+    """Draw the name of the program, and a remark."""
+    width, height = canvas.size
+    canvas.clear(theme.background)
+    canvas.text(
+        "PhysicsLab", (width // 2, height // 2 - 110), TextStyle(34, theme.heading, bold=True), "centre"
+    )
+    if remark:
+        canvas.text(remark, (width // 2, height // 2 + 28), TextStyle(14, theme.faint), "centre")
+
+
+def _draw_bar(canvas: Canvas, theme: Theme, left: int, top: int, width: int, share: float) -> None:
+    canvas.panel((left, top, width, _HEIGHT), theme.panel, theme.outline)
+    canvas.panel((left, top, round(width * share), _HEIGHT), theme.accent, theme.accent)
+
+
+def draw_waiting(canvas: Canvas, theme: Theme, share: float, remark: str) -> None:
+    """Draw over the world that it waits for something that is not compiled yet."""
+    width, height = canvas.size
+    panel = min(_WIDTH, width - 40)
+    left, top, middle = (width - panel) // 2, height // 2 - 60, width // 2
+    canvas.panel((left, top, panel, 120), theme.panel, theme.outline)
+    words = "Paused: this part is still being compiled."
+    canvas.text(words, (middle, top + 16), TextStyle(16, theme.text), "centre")
+    _draw_bar(canvas, theme, left + 30, top + 52, panel - 60, share)
+    canvas.text(remark, (middle, top + 80), TextStyle(14, theme.faint), "centre")
+
+
+def draw_corner(canvas: Canvas, theme: Theme, share: float) -> None:
+    """Draw at the bottom how far the compiling of what this scene does not need has come."""
+    words, style = f"Compiling the rest: {share:.0%}", TextStyle(12, theme.faint)
+    width, height = canvas.text_size(words, style)
+    left, top = canvas.size[0] - width - 3 * _MARGIN, canvas.size[1] - height - 2 * _MARGIN
+    canvas.panel((left, top, width + 2 * _MARGIN, height + _MARGIN), theme.panel, theme.outline)
+    canvas.text(words, (left + _MARGIN, top + _MARGIN // 2), style)
+
+
+def draw_progress(canvas: Canvas, theme: Theme, share: float, remark: str) -> None:
+    """Draw a bar filled to a share (0 to 1), what it is about, and a remark."""
+    width, height = canvas.size
+    bar = min(_WIDTH, width - 80)
+    left, top, middle = (width - bar) // 2, height // 2, width // 2
+    draw_loading(canvas, theme, "")
+    first = "First start: compiling the physics for this computer."
+    canvas.text(first, (middle, top - 50), TextStyle(16, theme.text), "centre")
+    _draw_bar(canvas, theme, left, top, bar, share)
+    canvas.text(remark, (middle, top + 28), TextStyle(14, theme.faint), "centre")
+    again = "This is done once and kept. Esc quits."
+    canvas.text(again, (middle, top + 56), TextStyle(14, theme.faint), "centre")

@@ -1,0 +1,301 @@
+"""Rows of equality constraints between two bodies: what a row measures, and the forces that keep it at zero.
+
+A row measures g, how far a point of B is from one of A along an axis [m]. J is its gradient by the
+coordinates of both bodies, so that J v is how fast it grows, and its force acts by J^T. The constrained
+motion solves [M J^T; J 0] [a; -lambda] = [f; -Jdot v]: with A = J M^-1 J^T, A lambda = -(J M^-1 f + Jdot v).
+
+Rows are packed like forces (:mod:`physicslab.kernels.forces.force_calls`), in an array of numbers and one of
+whole numbers, which kernels get as arrays or by pointers. Dependent rows, as those of two equal pins, get no
+force: the motion is the same. A is factorised within its envelope, so that a chain costs as much as it has
+links.
+"""
+
+import math
+from typing import Any
+
+from physicslab.kernels import Numbers, Rows, always_inlined, kernel
+from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
+from physicslab.kernels.forces.force_calls import force_kernel
+from physicslab.kernels.ode.compensated import add
+
+__all__ = [
+    "ARM_A", "ARM_B", "AXIS", "BOOKED", "COORDINATES", "DRIVEN", "ENDS", "FIRST", "GIVEN", "RANK", "ROWS",
+    "constrain", "forces_of", "measure_row", "project", "room_of",
+]  # fmt: skip
+
+ROWS, COORDINATES, BOOKED, DRIVEN, RANK, FIRST = range(6)
+"""The whole numbers: how many rows; how many coordinates move; the accounts of joints and of what drives
+bodies, or -1; how many rows are independent, as it was found last. Then ``ENDS`` numbers a row, and where the
+envelope of each begins."""
+ENDS = 4
+"""Where x and the angle of A are, and of B, as the packed coordinates have them; an angle of -1 never
+changes."""
+ARM_A, ARM_B, AXIS, GIVEN = 0, 2, 4, 6
+"""The numbers of a row: the anchors at A and B in the body's own directions, or in the world's where the
+angle never changes [m]; the axis, a unit vector of the world. Behind all rows are the inverse masses
+of the coordinates, then their rates of damping [1/s], ``STATE`` numbers a row, and the matrix."""
+JA, JB, ERROR, RATE, LAMBDA, RIGHT, DIAGONAL, CHANGE, STATE = 0, 3, 6, 7, 8, 9, 10, 11, 12
+"""The state of a row: its gradient by x, y and the angle of A, and of B; the error g [m]; Jdot v [m/s^2]; the
+force [N]; the right side; the diagonal of A; how the force changes."""
+_DEPENDENT = 1e-12
+"""Share of its diagonal below which a pivot of A is rounding: the row depends on those before it."""
+_ROUNDING = 4e-16
+"""Share of the largest coordinate, and of the largest speed, below which an error is rounding."""
+
+
+def room_of(rows: int, coordinates: int) -> tuple[int, int]:
+    """Return how many numbers and how many whole numbers so many rows and coordinates take."""
+    return (GIVEN + STATE) * rows + 2 * coordinates + rows * rows, FIRST + (ENDS + 1) * rows
+
+
+def forces_of(numbers: Numbers, whole: Rows) -> Numbers:
+    """Return the forces (n,) [N] of the rows, as they were found last."""
+    n, states = int(whole[ROWS]), GIVEN * int(whole[ROWS]) + 2 * int(whole[COORDINATES])
+    return numbers[states : states + STATE * n].reshape(n, STATE)[:, LAMBDA]
+
+
+@always_inlined
+def _states(whole: Any) -> Any:
+    """Return where the states of the rows begin."""
+    return GIVEN * whole[ROWS] + 2 * whole[COORDINATES]
+
+
+@always_inlined
+def _inverse(numbers: Any, whole: Any, place: Any) -> float:
+    """Return the inverse mass of a coordinate; zero of what is fixed, and of an angle that never changes."""
+    if 0 <= place < whole[COORDINATES]:
+        return numbers[GIVEN * whole[ROWS] + place]  # type: ignore[no-any-return]
+    return 0.0
+
+
+@always_inlined
+def measure_row(
+    ax: float, ay: float, turn_a: float, bx: float, by: float, turn_b: float,
+    arm_ax: float, arm_ay: float, arm_bx: float, arm_by: float, nx: float, ny: float,
+) -> tuple[float, float, float, float, float]:  # fmt: skip
+    """Return r_a x n and r_b x n, r_a . n and r_b . n of both arms, and B's point from A's along n [m].
+
+    By r x n a row turns a body.
+    """
+    ca, sa, cb, sb = math.cos(turn_a), math.sin(turn_a), math.cos(turn_b), math.sin(turn_b)
+    rax, ray = ca * arm_ax - sa * arm_ay, sa * arm_ax + ca * arm_ay
+    rbx, rby = cb * arm_bx - sb * arm_by, sb * arm_bx + cb * arm_by
+    error = nx * ((bx - ax) + (rbx - rax)) + ny * ((by - ay) + (rby - ray))
+    along_a, along_b = rax * nx + ray * ny, rbx * nx + rby * ny
+    return rax * ny - ray * nx, rbx * ny - rby * nx, along_a, along_b, error
+
+
+@always_inlined
+def measure_rows(q: Any, v: Any, numbers: Any, whole: Any) -> None:
+    """Find gradient, error and Jdot v of every row in a state."""
+    for i in range(whole[ROWS]):
+        r, w, s = GIVEN * i, FIRST + ENDS * i, _states(whole) + STATE * i
+        a, turn_a, b, turn_b = whole[w], whole[w + 1], whole[w + 2], whole[w + 3]
+        angle_a, spin_a = (q[turn_a], v[turn_a]) if turn_a >= 0 else (0.0, 0.0)
+        angle_b, spin_b = (q[turn_b], v[turn_b]) if turn_b >= 0 else (0.0, 0.0)
+        nx, ny = numbers[r + AXIS], numbers[r + AXIS + 1]
+        across_a, across_b, along_a, along_b, error = measure_row(
+            q[a], q[a + 1], angle_a, q[b], q[b + 1], angle_b, numbers[r + ARM_A], numbers[r + ARM_A + 1],
+            numbers[r + ARM_B], numbers[r + ARM_B + 1], nx, ny,
+        )  # fmt: skip
+        numbers[s + JA], numbers[s + JA + 1], numbers[s + JA + 2] = -nx, -ny, -across_a
+        numbers[s + JB], numbers[s + JB + 1], numbers[s + JB + 2] = nx, ny, across_b
+        numbers[s + ERROR] = error
+        numbers[s + RATE] = spin_a * spin_a * along_a - spin_b * spin_b * along_b
+
+
+@always_inlined
+def _along(values: Any, numbers: Any, whole: Any, i: int) -> float:
+    """Return the product of the gradient of row i with packed values."""
+    w, s = FIRST + ENDS * i, _states(whole) + STATE * i
+    total = 0.0
+    for end in range(2):
+        x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + JA + (JB - JA) * end
+        total += numbers[j] * values[x] + numbers[j + 1] * values[x + 1]
+        if turn >= 0:
+            total += numbers[j + 2] * values[turn]
+    return total
+
+
+@always_inlined
+def _response(numbers: Any, whole: Any, i: int, j: int) -> float:
+    """Return how a unit force of row j accelerates row i [1/kg]: an element of A."""
+    total, states = 0.0, _states(whole)
+    for one in range(2):
+        x, turn = whole[FIRST + ENDS * i + 2 * one], whole[FIRST + ENDS * i + 2 * one + 1]
+        mass, inertia = _inverse(numbers, whole, x), _inverse(numbers, whole, turn)
+        if mass == 0.0 and inertia == 0.0:
+            continue
+        p = states + STATE * i + JA + (JB - JA) * one
+        for other in range(2):
+            if whole[FIRST + ENDS * j + 2 * other] == x:
+                k = states + STATE * j + JA + (JB - JA) * other
+                total += mass * (numbers[p] * numbers[k] + numbers[p + 1] * numbers[k + 1])
+                total += inertia * numbers[p + 2] * numbers[k + 2]
+    return total
+
+
+@always_inlined
+def factorise(numbers: Any, whole: Any) -> None:
+    """Write A above the diagonal, and its factor L, A = L L^T, from the diagonal down."""
+    n, states, rank = whole[ROWS], _states(whole), 0
+    matrix, begin = states + STATE * n, FIRST + ENDS * n
+    for i in range(n):
+        first = i
+        for j in range(i + 1):
+            response = _response(numbers, whole, i, j)
+            numbers[matrix + n * j + i] = response
+            numbers[matrix + n * i + j] = response
+            if response != 0.0 and j < first:
+                first = j
+        whole[begin + i] = first
+        numbers[states + STATE * i + DIAGONAL] = numbers[matrix + n * i + i]
+    for i in range(n):
+        for j in range(whole[begin + i], i + 1):
+            left = numbers[matrix + n * i + j]
+            for k in range(max(whole[begin + i], whole[begin + j]), j):
+                left -= numbers[matrix + n * i + k] * numbers[matrix + n * j + k]
+            if j < i:
+                pivot = numbers[matrix + n * j + j]
+                numbers[matrix + n * i + j] = left / pivot if pivot > 0.0 else 0.0
+            elif left > _DEPENDENT * numbers[states + STATE * i + DIAGONAL]:
+                numbers[matrix + n * i + i] = math.sqrt(left)
+                rank += 1
+            else:
+                numbers[matrix + n * i + i] = 0.0
+    whole[RANK] = rank
+
+
+@always_inlined
+def _substitute(numbers: Any, whole: Any) -> None:
+    """Find how the forces change from the right side, which is used up; none for a dependent row."""
+    n, states = whole[ROWS], _states(whole)
+    matrix, begin = states + STATE * n, FIRST + ENDS * n
+    for i in range(n):
+        left, pivot = numbers[states + STATE * i + RIGHT], numbers[matrix + n * i + i]
+        for k in range(whole[begin + i], i):
+            left -= numbers[matrix + n * i + k] * numbers[states + STATE * k + CHANGE]
+        numbers[states + STATE * i + CHANGE] = left / pivot if pivot > 0.0 else 0.0
+    for down in range(n):
+        i = n - 1 - down
+        pivot = numbers[matrix + n * i + i]
+        solved = numbers[states + STATE * i + CHANGE] / pivot if pivot > 0.0 else 0.0
+        numbers[states + STATE * i + CHANGE] = solved
+        for k in range(whole[begin + i], i):
+            numbers[states + STATE * k + CHANGE] -= numbers[matrix + n * i + k] * solved
+
+
+@always_inlined
+def solve(numbers: Any, whole: Any) -> None:
+    """Find the forces of all rows from the right side, which is used up; refined once.
+
+    What is light between heavy bodies gets the difference of large forces.
+    """
+    n, states = whole[ROWS], _states(whole)
+    matrix, begin = states + STATE * n, FIRST + ENDS * n
+    for i in range(n):
+        numbers[states + STATE * i + LAMBDA] = numbers[states + STATE * i + RIGHT]
+    _substitute(numbers, whole)
+    for i in range(n):
+        left = numbers[states + STATE * i + LAMBDA]
+        left -= numbers[states + STATE * i + DIAGONAL] * numbers[states + STATE * i + CHANGE]
+        for j in range(whole[begin + i], i):
+            left -= numbers[matrix + n * j + i] * numbers[states + STATE * j + CHANGE]
+        for j in range(i + 1, n):
+            left -= numbers[matrix + n * i + j] * numbers[states + STATE * j + CHANGE]
+        numbers[states + STATE * i + RIGHT] = left
+    for i in range(n):
+        numbers[states + STATE * i + LAMBDA] = numbers[states + STATE * i + CHANGE]
+    _substitute(numbers, whole)
+    for i in range(n):
+        numbers[states + STATE * i + LAMBDA] += numbers[states + STATE * i + CHANGE]
+
+
+@force_kernel
+def constrain(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
+    """Add the forces of joints: those with which all rows stay as they are under the forces there by now.
+
+    So it is the last of all forces. ``parameters`` and ``indices`` are the rows, as the module has them.
+    """
+    n, m = indices[ROWS], indices[COORDINATES]
+    inverse, states = GIVEN * n, _states(indices)
+    damping = inverse + m
+    measure_rows(q, v, parameters, indices)
+    factorise(parameters, indices)
+    for i in range(n):
+        s, w, change = states + STATE * i, FIRST + ENDS * i, 0.0
+        for end in range(2):
+            x, turn, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + JA + (JB - JA) * end
+            for k in range(3):
+                place = x + k if k < 2 else turn
+                if 0 <= place < m:
+                    gained = parameters[inverse + place] * force[place]
+                    change += parameters[j + k] * (gained - parameters[damping + place] * v[place])
+        parameters[s + RIGHT] = -(change + parameters[s + RATE])
+    solve(parameters, indices)
+    px, py, spin, driven = 0.0, 0.0, 0.0, 0.0
+    for i in range(n):
+        s, w = states + STATE * i, FIRST + ENDS * i
+        pull = parameters[s + LAMBDA]
+        for end in range(2):
+            x, turn, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + JA + (JB - JA) * end
+            fx, fy, torque = pull * parameters[j], pull * parameters[j + 1], pull * parameters[j + 2]
+            force[x] += fx
+            force[x + 1] += fy
+            if _inverse(parameters, indices, x) > 0.0:
+                px += fx
+                py += fy
+                spin += q[x] * fy - q[x + 1] * fx
+            else:
+                driven += fx * v[x] + fy * v[x + 1]
+            if turn >= 0:
+                force[turn] += torque
+                if _inverse(parameters, indices, turn) > 0.0:
+                    spin += torque
+                else:
+                    driven += torque * v[turn]
+    account, hand = indices[BOOKED], indices[DRIVEN]
+    if account >= 0:
+        force[account + PX] += px
+        force[account + PY] += py
+        force[account + SPIN] += spin
+    if hand >= 0:
+        force[hand + ENERGY] -= driven
+
+
+@kernel
+def project(q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, numbers: Numbers, whole: Rows) -> float:
+    """Move bodies by the least that closes what joints hold together, and remove their speeds apart.
+
+    ``q_low`` and ``v_low`` (n,) are the remainders of what moves. Returns the largest error left [m]. What
+    this changes of energy and momentum is an error of the method.
+    """
+    n, m, states, largest = whole[ROWS], whole[COORDINATES], _states(whole), 0.0
+    size, speed = 0.0, 0.0
+    for i in range(m):
+        size, speed = max(size, abs(q[i])), max(speed, abs(v[i]))
+    for turn in range(4):
+        measure_rows(q, v, numbers, whole)
+        largest, fastest = 0.0, 0.0
+        for i in range(n):
+            error, rate = numbers[states + STATE * i + ERROR], _along(v, numbers, whole, i)
+            largest, fastest = max(largest, abs(error)), max(fastest, abs(rate))
+            numbers[states + STATE * i + RIGHT] = -error if turn < 3 else -rate
+        limit = size if turn < 3 else speed
+        if (largest if turn < 3 else fastest) <= _ROUNDING * limit:
+            continue
+        factorise(numbers, whole)
+        solve(numbers, whole)
+        for i in range(n):
+            s, w = states + STATE * i, FIRST + ENDS * i
+            for end in range(2):
+                x, angle, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + JA + (JB - JA) * end
+                for k in range(3):
+                    place = x + k if k < 2 else angle
+                    if 0 <= place < m:
+                        change = numbers[GIVEN * n + place] * numbers[j + k] * numbers[s + LAMBDA]
+                        if turn < 3:
+                            q[place], q_low[place] = add(q[place], q_low[place], change)
+                        else:
+                            v[place], v_low[place] = add(v[place], v_low[place], change)
+    return largest

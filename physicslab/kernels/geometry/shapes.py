@@ -1,0 +1,166 @@
+"""The table of shapes, from which every loop reads what a body's outline is.
+
+A convex shape is a core of 1 to 8 vertices, counter-clockwise about the centre, and a radius that rounds it:
+a disc is 1 vertex with a radius, a box 4 without, a capsule 2 with one. Names of kinds are for people and
+files; ``physicslab/components/shape.py`` has their rows, from which :func:`derive_shape` fills this table.
+
+To use it, take ``shapes_of(state)`` (:mod:`physicslab.contacts.arguments`) as a ``ShapesTuple`` argument and
+name it by ``shapes = named_shapes(plain)``; in Python, ``state.bodies.shapes`` is the same, named. It is up
+to date from the beginning of a step on. Then, of row ``i``:
+
+- ``shapes.vertices[i]``: their number, 0 where there is no shape. ``shapes.first[i] == BOX``: they are those
+  of a box, for which ``half_x`` and ``half_y`` say all.
+- ``vertex(shapes, i, k)``, ``face(shapes, i, k)``, ``support(shapes, i, x, y)``: of the core, in the body's
+  own directions. Face k goes from vertex k to the next one.
+- ``shapes.radius[i]``: its rounding. ``shapes.reach[i]``: the largest distance of the outline from the
+  centre. ``half_thickness(shapes, i)``: half of the smaller extent. ``half_extents(shapes, i, angle)``: of
+  the upright box.
+
+What turns without effect, a disc, has ``shapes.reach[i] - shapes.radius[i]`` equal to 0.
+"""
+
+import math
+from typing import NamedTuple
+
+from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels.records import Pairs
+
+BOX = 1
+"""Where the vertices of a box begin in the pool, after the one of a disc."""
+MOST_VERTICES = 8
+"""The largest number of vertices of a core."""
+
+
+class Shapes(NamedTuple):
+    """The outlines of all rows.
+
+    Attributes
+    ----------
+    vertices, first : int64 arrays (rows,)
+        The number of vertices of the core, and where they begin in the pool.
+    half_x, half_y : float64 arrays (rows,)
+        Half of the extents of the core in the body's own directions [m]: the scales of its vertices.
+    radius : float64 array (rows,)
+        By how much the core is rounded [m].
+    reach : float64 array (rows,)
+        The largest distance of the outline from the centre [m].
+    pool : float64 array (n, 2)
+        The vertices of each core, in shares of ``half_x`` and ``half_y``; equal cores share theirs.
+    """
+
+    vertices: Rows
+    first: Rows
+    half_x: Numbers
+    half_y: Numbers
+    radius: Numbers
+    reach: Numbers
+    pool: Vectors
+
+
+ShapesTuple = tuple[Pairs, Vectors, Vectors]
+"""The same in three arrays (2, rows), (4, rows), (n, 2), which are passed faster."""
+SizesTuple = tuple[Numbers, Numbers, Numbers]
+"""The columns of sizes of the ``Shape`` component, in its order."""
+
+
+@fused
+def named_shapes(plain: ShapesTuple) -> Shapes:
+    """Give names to the arrays."""
+    cores, lengths, pool = plain
+    return Shapes(cores[0], cores[1], lengths[0], lengths[1], lengths[2], lengths[3], pool)
+
+
+@inlined
+def vertex(shapes: Shapes, i: int, k: int) -> tuple[float, float]:
+    """Return vertex k of the core of row i, from its centre in its own directions [m]."""
+    at = shapes.first[i] + k
+    return shapes.half_x[i] * shapes.pool[at, 0], shapes.half_y[i] * shapes.pool[at, 1]
+
+
+@inlined
+def face(shapes: Shapes, i: int, k: int) -> tuple[float, float, float, float]:
+    """Return the outward normal of face k of the core of row i, its distance from the centre and length [m].
+
+    It goes from vertex k to the next one. The core of a capsule has two faces, back to back; a disc has none.
+    """
+    x, y = vertex(shapes, i, k)
+    to_x, to_y = vertex(shapes, i, (k + 1) % shapes.vertices[i])
+    along_x, along_y = to_x - x, to_y - y
+    length = math.sqrt(along_x * along_x + along_y * along_y)
+    nx, ny = along_y / length, -along_x / length
+    return nx, ny, nx * x + ny * y, length
+
+
+@inlined
+def support(shapes: Shapes, i: int, x: float, y: float) -> tuple[int, float]:
+    """Return the vertex of the core of row i that is farthest along a unit vector, and how far [m]."""
+    best, farthest = 0, -math.inf
+    for k in range(shapes.vertices[i]):
+        vx, vy = vertex(shapes, i, k)
+        along = x * vx + y * vy
+        if along > farthest:
+            best, farthest = k, along
+    return best, farthest
+
+
+@inlined
+def half_thickness(shapes: Shapes, i: int) -> float:
+    """Return half of the smaller extent of row i [m]."""
+    half: float = min(shapes.half_x[i], shapes.half_y[i]) + shapes.radius[i]
+    return half
+
+
+@inlined
+def half_extents(shapes: Shapes, i: int, angle: float) -> tuple[float, float]:
+    """Return half of the width and height of the upright box about the centre of row i, turned so far [m]."""
+    radius = shapes.radius[i]
+    if shapes.vertices[i] < 2:
+        return radius, radius
+    c, s, half_x, half_y = math.cos(angle), math.sin(angle), 0.0, 0.0
+    if shapes.first[i] == BOX:
+        c, s = abs(c), abs(s)
+        return c * shapes.half_x[i] + s * shapes.half_y[i], s * shapes.half_x[i] + c * shapes.half_y[i]
+    for k in range(shapes.vertices[i]):
+        x, y = vertex(shapes, i, k)
+        half_x, half_y = max(half_x, abs(c * x - s * y)), max(half_y, abs(s * x + c * y))
+    return half_x + radius, half_y + radius
+
+
+@inlined
+def derive_shape(
+    i: int, kind: Rows, sizes: SizesTuple, kinds: Pairs, extents: Vectors, shapes: Shapes
+) -> bool:
+    """Fill row i of the table from its component; return whether its sizes are finite and above 0.
+
+    ``kinds`` (n, 5) has, of each kind, the number of vertices, where they begin in the pool, and the columns
+    of ``sizes`` that stretch it along x and y and round it, or -1; ``extents`` (n, 2) has half of the extents
+    of the core in units of these sizes.
+    """
+    row = kind[i]
+    count, first, x, y, rounded = kinds[row, 0], kinds[row, 1], kinds[row, 2], kinds[row, 3], kinds[row, 4]
+    size_x = sizes[x][i] if x >= 0 else 1.0
+    size_y = sizes[y][i] if y >= 0 else 1.0
+    rounding = sizes[rounded][i] if rounded >= 0 else 1.0
+    half_x, half_y = extents[row, 0] * size_x, extents[row, 1] * size_y
+    radius = rounding if rounded >= 0 else 0.0
+    shapes.vertices[i], shapes.first[i] = count, first
+    shapes.half_x[i], shapes.half_y[i], shapes.radius[i] = half_x, half_y, radius
+    farthest = 0.0
+    if first == BOX:
+        farthest = half_x * half_x + half_y * half_y
+    elif count > 1:
+        for k in range(count):
+            vx, vy = vertex(shapes, i, k)
+            farthest = max(farthest, vx * vx + vy * vy)
+    shapes.reach[i] = math.sqrt(farthest) + radius
+    return 0.0 < size_x < math.inf and 0.0 < size_y < math.inf and 0.0 < rounding < math.inf
+
+
+@kernel
+def derive_shapes(
+    kind: Rows, sizes: SizesTuple, kinds: Pairs, extents: Vectors, plain_shapes: ShapesTuple
+) -> None:
+    """Fill the table, as :func:`derive_shape` does row by row."""
+    shapes = named_shapes(plain_shapes)
+    for i in range(len(kind)):
+        derive_shape(i, kind, sizes, kinds, extents, shapes)

@@ -1,0 +1,200 @@
+"""Short words in boxes over the world: banners and warnings at the top, messages at the bottom."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from physicslab.diagnostics.warnings import ModelWarning
+from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
+from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
+from physicslab.view.canvas.drawing import Drawing
+from physicslab.view.canvas.theme import Colour
+
+
+def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str]:
+    """Break words into lines no wider than ``width`` px; a word that is too long by itself is cut.
+
+    Text beyond ``MAX_LETTERS`` is left out.
+    """
+    lines: list[str] = []
+    line = ""
+    for word in shortened(words, MAX_LETTERS).split():
+        longer = f"{line} {word}" if line else word
+        if canvas.text_size(longer, style)[0] <= width:
+            line = longer
+            continue
+        if line:
+            lines.append(line)
+        line = word
+        while canvas.text_size(line, style)[0] > width and len(line) > 1:
+            cut = _fitting(line, width, canvas, style)
+            lines.append(line[:cut])
+            line = line[cut:]
+    return [*lines, line] if line else lines
+
+
+def _fitting(word: str, width: int, canvas: Canvas, style: TextStyle) -> int:
+    """Return how many letters of a word fit into ``width`` px, and one where none does."""
+    fits, too_long = 1, len(word)
+    while too_long - fits > 1:
+        middle = (fits + too_long) // 2
+        if canvas.text_size(word[:middle], style)[0] <= width:
+            fits = middle
+        else:
+            too_long = middle
+    return fits
+
+
+def pill_margin(size: int) -> int:
+    """Return how much wider a box is than the words in it [px], for text of a height [px]."""
+    return 4 * round(0.55 * size)
+
+
+def pill_height(lines: int, style: TextStyle, canvas: Canvas) -> int:
+    """Return how high a box around so many lines is [px]."""
+    return canvas.text_size("Ag", style)[1] * lines + round(0.55 * style.size)
+
+
+def draw_pill(words: Sequence[str], middle: int, top: int, size: int, colour: Colour, on: Drawing) -> Rect:
+    """Draw lines of words in a box around ``middle``, and return where it is [px]."""
+    style = TextStyle(size, colour, bold=True)
+    pad = round(0.55 * size)
+    widths = [on.canvas.text_size(line, style)[0] for line in words]
+    line_height = on.canvas.text_size("Ag", style)[1]
+    width, height = max(widths) + pill_margin(size), line_height * len(words) + pad
+    rect = (middle - width // 2, top, width, height)
+    on.canvas.panel(rect, on.theme.panel, colour, 0.95)
+    for n, line in enumerate(words):
+        on.canvas.text(line, (middle, top + pad // 2 + n * line_height), style, "centre")
+    return rect
+
+
+_MIN_DROPPED = 0.05
+"""Less time [s], dropped within a few seconds, cannot be noticed, and would be written as 0.0 s."""
+_DROP_SHOWN = 3.0
+"""How long [s] time that was dropped is shown."""
+
+
+class DroppedTime:
+    """Adds up the time that was dropped of late, for as long as more is dropped every few seconds."""
+
+    def __init__(self) -> None:
+        self._seen = 0.0
+        self._sum = 0.0
+        self._until = 0.0
+
+    def recent(self, dropped: float, now: float) -> float:
+        """Return the time dropped of late [s]; 0 where it is too little to be noticed.
+
+        Parameters
+        ----------
+        dropped : float
+            All the time that was ever dropped [s].
+        now : float
+            The time that the window has been open [s].
+        """
+        if dropped > self._seen:
+            if now >= self._until:
+                self._sum = 0.0
+            self._sum += dropped - self._seen
+            self._seen, self._until = dropped, now + _DROP_SHOWN
+        return self._sum if now < self._until and self._sum >= _MIN_DROPPED else 0.0
+
+
+def draw_banners(
+    banners: Iterable[tuple[str, Colour]], middle: int, top: int, bottom: int, room: int, on: Drawing
+) -> list[Rect]:
+    """Draw banners in their colours below each other, from ``top`` on, and return where they are [px].
+
+    Those wider than ``room`` are broken into lines; those that would reach below ``bottom`` are left out.
+    """
+    taken: list[Rect] = []
+    for words, colour in banners:
+        style = TextStyle(on.size + 2, colour, bold=True)
+        lines = broken(words, max(room - pill_margin(on.size + 2), 1), on.canvas, style)
+        if top + pill_height(len(lines), style, on.canvas) <= bottom:
+            taken.append(draw_pill(lines, middle, top, on.size + 2, colour, on))
+            top += on.size // 2 + taken[-1][3]
+    return taken
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """A message of an error or an action: its lines, its colour, its width and height [px]."""
+
+    lines: list[str]
+    colour: Colour
+    width: int
+    height: int
+
+
+def lay_out_messages(words: Iterable[tuple[str, Colour]], on: Drawing, room: int) -> list[Message]:
+    """Break messages into lines of a height [px], no wider than ``room``; empty ones are left out."""
+    messages: list[Message] = []
+    for message, colour in words:
+        style = TextStyle(on.size, colour, bold=True)
+        lines = broken(message, max(room - pill_margin(on.size), 1), on.canvas, style)
+        if lines:
+            height = pill_height(len(lines), style, on.canvas)
+            width = max(on.canvas.text_size(line, style)[0] for line in lines) + pill_margin(on.size)
+            messages.append(Message(lines, colour, width, height))
+    return messages
+
+
+def draw_messages(messages: Iterable[Message], middle: int, top: int, bottom: int, on: Drawing) -> list[Rect]:
+    """Draw messages around ``middle`` above ``bottom``, the first lowest, and return where they are [px].
+
+    Further ones that would reach above ``top`` are left out.
+    """
+    bottom -= on.size // 2
+    taken: list[Rect] = []
+    for message in messages:
+        if taken and bottom - message.height < top:
+            continue
+        bottom -= message.height
+        taken.append(draw_pill(message.lines, middle, bottom, on.size, message.colour, on))
+        bottom -= on.size // 2
+    return taken
+
+
+_MAX_SHOWN = 3
+"""Further warnings are counted. All are in ``run --json``."""
+_MAX_WIDTH, _MAX_HEIGHT = 60, 0.4
+"""How wide a line may be, in heights of the text, and how much of the room all of them may take: the first
+stands alone where they would take more."""
+
+
+def draw_advice(
+    advice: Sequence[ModelWarning],
+    middle: int,
+    top: int,
+    bottom: int,
+    room: int,
+    on: Drawing,
+    *,
+    plainly: bool = False,
+) -> Rect | None:
+    """Write what is not to be trusted, around ``middle`` and no wider than ``room`` px; return where [px].
+
+    The worst comes first, and ``plainly`` alone; what is beyond a limit comes before what has none. Without a
+    warning, or room for it above ``bottom``, nothing is drawn.
+    """
+    if not advice:
+        return None
+    ordered = sorted(advice, key=lambda one: (bool(one.limit), one.excess), reverse=True)
+    small = max(on.size - 1, 10)
+    width = min(room, _MAX_WIDTH * on.size) - 3 * on.size
+    style, inner = TextStyle(small, on.theme.warning, bold=True), max(width, 4 * on.size)
+    told = ordered[0].told if ordered[0].entity else ordered[0].told.capitalize()
+    rest = f" And {len(ordered) - 1} more." if len(ordered) > 1 else ""
+    brief = broken(f"! {told}.{' More under Engineer.' if plainly else rest}", inner, on.canvas, style)
+    lines = ["! Not to be trusted"]
+    for one in ordered[:_MAX_SHOWN]:
+        pieces = broken(str(one), inner, on.canvas, style)
+        lines += [f"- {pieces[0]}", *pieces[1:]]
+    if len(ordered) > _MAX_SHOWN:
+        lines.append(f"and {len(ordered) - _MAX_SHOWN} more")
+    if plainly or pill_height(len(lines), style, on.canvas) > _MAX_HEIGHT * (bottom - top):
+        lines = brief
+    if top + pill_height(len(lines), style, on.canvas) > bottom:
+        return None
+    return draw_pill(lines, middle, top, small, on.theme.warning, on)

@@ -1,1 +1,0 @@
-"""Figures and text beside the world."""

@@ -1,0 +1,153 @@
+"""The menus at the top, where all that keys do can be found, and the help, which lists the keys."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from imgui_bundle import imgui
+
+from physicslab.ecs.text import printable
+from physicslab.scenes import SCENES
+from physicslab.view.canvas.drawable_text import shortened
+from physicslab.view.controls import file_actions
+from physicslab.view.controls.controls import CONTROLS, Control
+from physicslab.view.controls.file_actions import scene_files
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.toolkit.windows import widget_label
+from physicslab.view.window.window import Window
+from physicslab.view.workbench.file_panels import recent_label
+from physicslab.view.workbench.trust_badge import badge_width, build_badge
+from physicslab.world import World
+
+_MENUS = {"File": ("file", "quit"), "Edit": ("edit",), "World": ("laws",), "Instruments": ("measure",),
+          "View": ("show", "view", "window"),
+          "Help": ("help",)}  # fmt: skip
+"""Which groups of controls each menu shows."""
+_MAX_TITLE = 60
+
+
+def build_menu_bar(ui: Ui, world: World, window: Window) -> None:
+    """Build the menus, and the title of the scene at the right."""
+    if not imgui.begin_main_menu_bar():
+        return
+    if ui.keys_go_to == "menu":
+        _begin_walk(next(iter(_MENUS)))
+    for name, groups in _MENUS.items():
+        with ui.menu(name) as shown:
+            if shown:
+                _build_controls(ui, groups, world, window)
+        if name == "File":
+            with ui.menu("Scenes") as shown:
+                if shown:
+                    _build_scenes(ui, world, window)
+    _build_right(ui, world, window)
+    imgui.end_main_menu_bar()
+
+
+def _build_right(ui: Ui, world: World, window: Window) -> None:
+    """Build the badge at the right, and the title of the scene where there is room for both."""
+    title = shortened(printable(world.title or world.name or "A scene"), _MAX_TITLE)
+    room, width = imgui.get_content_region_avail().x, imgui.calc_text_size(title).x
+    beside = room - width - ui.size
+    is_titled = badge_width(ui, world, window) <= beside
+    build_badge(ui, world, window, beside if is_titled else room)
+    if is_titled:
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
+        ui.faint(title, wrapped=False)
+
+
+def _begin_walk(menu: str) -> None:
+    """Put the mark of the keys on a menu."""
+    bar = imgui.internal
+    bar.focus_window(bar.get_current_window())
+    bar.set_nav_id(imgui.get_id(widget_label(menu, menu)), bar.NavLayer.menu, 0, bar.ImRect())
+    imgui.set_nav_cursor_visible(True)
+
+
+def _build_controls(ui: Ui, groups: tuple[str, ...], world: World, window: Window) -> None:
+    for n, group in enumerate(groups):
+        if n:
+            ui.rule()
+        for control in CONTROLS:
+            if control.group == group:
+                on, keys = control.on(world, window), control.label
+                ui.item(control.title, control.pressed, keys=keys, on=on, tip=control.tip)
+        if group == "file":
+            with ui.menu("Recent files") as shown:
+                if shown:
+                    _build_recent(ui, window)
+
+
+def _build_recent(ui: Ui, window: Window) -> None:
+    """Build a line for each of the files that were opened or saved last."""
+    there = window.recent.there
+    if not there:
+        ui.faint("None was opened or saved yet", wrapped=False)
+    for number, path in enumerate(there, start=1):
+        ui.item(recent_label(number, path), file_actions.open_from_list, path, tip=printable(str(path)))
+
+
+def _build_scenes(ui: Ui, world: World, window: Window) -> None:
+    """Build a line for each scene, built-in or in the working directory."""
+    for name, scene in SCENES.items():
+        ui.item(
+            scene.title,
+            file_actions.open_from_list,
+            name,
+            identity=name,
+            on=world.title == scene.title,
+            tip=scene.description,
+        )
+    try:
+        files = scene_files(Path.cwd())
+    except OSError as error:
+        ui.faint(f"Files could not be listed: {error}")
+        return
+    if files:
+        ui.rule()
+        ui.faint("Files in the working directory")
+    for path in files:
+        ui.item(printable(path.name), file_actions.open_from_list, path, identity=str(path))
+
+
+# ---- help --------------------------------------------------------------------------------------------------
+
+
+_MAX_COLUMNS = 4
+"""How many columns there may be, if they fit."""
+_SHARE = 0.94
+"""How much of the window's width they may take."""
+_GAP = "   "
+
+
+def build_help(ui: Ui, world: World, window: Window) -> None:
+    """Build the window of keys, in columns."""
+    lines = [(_keys(control), f"{control.does}{_GAP}") for control in CONTROLS]
+    room = _SHARE * window.canvas.size[0]
+    columns = next((n for n in range(_MAX_COLUMNS, 1, -1) if _width(lines, n) <= room), 1)
+    with ui.floating("Keys and buttons", window.middle, window.closing_of("help"), docks=True):
+        rows = -(-len(lines) // columns)
+        if imgui.begin_table("keys", 2 * columns, imgui.TableFlags_.sizing_fixed_fit):
+            for n in range(rows):
+                imgui.table_next_row()
+                for keys, does in lines[n::rows]:
+                    imgui.table_next_column()
+                    ui.text(keys, ui.theme.accent)
+                    imgui.table_next_column()
+                    ui.text(does)
+            imgui.end_table()
+        ui.faint("F1 or Esc closes this")
+
+
+def _keys(control: Control) -> str:
+    others = [key.capitalize() for key in control.also if key.isalpha()]
+    return ", ".join([control.label, *others])
+
+
+def _width(lines: Sequence[tuple[str, str]], columns: int) -> float:
+    """Return how wide a table of so many columns is [px]."""
+    rows, style = -(-len(lines) // columns), imgui.get_style()
+    width = 2 * style.window_padding.x
+    for n in range(columns):
+        for words in zip(*lines[n * rows : (n + 1) * rows], strict=True):
+            width += max(imgui.calc_text_size(text).x for text in words) + 2 * style.cell_padding.x
+    return float(width)
