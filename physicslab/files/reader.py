@@ -18,17 +18,7 @@ from physicslab.ecs.config import (
     field_names,
 )
 from physicslab.ecs.fields import Field
-from physicslab.files.checks import (
-    SceneError,
-    checked_keys,
-    checked_object,
-    checked_rows,
-    checked_text,
-    checked_title,
-    is_number,
-    refusal,
-    shown,
-)
+from physicslab.files import checks
 from physicslab.files.entities import check_contacts, check_entities, check_ids, check_joints, check_rests
 from physicslab.files.remainders import check_remainders
 from physicslab.integrators import SPLIT_METHODS
@@ -141,7 +131,7 @@ def read_scene(document: object, source: str = "scene") -> World:
             restore_contacts(world.contacts, draft.contacts)
         except (ValueError, OverflowError) as error:
             esper.switch_world(before)
-            raise SceneError(f"{source}: contacts: {error}") from error
+            raise checks.SceneError(f"{source}: contacts: {error}") from error
         world.joints.restore(draft.joints)
         restore_rests(world, draft.rests)
     if draft.remainders:
@@ -157,21 +147,21 @@ def read_scene(document: object, source: str = "scene") -> World:
 
 def check_scene(document: object, source: str = "scene") -> SceneDraft:
     """Return the content of a scene document; the first thing not allowed is a :class:`SceneError`."""
-    scene = checked_object(document, source, 'an object {"format": ..., "entities": [...]}')
-    checked_keys(scene, f"{source}: ", "key", _KEYS)
+    scene = checks.checked_object(document, source, 'an object {"format": ..., "entities": [...]}')
+    checks.checked_keys(scene, f"{source}: ", "key", _KEYS)
     if "format" not in scene:
-        raise SceneError(f"{source}: format is missing: must be {shown(FORMAT)}")
+        raise checks.SceneError(f"{source}: format is missing: must be {checks.shown(FORMAT)}")
     if scene["format"] != FORMAT:
-        raise refusal(f"{source}: format", scene["format"], shown(FORMAT))
+        raise checks.refusal(f"{source}: format", scene["format"], checks.shown(FORMAT))
     if "entities" not in scene:
-        raise SceneError(f"{source}: entities is missing: must be a list of entities")
+        raise checks.SceneError(f"{source}: entities is missing: must be a list of entities")
     ids = check_ids(scene["entities"], source)
     simulation = _config(SimulationConfig, scene.get("simulation", {}), source)
     entities = check_entities(scene["entities"], ids, source)
     return SceneDraft(
-        name=checked_title(scene.get("name", ""), f"{source}: name", NAME_LIMIT),
-        title=checked_title(scene.get("title", ""), f"{source}: title", TITLE_LIMIT),
-        description=checked_text(scene.get("description", ""), f"{source}: description", lines=True),
+        name=checks.checked_title(scene.get("name", ""), f"{source}: name", NAME_LIMIT),
+        title=checks.checked_title(scene.get("title", ""), f"{source}: title", TITLE_LIMIT),
+        description=checks.checked_text(scene.get("description", ""), f"{source}: description", lines=True),
         view=_view(scene.get("view"), source),
         time=_time(scene.get("time", 0.0), f"{source}: time"),
         physics=_config(PhysicsConfig, scene.get("physics", {}), source),
@@ -193,7 +183,7 @@ def _view(value: object, source: str) -> View | None:
     try:
         return checked_box("scene", "view", value)
     except InvalidValue as error:
-        raise refusal(f"{source}: view", value, error.allowed) from None
+        raise checks.refusal(f"{source}: view", value, error.allowed) from None
 
 
 _SPAN = Field("span", "number", unit="s", minimum=MIN_TIME, maximum=MAX_TIME, owner="solver")
@@ -204,8 +194,8 @@ def _solver(
     value: Any, simulation: SimulationConfig, where: str
 ) -> tuple[float, int, tuple[str, str, int] | None]:
     """Return the values that the solver takes from the last step; those left out are as configured."""
-    found = checked_object(value, where, 'an object {"span": ..., "finer": ...}')
-    checked_keys(found, f"{where}: ", "key", ("span", "finer", "chosen"))
+    found = checks.checked_object(value, where, 'an object {"span": ..., "finer": ...}')
+    checks.checked_keys(found, f"{where}: ", "key", ("span", "finer", "chosen"))
     return _solver_values(found, simulation, where)
 
 
@@ -217,7 +207,7 @@ def _solver_values(
     try:
         span, finer = float(_SPAN.check(given["span"])), int(_FINER.check(given["finer"]))
     except InvalidValue as error:
-        raise SceneError(f"{where.removesuffix('solver')}{error}") from error
+        raise checks.SceneError(f"{where.removesuffix('solver')}{error}") from error
     return span, finer, _chosen(found["chosen"], f"{where}.chosen") if "chosen" in found else None
 
 
@@ -227,22 +217,22 @@ def _islands(
     """Return the islands, of which no two have a body in common."""
     islands: list[KeptIsland] = []
     seen: set[int] = set()
-    for where, row in checked_rows(value, f"{source}: islands", "a list of objects"):
-        found = checked_object(row, where, 'an object {"bodies": [...], "span": ..., "finer": ...}')
-        checked_keys(found, f"{where}: ", "key", ("bodies", "span", "finer", "chosen", "driven"))
+    for where, row in checks.checked_rows(value, f"{source}: islands", "a list of objects"):
+        found = checks.checked_object(row, where, 'an object {"bodies": [...], "span": ..., "finer": ...}')
+        checks.checked_keys(found, f"{where}: ", "key", ("bodies", "span", "finer", "chosen", "driven"))
         bodies: list[int] = []
-        for place, body in checked_rows(found.get("bodies"), f"{where}.bodies", "a list of ids"):
+        for place, body in checks.checked_rows(found.get("bodies"), f"{where}.bodies", "a list of ids"):
             number = ids.get(body, 0) if isinstance(body, str) else 0
             if not number or number in seen:
-                raise refusal(place, body, "the id of an entity that no other island has")
+                raise checks.refusal(place, body, "the id of an entity that no other island has")
             seen.add(number)
             bodies.append(number)
         driven: list[list[float]] = []
-        poses = checked_rows(found.get("driven", []), f"{where}.driven", "a list of [id, x, y, angle]")
+        poses = checks.checked_rows(found.get("driven", []), f"{where}.driven", "a list of [id, x, y, angle]")
         for place, pose in poses:
-            known = isinstance(pose, list) and len(pose) == 4 and all(map(is_number, pose[1:]))
+            known = isinstance(pose, list) and len(pose) == 4 and all(map(checks.is_number, pose[1:]))
             if not (known and isinstance(pose[0], str) and pose[0] in ids):
-                raise refusal(place, pose, "[id, x, y, angle], an entity and three finite numbers")
+                raise checks.refusal(place, pose, "[id, x, y, angle], an entity and three finite numbers")
             driven.append([ids[pose[0]], *map(float, pose[1:])])
         islands.append(KeptIsland(bodies, *_solver_values(found, simulation, where), driven))
     return islands
@@ -256,20 +246,20 @@ def _chosen(value: Any, where: str) -> tuple[str, str, int]:
         known = collisions in ("exact", "rigid", "step", "none") and isinstance(method, str)
         if known and method in SPLIT_METHODS and type(steps) is int and 1 <= steps <= MAX_STEPS:
             return collisions, method, steps
-    raise refusal(where, value, allowed)
+    raise checks.refusal(where, value, allowed)
 
 
 def _time(value: Any, where: str) -> float:
-    if is_number(value) and value >= 0.0:
+    if checks.is_number(value) and value >= 0.0:
         return float(value)
-    raise refusal(where, value, "a finite number >= 0 s")
+    raise checks.refusal(where, value, "a finite number >= 0 s")
 
 
 def _config[C: (PhysicsConfig, SimulationConfig)](config: type[C], value: object, source: str) -> C:
     where = f"{source}: {config.section}"
-    given = checked_object(value, where, "an object of settings")
-    checked_keys(given, f"{where}.", "setting", field_names(config))
+    given = checks.checked_object(value, where, "an object of settings")
+    checks.checked_keys(given, f"{where}.", "setting", field_names(config))
     try:
         return config(**given)
     except InvalidValue as error:
-        raise refusal(f"{where}.{error.field}", error.value, error.allowed) from error
+        raise checks.refusal(f"{where}.{error.field}", error.value, error.allowed) from error
