@@ -1,7 +1,5 @@
 """A world: a state, the systems that act on it, and the stepper that advances it."""
 
-from __future__ import annotations
-
 import logging
 import math
 import sys
@@ -32,8 +30,6 @@ from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage, System
-
-__all__ = ["World"]
 
 _log = logging.getLogger(__name__)
 _told: set[str] = set()
@@ -348,7 +344,7 @@ class World(State):
         return self.schedule.interpreted
 
     @property
-    def parts(self) -> tuple[World, ...]:
+    def parts(self) -> "tuple[World, ...]":
         """The worlds that advance this one: itself, or those of its islands, that with most bodies first."""
         worlds = [island.state for island in self.islands.members]
         parts = tuple(world for world in worlds if isinstance(world, World)) or (self,)

@@ -1,7 +1,5 @@
 """An island: some bodies of a world, and a world of their own that advances them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, Protocol
 

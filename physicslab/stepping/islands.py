@@ -6,8 +6,6 @@ the columns of its bodies, made as a loaded file is. It follows edits of the who
 its bodies move. So the bits of an island are those that it has alone.
 """
 
-from __future__ import annotations
-
 import math
 import weakref
 from collections.abc import Callable, Iterable, Sequence
