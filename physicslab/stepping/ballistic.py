@@ -1,7 +1,5 @@
 """Which worlds can have their collisions located exactly, and which benefit."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
