@@ -69,15 +69,17 @@ def frame_run(
 
 def _reach(body: dict[str, Any]) -> float:
     """Return the radius of the circle about a body's centre in which it turns [m]."""
-    return float(body.get("radius", 0.5 * math.hypot(*body.get("size", (0.0, 0.0)))))
+    core = body.get("core", [(0.0, 0.0)])
+    return float(max(math.hypot(*corner) for corner in core) + body.get("radius", 0.0))
 
 
 def _outline(body: dict[str, Any]) -> list[float]:
     """Return the box around a body that does not move [m]."""
     x, y, angle = body["pose"]
-    width, height = body.get("size", (0.0, 0.0))
-    c, s, radius = abs(math.cos(angle)), abs(math.sin(angle)), body.get("radius", 0.0)
-    across, up = radius + 0.5 * (c * width + s * height), radius + 0.5 * (s * width + c * height)
+    core, radius = body.get("core", [(0.0, 0.0)]), body.get("radius", 0.0)
+    c, s = math.cos(angle), math.sin(angle)
+    across = max(abs(c * u - s * v) for u, v in core) + radius
+    up = max(abs(s * u + c * v) for u, v in core) + radius
     return [x - across, y - up, x + across, y + up]
 
 

@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components.shape import KINDS
 from physicslab.diagnostics.energy import Accounts
 from physicslab.diagnostics.run_report import body_names
+from physicslab.state.shapes import cores_of
 from physicslab.world import World
 
 type Columns = NDArray[np.float32]
@@ -104,14 +106,14 @@ class RunRecorder:
         for (entity, name), row in zip(
             body_names(world).items(), world.batch(Transform).rows.tolist(), strict=True
         ):
-            kind = ("point", "circle", "box")[int(shape["kind"][row])]
+            kind = ("point", *KINDS)[int(shape["kind"][row])]
             if kind == "point" and row not in moves and not mass.present[row]:
                 kind = "none"
             body: dict[str, Any] = {"name": name, "kind": kind, "entity": entity}
-            if kind == "circle":
-                body["radius"] = float(shape["radius"][row])
-            elif kind == "box":
-                body["size"] = [float(shape["width"][row]), float(shape["height"][row])]
+            if shape.present[row]:
+                corners, vertices, radius = cores_of(shape, np.array([row]))
+                body["core"] = corners[0, : vertices[0]].tolist()
+                body["radius"] = float(radius[0])
             if mass.present[row]:
                 body["mass"], body["inertia"] = float(mass["mass"][row]), float(mass["inertia"][row])
             if trail.present[row]:

@@ -1,6 +1,9 @@
 """Points of bodies: in a body's own frame, and in the world."""
 
+import numpy as np
+
 from physicslab.components import Shape, Transform
+from physicslab.contacts.outlines import outlines_of
 from physicslab.ecs.vector import Vector2
 from physicslab.state.attached import local_point as in_frame
 from physicslab.world import World
@@ -21,8 +24,6 @@ def local_point(world: World, body: int | None, place: Vector2) -> Vector2:
     local = in_frame(world, body, place)
     if not world.has(body, Shape):
         return Vector2()
-    shape = world.component(body, Shape)
-    if shape.kind == "circle":
-        return local if local.magnitude <= shape.radius else Vector2()
-    inside = abs(local.x) <= 0.5 * shape.width and abs(local.y) <= 0.5 * shape.height
+    row = np.array([world.entity_index.row_of[body]])
+    inside = outlines_of(world, row).gaps(place.x, place.y)[0] <= 0.0
     return local if inside else Vector2()

@@ -73,7 +73,7 @@ def measure_world(world: World, watch: EnergyWatch, frame_rate: float = 0.0) -> 
     audit = watch.sample(world)
     contacts, known, now = world.contacts, watch.known, audit.account.now
     return WorldFigures(
-        len(body_rows(world)), world.sleep.count, contacts.candidate_pairs, contacts.count,
+        len(body_rows(world).all), world.sleep.count, contacts.candidate_pairs, contacts.count,
         audit.latest, audit, len(world.batch(Held)) > 0,
         _are_driven(world), watch.since, Momentum(Vector2(now.px, now.py), now.spin),
         known, known.error(world) if known is not None else 0.0, scales_of(world),

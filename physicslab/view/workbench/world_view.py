@@ -132,4 +132,4 @@ class WorldView:
             return
         ghost = spawn.outlines(window)
         colour = on.theme.error if refused_place(world, ghost) else on.theme.accent
-        draw_ghost(ghost.place, ghost.half, ghost.radius, ghost.angle, colour, on)
+        draw_ghost(ghost, colour, on)
