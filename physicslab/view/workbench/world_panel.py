@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from imgui_bundle import imgui
 from imgui_bundle.imgui import ImVec2
 
-from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
+from physicslab.diagnostics.energy import ACCOUNT_WORDS, flows
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetPhysics
 from physicslab.view.canvas.quantities import quantity, round_quantity, without_rounding
