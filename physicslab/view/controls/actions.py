@@ -3,14 +3,19 @@
 import copy
 import math
 from collections.abc import Sequence
+from pathlib import Path
 
 from physicslab.components import Held, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
-from physicslab.history import Command, Group, Remove, SetField, SetPhysics, Spawn
+from physicslab.files.new_scene import file_stem
+from physicslab.files.scene import SceneError
+from physicslab.history import Branch, Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.systems.gravity import GravitySystem
 from physicslab.view.canvas.theme import THEMES
+from physicslab.view.controls.file_actions import new_paths
 from physicslab.view.controls.measuring import nudged
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import HAND
@@ -39,21 +44,6 @@ def toggle_pause(world: World, window: Window) -> None:
     window.edits.history.divide()
     if not window.pace.paused:
         window.error = ""
-
-
-def slower(world: World, window: Window) -> None:
-    """Let time run at half the speed."""
-    window.pace.choose(0.5)
-
-
-def faster(world: World, window: Window) -> None:
-    """Let time run at twice the speed."""
-    window.pace.choose(2.0)
-
-
-def step(world: World, window: Window) -> None:
-    """Pause, and make one step."""
-    window.pace.queue_step()
 
 
 def clear(world: World, window: Window) -> None:
@@ -94,16 +84,6 @@ def toggle_planets(world: World, window: Window) -> None:
         window.edits.do(SetPhysics({"gravity_mode": "planet"}))
 
 
-def toggle_arrows(world: World, window: Window) -> None:
-    """Show or hide the arrows of velocities, forces and contact normals."""
-    window.overlays.toggle_arrows(world, window.camera)
-
-
-def toggle_impulses(world: World, window: Window) -> None:
-    """Show or hide what contacts do: impulses, friction cones and their numbers."""
-    window.overlays.toggle_impulses(world, window.camera)
-
-
 def toggle_scales(world: World, window: Window) -> None:
     """Let the scales of all arrows stay as they are, or follow what is shown again."""
     window.overlays.toggle_scales()
@@ -111,44 +91,19 @@ def toggle_scales(world: World, window: Window) -> None:
     window.notify("Arrows keep their scale" if kept else "The scale of arrows follows what is shown")
 
 
-def toggle_trails(world: World, window: Window) -> None:
-    """Show where moving bodies have been, or no longer."""
-    window.trails.toggle(world)
+def zoom(window: Window, notches: float, at: tuple[float, float] | None = None) -> None:
+    """Enlarge the picture by some notches of the wheel, around a place [px] or the cursor."""
+    window.camera.zoom(1.15**notches, window.pointer if at is None else at)
 
 
-def zoom(window: Window, notches: float) -> None:
-    """Enlarge the picture around the cursor."""
-    window.camera.zoom(1.15**notches, window.pointer)
+def zoom_by_key(sign: int) -> Action:
+    """Return what enlarges the picture around the cursor, or reduces it."""
+    return lambda _, window: zoom(window, sign * _ZOOM_STEP)
 
 
-def zoom_in(world: World, window: Window) -> None:
-    """Enlarge the picture around the cursor."""
-    zoom(window, _ZOOM_STEP)
-
-
-def zoom_out(world: World, window: Window) -> None:
-    """Reduce the picture around the cursor."""
-    zoom(window, -_ZOOM_STEP)
-
-
-def enlarge(world: World, window: Window) -> None:
-    """Enlarge the picture around its middle: the cursor is on a button."""
-    window.camera.zoom(1.15**_ZOOM_STEP, window.middle)
-
-
-def reduce(world: World, window: Window) -> None:
-    """Reduce the picture around its middle: the cursor is on a button."""
-    window.camera.zoom(1.15**-_ZOOM_STEP, window.middle)
-
-
-def larger_text(world: World, window: Window) -> None:
-    """Make all text larger."""
-    scale_text(window, 1)
-
-
-def smaller_text(world: World, window: Window) -> None:
-    """Make all text smaller."""
-    scale_text(window, -1)
+def zoom_by_button(sign: int) -> Action:
+    """Return what enlarges the picture around its middle, or reduces it: the cursor is on a button."""
+    return lambda _, window: zoom(window, sign * _ZOOM_STEP, window.middle)
 
 
 def scale_text(window: Window, steps: int) -> None:
@@ -162,16 +117,6 @@ def next_theme(world: World, window: Window) -> None:
     """Show everything in the colours of the next theme."""
     window.theme = THEMES[(THEMES.index(window.theme) + 1) % len(THEMES)]
     window.notify(f"Colours: {window.theme.name}")
-
-
-def fit(world: World, window: Window) -> None:
-    """Show all of the world."""
-    window.fit(world)
-
-
-def go_home(world: World, window: Window) -> None:
-    """Show the world as at the start."""
-    window.go_home(world)
 
 
 def toggle_snapping(world: World, window: Window) -> None:
@@ -207,11 +152,6 @@ def _close_panel(window: Window) -> bool:
     if panel is not None:
         window.closing_of(panel)()
     return panel is not None
-
-
-def close(world: World, window: Window) -> None:
-    """Close the window."""
-    window.closing = True
 
 
 def duplicate_selected(world: World, window: Window) -> None:
@@ -371,3 +311,54 @@ def gravity_in_words(world: World) -> str:
     if physics.gravity.x == 0.0:
         return f"{abs(physics.gravity.y):.4g} m/s² {'down' if physics.gravity.y < 0.0 else 'up'}"
     return f"({physics.gravity.x:.3g}, {physics.gravity.y:.3g}) m/s²"
+
+
+# ---- the history: switch branches, save all of it in a file ------------------------------------------------
+
+
+RECORDING_ENDING = ".replay"
+"""The suffix of recordings: they are not offered as scenes."""
+_WORDS_LIMIT = 2
+"""How much of what was done in a branch is written out."""
+
+
+def branch_words(branch: Branch, start: float) -> str:
+    """Return what was done in a branch, and when it leaves the line that is shown; ``start`` [s] is its."""
+    words = branch.words
+    more = len(words) - _WORDS_LIMIT
+    shown = ", then ".join(words[:_WORDS_LIMIT]) + (f", and {more} more" if more > 0 else "")
+    return f"At {start + branch.seconds:.2f} s: {shown}"
+
+
+def switch(world: World, window: Window, branch: Branch) -> None:
+    """Go on along a branch, where it leaves the line that was gone along: that is a branch from now on."""
+    history = window.edits.history
+    if branch not in history.branches:  # clicked before the line changed
+        return
+    window.pause_for_history(world)
+    history.switch(branch)
+    window.notify("Another branch: Space plays it, Ctrl+B goes back", 5.0)
+
+
+def next_branch(world: World, window: Window) -> None:
+    """Go on along the branch that was left first; one after the other, all come round."""
+    branches = window.edits.history.branches
+    if branches:
+        switch(world, window, branches[0])
+    else:
+        window.notify("There is no other branch: a change in the past begins one")
+
+
+def save_recording(world: World, window: Window) -> None:
+    """Keep what was done as a file that ``physicslab replay`` plays, where the program was started."""
+    window.hand.drop(world)
+    window.edits.take_back_shown()
+    paths = new_paths(Path.cwd(), file_stem(world.name), RECORDING_ENDING)
+    try:
+        path = next(path for path in paths if not path.exists())
+        window.edits.history.save(path)
+    except (SceneError, OSError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or error
+        window.notify(f"The recording could not be saved: {reason}", 6.0, failed=True)
+    else:
+        window.notify(f"Saved {printable(path.name)}: physicslab replay plays it", 5.0)

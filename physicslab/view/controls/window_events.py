@@ -62,7 +62,7 @@ class WindowEvents:
             pygame.WINDOWFOCUSLOST: self._leave,
             pygame.WINDOWMINIMIZED: self._leave,
             pygame.WINDOWHIDDEN: self._leave,
-            pygame.QUIT: lambda world, event: actions.close(world, window),
+            pygame.QUIT: lambda world, event: window.put("closing", True),
         }
 
     def begin(self, world: World, events: Sequence[pygame.Event], elapsed: float) -> None:

@@ -6,8 +6,8 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
-from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.theme import Colour, Theme
 
 MIN_LENGTH = 3.0
@@ -82,6 +82,10 @@ FORCE = ArrowKind("Net force", "force", Head.DOUBLE)
 CONTACT_NORMAL = ArrowKind("Contact normal", "contact_normal", Head.BAR, width=1.4)
 NORMAL_IMPULSE = ArrowKind("Normal impulse", "normal_impulse", Head.DIAMOND)
 FRICTION_IMPULSE = ArrowKind("Friction impulse", "friction_impulse", Head.OPEN, dashed=True)
+
+
+IMPACT_WIDTH, REST_WIDTH = 3.0, 1.6
+"""How thick arrows are drawn [px]: an impact's, and those of resting contact."""
 
 
 def max_length(canvas: Canvas) -> float:

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from physicslab.diagnostics.warnings import ModelWarning
+from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
-from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.theme import Colour
 
 

@@ -6,11 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import Numbers, Points, Rect
-from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.overlay.arrows import FRICTION_IMPULSE, NORMAL_IMPULSE, dashes, draw_arrows, max_length
+from physicslab.view.overlay.arrows import (
+    FRICTION_IMPULSE,
+    IMPACT_WIDTH,
+    NORMAL_IMPULSE,
+    REST_WIDTH,
+    dashes,
+    draw_arrows,
+    max_length,
+)
 from physicslab.view.overlay.contact_samples import (
     ContactSamples,
     RecentImpacts,
@@ -19,15 +26,13 @@ from physicslab.view.overlay.contact_samples import (
     sliding,
 )
 from physicslab.view.overlay.labels import Key, Label
-from physicslab.view.overlay.overlays import Gauge, Overlays
+from physicslab.view.overlay.legend import Gauge, Overlays
 from physicslab.world import World
 
 LABELLED = 12
 """How many contacts have their numbers written beside them: the strongest."""
 CROWD, LABELLED_IN_CROWD = 30, 4
 """The largest number of impacts drawn at a time: more would hide the bodies."""
-IMPACT_WIDTH, REST_WIDTH = 3.0, 1.6
-"""How thick arrows are drawn [px]: an impact's, and those of resting contact."""
 _KEEP_RATIO = 1.5
 """A contact must be that many times as strong as one whose numbers are shown to take its place."""
 

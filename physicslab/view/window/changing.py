@@ -23,7 +23,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, RemoveComponent, SetField
 from physicslab.state.attached import local_point as in_frame
 from physicslab.view.window.placing import refused_change
-from physicslab.view.window.points import local_point, point_of
+from physicslab.view.window.spring_tool import local_point, point_of
 from physicslab.view.window.window import Window
 from physicslab.world import World
 

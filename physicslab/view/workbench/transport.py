@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import actions, file_actions
-from physicslab.view.controls.history_actions import branch_words, switch
+from physicslab.view.controls.actions import branch_words, switch
 from physicslab.view.controls.tool import ICONS
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
@@ -36,7 +36,13 @@ def build_transport(ui: Ui, rect: Rect, world: World, window: Window) -> None:
             ("Restart", "Restart this scene (Ctrl+R)", file_actions.restart, icons["restart"], _NARROW),
             ("Step back", "Pause, and go back by one step (B)", actions.step_back, icons["back"], _NARROW),
             (play[0], f"{play[0]} (Space)", actions.toggle_pause, f"{icons[play[1]]}  {play[0]}", _WIDE),
-            ("Step", "Pause, and make one step (.)", actions.step, icons["step"], _NARROW),
+            (
+                "Step",
+                "Pause, and make one step (.)",
+                lambda _, window: window.pace.queue_step(),
+                icons["step"],
+                _NARROW,
+            ),
         ):
             ui.button(label, tip, action, shown=shown, on=width == _WIDE, size=(width * size, height))
             imgui.same_line()
