@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.camera import Camera, Drawing
+from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Numbers, Points, Rect
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.overlay.arrows import (
@@ -61,10 +61,9 @@ def draw_impulses(world: World, overlays: Overlays, written: Collection[int], on
     def rank(one: _Candidate) -> float:
         return -one.weight * (_KEEP_RATIO if overlays.labels.known(one.key) else 1.0)
 
-    met = _strongest(impacts, fresh, overlays.impact, True, on.camera, overlays.covered)
+    met = _strongest(impacts, fresh, overlays, True, on)
     met = sorted(met, key=rank)[: LABELLED if len(impacts) <= CROWD else LABELLED_IN_CROWD]
-    still = np.ones(len(of_written))
-    held = _strongest(of_written, still, overlays.rest, False, on.camera, overlays.covered)
+    held = _strongest(of_written, np.ones(len(of_written)), overlays, False, on)
     chosen = sorted([*met, *held], key=rank)[:LABELLED]
     labels = [Label(one.key, one.at, _words_of(one, world.contacts.impulse_dt)) for one in chosen]
     overlays.labels.draw(labels, overlays.covered, on)
@@ -112,7 +111,7 @@ def _draw_impulses_of(
     normal = samples["direction"] * (1.0, -1.0)  # the screen's y points down
     tangent = np.stack((normal[:, 1], -normal[:, 0]), axis=1)  # counter-clockwise, as seen
     scale = on.camera.scale / gauge.per_metre
-    _draw_cones(start, normal, tangent, samples, scale, opacity, on)
+    _draw_cones((start, normal, tangent), samples, scale, opacity, on)
     friction_impulse = tangent * (samples["tangent"] * scale)[:, None]
     draw_arrows(start, friction_impulse, FRICTION_IMPULSE, on, opacity=opacity, width=width)
     push = normal * (samples["normal"] * scale)[:, None]
@@ -120,15 +119,11 @@ def _draw_impulses_of(
 
 
 def _draw_cones(
-    start: Points,
-    normal: Points,
-    tangent: Points,
-    samples: ContactSamples,
-    scale: float,
-    opacity: float | Numbers,
+    axes: tuple[Points, Points, Points], samples: ContactSamples, scale: float, opacity: float | Numbers,
     on: Drawing,
-) -> None:
+) -> None:  # fmt: skip
     """Draw both sides of friction cones, as high as the normal impulse; broken where the contact slips."""
+    start, normal, tangent = axes
     height = np.minimum(samples["normal"] * scale, max_length(on.canvas))
     shown = (samples["friction"] > 0.0) & (height >= 8.0)
     slips = sliding(samples)
@@ -161,19 +156,14 @@ class _Candidate:
 
 
 def _strongest(
-    samples: ContactSamples,
-    fresh: NDArray[np.float64],
-    gauge: Gauge,
-    is_impact: bool,
-    camera: Camera,
-    covered: Sequence[Rect],
+    samples: ContactSamples, fresh: Numbers, overlays: Overlays, is_impact: bool, on: Drawing
 ) -> list[_Candidate]:
     """Return the samples that stand out most of those that can be seen."""
     if not len(samples):
         return []
-    at = camera.project(samples["place"])
+    at, gauge = on.camera.project(samples["place"]), overlays.impact if is_impact else overlays.rest
     strength = samples["normal"] * fresh / (gauge.per_metre or 1.0)
-    weight = np.where(_seen(at, camera.size, covered), strength, 0.0)
+    weight = np.where(_seen(at, on.camera.size, overlays.covered), strength, 0.0)
     chosen = np.argsort(-weight, kind="stable")[: 2 * LABELLED]
     chosen = chosen[weight[chosen] > 0.0]
     samples, slips = samples[chosen], sliding(samples[chosen]).tolist()

@@ -66,13 +66,8 @@ def _build_head(ui: Ui, world: World, window: Window) -> None:
     tip = "Run until the next impact of the selection, or of any body, and pause there (Shift+Z)"
     ui.button("Pause at the next", tip, impact_actions.pause_at_next, on=waits)
     ui.same_line_if_room("CSV")
-    ui.button(
-        "CSV of impacts",
-        "Write all of them to a file",
-        impact_actions.save_table,
-        shown="CSV",
-        enabled=count > 0,
-    )
+    save, tip = impact_actions.save_table, "Write all of them to a file"
+    ui.button("CSV of impacts", tip, save, shown="CSV", enabled=count > 0)
     ui.same_line_if_room(f"{count} impacts")
     ui.faint(f"{count} impacts", wrapped=False)
 

@@ -83,11 +83,8 @@ def _build_spring(ui: Ui, state: SpringState | None) -> None:
         return
     ui.rule(0.2)
     ui.row("Length", quantity(state.length, "m"))
-    ui.row(
-        "Longer by",
-        quantity(without_rounding(state.extension, state.length), "m"),
-        "than at rest; negative if it is shorter",
-    )
+    longer = quantity(without_rounding(state.extension, state.length), "m")
+    ui.row("Longer by", longer, "than at rest; negative if it is shorter")
     pulls = "pulls its ends together" if state.force >= 0.0 else "pushes its ends apart"
     ui.row("Spring force", quantity(abs(state.force), "N"), pulls)
     ui.row("Energy stored", quantity(state.energy, "J"))

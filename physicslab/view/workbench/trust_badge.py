@@ -180,9 +180,5 @@ def _build_details(ui: Ui, world: World, window: Window) -> None:
     elif not trust.wanted:
         ui.faint(f"It computes the scene about {RUNS} times over, beside the window: frames have priority.")
     ui.rule()
-    ui.item(
-        "Check digits",
-        lambda _, window: window.trust.toggle(),
-        on=trust.wanted,
-        tip="In a separate process, again as time goes on",
-    )
+    tip = "In a separate process, again as time goes on"
+    ui.item("Check digits", lambda _, window: window.trust.toggle(), on=trust.wanted, tip=tip)
