@@ -26,7 +26,6 @@ from physicslab.view.workbench.figures import (
     impulse_lines,
     left_out_lines,
     measure_lines,
-    measure_world,
     method_lines,
 )
 from physicslab.view.workbench.interface import Interface
@@ -81,7 +80,8 @@ class Hud:
             self._announce(window.error_study.failure)
         window.trust.follow(world, window.now)
         taken = self._draw_over_world(world)
-        interface.build(world, self._figures, self._details, self._measures, elapsed)
+        details = self._details if window.level == "Engineer" else []
+        interface.build(world, self._figures, [*self._measures, *details], elapsed)
         interface.draw(window.canvas)
         window.overlays.covered = [*taken, *interface.covered]
 
@@ -92,7 +92,7 @@ class Hud:
         self._watch.follow(world)
 
     def _read_figures(self, world: World, elapsed: float) -> None:
-        self._figures = measure_world(world, self._watch, self._meter.frame_rate)
+        self._figures = WorldFigures(world, self._watch, self._meter.frame_rate)
         self._measures = measure_lines(world, self._figures) if self._window.level != "Explore" else []
 
     def _read_costs(self, world: World, elapsed: float) -> None:

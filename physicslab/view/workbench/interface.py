@@ -199,22 +199,15 @@ class Interface:
     def _begin_numbers(self) -> None:
         self._numbers.begin((self._window.edits.world, self._window.selection.entities))
 
-    def build(
-        self,
-        world: World,
-        figures: WorldFigures,
-        details: Sequence[Line],
-        measures: Sequence[Line],
-        elapsed: float,
-    ) -> None:
+    def build(self, world: World, figures: WorldFigures, lines: Sequence[Line], elapsed: float) -> None:
         """Build panels where something may have changed since they were built last.
 
         Parameters
         ----------
         figures : WorldFigures
             What was measured of the world.
-        details, measures : sequence of Line
-            What engineers see beside, and those who measure.
+        lines : sequence of Line
+            What those see beside who measure, and engineers.
         elapsed : float
             Time [s] since the last frame.
         """
@@ -235,7 +228,7 @@ class Interface:
         def build() -> None:
             self.ui.begin(window.theme, self.layout.visible, rearranged=rearranged and not window.arrangement)
             self._walk.mark()
-            self._build(world, figures, details, measures)
+            self._build(world, figures, lines)
 
         if self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build):
             self._walk.end()
@@ -260,9 +253,7 @@ class Interface:
             *_WATCHED(window),
         )  # fmt: skip
 
-    def _build(
-        self, world: World, figures: WorldFigures, details: Sequence[Line], measures: Sequence[Line]
-    ) -> None:
+    def _build(self, world: World, figures: WorldFigures, lines: Sequence[Line]) -> None:
         ui, window, layout = self.ui, self._window, self.layout
         free = ui.dock(layout.visible)
         self._free = free if free != layout.visible else None
@@ -284,7 +275,7 @@ class Interface:
                         build_settings(ui, self._numbers, world, window)
                 if window.level != "Explore":
                     ui.rule(0.3)
-                    build_figures(ui, measures if window.level == "Measure" else [*measures, *details])
+                    build_figures(ui, lines)
                 if window.level != "Explore" or not window.selection.entities:
                     ui.rule(0.3)
                     self._build_counts(ui, figures)
@@ -307,9 +298,7 @@ class Interface:
 
     def _build_counts(self, ui: Ui, figures: WorldFigures) -> None:
         """Write the numbers that say how much there is to do."""
-        ui.row(
-            "Bodies", f"{figures.bodies}, {figures.asleep} asleep" if figures.asleep else f"{figures.bodies}"
-        )
+        ui.row("Bodies", f"{figures.bodies}" + (f", {figures.asleep} asleep" if figures.asleep else ""))
         ui.row("Contacts", f"{figures.contacts}", "Pairs that touch", lesser=False)
         ui.row("Candidate pairs", f"{figures.candidate_pairs}", "Pairs that are near each other")
         ui.row("Frame rate", f"{figures.frame_rate:.0f} FPS")

@@ -92,14 +92,8 @@ def _build_recent(ui: Ui, window: Window) -> None:
 def _build_scenes(ui: Ui, world: World, window: Window) -> None:
     """Build a line for each scene, built-in or in the working directory."""
     for name, scene in SCENES.items():
-        ui.item(
-            scene.title,
-            file_actions.open_from_list,
-            name,
-            identity=name,
-            on=world.title == scene.title,
-            tip=scene.description,
-        )
+        is_shown, action = world.title == scene.title, file_actions.open_from_list
+        ui.item(scene.title, action, name, identity=name, on=is_shown, tip=scene.description)
     try:
         files = scene_files(Path.cwd())
     except OSError as error:

@@ -109,16 +109,13 @@ def _build_drawings(ui: Ui, world: World, window: Window, wide: float) -> None:
     high = min(_SMALL * ui.size, half)
     ui.faint("B against A at the contact", wrapped=False)
     imgui.same_line(half + gap)
-    ui.faint(_of_momenta(seen), wrapped=False)
+    both = seen.a.is_free and seen.b.is_free
+    ui.faint("Momenta, tip to tail" if both else "Momentum and impulse", wrapped=False)
     draw_contact(ui, seen, (half, high))
     imgui.same_line(0.0, gap)
     draw_momenta(ui, seen, (half, high))
     ui.faint("Kinetic energy", wrapped=False)
     draw_energies(ui, seen, wide)
-
-
-def _of_momenta(seen: Collision) -> str:
-    return "Momenta, tip to tail" if seen.a.is_free and seen.b.is_free else "Momentum and impulse"
 
 
 def _build_words(ui: Ui, world: World, window: Window) -> None:

@@ -58,11 +58,7 @@ def _build_speed(ui: Ui, pace: Pace, window: Window) -> None:
     tip = "How fast time runs (Tab: a quarter; [ and ]: half and twice)"
     chosen = ui.choice("Speed", now, list(_SPEEDS), tip, width=4.6 * ui.size)
     if chosen != now:
-        window.do_next(_choose_speed, _SPEEDS[chosen])
-
-
-def _choose_speed(world: World, window: Window, speed: float) -> None:
-    window.pace.choose(speed / window.pace.speed)
+        window.do_next(lambda _, window: window.pace.choose(_SPEEDS[chosen] / window.pace.speed))
 
 
 def _mark_branches(ui: Ui, steps: Sequence[int], first: int, last: int) -> None:
