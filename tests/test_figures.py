@@ -10,8 +10,7 @@ from recording import RecordingCanvas
 from test_hud import frame, recorded, row
 
 from physicslab.components import Drag, Mass, Spring, Trail, Transform, Velocity
-from physicslab.diagnostics.account import measure_account
-from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle, pendulum

@@ -7,9 +7,8 @@ import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.ecs.batch import Batch
 from physicslab.ecs.component import Component
-from physicslab.ecs.table import Table
+from physicslab.ecs.table import Batch, Table
 
 
 class _Nothing:

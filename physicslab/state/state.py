@@ -10,12 +10,11 @@ import esper
 from physicslab.components import Name
 from physicslab.components.name import why_no_id
 from physicslab.components.naming import plain_name
-from physicslab.ecs.batch import Batch
 from physicslab.ecs.component import Component, InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
 from physicslab.ecs.context import Active, create_numbered, next_number, switch
 from physicslab.ecs.entity_index import EntityIndex
-from physicslab.ecs.table import Table
+from physicslab.ecs.table import Batch, Table
 from physicslab.ecs.text import printable, shortened, suggestion
 from physicslab.kernels import compile_kernels, seconds_waited
 from physicslab.state.account import Account

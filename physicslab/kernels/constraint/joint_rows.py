@@ -18,11 +18,6 @@ from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.ode.compensated import add
 
-__all__ = [
-    "ARM_A", "ARM_B", "AXIS", "BOOKED", "COORDINATES", "DRIVEN", "ENDS", "FIRST", "GIVEN", "RANK", "ROWS",
-    "constrain", "forces_of", "measure_row", "project", "room_of",
-]  # fmt: skip
-
 ROWS, COORDINATES, BOOKED, DRIVEN, RANK, FIRST = range(6)
 """The whole numbers: how many rows; how many coordinates move; the accounts of joints and of what drives
 bodies, or -1; how many rows are independent, as it was found last. Then ``ENDS`` numbers a row, and where the

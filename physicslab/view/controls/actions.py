@@ -10,9 +10,8 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
-from physicslab.files.new_scene import file_stem
-from physicslab.files.scene import SceneError
-from physicslab.history import Branch, Command, Group, Remove, SetField, SetPhysics, Spawn
+from physicslab.files.scene import SceneError, file_stem
+from physicslab.history import Branch, Command, Remove, SetField, SetPhysics, Spawn
 from physicslab.systems.gravity import GravitySystem
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.file_actions import new_paths
@@ -27,7 +26,6 @@ _ZOOM_STEP = 3.0
 """How many notches of the wheel a key or a button zooms by."""
 _TEXT_SCALES = (0.8, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0)
 """The sizes of text there are, as shares of the usual."""
-_NO_GRAVITY = "This world was made without GravitySystem: no law of gravity acts in it"
 
 
 def choose_tool(world: World, window: Window, tool: Tool) -> None:
@@ -53,7 +51,7 @@ def clear(world: World, window: Window) -> None:
     window.measuring.cancel()
     removed = [Remove(entity) for entity in world.entities()]
     if removed:
-        window.edits.do(Group("cleared everything", removed))
+        window.edits.do_all(removed, "cleared everything")
         window.notify("Cleared: Ctrl+Z undoes it")
     window.overlays.forget()
     window.sparks.clear()
@@ -62,26 +60,25 @@ def clear(world: World, window: Window) -> None:
 
 def toggle_gravity(world: World, window: Window) -> None:
     """Turn the uniform pull on or off; where the scene has none to turn on, it is that of the Earth."""
-    if not has_gravity(world):
-        window.notify(_NO_GRAVITY, failed=True)
-        return
     if world.physics.gravity_mode == "linear" and world.physics.gravity:
-        window.edits.do(SetPhysics({"gravity_mode": "none"}))
+        _set_gravity(world, window, gravity_mode="none")
     else:
         gravity = world.physics.gravity or PhysicsConfig().gravity
-        window.edits.do(SetPhysics({"gravity_mode": "linear", "gravity": gravity}))
+        _set_gravity(world, window, gravity_mode="linear", gravity=gravity)
 
 
 def toggle_planets(world: World, window: Window) -> None:
     """Let bodies attract each other, or go back to the gravity there was before."""
-    if not has_gravity(world):
-        window.notify(_NO_GRAVITY, failed=True)
-        return
-    if world.physics.gravity_mode == "planet":
-        window.edits.do(SetPhysics({"gravity_mode": window.gravity_before}))
+    now = world.physics.gravity_mode
+    _set_gravity(world, window, gravity_mode=window.gravity_before if now == "planet" else "planet")
+    window.gravity_before = window.gravity_before if now == "planet" else now
+
+
+def _set_gravity(world: World, window: Window, **physics: object) -> None:
+    if has_gravity(world):
+        window.edits.do(SetPhysics(physics))
     else:
-        window.gravity_before = world.physics.gravity_mode
-        window.edits.do(SetPhysics({"gravity_mode": "planet"}))
+        window.notify("This world was made without GravitySystem: no law of gravity acts in it", failed=True)
 
 
 def toggle_scales(world: World, window: Window) -> None:
@@ -156,14 +153,14 @@ def _close_panel(window: Window) -> bool:
 
 def duplicate_selected(world: World, window: Window) -> None:
     """Put a copy of each body that is selected beside it, and select the copies."""
-    bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+    bodies = _bodies(world, window)
     width = max((_width(world, entity) for entity in bodies), default=0.0)
     _spawn_copies(window, [_parts(world, entity) for entity in bodies], Vector2(width, 0.0))
 
 
 def copy_selected(world: World, window: Window) -> None:
     """Keep copies of the selection, to be pasted."""
-    bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+    bodies = _bodies(world, window)
     window.copied = [_parts(world, entity) for entity in bodies]
     window.notify(f"Copied: {len(bodies)}" if bodies else "Nothing is selected to be copied")
 
@@ -187,9 +184,8 @@ def _spawn_copies(window: Window, bodies: Sequence[Sequence[Component]], by: Vec
             if isinstance(part, Transform):
                 part.position = part.position + by
         copies.append(Spawn(moved))
-    if copies:
-        made = window.edits.do(Group(f"copied {len(copies)}", copies))
-        window.selection.entities = made or window.selection.entities
+    made = window.edits.do_all(copies, f"copied {len(copies)}")
+    window.selection.entities = made or window.selection.entities
 
 
 def _parts(world: World, entity: int) -> list[Component]:
@@ -220,19 +216,27 @@ def select_next(world: World, window: Window) -> None:
         window.selection.take(next((entity for entity in bodies if entity > now), bodies[0]))
 
 
+def _bodies(world: World, window: Window) -> list[int]:
+    """Return what of the selection has a place."""
+    return [entity for entity in window.selection.entities if world.has(entity, Transform)]
+
+
+def _changed(world: World, window: Window, name: str, by: Vector2 | float) -> list[Command]:
+    """Return what adds to a field of the Transform of all that is selected."""
+    return [
+        SetField(entity, "Transform", name, getattr(world.component(entity, Transform), name) + by)
+        for entity in _bodies(world, window)
+    ]
+
+
 def nudger(across: int, up: int) -> Action:
     """Return what moves all that is selected by so many pixels."""
 
     def nudge(world: World, window: Window) -> None:
         by = Vector2(across, up) / window.camera.scale
-        bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
-        moves: list[Command] = [
-            SetField(entity, "Transform", "position", world.component(entity, Transform).position + by)
-            for entity in bodies
-        ]
+        moves = _changed(world, window, "position", by)
         moves += filter(None, (nudged(world, entity, by) for entity in window.selection.entities))
-        if moves:
-            window.edits.do(Group(f"moved {len(moves)}", moves))
+        window.edits.do_all(moves, f"moved {len(moves)}")
 
     return nudge
 
@@ -242,13 +246,8 @@ def turner(sign: int) -> Action:
 
     def turn(world: World, window: Window) -> None:
         by = sign * math.radians(15.0 if window.snapping.active else 1.0)
-        bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
-        turns = [
-            SetField(entity, "Transform", "angle", world.component(entity, Transform).angle + by)
-            for entity in bodies
-        ]
-        if turns:
-            window.edits.do(Group(f"turned {len(turns)}", turns))
+        turns = _changed(world, window, "angle", by)
+        window.edits.do_all(turns, f"turned {len(turns)}")
 
     return turn
 

@@ -6,7 +6,7 @@ from functools import partial
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.diagnostics.period import gives_way
 from physicslab.ecs.vector import Vector2
-from physicslab.history import Command, Group, Remove, RemoveComponent, Spawn
+from physicslab.history import Command, Remove, RemoveComponent, Spawn
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument
 from physicslab.view.controls.picking import body_at, instrument_at, spring_at
@@ -103,8 +103,8 @@ def remove_entities(world: World, window: Window, entities: Sequence[int]) -> No
         if window.hand.entity == entity:
             window.hand.drop(world)
     removed: list[Command] = [*detached(world, set(entities)), *(Remove(entity) for entity in entities)]
-    words = f"removed {len(entities)}" if len(entities) > 1 else removed[-1].words(world)
-    window.edits.do(removed[0] if len(removed) == 1 else Group(words, removed))
+    many = f"removed {len(entities)}" if len(entities) > 1 else ""
+    window.edits.do_all(removed, many or ("" if len(removed) == 1 else removed[-1].words(world)))
     window.selection.follow(world)
 
 

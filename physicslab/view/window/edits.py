@@ -1,6 +1,6 @@
 """What is selected, what the next body is like, and how the world is changed: by commands of one history."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -75,6 +75,14 @@ class Edits:
             self._refused(str(error).strip("'\""))
             return ()
 
+    def do_all(self, commands: Sequence[Command], words: str = "") -> tuple[int, ...]:
+        """Carry out commands as one edit, named by its words or those of the first; return as :meth:`do`."""
+        if not commands:
+            return ()
+        one = commands[0]
+        named = words or one.words(self.world)
+        return self.do(one if len(commands) == 1 and not words else Group(named, commands))
+
     def write(self, command: Command) -> None:
         """Carry out what a hand does while time runs."""
         self.take_back_shown()
@@ -105,10 +113,8 @@ class Edits:
             for entity, kind, name in self._shown
             if self.world.has(entity, kind)
         ]
-        if changes:
-            self.take_back_shown()
-            one = changes[0]
-            self.do(one if len(changes) == 1 else Group(one.words(self.world), changes))
+        self.take_back_shown()
+        self.do_all(changes)
 
     def take_back_shown(self) -> None:
         """Give all fields the values that they had before they were shown with others."""
