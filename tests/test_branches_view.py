@@ -101,7 +101,7 @@ def test_a_recording_that_cannot_be_saved_is_a_sentence_and_nothing_is_lost(
     assert desk.window.notice == "The recording could not be saved: No space left on device"
     assert desk.window.notice_failed and list(tmp_path.iterdir()) == []
     assert bits(desk.world) == there and desk.sandbox.history.entries == entries
-    monkeypatch.setattr("physicslab.files.new_scene.create_file", full)
+    monkeypatch.setattr("physicslab.files.scene.create_file", full)
     file_actions.save(desk.world, desk.window)
     assert "could not be saved" in desk.window.notice and "No space left on device" in desk.window.notice
 

@@ -178,28 +178,13 @@ def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, A
     if not entities or len(entities) > 2 or not all(world.has(entity, Transform) for entity in entities):
         return {}
     if len(entities) == 2:
-        return {
-            f"Join by a {way}": (
-                f"A {way} between these two, its rest length their present distance",
-                partial(_join, entities[0], entities[1], stiff),
-            )
-            for way, stiff in _WAYS.items()
-        }
-    words = {"spring": "Hang on a spring", "rod": "Hang on a rod"}
+        words, tip = "Join by a {}", "A {} between these two, its rest length their present distance"
+    else:
+        words, tip = "Hang on a {}", "A {} to a point above it, which can be dragged"
     return {
-        words[way]: (f"A {way} to a point above it, which can be dragged", partial(_hang, entities[0], stiff))
+        words.format(way): (tip.format(way), partial(_attach, bodies=tuple(entities), stiff=stiff))
         for way, stiff in _WAYS.items()
     }
-
-
-def _join(one: int, other: int, stiff: bool, world: World, window: Window) -> None:
-    places = [world.component(entity, Transform).position for entity in (one, other)]
-    _attach(world, window, one, other, (places[0], places[1]), stiff)
-
-
-def _hang(entity: int, stiff: bool, world: World, window: Window) -> None:
-    place = world.component(entity, Transform).position
-    _attach(world, window, entity, None, (place, _within(world, place)), stiff)
 
 
 def _within(world: World, place: Vector2) -> Vector2:
@@ -208,10 +193,12 @@ def _within(world: World, place: Vector2) -> Vector2:
     return Vector2(place.x, top if bounds is None else max(min(top, bounds[3]), place.y))
 
 
-def _attach(
-    world: World, window: Window, one: int, other: int | None, places: tuple[Vector2, Vector2], stiff: bool
-) -> None:
-    made = spring_between(world, one, other, places, stiff=stiff)
+def _attach(world: World, window: Window, bodies: Sequence[int], stiff: bool) -> None:
+    """Put a spring between two bodies, or between one and a point above it."""
+    one, other = bodies[0], bodies[1] if len(bodies) > 1 else None
+    place = world.component(one, Transform).position
+    end = _within(world, place) if other is None else world.component(other, Transform).position
+    made = spring_between(world, one, other, (place, end), stiff=stiff)
     if isinstance(made, str):
         window.notify(made)
         return

@@ -94,13 +94,7 @@ def max_length(canvas: Canvas) -> float:
 
 
 def draw_arrows(
-    start: Points,
-    span: Points,
-    kind: ArrowKind,
-    on: Drawing,
-    *,
-    opacity: float | Numbers = 1.0,
-    width: float | None = None,
+    start: Points, span: Points, kind: ArrowKind, on: Drawing, opacity: float | Numbers = 1.0
 ) -> None:
     """Draw arrows of one kind from ``start``, each ``span`` long.
 
@@ -122,7 +116,7 @@ def draw_arrows(
     cut = length > limit
     length = np.minimum(length, limit)
     end = start + length[:, None] * unit
-    colour, width = kind.colour(on.theme), kind.width if width is None else width
+    colour, width = kind.colour(on.theme), kind.width
     head = _HEAD + width
     if len(length) > _BOLD_LIMIT:
         width, head, share = max(0.5 * width, 1.0), 0.6 * _HEAD, 0.6 * share

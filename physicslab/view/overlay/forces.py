@@ -133,10 +133,12 @@ class Measured:
 # ---- drawing -----------------------------------------------------------------------------------------------
 
 
-_NORMAL = ArrowKind("Normal force", "normal_impulse", Head.DIAMOND)
-_FRICTION = ArrowKind("Friction", "friction_impulse", Head.OPEN, dashed=True)
-_KINDS = {"field": ArrowKind("Force", "force", Head.DOUBLE), "normal": _NORMAL, "friction": _FRICTION}
 _WIDTH = 2.6
+_KINDS = {
+    "field": ArrowKind("Force", "force", Head.DOUBLE, _WIDTH),
+    "normal": ArrowKind("Normal force", "normal_impulse", Head.DIAMOND, _WIDTH),
+    "friction": ArrowKind("Friction", "friction_impulse", Head.OPEN, _WIDTH, dashed=True),
+}
 _REACH = 0.16
 """Length of the longest arrow, as a share of the smaller side of the picture."""
 
@@ -168,6 +170,6 @@ def _draw(one: NamedForce, moved: Vector2, number: int, gauge: Gauge, on: Drawin
     """Draw one arrow, and return its label."""
     start = on.camera.project(np.array([(one.place.x + moved.x, one.place.y + moved.y)]))
     span = np.array([(one.force.x, -one.force.y)]) * (on.camera.scale / gauge.per_metre)
-    draw_arrows(start, span, _KINDS[one.kind], on, width=_WIDTH)
+    draw_arrows(start, span, _KINDS[one.kind], on)
     x, y = (start + span)[0].tolist()
     return Label((number, hash(one.name)), (x, y), [f"{one.name}: {quantity(one.force.magnitude, 'N')}"])

@@ -1,7 +1,7 @@
 """The educational overlay: the impulses of every contact, as the solver found them."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,9 +113,9 @@ def _draw_impulses_of(
     scale = on.camera.scale / gauge.per_metre
     _draw_cones((start, normal, tangent), samples, scale, opacity, on)
     friction_impulse = tangent * (samples["tangent"] * scale)[:, None]
-    draw_arrows(start, friction_impulse, FRICTION_IMPULSE, on, opacity=opacity, width=width)
+    draw_arrows(start, friction_impulse, replace(FRICTION_IMPULSE, width=width), on, opacity)
     push = normal * (samples["normal"] * scale)[:, None]
-    draw_arrows(start, push, NORMAL_IMPULSE, on, opacity=opacity, width=width)
+    draw_arrows(start, push, replace(NORMAL_IMPULSE, width=width), on, opacity)
 
 
 def _draw_cones(

@@ -211,7 +211,7 @@ class Legend:
         for sample, (across, down), length in self.samples:
             start, span = np.array([(left + across, top + down)]), np.array([(length, 0.0)])
             if sample.kind is not None:
-                draw_arrows(start, span, sample.kind, on, width=sample.width)
+                draw_arrows(start, span, replace(sample.kind, width=sample.width), on)
             else:
                 line = dashes(start, start + span)[:2] if sample.dashed else (start, start + span)
                 on.canvas.lines(line[0], line[1], on.theme.friction_cone, 1.2)
