@@ -1,7 +1,5 @@
 """A world: a state, the systems that act on it, and the stepper that advances it."""
 
-from __future__ import annotations
-
 import logging
 import math
 import sys
@@ -29,8 +27,6 @@ from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage, System
-
-__all__ = ["World"]
 
 _log = logging.getLogger(__name__)
 _told: set[str] = set()

@@ -100,7 +100,7 @@ class Table:
             column[row] = 0
 
     def compact(self, kept: NDArray[np.int64], row_of: Mapping[int, int]) -> None:
-        """Move rows ``kept`` to the front, in order; ``row_of`` gives each entity its new row."""
+        """Move rows ``kept`` (n,) to the front, in order; ``row_of`` gives each entity its new row."""
         for column in (self._present, *self._storage):
             column[: len(kept)] = column[kept]
             column[len(kept) :] = 0
@@ -134,7 +134,7 @@ class Batch:
 
     @classmethod
     def of(cls, tables: Iterable[Table], entities: NDArray[np.int64]) -> Batch:
-        """Select the rows that are present in every one of ``tables``."""
+        """Select the rows that are in every one of ``tables``; ``entities`` are those of all (rows,)."""
         selected = entities > 0
         for table in tables:
             selected = selected & table.present

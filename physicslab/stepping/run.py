@@ -1,7 +1,5 @@
 """A run: how long it is, in whole steps and a rest, and how it goes on, a call of a stepper at a time."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Iterator
@@ -16,8 +14,6 @@ from physicslab.state.masses import Diverged, quiet
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.stepper import Stepper
 from physicslab.systems.schedule import Schedule
-
-__all__ = ["RunLength", "Stepped", "run_length", "strides"]
 
 _STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
 _SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")

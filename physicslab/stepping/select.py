@@ -1,7 +1,5 @@
 """Which steppers there are, in one list, and which of them can advance a world."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from physicslab.state.state import State
@@ -13,8 +11,6 @@ from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Stepper
 from physicslab.systems.schedule import LeftOut, Schedule
-
-__all__ = ["STEPPERS", "Steppers", "choose", "remake", "resume", "select_steppers"]
 
 STEPPERS: tuple[type[Stepper], ...] = (Asleep, Flow, EventDriven, Rigid, Soft)
 """All of them, the best first. The last can advance any world."""

@@ -1,7 +1,5 @@
 """What a stepper is: one way to advance a state."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -10,8 +8,6 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
 from physicslab.systems.schedule import Schedule
-
-__all__ = ["MAX_FACTOR", "MAX_FALL", "Advance", "Stepper", "divisions", "falls_far"]
 
 _MAX_DIVISIONS = 100_000
 """Largest number of parts of a step that is longer than the scene's own."""
