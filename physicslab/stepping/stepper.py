@@ -29,11 +29,8 @@ class Advance:
     divisions: int = 1
 
 
-class Stepper(Protocol):
-    """One way to advance a state, made for its structure and remade when that changes.
-
-    To add one, write its file, and name it in the list of :mod:`physicslab.stepping.select`, before those
-    over which it is preferred.
+class Advancer(Protocol):
+    """What advances a state.
 
     Attributes
     ----------
@@ -55,9 +52,10 @@ class Stepper(Protocol):
     title: str
     keeps_balance: bool
     leaves_forces: bool
-    reason: str
 
-    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...
+    @property
+    def reason(self) -> str:
+        """Return the reason for it."""
 
     @property
     def leaps(self) -> bool:
@@ -66,10 +64,6 @@ class Stepper(Protocol):
     @property
     def kernels(self) -> tuple[Any, ...]:
         """Return the kernels that it calls."""
-
-    @classmethod
-    def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
-        """Return why this stepper cannot advance such a world, or ``None``."""
 
     def holds(self, state: State) -> bool:
         """Whether the numbers that it was made from are still the same."""
@@ -85,6 +79,20 @@ class Stepper(Protocol):
         Diverged
             If a value would not be finite. Whole steps before that one are counted by the stepper.
         """
+
+
+class Stepper(Advancer, Protocol):
+    """One way to advance a state, made for its structure and remade when that changes.
+
+    To add one, write its file, and name it in the list of :mod:`physicslab.stepping.select`, before those
+    over which it is preferred.
+    """
+
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...
+
+    @classmethod
+    def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
+        """Return why this stepper cannot advance such a world, or ``None``."""
 
 
 def divisions(state: State, h: float) -> int:
