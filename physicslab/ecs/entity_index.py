@@ -174,7 +174,7 @@ class EntityIndex:
                     table.adopt(entity, handle, self.row_of[entity])
 
     def rows_of(self, entities: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return the row of each entity, -1 where there is no such entity; 0 is the world's."""
+        """Return the rows (n,) of entities (n,), -1 where there is no such entity; 0 is the world's."""
         known = np.clip(entities, 0, self.newest)
         return np.where(known == entities, self.lookup[known], -1)
 

@@ -86,6 +86,13 @@ class Table:
         self._present[row] = True
         self.handles[entity] = handle
 
+    def blank(self) -> Component:
+        """Return a component of no entity, whose values are all zero: its row is written later."""
+        made: Component = Component.__new__(self.component)
+        made._views = [[column.dtype.type(0).item()] * (column.ndim) for column in self.columns]
+        made._row = 0
+        return made
+
     def release(self, entity: int) -> None:
         """Detach the entity's handle, which keeps its last values, and blank its row."""
         handle = self.handles.pop(entity)
@@ -100,7 +107,7 @@ class Table:
             column[row] = 0
 
     def compact(self, kept: NDArray[np.int64], row_of: Mapping[int, int]) -> None:
-        """Move rows ``kept`` to the front, in order; ``row_of`` gives each entity its new row."""
+        """Move rows ``kept`` (n,) to the front, in order; ``row_of`` gives each entity its new row."""
         for column in (self._present, *self._storage):
             column[: len(kept)] = column[kept]
             column[len(kept) :] = 0
@@ -134,7 +141,7 @@ class Batch:
 
     @classmethod
     def of(cls, tables: Iterable[Table], entities: NDArray[np.int64]) -> Batch:
-        """Select the rows that are present in every one of ``tables``."""
+        """Select the rows that are in every one of ``tables``; ``entities`` are those of all (rows,)."""
         selected = entities > 0
         for table in tables:
             selected = selected & table.present

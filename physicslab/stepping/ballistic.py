@@ -1,7 +1,5 @@
 """Which worlds can have their collisions located exactly, and which benefit."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,17 +13,6 @@ from physicslab.systems.joint import JointSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
-
-__all__ = [
-    "CONTACT_STEP",
-    "MAX_BODIES",
-    "MAX_PAIRS",
-    "count_pairs",
-    "pairs_that_may_meet",
-    "turning_rows",
-    "why_not_exact",
-    "why_not_worthwhile",
-]
 
 MAX_BODIES = 32
 """Number of moving bodies above which ``auto`` prefers the contact step."""

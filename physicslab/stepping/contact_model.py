@@ -1,7 +1,5 @@
 """Which worlds can have rigid contacts."""
 
-from __future__ import annotations
-
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
@@ -9,8 +7,6 @@ from physicslab.stepping.forces import fastest_rate
 from physicslab.systems.joint import JointSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
-
-__all__ = ["choose_contacts", "why_not_rigid"]
 
 _MAX_PAIRS = 10_000
 """Number of pairs above which contacts are soft: each is looked at in every piece of motion."""

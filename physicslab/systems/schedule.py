@@ -77,6 +77,10 @@ class Schedule:
             settle()
         return self._timings
 
+    def note_into(self, other: "Schedule") -> None:
+        """Note costs where another schedule notes its own."""
+        self._timings = other._timings
+
     def defer(self, settle: Callable[[], None]) -> None:
         """Let ``settle`` be called, which notes costs, before timings are next read."""
         if self._settle != settle:
@@ -136,7 +140,7 @@ class Schedule:
     def run_forces(
         self, state: State, h: float, note: Callable[[System, NDArray[np.float64], State], None]
     ) -> None:
-        """Run ``Stage.FORCE``; ``note`` is called after each system, with the forces from before it."""
+        """Run ``Stage.FORCE``; ``note`` gets each system, and forces and torques (3 rows,) from before it."""
         for system in self.running:
             if Stage.FORCE in self._marked[system]:
                 before = state.bodies.pull.copy()

@@ -114,6 +114,10 @@ class System:
         """Return which of ``kernels`` the world needs as it is; what it does not need is not waited for."""
         return self.kernels
 
+    def fresh(self) -> "System":
+        """Return another one with the same settings, for a world of its own."""
+        return type(self)()
+
     def keep(self) -> tuple[NDArray[Any], ...]:
         """Return copies of the arrays that the system goes on from, if it keeps any from step to step.
 
@@ -123,7 +127,7 @@ class System:
         return ()
 
     def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
-        """Go on from what :meth:`keep` returned at an earlier moment; the entities are those of then."""
+        """Go on from what :meth:`keep` returned, in its shapes; the entities are those of then."""
 
     def substep_factor(self, state: State) -> int:
         """Return the factor by which the next step needs more substeps than configured, at the end of one."""

@@ -132,7 +132,7 @@ def _is_between(
 def _nearest(
     shapes: Shapes, a: int, b: int, course: Course, c: float, s: float
 ) -> tuple[float, int, float, float]:
-    """Return the gap of a pair [m], negative where it overlaps, its feature, and its first two rates there."""
+    """Return the gap [m] of a pair, negative where it overlaps, at which feature, and its two rates there."""
     rounding, beside = shapes.radius[a] + shapes.radius[b], True
     gap, feature, speed, pull = -math.inf, -1, 0.0, 0.0
     for side in range(2):

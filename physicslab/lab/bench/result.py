@@ -34,7 +34,7 @@ class Spread:
 
     @classmethod
     def of(cls, milliseconds: Sequence[float] | NDArray[np.float64]) -> Spread:
-        """Return how some times are distributed."""
+        """Return how some times (n,) [ms] are distributed."""
         median, p90, p99 = map(float, np.percentile(milliseconds, (50, 90, 99)))
         return cls(median, p90, p99, float(np.mean(milliseconds)))
 
