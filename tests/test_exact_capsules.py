@@ -1,4 +1,4 @@
-"""Capsules in rigid contacts and in flight: impacts to rounding, at rest on a side or an end, among others."""
+"""Capsules in rigid contacts and in flight: impacts to rounding, at rest on side or end, among others."""
 
 import math
 
