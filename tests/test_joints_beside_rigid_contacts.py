@@ -8,6 +8,7 @@ import pytest
 
 from physicslab import World
 from physicslab.components import Mass, Material, Pin, Shape, Transform, Velocity
+from physicslab.ecs.vector import Vector2
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.kernels.accounts import ENERGY, IMPACTS, JOINTS, PX, SPIN
 from physicslab.stepping.accounting import balance_of
@@ -60,12 +61,12 @@ def test_what_hits_one_of_two_bars_moves_both_and_loses_nothing() -> None:
     assert world.collisions == 1
     after = np.array(balance_of(world, world.schedule.forces))
     assert after == pytest.approx(before, abs=1e-12)
-    assert world.component(bodies[1], Velocity).linear.y > 0.05, "the impulse went through the pin"
+    assert abs(world.component(bodies[1], Velocity).angular) > 0.01, "the impulse went through the pin"
 
 
 def test_a_wagon_rolls_down_as_its_wheels_demand() -> None:
     world, slope = World(), 0.2
-    world.physics = replace(world.physics, gravity=(9.81 * math.sin(slope), -9.81 * math.cos(slope)))
+    world.physics = replace(world.physics, gravity=Vector2(9.81 * math.sin(slope), -9.81 * math.cos(slope)))
     rough = {"restitution": 0.0, "friction": 1.0}
     world.spawn(Transform((0, -0.5)), Shape.box(40, 1.0), Material(**rough))
     wagon = world.spawn(Transform((0, 0.5)), Velocity(), Mass(2.0), Shape.box(2.0, 0.3), Material(**rough))
