@@ -22,8 +22,7 @@ from scipy.integrate import solve_ivp
 
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.lab.accuracy.catalogue import PROBLEMS
-from physicslab.lab.accuracy.problem import Problem
-from physicslab.lab.accuracy.settings import Setting
+from physicslab.lab.accuracy.problem import Problem, Setting
 from physicslab.world import World
 
 COMPARED = ("kepler_e0.5", "kepler_e0.9", "figure_eight")

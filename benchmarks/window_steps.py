@@ -18,8 +18,8 @@ from typing import Any
 from physicslab.desktop.timed_window import InWindow
 from physicslab.files.json_text import json_text
 from physicslab.lab.bench.catalogue import SCENES
-from physicslab.lab.bench.clock import take_turns
 from physicslab.lab.bench.engine import OurEngine
+from physicslab.lab.bench.result import take_turns
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.document import lab_document, machine_text
 from physicslab.lab.table import table

@@ -9,8 +9,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import NoReturn
 
-from physicslab.commands import COMMANDS, CommandError, command
-from physicslab.commands.command_error import FAILED, USAGE
+from physicslab.commands import COMMANDS, FAILED, USAGE, CommandError, command
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import SceneError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from physicslab import World, cli, load_scene
-from physicslab.diagnostics.account import measure_account
+from physicslab.diagnostics.energy import measure_account
 from physicslab.export.recording import RunRecorder
 
 __all__ = ["exported", "recorded"]

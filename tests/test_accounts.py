@@ -18,8 +18,7 @@ from recording import RecordingCanvas
 from physicslab.cli import main
 from physicslab.components import Drag, Held, Mass, Material, Shape, Transform, Velocity
 from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES, UNMEASURED_MOMENTA
-from physicslab.diagnostics.account import ENERGY_ACCOUNTS, MOMENTUM_ACCOUNTS, Accounts, measure_account
-from physicslab.diagnostics.audit import Audit
+from physicslab.diagnostics.energy import ENERGY_ACCOUNTS, MOMENTUM_ACCOUNTS, Accounts, Audit, measure_account
 from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig

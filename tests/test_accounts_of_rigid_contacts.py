@@ -10,7 +10,7 @@ import pytest
 
 from physicslab import World
 from physicslab.components import Drag, Mass, Material, Shape, Spring, Transform, Velocity
-from physicslab.diagnostics.account import Accounts, measure_account
+from physicslab.diagnostics.energy import Accounts, measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.state.state import State
 from physicslab.stepping import rigid_motion

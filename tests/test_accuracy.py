@@ -18,7 +18,7 @@ from physicslab.lab.accuracy.figures import digits, number, record
 from physicslab.lab.accuracy.measure import measure, rounding_floor
 from physicslab.lab.accuracy.planets import crowd
 from physicslab.lab.accuracy.plot import method_styles
-from physicslab.lab.accuracy.settings import Setting, ladder, refusal
+from physicslab.lab.accuracy.problem import Setting, ladder, refusal
 from physicslab.lab.accuracy.study import Study, study
 from physicslab.lab.accuracy.verdict import measured_order, verdict
 from physicslab.lab.case import Verdict

@@ -16,6 +16,8 @@ from physicslab.diagnostics.free_body import applied_forces
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.view.overlay.arrows import (
     CONTACT_NORMAL,
@@ -167,19 +169,24 @@ def test_short_arrows_are_left_out_and_long_ones_marked() -> None:
     span = np.array(
         [(MIN_LENGTH * 0.9, 0.0), (50.0, 0.0), (0.0, 3.0 * limit), (math.nan, 0.0), (math.inf, 0.0)]
     )
-    draw_arrows(np.full((5, 2), 300.0), span, VELOCITY, canvas, DARK)
+    draw_arrows(np.full((5, 2), 300.0), span, VELOCITY, Drawing(canvas, Camera(canvas.size), DARK, 12))
     shafts, heads = lines_in(canvas, DARK.velocity)
     assert shafts["end"].tolist() == [[350.0, 300.0], [300.0, 300.0 + limit]]
     assert len(heads["start"]) == 2 * 3 + 2
     canvas.calls.clear()
-    draw_arrows(np.full((1, 2), 300.0), span[1:2], VELOCITY, canvas, DARK)
+    draw_arrows(np.full((1, 2), 300.0), span[1:2], VELOCITY, Drawing(canvas, Camera(canvas.size), DARK, 12))
     assert len(lines_in(canvas, DARK.velocity)[1]["start"]) == 3
 
 
 def test_a_crowd_is_drawn_finer() -> None:
     canvas = RecordingCanvas((1280, 720))
     for count in (10, 400):
-        draw_arrows(np.full((count, 2), 300.0), np.full((count, 2), 20.0), VELOCITY, canvas, DARK)
+        draw_arrows(
+            np.full((count, 2), 300.0),
+            np.full((count, 2), 20.0),
+            VELOCITY,
+            Drawing(canvas, Camera(canvas.size), DARK, 12),
+        )
     few, _, many, _ = lines_in(canvas, DARK.velocity)
     assert few["width"] > many["width"] and len(many["start"]) == 400
 

@@ -11,11 +11,10 @@ import pytest
 
 from physicslab import cli
 from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
-from physicslab.lab.bench.clock import TURN, take_turns
 from physicslab.lab.bench.costs import UNUSED, measure_memory, measure_unused
 from physicslab.lab.bench.engine import OurEngine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
-from physicslab.lab.bench.result import SceneResult, exponent, growths
+from physicslab.lab.bench.result import TURN, SceneResult, exponent, growths, take_turns
 from physicslab.lab.bench.scene import BenchScene, Quality
 from physicslab.lab.bench.targets import Check
 from physicslab.lab.case import Catalogue

@@ -16,11 +16,10 @@ from physicslab.components import Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
-from physicslab.lab.bench.clock import Spread
 from physicslab.lab.bench.engine import OurEngine
 from physicslab.lab.bench.measure import Judge, measure_scene
 from physicslab.lab.bench.moving import _in_funnel, funnel
-from physicslab.lab.bench.result import EngineResult, SceneResult
+from physicslab.lab.bench.result import EngineResult, SceneResult, Spread
 from physicslab.lab.bench.scene import BenchScene, at_rest, largest_overlap, lost, within
 from physicslab.lab.bench.targets import checks
 from physicslab.lab.jobs import result_of

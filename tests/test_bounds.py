@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 
 from physicslab.components import Material, Shape, Transform, Velocity
 from physicslab.contacts.outlines import outlines_of, overlap
-from physicslab.diagnostics.account import measure_account
-from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from physicslab.components import Drag, Mass, Name, Transform, Velocity
 from physicslab.contacts.memory import export_contacts
-from physicslab.diagnostics.account import measure_account
+from physicslab.diagnostics.energy import measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene
 from physicslab.integrators.leapfrog import LEAPFROG

@@ -14,9 +14,10 @@ from physicslab.cli import main
 from physicslab.components import Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS, CONVERGENCE
-from physicslab.lab.accuracy.contacts.engines import ENGINES, OWN
 from physicslab.lab.accuracy.contacts.study import (
+    ENGINES,
     HALVINGS,
+    OWN,
     ROUNDING,
     ContactCurve,
     ContactRow,

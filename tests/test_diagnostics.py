@@ -6,9 +6,7 @@ import pytest
 
 from physicslab import load_scene
 from physicslab.components import Held, Mass, Shape, Spring, Transform, Velocity
-from physicslab.diagnostics.account import measure_account
-from physicslab.diagnostics.audit import Audit
-from physicslab.diagnostics.energy import Energy, measure_energy, measure_momentum
+from physicslab.diagnostics.energy import Audit, Energy, measure_account, measure_energy, measure_momentum
 from physicslab.diagnostics.quantities import Reading, why_undefined
 from physicslab.diagnostics.run_report import RunRecord, run_report
 from physicslab.ecs.config import PhysicsConfig

@@ -10,8 +10,7 @@ from recording import RecordingCanvas
 from test_hud import frame, recorded, row
 
 from physicslab.components import Drag, Mass, Spring, Trail, Transform, Velocity
-from physicslab.diagnostics.account import measure_account
-from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle, pendulum
@@ -21,7 +20,6 @@ from physicslab.view.canvas.quantities import percentage, quantity, round_quanti
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.overlay.edges import draw_scale_bar
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.workbench import world_panel
 from physicslab.view.workbench.figures import EnergyWatch, measure_world
 from physicslab.view.workbench.world_panel import parts_of
 from physicslab.world import World
@@ -166,7 +164,7 @@ def test_a_bar_of_what_is_negative_lies_left_of_its_zero(monkeypatch: pytest.Mon
     def bar(ui: Ui, label: str, value: str, share: float, colour: object, *, zero: float, tip: str) -> None:
         drawn[label] = zero, zero + share
 
-    monkeypatch.setattr(world_panel, "bar", bar)
+    monkeypatch.setattr(Ui, "bar", bar)
     recorded(load_scene("two_planets"))[0].frames(2)
     (zero, kinetic), (left, stored), (again, total) = (
         drawn[f"{kind} energy"] for kind in ("Kinetic", "Potential", "Total")
@@ -370,7 +368,7 @@ def test_the_scale_bar_is_as_long_as_it_says(scale: float, words: str) -> None:
     desk = Desk(empty_world(), canvas)
     desk.window.camera.scale = scale
     canvas.calls.clear()
-    draw_scale_bar(desk.window.camera, 600, 400, 14, canvas, desk.window.theme)
+    draw_scale_bar(desk.window.drawing, 600, 400)
     assert canvas.words == [words]
     (lines,) = canvas.called("lines")
     assert lines["end"][0][0] - lines["start"][0][0] == pytest.approx(float(words[:-2]) * scale)

@@ -16,7 +16,7 @@ from deadline import deadline
 from hostile_scenes import scenes
 from hypothesis import HealthCheck, given, settings
 
-from physicslab.diagnostics.audit import Audit
+from physicslab.diagnostics.energy import Audit
 from physicslab.diagnostics.run_report import RunRecord, find_not_finite, run_report
 from physicslab.ecs.component import COMPONENTS, InvalidValue
 from physicslab.files.json_text import json_text

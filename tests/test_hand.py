@@ -7,7 +7,7 @@ import pytest
 from desk import FRAME, empty_world
 
 from physicslab.components import Held, Mass, Transform, Velocity
-from physicslab.diagnostics.account import measure_account
+from physicslab.diagnostics.energy import measure_account
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from physicslab import World, load_scene
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
-from physicslab.diagnostics.account import Accounts, measure_account
+from physicslab.diagnostics.energy import Accounts, measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels import accounts

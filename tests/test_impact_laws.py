@@ -20,7 +20,6 @@ from physicslab.kernels.constraint import impact_law
 from physicslab.kernels.constraint.impact_law import LOWERED, NEWTON, ImpactImpulses, PointResponse
 from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity, PointState
 from physicslab.kernels.rigid import motion
-from physicslab.kernels.rigid.features import HEIGHT, RADIUS, REACH, WIDTH
 from physicslab.kernels.solver import impact_log
 from physicslab.kernels.solver.impact_log import ImpactPoints, Pose
 from physicslab.prefabs import box, circle
@@ -274,25 +273,24 @@ class Cluster:
 
     def place(self, random: np.random.Generator) -> None:
         """Let all touch: two discs, or a corner, or two faces, and the third where it touches the second."""
-        rows, q, outlines = self.scene[0], self._ode.q, self.scene[4]
+        rows, q, (half_x, half_y, radius, reaches) = self.scene[0], self._ode.q, self.scene[4][1]
         size = 10.0 ** random.uniform(-0.5, 0.5, 3)
         for number, kind in enumerate(self.kinds):
             row = 1 + number
             width, height = 2.0 * size[number], 2.0 * size[number] * 10.0 ** random.uniform(-0.7, 0.0)
-            lengths = (0.0, width, height) if kind == "b" else (size[number], 0.0, 0.0)
-            outlines[row, RADIUS : HEIGHT + 1] = lengths
-            outlines[row, REACH] = size[number] if kind == "o" else 0.5 * math.hypot(width, height)
-        self.scene[7][:, 2] = 2.0 * outlines[1:4, RADIUS].max() + outlines[1:4, HEIGHT].max()
+            lengths = (0.5 * width, 0.5 * height, 0.0) if kind == "b" else (0.0, 0.0, size[number])
+            half_x[row], half_y[row], radius[row] = lengths
+            reaches[row] = size[number] if kind == "o" else 0.5 * math.hypot(width, height)
+        self.scene[7][:, 2] = 2.0 * (radius[1:4].max() + half_y[1:4].max())
         x = 0.0
         for number, kind in enumerate(self.kinds):
             row = 1 + number
             angle = random.uniform(-1.0, 1.0) if kind == "b" and number and random.random() < 0.6 else 0.0
-            reach = outlines[row, RADIUS]
+            reach = radius[row]
             shift = 0.0
             if kind == "b":
-                half_x, half_y = 0.5 * outlines[row, WIDTH], 0.5 * outlines[row, HEIGHT]
-                reach = half_x * abs(math.cos(angle)) + half_y * abs(math.sin(angle))
-                shift = random.uniform(-0.3, 0.3) * half_y
+                reach = half_x[row] * abs(math.cos(angle)) + half_y[row] * abs(math.sin(angle))
+                shift = random.uniform(-0.3, 0.3) * half_y[row]
             if number:
                 x += reach
             q[2 * row], q[2 * row + 1], q[2 * rows + row] = x, shift, angle
@@ -308,12 +306,9 @@ class Cluster:
         v[:] = 0.0
         mass = 10.0 ** random.uniform(-3.0, 3.0, 3)
         for number, kind in enumerate(self.kinds):
-            row, lengths = 1 + number, self.scene[4][1 + number]
-            square = (
-                lengths[RADIUS] ** 2 / 2.0
-                if kind == "o"
-                else (lengths[WIDTH] ** 2 + lengths[HEIGHT] ** 2) / 12
-            )
+            row = 1 + number
+            half_x, half_y, radius, _ = self.scene[4][1][:, row]
+            square = radius**2 / 2.0 if kind == "o" else (half_x**2 + half_y**2) / 3.0
             free = not (self.fixed and number == 0)
             inverse[2 * row] = inverse[2 * row + 1] = 1.0 / mass[number] if free else 0.0
             inverse[2 * rows + row] = 1.0 / (mass[number] * square) if free else 0.0

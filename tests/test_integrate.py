@@ -12,8 +12,7 @@ from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators import INTEGRATORS
-from physicslab.integrators.integrator import Flow
-from physicslab.integrators.splitting import splitting
+from physicslab.integrators.integrator import Flow, splitting
 from physicslab.kernels.ode.splitting import split
 from physicslab.state.masses import Diverged
 from physicslab.systems.gravity import GravitySystem

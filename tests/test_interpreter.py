@@ -25,8 +25,7 @@ from desk import bits
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.desktop import compiling
 from physicslab.desktop.compiling import INTERPRETING_LIMIT, SmallScenes
-from physicslab.diagnostics.account import measure_account
-from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, read_scene, write_scene

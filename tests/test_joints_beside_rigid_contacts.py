@@ -8,8 +8,8 @@ import pytest
 
 from physicslab import World
 from physicslab.components import Mass, Material, Pin, Shape, Transform, Velocity
-from physicslab.ecs.vector import Vector2
 from physicslab.diagnostics.energy import measure_energy
+from physicslab.ecs.vector import Vector2
 from physicslab.kernels.accounts import ENERGY, IMPACTS, JOINTS, PX, SPIN
 from physicslab.stepping.accounting import balance_of
 from physicslab.stepping.rigid import Rigid

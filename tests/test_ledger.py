@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from physicslab import World, cli, load_scene
 from physicslab.components import Velocity
 from physicslab.diagnostics import ledger as ledger_of_impacts
-from physicslab.diagnostics.account import measure_account
-from physicslab.diagnostics.energy import measure_momentum
+from physicslab.diagnostics.energy import measure_account, measure_momentum
 from physicslab.diagnostics.ledger import LedgerWriter, names_of, read_impacts, speeds_at
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels.constraint.impact_law import NEWTON

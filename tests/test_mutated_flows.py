@@ -15,7 +15,7 @@ import pytest
 
 from physicslab import World
 from physicslab.components import Drag, Mass, Shape, Spring, Transform, Velocity
-from physicslab.diagnostics.account import Accounts, measure_account
+from physicslab.diagnostics.energy import Accounts, measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators import INTEGRATORS

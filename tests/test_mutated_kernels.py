@@ -8,7 +8,7 @@ from mutations import FAULT, WRONG_DRIFTS, WRONG_KICKS, lost_impulses, mutated
 
 from physicslab import World
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
-from physicslab.diagnostics.account import Accounts, measure_account
+from physicslab.diagnostics.energy import Accounts, measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.state.state import State

@@ -10,15 +10,14 @@ import pygame
 import pytest
 from desk import Desk, bits, click, empty_world, tap
 
-from physicslab.files.new_scene import file_stem, save_last_good
 from physicslab.files.replace import create_file
-from physicslab.files.scene import load_scene, save_scene
+from physicslab.files.scene import file_stem, load_scene, save_last_good, save_scene
 
 AT_ONCE = """
 import sys, time
 from pathlib import Path
-from physicslab.files.new_scene import save_last_good
-from physicslab.files.new_scene import save_new_scene
+from physicslab.files.scene import save_last_good
+from physicslab.files.scene import save_new_scene
 from physicslab.files.scene import load_scene
 from physicslab.view.controls.file_actions import new_scene_paths
 folder, start = Path(sys.argv[1]), float(sys.argv[2])

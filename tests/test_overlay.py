@@ -13,6 +13,8 @@ from physicslab.components import Mass, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.view.overlay.contact_samples import SHOWN, resting_of
@@ -196,7 +198,7 @@ def test_labels_lie_apart_and_stay_where_they_are() -> None:
     places = []
     for order in (crowd, crowd[::-1]):
         canvas = RecordingCanvas((800, 600))
-        labels.draw(order, covered, 12, canvas, DARK)
+        labels.draw(order, covered, Drawing(canvas, Camera(canvas.size), DARK, 12))
         rects = sorted(call["rect"] for call in canvas.called("panel"))
         places.append(rects)
         every = [*rects, *covered]

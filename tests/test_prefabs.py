@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from physicslab import InvalidValue, Vector2, World
 from physicslab.components import Mass, Material, Shape, Spring, Trail, Transform, Velocity
-from physicslab.diagnostics.audit import Audit
-from physicslab.diagnostics.energy import measure_momentum
+from physicslab.diagnostics.energy import Audit, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.scene import write_scene
 from physicslab.prefabs import (

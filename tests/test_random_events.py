@@ -19,7 +19,7 @@ from physicslab.components import Mass, Name, Slider, Spring, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle
 from physicslab.view.controls import file_actions
-from physicslab.view.toolkit.labels import widget_label
+from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.impacts import COLUMNS, ImpactList
 from physicslab.view.window.lab_process import LabProcess
 from physicslab.view.window.window import Picking

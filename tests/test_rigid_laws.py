@@ -13,8 +13,7 @@ from physicslab import World
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import BOX
 from physicslab.contacts.report import list_contacts
-from physicslab.diagnostics.account import measure_account
-from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels.rigid import complementarity, lemke, motion, time_stepping

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from physicslab import cli, load_scene, save_scene
+from physicslab.commands import CommandError
 from physicslab.commands.assignments import assign
-from physicslab.commands.command_error import CommandError
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import Component, component, field
 from physicslab.world import World

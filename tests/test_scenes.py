@@ -7,8 +7,7 @@ import pytest
 
 from physicslab import World, load_scene
 from physicslab.components import Mass, Shape, Transform, Velocity
-from physicslab.diagnostics.audit import Audit
-from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import Audit, measure_energy, measure_momentum
 from physicslab.ecs.text import printable
 from physicslab.scenes import SCENES
 

@@ -3,7 +3,7 @@
 import pytest
 
 from physicslab.components import Drag, Mass, Shape, Spring, Transform, Velocity
-from physicslab.diagnostics.audit import Audit
+from physicslab.diagnostics.energy import Audit
 from physicslab.diagnostics.run_report import RunRecord, run_report, run_summary
 from physicslab.ecs import config
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig

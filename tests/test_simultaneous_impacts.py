@@ -7,8 +7,7 @@ import pytest
 
 from physicslab import World
 from physicslab.components import Transform, Velocity
-from physicslab.diagnostics.account import measure_account
-from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.prefabs import box, circle

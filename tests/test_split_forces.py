@@ -12,8 +12,7 @@ from hypothesis import strategies as st
 
 from physicslab import load_scene
 from physicslab.components import Drag, Held, Mass, Shape, Spring, Transform, Velocity
-from physicslab.diagnostics.account import measure_account
-from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import read_scene, write_scene

@@ -18,12 +18,11 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from physicslab import SceneError, World
+from physicslab.commands import CommandError
 from physicslab.commands.assignments import assign
-from physicslab.commands.command_error import CommandError
 from physicslab.components import Note, Transform
 from physicslab.ecs.component import Component, InvalidValue, component, field, local_components
-from physicslab.ecs.text import has_width, is_line
-from physicslab.ecs.texts import code_of, text_of
+from physicslab.ecs.text import code_of, has_width, is_line, text_of
 from physicslab.files.json_text import json_bytes
 from physicslab.files.reader import FORMAT, read_scene
 from physicslab.files.scene import load_scene, save_scene
@@ -169,7 +168,7 @@ def test_undo_and_seek_bring_a_text_back() -> None:
 
 REPLAYED = """
 import sys
-from physicslab.ecs.texts import code_of
+from physicslab.ecs.text import code_of
 from physicslab.components import Note
 from physicslab.history import History
 for number in range(1000):

@@ -18,9 +18,9 @@ from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene, write_scene
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
-from physicslab.lab.accuracy.contacts.engines import OWN, ContactEngine
+from physicslab.lab.accuracy.contacts.study import OWN, ContactEngine
 from physicslab.lab.accuracy.estimate import estimate_error
-from physicslab.lab.accuracy.horizon import find_horizon
+from physicslab.lab.accuracy.paths import find_horizon
 from physicslab.lab.accuracy.trust import Trust, assess, moments_of
 from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem, summarise
 from physicslab.lab.accuracy.twins import nudged, with_ids

@@ -8,9 +8,24 @@ from argparse import ArgumentParser, Namespace
 from importlib import import_module
 from typing import Protocol, cast
 
-from physicslab.commands.command_error import CommandError
+FAILED = 1
+"""Exit status of a run that failed."""
+USAGE = 2
+"""Exit status of bad usage, or of a bad scene."""
 
-__all__ = ["COMMANDS", "Command", "CommandError", "command"]
+
+class CommandError(Exception):
+    """A command cannot go on; the message is one line for people.
+
+    Attributes
+    ----------
+    status : int
+        The exit status.
+    """
+
+    def __init__(self, message: str, status: int = USAGE) -> None:
+        super().__init__(message)
+        self.status = status
 
 
 class Command(Protocol):

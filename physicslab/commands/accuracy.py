@@ -5,33 +5,22 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
-from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError
+from physicslab.commands.arguments import positive_duration
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
-from physicslab.commands.numbers import positive_duration
 from physicslab.ecs.text import printable
 from physicslab.files.scene import load_scene
+from physicslab.lab.accuracy import tables
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.lab.accuracy.contacts.case import ContactCase
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS, CONVERGENCE
-from physicslab.lab.accuracy.contacts.engines import OWN
-from physicslab.lab.accuracy.contacts.study import ContactStudy, study_case
+from physicslab.lab.accuracy.contacts.study import OWN, ContactStudy, study_case
 from physicslab.lab.accuracy.document import document, trust_document
 from physicslab.lab.accuracy.honesty.study import FAMILIES, HonestRow, assess_known
 from physicslab.lab.accuracy.plot import case_plot, overview, work_precision
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import DEFAULT_S, SceneStudy, study_scene
 from physicslab.lab.accuracy.study import Study, study
-from physicslab.lab.accuracy.tables import (
-    contact_summary,
-    contact_text,
-    honest_text,
-    left_out_text,
-    scene_text,
-    study_text,
-    summary_text,
-    trust_rows_text,
-    trust_text,
-)
 from physicslab.lab.accuracy.trust import Trust, assess, moments_of
 from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem
 from physicslab.lab.jobs import Job
@@ -97,22 +86,22 @@ def execute(arguments: Namespace) -> int:
         match result:
             case Study():
                 studies.append(result)
-                run.show(study_text(result, whole=len(problems) == 1))
+                run.show(tables.study_text(result, whole=len(problems) == 1))
                 run.draw(result.problem.name, partial(work_precision, result))
             case ContactStudy():
                 contact_studies.append(result)
-                run.show(contact_text(result))
+                run.show(tables.contact_text(result))
                 run.draw(result.case.name, partial(case_plot, result))
             case SceneStudy():
                 scene_studies.append(result)
-                run.show(scene_text(result))
+                run.show(tables.scene_text(result))
     if studies:
-        run.show(summary_text(studies))
+        run.show(tables.summary_text(studies))
     if contact_studies:
-        run.show(contact_summary(contact_studies))
+        run.show(tables.contact_summary(contact_studies))
         _draw_overviews(run, contact_studies)
     if sparse:
-        run.show(left_out_text())
+        run.show(tables.left_out_text())
     run.write(document(studies, scene_studies, contact_studies))
     for found in scene_studies:
         if found.rows[0].failure:
@@ -136,13 +125,13 @@ def _trust(
         load, shown = partial(load_scene, name), printable(name)
         moments = moments_of(seconds, load().simulation.dt, _LOOKS)
         (found[shown],) = run.results([(1.0, assess(load, seconds, moments))])
-        run.show(trust_text(shown, found[shown]))
+        run.show(tables.trust_text(shown, found[shown]))
     random = [assess_known(family, seed) for family in FAMILIES for seed in range(drawn)]
     honest: list[HonestRow] = list(run.results([(1.0, job) for job in random]))
     if rows:
-        run.show(trust_rows_text(rows))
+        run.show(tables.trust_rows_text(rows))
     if honest:
-        run.show(honest_text(honest))
+        run.show(tables.honest_text(honest))
     run.write(trust_document(rows, found, honest))
 
 

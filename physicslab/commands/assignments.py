@@ -5,7 +5,7 @@ from argparse import ArgumentParser
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from physicslab.commands.command_error import CommandError
+from physicslab.commands import CommandError
 from physicslab.ecs.component import COMPONENTS, Component, Field, InvalidValue
 from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.ecs.text import suggestion, unique_name

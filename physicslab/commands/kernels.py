@@ -4,7 +4,7 @@ import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError
 from physicslab.commands.output import Output, reason_of
 from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable

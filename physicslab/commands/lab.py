@@ -5,7 +5,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TextIO
 
-from physicslab.commands.command_error import CommandError
+from physicslab.commands import CommandError
 from physicslab.commands.output import Output, picture_directory
 from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable, suggestion

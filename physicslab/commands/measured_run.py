@@ -5,10 +5,9 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 
-from physicslab.commands.numbers import stopped_at
+from physicslab.commands.arguments import stopped_at
 from physicslab.commands.progress import Progress
-from physicslab.diagnostics.account import Accounts
-from physicslab.diagnostics.audit import Audit
+from physicslab.diagnostics.energy import Accounts, Audit
 from physicslab.diagnostics.ledger import LedgerWriter
 from physicslab.diagnostics.overflow import find_overflow
 from physicslab.diagnostics.run_report import RunRecord

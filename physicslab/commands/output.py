@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
-from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
 from physicslab.files.replace import check_writable, replace_file, replacing

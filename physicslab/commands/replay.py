@@ -4,8 +4,8 @@ import time
 from argparse import ArgumentParser, Namespace
 from typing import Any
 
-from physicslab.commands.command_error import FAILED, CommandError
-from physicslab.commands.numbers import add_budget, stopped_at
+from physicslab.commands import FAILED, CommandError
+from physicslab.commands.arguments import add_budget, stopped_at
 from physicslab.commands.output import Output
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.json_text import json_bytes

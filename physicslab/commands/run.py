@@ -10,13 +10,22 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TextIO
 
+from physicslab.commands import FAILED, CommandError
+from physicslab.commands.arguments import (
+    add_budget,
+    check_output,
+    check_seconds,
+    count,
+    duration,
+    name_of,
+    opened,
+    positive_count,
+    positive_duration,
+)
 from physicslab.commands.assignments import add_assignments
-from physicslab.commands.command_error import FAILED, CommandError
 from physicslab.commands.measured_run import MeasuredRun
-from physicslab.commands.numbers import add_budget, count, duration, positive_count, positive_duration
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
-from physicslab.commands.scene_argument import check_output, check_seconds, name_of, opened
 from physicslab.diagnostics.ledger import LedgerWriter
 from physicslab.diagnostics.precision import find_imprecise, words_of_digits
 from physicslab.diagnostics.run_report import advice_of, find_not_finite, run_report, run_summary
@@ -26,8 +35,7 @@ from physicslab.ecs.config import CONTACTS, INTEGRATORS
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
 from physicslab.files.json_text import json_bytes
-from physicslab.files.new_scene import save_last_good
-from physicslab.files.scene import SceneError
+from physicslab.files.scene import SceneError, save_last_good
 from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small

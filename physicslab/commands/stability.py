@@ -3,12 +3,12 @@
 from argparse import ArgumentParser, Namespace
 from concurrent.futures.process import BrokenProcessPool
 
-from physicslab.commands.command_error import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
 from physicslab.lab.jobs import in_processes
-from physicslab.lab.stability.case import Outcome, StabilityCase
-from physicslab.lab.stability.catalogue import CASES, run_named, runs_of
-from physicslab.lab.stability.report import (
+from physicslab.lab.stability.case import (
+    Outcome,
+    StabilityCase,
     columns,
     document,
     head_text,
@@ -16,6 +16,7 @@ from physicslab.lab.stability.report import (
     short_names,
     summary_text,
 )
+from physicslab.lab.stability.catalogue import CASES, run_named, runs_of
 
 
 def add_arguments(parser: ArgumentParser) -> None:

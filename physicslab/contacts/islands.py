@@ -64,7 +64,7 @@ def _mark_neighbours(state: State, causes: NDArray[np.int64], marked: _Marks) ->
 
 
 def wake_neighbours(state: State, entities: NDArray[np.int64]) -> None:
-    """Wake what sleeps and touched some entities when pairs were last listed."""
+    """Wake what sleeps and touched some entities (n,) when pairs were last listed."""
     if state.sleep.count:
         marked = np.zeros(len(state.sleep.asleep), np.bool_)
         _mark_neighbours(state, entities, marked)
@@ -73,7 +73,7 @@ def wake_neighbours(state: State, entities: NDArray[np.int64]) -> None:
 
 
 def wake(state: State, marked: _Marks) -> _Marks:
-    """Wake the islands of the ``marked`` bodies, and mark all of them; return which bodies woke."""
+    """Wake the islands of the ``marked`` bodies (rows,), and mark all of them; return which bodies woke."""
     sleep = state.sleep
     a, b, count = _touching(state)
     joined = state.joints.edges
@@ -92,7 +92,7 @@ def wake(state: State, marked: _Marks) -> _Marks:
 
 
 def fall_asleep(state: State, falling: _Marks) -> None:
-    """Put bodies to sleep."""
+    """Put bodies to sleep: those that are ``falling`` (rows,)."""
     sleep, velocity, bodies = state.sleep, state.table(Velocity), state.bodies
     _book_rest(state, falling)
     velocity["linear"][falling] = velocity["angular"][falling] = 0.0

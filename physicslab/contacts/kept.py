@@ -33,7 +33,7 @@ _OF_ALL, _OF_SLEEPERS = ("rest", "slowest"), ("asleep", "forces", "kept", "known
 
 
 def shared(columns: Iterable[_Array], known: Sequence[_Array] | None) -> tuple[_Array, ...]:
-    """Return copies of columns, or those of ``known`` that have the same bits in their place."""
+    """Return copies of columns of any shapes, or those of ``known`` with the same bits in their place."""
     if known is None:
         return tuple(column.copy() for column in columns)
     return tuple(

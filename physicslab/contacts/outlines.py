@@ -53,7 +53,7 @@ class Outlines:
 
 
 def outlines_of(state: State, rows: Rows) -> Outlines:
-    """Return the outlines of the shapes in some rows."""
+    """Return the outlines of the shapes in some rows (n,)."""
     transform, shape = state.table(Transform), state.table(Shape)
     box = shape["kind"][rows] == BOX
     half = 0.5 * np.stack((shape["width"][rows], shape["height"][rows]), axis=1) * box[:, None]

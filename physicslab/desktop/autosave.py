@@ -8,8 +8,7 @@ from pathlib import Path
 
 from physicslab.files.checks import SceneError
 from physicslab.files.replace import replace_file
-from physicslab.files.snapshot import WorldSnapshot
-from physicslab.files.writer import text_pieces
+from physicslab.files.writer import WorldSnapshot, text_pieces
 from physicslab.world import World
 
 

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from physicslab.components import Gate, Held, Transform
 from physicslab.desktop.autosave import Autosave
 from physicslab.diagnostics.step_watch import StepWatch
-from physicslab.files.new_scene import save_last_good
-from physicslab.files.scene import SceneError
+from physicslab.files.scene import SceneError, save_last_good
 from physicslab.history import History, RemoveComponent
 from physicslab.state.masses import Diverged
 from physicslab.systems.frame.hud import HudSystem

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from physicslab.diagnostics.contact_graph import contact_graph
-from physicslab.diagnostics.warning_records import ModelWarning
+from physicslab.diagnostics.step_warnings import ModelWarning
 from physicslab.stepping.contact_model import why_not_rigid
 from physicslab.stepping.rigid import Rigid
 from physicslab.world import World

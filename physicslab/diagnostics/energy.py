@@ -1,11 +1,18 @@
-"""Energies and momenta: pure functions over a world, the one source of these figures."""
+"""Energies, momenta and what changes them, by cause: the one source of these figures."""
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES, UNMEASURED_MOMENTA
 from physicslab.ecs.vector import Vector2
-from physicslab.stepping.accounting import balance_of, motion_totals_of
+from physicslab.kernels import accounts
+from physicslab.state.account import Balance
+from physicslab.stepping.accounting import balance_of, held_in, motion_totals_of
 from physicslab.world import World
 
 
@@ -78,3 +85,179 @@ def measure_momentum(world: World) -> Momentum:
 def summation(world: World) -> str:
     """Return how the running forces are summed, where one does not add pair by pair; else nothing."""
     return "; ".join(words for force in world.schedule.forces if (words := force.summation(world)))
+
+
+ENERGY_ACCOUNTS: dict[str, int] = {name: getattr(accounts, name.upper()) for name in ENERGY_CAUSES}
+"""The accounts of energy by name, each with its row; ``numerical`` is what they leave."""
+MOMENTUM_ACCOUNTS: dict[str, int] = {
+    name: getattr(accounts, name.upper()) for name in MOMENTUM_CAUSES if name not in UNMEASURED_MOMENTA
+}
+"""Those of momentum: gravity and springs store energy, but pull from outside."""
+
+
+@dataclass(frozen=True, slots=True)
+class Accounts:
+    """Changes of energy and momentum by cause since the accounts began.
+
+    Attributes
+    ----------
+    since : float
+        The world's clock when they began [s].
+    start, now : Balance
+        What there was then, and what there is now.
+    energy : dict of str to float
+        What each cause gave [J], negative for what it took; ``numerical`` is the error of the method.
+    momentum : dict of str to Vector2
+        The impulse of each cause from outside [N s], ``numerical`` likewise.
+    angular_momentum : dict of str to float
+        The angular impulse of each about the origin [N m s].
+    parts : Energy
+        Of what the energy now consists.
+    """
+
+    since: float
+    start: Balance
+    now: Balance
+    energy: dict[str, float]
+    momentum: dict[str, Vector2]
+    angular_momentum: dict[str, float]
+    parts: Energy
+
+    @property
+    def change(self) -> float:
+        """How much more energy there is than at the start [J]: the sum of the accounts of energy."""
+        return self.now.energy - self.start.energy
+
+    @np.errstate(all="ignore")
+    def after(self, begin: Accounts) -> Accounts:
+        """Return the accounts of what happened after an earlier moment, at which they were ``begin``."""
+        energy, momentum = _given(self.energy, begin.energy), _given(self.momentum, begin.momentum)
+        angular = _given(self.angular_momentum, begin.angular_momentum)
+        now, start = self.now, begin.now
+        energy["numerical"] = now.energy - start.energy - sum(energy.values())
+        change = Vector2(now.px - start.px, now.py - start.py)
+        momentum["numerical"] = change - sum(momentum.values(), Vector2())
+        angular["numerical"] = now.spin - start.spin - sum(angular.values())
+        return replace(self, start=start, energy=energy, momentum=momentum, angular_momentum=angular)
+
+
+def _given[V: (float, Vector2)](now: Mapping[str, V], before: Mapping[str, V]) -> dict[str, V]:
+    """Return what each cause has given since an earlier moment, without the error."""
+    return {name: value - before[name] for name, value in now.items() if name != "numerical"}
+
+
+@np.errstate(all="ignore")  # an energy may be infinite: what is left is then not a number
+def measure_account(world: World) -> Accounts:
+    """Return the accounts as they are now; an edit since the last step is booked as one."""
+    world.synchronise()
+    account, sums = world.account, world.account.sums.copy()
+    stored: dict[str, float] = {}
+    with world.active():
+        now = balance_of(world, world.schedule.forces, stored)
+        held = held_in(world)
+    start = account.start
+    if start is None:
+        start = now
+    elif now != account.last:
+        cause, change = account.pending(now, held)
+        sums[cause] += change
+    left = np.subtract(now, start) - sums.sum(axis=0)
+    rows = sums.tolist()
+    energy = {name: rows[row][0] for name, row in ENERGY_ACCOUNTS.items()}
+    energy["numerical"] = float(left[0])
+    momentum = {name: Vector2(rows[row][1], rows[row][2]) for name, row in MOMENTUM_ACCOUNTS.items()}
+    momentum["numerical"] = Vector2(float(left[1]), float(left[2]))
+    angular = {name: rows[row][3] for name, row in MOMENTUM_ACCOUNTS.items()}
+    angular["numerical"] = float(left[3])
+    since = account.since if account.start is not None else world.time
+    return Accounts(since, start, now, energy, momentum, angular, Energy(*measure_kinetic(world), stored))
+
+
+_LEAST_OF_EXCHANGED = 1e-12
+"""Share of the energy exchanged below which an account is rounding."""
+_LEAST_OF_ENERGY = 1e-15
+"""Share of the largest energy below which it is so, where hardly any is exchanged."""
+_OUTSIDE = ("edits", "hand", "numerical")
+"""The accounts whose size is no measure of what is exchanged: a body that comes, goes or is taken into a hand
+brings or takes all of its potential energy, which depends on where that is zero."""
+
+
+class Audit:
+    """The accounts of a world from now on, sampled, with the largest change and the largest error seen.
+
+    Shares are of the energy that is exchanged: the largest kinetic energy seen, the range of the potential
+    energy apart from what edits and a hand brought, or the largest account of another cause; whichever is
+    largest. None of these depends on where a potential is zero.
+
+    Parameters
+    ----------
+    world : World
+        What is sampled.
+    whole : bool
+        Whether it reaches back to where the world's own accounts began, and not just to now.
+
+    Attributes
+    ----------
+    account : Accounts
+        What changed energy and momenta from the beginning to the last :meth:`sample`.
+    initial : float
+        The energy at the beginning [J].
+    latest : Energy
+        The energy at the last sample.
+    largest_change, largest_error : float
+        The largest size, so far, of E - E0 and of ``numerical`` [J]; NaN once either was no number.
+    """
+
+    def __init__(self, world: World, *, whole: bool = False) -> None:
+        found = measure_account(world)
+        self._begin = None if whole else found
+        self._moved: dict[str, None] = {}
+        self.largest_change = self.largest_error = self.exchanged = 0.0
+        self._low, self._high = math.inf, -math.inf
+        self._take(found)
+        self.initial = self.account.start.energy
+
+    def sample(self, world: World) -> None:
+        """Read the accounts as they are now."""
+        self._take(measure_account(world))
+
+    @np.errstate(all="ignore")
+    def _take(self, found: Accounts) -> None:
+        self.account = account = found if self._begin is None else found.after(self._begin)
+        self.latest: Energy = account.parts
+        booked = account.energy
+        inside = self.latest.stored - booked["edits"] - booked["hand"]
+        self._low, self._high = min(self._low, inside), max(self._high, inside)
+        sizes = (abs(value) for name, value in booked.items() if name not in _OUTSIDE)
+        self.exchanged = max(self.exchanged, self.latest.kinetic, self._high - self._low, *sizes)
+        # numpy's maximum, unlike max, keeps NaN.
+        self.largest_change = float(np.maximum(self.largest_change, abs(account.change)))
+        self.largest_error = float(np.maximum(self.largest_error, abs(booked["numerical"])))
+        self._moved |= dict.fromkeys(self.notable)
+
+    @property
+    def notable(self) -> dict[str, float]:
+        """The accounts of energy at the last sample [J] that are more than rounding, without the error."""
+        ends = self.account.start.energy, self.account.now.energy
+        least = max(_LEAST_OF_EXCHANGED * self.exchanged, _LEAST_OF_ENERGY * max(map(abs, ends)))
+        booked = self.account.energy.items()
+        return {name: value for name, value in booked if name != "numerical" and not abs(value) <= least}
+
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """The accounts that changed the energy at any sample, by name; such a change is no error."""
+        return tuple(self._moved)
+
+    @property
+    def error(self) -> float:
+        """The largest error as a share of the energy exchanged."""
+        return self.share(self.largest_error)
+
+    @property
+    def change(self) -> float:
+        """The largest change, whatever caused it, as a share of the energy exchanged."""
+        return self.share(self.largest_change)
+
+    def share(self, energy: float) -> float:
+        """Return an energy [J] as a share of what is exchanged; 0 where nothing is."""
+        return energy / self.exchanged if self.exchanged > 0.0 else 0.0

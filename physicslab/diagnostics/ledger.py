@@ -156,7 +156,7 @@ def _since_last(records: NDArray[Any], last: LastTimes) -> Floats:
 
 
 def names_of(state: State, records: NDArray[Any]) -> tuple[list[str], list[str]]:
-    """Return what A and B of each impact are called in a table; the bounds by their walls."""
+    """Return what A and B of impacts (n,) are called in a table; the bounds by their walls."""
     entities = np.unique(np.concatenate((records["entity_a"], records["entity_b"]))).tolist()
     names = {entity: table_cell(state.label(entity)) for entity in entities if entity}
     pairs = zip(records["entity_a"].tolist(), records["wall"].tolist(), strict=True)

@@ -7,9 +7,8 @@ small, and matter to readers of figures.
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from physicslab.diagnostics.audit import Audit
-from physicslab.diagnostics.step_warnings import PHASE_LIMIT, lost_phase
-from physicslab.diagnostics.warning_records import ModelWarning
+from physicslab.diagnostics.energy import Audit
+from physicslab.diagnostics.step_warnings import PHASE_LIMIT, ModelWarning, lost_phase
 from physicslab.ecs.config import SimulationConfig
 from physicslab.world import World
 

@@ -12,8 +12,7 @@ import numpy as np
 
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES, UNMEASURED_MOMENTA
-from physicslab.diagnostics.account import Accounts, measure_account
-from physicslab.diagnostics.energy import Energy, Momentum
+from physicslab.diagnostics.energy import Accounts, Energy, Momentum, measure_account
 from physicslab.diagnostics.free_body import forces_on, net_force
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.forces import springs

@@ -10,8 +10,7 @@ from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import MOMENTUM_CAUSES
 from physicslab.contacts.report import list_contacts
 from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
-from physicslab.diagnostics.audit import Audit
-from physicslab.diagnostics.energy import measure_momentum, summation
+from physicslab.diagnostics.energy import Audit, measure_momentum, summation
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
 from physicslab.ecs.text import printable, unique_name
 from physicslab.ecs.vector import Vector2

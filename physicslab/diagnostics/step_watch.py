@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from physicslab.diagnostics.warning_records import ModelWarning
+from physicslab.diagnostics.step_warnings import ModelWarning
 from physicslab.world import World
 
 _SLOW_S = 1.0

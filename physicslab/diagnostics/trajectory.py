@@ -6,7 +6,7 @@ from typing import TextIO
 
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import ENERGY_CAUSES, QUANTITIES
-from physicslab.diagnostics.account import Accounts
+from physicslab.diagnostics.energy import Accounts
 from physicslab.diagnostics.run_report import body_names
 from physicslab.ecs.text import table_cell
 from physicslab.world import World

@@ -14,8 +14,7 @@ from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import BOX
 from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
 from physicslab.diagnostics.contact_warnings import RIGID_LIMIT, contact_warnings, rigid_setting
-from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, step_warnings
-from physicslab.diagnostics.warning_records import ModelWarning, WorstWarnings
+from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, ModelWarning, WorstWarnings, step_warnings
 from physicslab.state.masses import quiet
 from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.stepper import MAX_FACTOR, MAX_FALL, falls_far

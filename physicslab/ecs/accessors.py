@@ -6,7 +6,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from physicslab.ecs.fields import REQUIRED, Field, Kind
-from physicslab.ecs.texts import text_of
+from physicslab.ecs.text import text_of
 from physicslab.ecs.vector import Vector2
 
 type Maker = Callable[[object], list[list[Any]]]

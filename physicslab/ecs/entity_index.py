@@ -7,9 +7,8 @@ import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.ecs.batch import Batch
 from physicslab.ecs.component import Component
-from physicslab.ecs.table import Table
+from physicslab.ecs.table import Batch, Table
 
 
 class _Nothing:
@@ -175,7 +174,7 @@ class EntityIndex:
                     table.adopt(entity, handle, self.row_of[entity])
 
     def rows_of(self, entities: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return the row of each entity, -1 where there is no such entity; 0 is the world's."""
+        """Return the rows (n,) of entities (n,), -1 where there is no such entity; 0 is the world's."""
         known = np.clip(entities, 0, self.newest)
         return np.where(known == entities, self.lookup[known], -1)
 

@@ -8,8 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from physicslab.ecs.text import has_width, is_line
-from physicslab.ecs.texts import code_of
+from physicslab.ecs.text import code_of, has_width, is_line
 from physicslab.ecs.vector import Vector2
 
 Kind = Literal["number", "whole", "vector", "flag", "entity", "choice", "text"]
@@ -151,7 +150,7 @@ class Field:
         """Return ``value`` as a column stores it, or raise :class:`InvalidValue`.
 
         Vectors come back as a pair of floats, choices as their code (1, 2, ...), no entity as 0,
-        texts as the code of :mod:`physicslab.ecs.texts`.
+        texts as the code of :mod:`physicslab.ecs.text`.
         """
         stored = _CONVERSIONS[self.kind](self, value)
         if stored is None:

@@ -1,6 +1,9 @@
-"""The columns of one component in one world."""
+"""The columns of one component in one world, and the rows of entities that have several."""
 
-from collections.abc import Mapping
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -97,7 +100,7 @@ class Table:
             column[row] = 0
 
     def compact(self, kept: NDArray[np.int64], row_of: Mapping[int, int]) -> None:
-        """Move rows ``kept`` to the front, in order; ``row_of`` gives each entity its new row."""
+        """Move rows ``kept`` (n,) to the front, in order; ``row_of`` gives each entity its new row."""
         for column in (self._present, *self._storage):
             column[: len(kept)] = column[kept]
             column[len(kept) :] = 0
@@ -109,3 +112,31 @@ def _grown(column: NDArray[Any], capacity: int) -> NDArray[Any]:
     larger = np.zeros((capacity, *column.shape[1:]), column.dtype)
     larger[: len(column)] = column
     return larger
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """The rows of all entities that have certain components, in the order of their entity ids.
+
+    Attributes
+    ----------
+    rows : int64 array (k,)
+        Row numbers, good for every table of the world.
+    entities : int64 array (k,)
+        The entity in each of those rows.
+    """
+
+    rows: NDArray[np.int64]
+    entities: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @classmethod
+    def of(cls, tables: Iterable[Table], entities: NDArray[np.int64]) -> Batch:
+        """Select the rows that are in every one of ``tables``; ``entities`` are those of all (rows,)."""
+        selected = entities > 0
+        for table in tables:
+            selected = selected & table.present
+        rows = np.flatnonzero(selected).astype(np.int64)
+        return cls(rows, entities[rows])

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Shape, Spring, Trail, Transform, Velocity
-from physicslab.diagnostics.account import Accounts
+from physicslab.diagnostics.energy import Accounts
 from physicslab.diagnostics.run_report import body_names
 from physicslab.world import World
 

@@ -14,15 +14,7 @@ from physicslab.components.name import why_no_id
 from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
 from physicslab.ecs.text import suggestion
-from physicslab.files.checks import (
-    SceneError,
-    checked_keys,
-    checked_object,
-    checked_rows,
-    is_number,
-    refusal,
-    shown,
-)
+from physicslab.files import checks
 from physicslab.state.attached import INSTRUMENTS
 from physicslab.state.joints import KINDS
 
@@ -38,19 +30,21 @@ _MAY_REST = (Velocity, Mass, Shape)
 def check_ids(entities: object, source: str) -> dict[str, int]:
     """Return the place, from 1, of each entity that has an id; check that they are a list of objects."""
     if not isinstance(entities, list):
-        raise refusal(f"{source}: entities", entities, "a list of entities")
+        raise checks.refusal(f"{source}: entities", entities, "a list of entities")
     ids: dict[str, int] = {}
     for number, entity in enumerate(entities, start=1):
-        checked_object(entity, _label(number, entity, source), 'an object {"id": ..., "Transform": ..., ...}')
+        checks.checked_object(
+            entity, _label(number, entity, source), 'an object {"id": ..., "Transform": ..., ...}'
+        )
         if "id" not in entity:
             continue
         where = f"{source}: entity {number}: id"
         name = entity["id"]
         allowed = why_no_id(name)
         if allowed is not None:
-            raise refusal(where, name, allowed)
+            raise checks.refusal(where, name, allowed)
         if name in ids:
-            raise refusal(where, name, f"an id of its own; entity {ids[name]} has this one")
+            raise checks.refusal(where, name, f"an id of its own; entity {ids[name]} has this one")
         ids[name] = number
     return ids
 
@@ -65,7 +59,7 @@ def check_entities(
     known = ("id", *expected)
     for number, entity in enumerate(entities, start=1):
         where = _label(number, entity, source)
-        checked_keys(entity, f"{where}: ", "component", known)
+        checks.checked_keys(entity, f"{where}: ", "component", known)
         components = [
             _component(COMPONENTS[name], expected[name], values, ids, where)
             for name, values in entity.items()
@@ -89,20 +83,20 @@ def check_contacts(
 ) -> list[list[Any]]:
     """Return the rows of the contact solver's memory with places, from 1, for ids, and 0 for the bounds."""
     mapped: list[list[Any]] = []
-    for where, row in checked_rows(rows, f"{source}: contacts", "a list of lists"):
+    for where, row in checks.checked_rows(rows, f"{source}: contacts", "a list of lists"):
         if not isinstance(row, list) or len(row) < 2:
-            raise refusal(where, row, "a list of two ids (null for the bounds) and numbers")
+            raise checks.refusal(where, row, "a list of two ids (null for the bounds) and numbers")
         pair: list[int] = []
         for place, name in enumerate(row[:2]):
             number = ids.get(name, 0) if isinstance(name, str) else 0
             if name is not None and (number == 0 or "Shape" not in entities[number - 1]):
-                raise refusal(
+                raise checks.refusal(
                     f"{where}[{place}]", name, "the id of an entity with a Shape, or null for the bounds"
                 )
             pair.append(number)
         for place, value in enumerate(row[2:], start=2):
-            if not is_number(value):
-                raise refusal(f"{where}[{place}]", value, "a finite number")
+            if not checks.is_number(value):
+                raise checks.refusal(f"{where}[{place}]", value, "a finite number")
         mapped.append([*pair, *row[2:]])
     return mapped
 
@@ -113,13 +107,13 @@ def check_joints(
     """Return of joints the places, from 1, for ids, their kinds, and their impulses [N s]."""
     mapped: list[tuple[int, str, list[float]]] = []
     kinds = [kind.__name__ for kind in KINDS]
-    for where, row in checked_rows(rows, f"{source}: joints", "a list of lists"):
-        if not (isinstance(row, list) and len(row) > 2 and all(map(is_number, row[2:]))):
-            raise refusal(where, row, "a list of an id, a kind of joint and numbers")
+    for where, row in checks.checked_rows(rows, f"{source}: joints", "a list of lists"):
+        if not (isinstance(row, list) and len(row) > 2 and all(map(checks.is_number, row[2:]))):
+            raise checks.refusal(where, row, "a list of an id, a kind of joint and numbers")
         number = ids.get(row[0], 0) if isinstance(row[0], str) else 0
         if row[1] not in kinds or not number or row[1] not in entities[number - 1]:
             allowed = f"the id of an entity with the kind of joint that follows it: {', '.join(kinds)}"
-            raise refusal(where, row, allowed)
+            raise checks.refusal(where, row, allowed)
         mapped.append((number, row[1], [float(value) for value in row[2:]]))
     return mapped
 
@@ -130,30 +124,30 @@ def check_rests(
     """Return which bodies sleep, and how long and how slowly others rest, with places, from 1, for ids."""
     mapped: list[list[Any]] = []
     seen: set[int] = set()
-    for where, row in checked_rows(rows, f"{source}: rests", "a list of lists"):
+    for where, row in checks.checked_rows(rows, f"{source}: rests", "a list of lists"):
         if not isinstance(row, list) or len(row) not in (1, 3, 4):
             allowed = "an id for a sleeper, which a force of x and y N and a torque N m may follow; "
-            raise refusal(where, row, allowed + "or an id, a time s and a speed m/s; in a list")
+            raise checks.refusal(where, row, allowed + "or an id, a time s and a speed m/s; in a list")
         number = ids.get(row[0], 0) if isinstance(row[0], str) else 0
         if not number or not all(kind.__name__ in entities[number - 1] for kind in _MAY_REST):
             allowed = "the id of an entity with " + ", ".join(kind.__name__ for kind in _MAY_REST)
-            raise refusal(f"{where}[0]", row[0], allowed)
+            raise checks.refusal(f"{where}[0]", row[0], allowed)
         if number in seen:
-            raise refusal(f"{where}[0]", row[0], "an id that has no rest yet")
+            raise checks.refusal(f"{where}[0]", row[0], "an id that has no rest yet")
         seen.add(number)
-        if len(row) == 3 and not (is_number(row[1]) and row[1] > 0.0):
-            raise refusal(f"{where}[1]", row[1], "a finite number > 0 s")
-        if len(row) == 3 and not (is_number(row[2]) and row[2] >= 0.0):
-            raise refusal(f"{where}[2]", row[2], "a finite number >= 0 m/s")
-        if len(row) == 4 and not all(map(is_number, row[1:])):
-            raise refusal(where, row, "an id and three finite numbers N, N and N m")
+        if len(row) == 3 and not (checks.is_number(row[1]) and row[1] > 0.0):
+            raise checks.refusal(f"{where}[1]", row[1], "a finite number > 0 s")
+        if len(row) == 3 and not (checks.is_number(row[2]) and row[2] >= 0.0):
+            raise checks.refusal(f"{where}[2]", row[2], "a finite number >= 0 m/s")
+        if len(row) == 4 and not all(map(checks.is_number, row[1:])):
+            raise checks.refusal(where, row, "an id and three finite numbers N, N and N m")
         mapped.append([number, *row[1:]])
     return mapped
 
 
 def _label(number: int, entity: object, source: str) -> str:
     name = entity.get("id") if isinstance(entity, dict) else None
-    return f"{source}: entity {shown(name) if isinstance(name, str) else number}"
+    return f"{source}: entity {checks.shown(name) if isinstance(name, str) else number}"
 
 
 def _expected(kind: type[Component]) -> _Expected:
@@ -168,8 +162,8 @@ def _component(
 ) -> Component:
     place = f"{where}: {kind.__name__}"
     names, ends, allowed = expected
-    given = checked_object(value, place, allowed)
-    checked_keys(given, f"{place}.", "field", names)
+    given = checks.checked_object(value, place, allowed)
+    checks.checked_keys(given, f"{place}.", "field", names)
     values = dict(given) if ends else given
     for name in ends:
         if given.get(name) is not None:
@@ -177,16 +171,18 @@ def _component(
     try:
         return kind(**values)
     except InvalidValue as error:
-        raise refusal(f"{where}: {error.component}.{error.field}", error.value, error.allowed) from error
+        raise checks.refusal(
+            f"{where}: {error.component}.{error.field}", error.value, error.allowed
+        ) from error
     except TypeError as error:  # a field without default was left out
-        raise SceneError(f"{where}: {error}") from error
+        raise checks.SceneError(f"{where}: {error}") from error
 
 
 def _entity_of(name: object, ids: Mapping[str, int], where: str) -> int:
     if isinstance(name, str) and name in ids:
         return ids[name]
     likely = suggestion(name, ids) if isinstance(name, str) else ""
-    raise refusal(where, name, f"the id of an entity in this scene, or null{likely}")
+    raise checks.refusal(where, name, f"the id of an entity in this scene, or null{likely}")
 
 
 def _check_together(components: Sequence[Component], entity: Mapping[str, Any], where: str) -> None:
@@ -194,14 +190,18 @@ def _check_together(components: Sequence[Component], entity: Mapping[str, Any], 
     for kind in _NEED_TRANSFORM:
         name = kind.__name__
         if name in entity and Transform.__name__ not in entity:
-            raise SceneError(f"{where}: {name} = {shown(entity[name])}: must have a Transform beside it")
+            raise checks.SceneError(
+                f"{where}: {name} = {checks.shown(entity[name])}: must have a Transform beside it"
+            )
     of: dict[type[Any], Any] = {type(component): component for component in components}
     if Mass in of and Shape in of:
         _check_inertia(of[Mass], of[Shape], where)
     fixed = Mass in of and of[Mass].fixed_rotation
     if fixed and Velocity in of and of[Velocity].angular != 0.0:
         angular = of[Velocity].angular
-        raise refusal(f"{where}: Velocity.angular", angular, "0 rad/s where Mass.fixed_rotation is true")
+        raise checks.refusal(
+            f"{where}: Velocity.angular", angular, "0 rad/s where Mass.fixed_rotation is true"
+        )
 
 
 def _check_inertia(mass: Mass, shape: Shape, where: str) -> None:
@@ -212,7 +212,7 @@ def _check_inertia(mass: Mass, shape: Shape, where: str) -> None:
     largest = max(sizes, key=lambda name: sizes[name])
     if not math.isfinite(mass.mass * sum(size * size for size in sizes.values())):
         allowed = f"smaller: the moment of inertia is not finite with Mass.mass = {mass.mass:g} kg"
-        raise refusal(f"{where}: Shape.{largest}", sizes[largest], allowed)
+        raise checks.refusal(f"{where}: Shape.{largest}", sizes[largest], allowed)
 
 
 def _check_references(component: Component, entities: Sequence[Mapping[str, Any]], where: str) -> None:
@@ -220,7 +220,7 @@ def _check_references(component: Component, entities: Sequence[Mapping[str, Any]
         other = getattr(component, name)
         if other is not None and needed not in entities[other - 1]:
             place = f"{where}: {type(component).__name__}.{name}"
-            raise refusal(place, entities[other - 1].get("id"), f"the id of an entity with a {needed}")
+            raise checks.refusal(place, entities[other - 1].get("id"), f"the id of an entity with a {needed}")
 
 
 def _check_points(part: Component, entities: Sequence[Mapping[str, Any]], where: str) -> None:
@@ -229,7 +229,7 @@ def _check_points(part: Component, entities: Sequence[Mapping[str, Any]], where:
         body = getattr(part, f"{name}_body")
         if body is not None and "Transform" not in entities[body - 1]:
             place = f"{where}: {type(part).__name__}.{name}_body"
-            raise refusal(place, entities[body - 1].get("id"), "the id of an entity with a Transform")
+            raise checks.refusal(place, entities[body - 1].get("id"), "the id of an entity with a Transform")
 
 
 def _check_joint(
@@ -241,13 +241,13 @@ def _check_joint(
     for name in ("a", "b"):
         end = getattr(joint, name)
         if end is not None and "Transform" not in entities[end - 1]:
-            raise refusal(f"{where}: {kind}.{name}", entities[end - 1].get("id"), _PLACED)
+            raise checks.refusal(f"{where}: {kind}.{name}", entities[end - 1].get("id"), _PLACED)
     carrier = number if "Transform" in entities[number - 1] else 0
     ends = (joint.a or carrier, joint.anchor_a), (joint.b or 0, joint.anchor_b)
     refused = why_not_joined(*ends, joined)
     if refused is not None:
         value = entities[joint.b - 1].get("id") if joint.b else None
-        raise refusal(f"{where}: {kind}.{refused[0]}", value, refused[1])
+        raise checks.refusal(f"{where}: {kind}.{refused[0]}", value, refused[1])
     joined[key_of(*ends)] = str(entities[number - 1].get("id", f"entity {number}"))
 
 
@@ -256,6 +256,6 @@ def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any
         end = given or (number if name == "a" else None)
         if end is not None and "Transform" not in entities[end - 1]:
             value = entities[end - 1].get("id") if given else None
-            raise refusal(f"{where}: Spring.{name}", value, _PLACED)
+            raise checks.refusal(f"{where}: Spring.{name}", value, _PLACED)
     if spring.b == (spring.a or number):
-        raise refusal(f"{where}: Spring.b", entities[spring.b - 1].get("id"), OTHER_END)
+        raise checks.refusal(f"{where}: Spring.b", entities[spring.b - 1].get("id"), OTHER_END)

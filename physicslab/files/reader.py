@@ -17,16 +17,7 @@ from physicslab.ecs.config import (
     field_names,
 )
 from physicslab.ecs.fields import Field
-from physicslab.files.checks import (
-    SceneError,
-    checked_keys,
-    checked_object,
-    checked_text,
-    checked_title,
-    is_number,
-    refusal,
-    shown,
-)
+from physicslab.files import checks
 from physicslab.files.entities import check_contacts, check_entities, check_ids, check_joints, check_rests
 from physicslab.files.remainders import check_remainders
 from physicslab.integrators import SPLIT_METHODS
@@ -134,7 +125,7 @@ def read_scene(document: object, source: str = "scene") -> World:
             restore_contacts(world.contacts, draft.contacts)
         except (ValueError, OverflowError) as error:
             esper.switch_world(before)
-            raise SceneError(f"{source}: contacts: {error}") from error
+            raise checks.SceneError(f"{source}: contacts: {error}") from error
         world.joints.restore(draft.joints)
         restore_rests(world, draft.rests)
     if draft.remainders:
@@ -146,21 +137,21 @@ def read_scene(document: object, source: str = "scene") -> World:
 
 def check_scene(document: object, source: str = "scene") -> SceneDraft:
     """Return the content of a scene document; the first thing not allowed is a :class:`SceneError`."""
-    scene = checked_object(document, source, 'an object {"format": ..., "entities": [...]}')
-    checked_keys(scene, f"{source}: ", "key", _KEYS)
+    scene = checks.checked_object(document, source, 'an object {"format": ..., "entities": [...]}')
+    checks.checked_keys(scene, f"{source}: ", "key", _KEYS)
     if "format" not in scene:
-        raise SceneError(f"{source}: format is missing: must be {shown(FORMAT)}")
+        raise checks.SceneError(f"{source}: format is missing: must be {checks.shown(FORMAT)}")
     if scene["format"] != FORMAT:
-        raise refusal(f"{source}: format", scene["format"], shown(FORMAT))
+        raise checks.refusal(f"{source}: format", scene["format"], checks.shown(FORMAT))
     if "entities" not in scene:
-        raise SceneError(f"{source}: entities is missing: must be a list of entities")
+        raise checks.SceneError(f"{source}: entities is missing: must be a list of entities")
     ids = check_ids(scene["entities"], source)
     simulation = _config(SimulationConfig, scene.get("simulation", {}), source)
     entities = check_entities(scene["entities"], ids, source)
     return SceneDraft(
-        name=checked_title(scene.get("name", ""), f"{source}: name", NAME_LIMIT),
-        title=checked_title(scene.get("title", ""), f"{source}: title", TITLE_LIMIT),
-        description=checked_text(scene.get("description", ""), f"{source}: description", lines=True),
+        name=checks.checked_title(scene.get("name", ""), f"{source}: name", NAME_LIMIT),
+        title=checks.checked_title(scene.get("title", ""), f"{source}: title", TITLE_LIMIT),
+        description=checks.checked_text(scene.get("description", ""), f"{source}: description", lines=True),
         view=_view(scene.get("view"), source),
         time=_time(scene.get("time", 0.0), f"{source}: time"),
         physics=_config(PhysicsConfig, scene.get("physics", {}), source),
@@ -181,7 +172,7 @@ def _view(value: object, source: str) -> View | None:
     try:
         return checked_box("scene", "view", value)
     except InvalidValue as error:
-        raise refusal(f"{source}: view", value, error.allowed) from None
+        raise checks.refusal(f"{source}: view", value, error.allowed) from None
 
 
 _SPAN = Field("span", "number", unit="s", minimum=MIN_TIME, maximum=MAX_TIME, owner="solver")
@@ -192,13 +183,13 @@ def _solver(
     value: Any, simulation: SimulationConfig, where: str
 ) -> tuple[float, int, tuple[str, str, int] | None]:
     """Return the values that the solver takes from the last step; those left out are as configured."""
-    found = checked_object(value, where, 'an object {"span": ..., "finer": ...}')
-    checked_keys(found, f"{where}: ", "key", ("span", "finer", "chosen"))
+    found = checks.checked_object(value, where, 'an object {"span": ..., "finer": ...}')
+    checks.checked_keys(found, f"{where}: ", "key", ("span", "finer", "chosen"))
     given: dict[str, Any] = {"span": simulation.dt / simulation.substeps, "finer": 1, **found}
     try:
         span, finer = float(_SPAN.check(given["span"])), int(_FINER.check(given["finer"]))
     except InvalidValue as error:
-        raise SceneError(f"{where.removesuffix('solver')}{error}") from error
+        raise checks.SceneError(f"{where.removesuffix('solver')}{error}") from error
     return span, finer, _chosen(found["chosen"], f"{where}.chosen") if "chosen" in found else None
 
 
@@ -210,20 +201,20 @@ def _chosen(value: Any, where: str) -> tuple[str, str, int]:
         known = collisions in ("exact", "rigid", "step", "none") and isinstance(method, str)
         if known and method in SPLIT_METHODS and type(steps) is int and 1 <= steps <= MAX_STEPS:
             return collisions, method, steps
-    raise refusal(where, value, allowed)
+    raise checks.refusal(where, value, allowed)
 
 
 def _time(value: Any, where: str) -> float:
-    if is_number(value) and value >= 0.0:
+    if checks.is_number(value) and value >= 0.0:
         return float(value)
-    raise refusal(where, value, "a finite number >= 0 s")
+    raise checks.refusal(where, value, "a finite number >= 0 s")
 
 
 def _config[C: (PhysicsConfig, SimulationConfig)](config: type[C], value: object, source: str) -> C:
     where = f"{source}: {config.section}"
-    given = checked_object(value, where, "an object of settings")
-    checked_keys(given, f"{where}.", "setting", field_names(config))
+    given = checks.checked_object(value, where, "an object of settings")
+    checks.checked_keys(given, f"{where}.", "setting", field_names(config))
     try:
         return config(**given)
     except InvalidValue as error:
-        raise refusal(f"{where}.{error.field}", error.value, error.allowed) from error
+        raise checks.refusal(f"{where}.{error.field}", error.value, error.allowed) from error

@@ -1,12 +1,15 @@
-"""Scenes by name and on disk: what opens one, and what saves one."""
+"""Scenes by name and on disk: what opens one, and what saves one, under a new name too."""
 
 import gc
+import itertools
 import json
 import math
 import os
+import re
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import BinaryIO
 
 from physicslab.ecs.fields import InvalidValue
@@ -14,7 +17,7 @@ from physicslab.ecs.text import printable, shortened, suggestion
 from physicslab.files.checks import JsonObject, SceneError
 from physicslab.files.json_text import json_bytes
 from physicslab.files.reader import check_scene, read_scene
-from physicslab.files.replace import replace_file
+from physicslab.files.replace import create_file, replace_file
 from physicslab.files.writer import write_scene
 from physicslab.scenes import SCENES
 from physicslab.world import World
@@ -211,3 +214,66 @@ def parse_json(text: str, source: str) -> object:
 def _whole(digits: str) -> int | float:
     """Read a whole number; one that no float can hold is infinite, which the check of its field refuses."""
     return int(digits) if len(digits) < 310 else math.copysign(math.inf, -1.0 if digits[0] == "-" else 1.0)
+
+
+_NAME_LIMIT = 100
+"""Bytes of the part of a file name that comes from a scene's name: systems allow 143 to 255 for the whole."""
+
+
+def file_stem(name: str) -> str:
+    """Return a scene's name as far as a file may bear it: without what paths are made of, and shortened.
+
+    >>> file_stem("a/b c"), file_stem("../.."), len(file_stem("x" * 1000))
+    ('a-b-c', 'scene', 100)
+    """
+    plain = re.sub(r"[^\w.-]+", "-", name[:_NAME_LIMIT])
+    return plain.encode("utf-8", "ignore")[:_NAME_LIMIT].decode("utf-8", "ignore").strip("-.") or "scene"
+
+
+def save_new_scene(world: World, paths: Iterable[Path]) -> Path:
+    """Save a world under the first of some names that nothing has, and return it: nothing is overwritten.
+
+    Several programs that save at once under the same names get names of their own.
+
+    Parameters
+    ----------
+    world : World
+        What is saved.
+    paths : iterable of Path
+        The names in order; one that does not end.
+
+    Raises
+    ------
+    SceneError
+        If the world holds what no scene may.
+    OSError
+        If the file cannot be written.
+    """
+    content: bytes | None = None
+    for path in paths:
+        if content is None:
+            content = scene_bytes(world, str(path))
+        try:
+            create_file(path, content)
+        except FileExistsError:
+            continue
+        return path
+    raise FileExistsError("every name is taken")
+
+
+def save_last_good(world: World, name: str, directory: Path) -> Path:
+    """Save a world that stands before a step that diverged, and return the path of the scene file.
+
+    It is ``<name>-before-divergence.json``, numbered where that is there already, with the name shortened
+    where it is long: nothing is overwritten, even by runs that diverge at the same time.
+
+    Raises
+    ------
+    SceneError
+        If the world holds what no scene may.
+    OSError
+        If the file cannot be written.
+    """
+    stem = f"{file_stem(name)}-before-divergence"
+    numbered = (directory / f"{stem}-{number}.json" for number in itertools.count(2))
+    return save_new_scene(world, itertools.chain([directory / f"{stem}.json"], numbered))

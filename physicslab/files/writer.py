@@ -1,12 +1,18 @@
-"""From a world to a scene document."""
+"""From a world to a scene document, by way of a copy that may be written while the world goes on."""
 
+import copy
 from collections.abc import Generator, Iterable, Iterator, Mapping
 from typing import Any
 
+import esper
+
+from physicslab.components import Name, Shape
 from physicslab.components.naming import plain_name
-from physicslab.contacts.memory import kept_rows
+from physicslab.contacts.islands import export_rests
+from physicslab.contacts.memory import copied, kept_rows
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
+from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.fields import REQUIRED, Field
 from physicslab.ecs.text import unique_name
 from physicslab.ecs.vector import Vector2
@@ -14,8 +20,84 @@ from physicslab.files.checks import SceneError
 from physicslab.files.entities import UNSAVED
 from physicslab.files.json_text import json_pieces
 from physicslab.files.reader import FORMAT
-from physicslab.files.snapshot import WorldSnapshot
+from physicslab.files.remainders import export_remainders
+from physicslab.state.contacts import Contacts
+from physicslab.stepping.plan import outlived
 from physicslab.world import World
+
+
+class WorldSnapshot:
+    """The entities, components, contacts and laws of a world at one moment.
+
+    Making one copies columns, 1 to 3 ms for 4,000 bodies in contact; reading components from it is left to
+    when there is time.
+
+    Attributes
+    ----------
+    names : dict of int to str
+        The ids of the entities that have one.
+    entities : list of int
+        All entities, in order.
+    living, shaped : set of int
+        All of them once more, and those with a Shape.
+    contacts : Contacts
+        What the contact solver remembers.
+    joints : list of (int, str, list of float)
+        Of each joint that has impulses its entity, its kind and these [N s].
+    rests : list of lists
+        What sleeps, and how long the others have rested.
+    remainders : list of lists
+        What rounding left out of positions and velocities, where it is not zero.
+    chosen : tuple, optional
+        What was chosen for the motion as it once was, where it would not be chosen now.
+    texts : dict of str to str
+        Name, title and description of the world.
+    view : View, optional
+        What a window shows of it at first.
+    time : float
+        Time of the world [s].
+    """
+
+    def __init__(self, world: World) -> None:
+        world.synchronise()
+        with world.active():
+            self.entities = world.entities()
+            self.chosen = outlived(world, world.schedule, world.plan)
+            named = [(entity, name.id) for entity, name in esper.get_component(Name)]
+        self.living = living = set(self.entities)
+        self.names = {entity: name for entity, name in named if entity in living}
+        self.texts = {key: getattr(world, key) for key in ("name", "title", "description")}
+        self.time, self.physics, self.simulation = world.time, world.physics, world.simulation
+        self.view = world.view
+        self.shaped = set(world.batch(Shape).entities.tolist())
+        self.contacts: Contacts = copied(world.contacts)
+        self.joints = list(world.joints.kept())
+        self.rests = export_rests(world)
+        self.remainders = export_remainders(world)
+        self._rows = dict(world.entity_index.row_of)
+        self._tables = _copied(world.entity_index)
+
+    def component(self, entity: int, kind: type[Any]) -> Component | None:
+        """Return a component as it was, or ``None`` where the entity had none."""
+        row, held = self._rows[entity], self._tables.get(kind)
+        if held is None or not held[0][row]:
+            return None
+        handle: Component = Component.__new__(kind)
+        handle._views, handle._row = held[1], row
+        return handle
+
+
+def _copied(entity_index: EntityIndex) -> dict[type[Any], tuple[list[bool], list[Any]]]:
+    """Return of every table which rows are present, and its columns as flat views of copies."""
+    return {
+        kind: (
+            table.present.tolist(),
+            [memoryview(copy.copy(column).reshape(-1)) for column in table.columns],
+        )
+        for kind, table in entity_index.tables.items()
+        if table.handles
+    }
+
 
 _FIRST = ("Transform", "Velocity", "Mass", "Shape", "Material", "Spring", "Trail")
 

@@ -1,7 +1,6 @@
 """Blanes and Moan's method of order 6 for forces that depend on positions alone."""
 
-from physicslab.integrators.integrator import Integrator
-from physicslab.integrators.splitting import splitting
+from physicslab.integrators.integrator import Integrator, splitting
 from physicslab.kernels.ode.splitting import split
 
 _KICKS = (

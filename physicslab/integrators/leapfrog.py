@@ -2,8 +2,7 @@
 
 from dataclasses import replace
 
-from physicslab.integrators.integrator import Integrator
-from physicslab.integrators.splitting import splitting
+from physicslab.integrators.integrator import Integrator, splitting
 from physicslab.kernels.ode.splitting import split
 from physicslab.systems.system import Stage
 

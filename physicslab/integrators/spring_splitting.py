@@ -5,8 +5,7 @@ of order 6 for linear ones (Hairer, Lubich & Wanner, Geometric Numerical Integra
 that hardly turn are nearly linear. The force at its end is that at the beginning of the next.
 """
 
-from physicslab.integrators.integrator import Integrator
-from physicslab.integrators.splitting import splitting
+from physicslab.integrators.integrator import Integrator, splitting
 from physicslab.kernels.ode.splitting import split
 
 _FIRST_DRIFT, _SECOND_DRIFT = -0.68591955495621668, 0.99662959095293632

@@ -1,7 +1,6 @@
 """Semi-implicit Euler."""
 
-from physicslab.integrators.integrator import Integrator
-from physicslab.integrators.splitting import splitting
+from physicslab.integrators.integrator import Integrator, splitting
 from physicslab.kernels.ode.splitting import split
 from physicslab.systems.system import Stage
 

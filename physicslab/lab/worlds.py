@@ -6,8 +6,7 @@ from functools import partial
 from typing import TypedDict
 
 from physicslab.components import Mass, Transform, Velocity
-from physicslab.diagnostics.audit import Audit
-from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.energy import Audit, measure_energy
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2

@@ -117,7 +117,10 @@ class BookKeeper:
         return np.concatenate((np.array(head, np.int64), ends.ravel()))
 
     def damping(self, rates: Numbers, inverse_mass: Numbers) -> list[PackedForce]:
-        """Return what books the damping of all motion, if there is any."""
+        """Return what books the damping of all motion, if there is any.
+
+        Of every coordinate its rate (d,) [1/s] and its inverse mass, or moment of inertia (d,) [SI].
+        """
         if not len(rates):
             return []
         weight = np.where(inverse_mass > 0.0, rates / np.where(inverse_mass > 0.0, inverse_mass, 1.0), 0.0)

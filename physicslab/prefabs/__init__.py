@@ -4,17 +4,12 @@ They give no more than components; what they make can be changed like anything e
 take a ``seed``, and give the same things for the same seed.
 """
 
-from physicslab.prefabs.body import BodyOptions, body
-from physicslab.prefabs.box import box
-from physicslab.prefabs.chain import chain
-from physicslab.prefabs.circle import circle
+from physicslab.prefabs.body import BodyOptions, body, box, circle
+from physicslab.prefabs.chain import chain, pendulum
 from physicslab.prefabs.container import container
 from physicslab.prefabs.gas import gas
-from physicslab.prefabs.pendulum import pendulum
-from physicslab.prefabs.pile import pile
+from physicslab.prefabs.pile import pile, pyramid, stack
 from physicslab.prefabs.planets import Planet, binary, planets
-from physicslab.prefabs.pyramid import pyramid
-from physicslab.prefabs.stack import stack
 
 __all__ = [
     "BodyOptions", "Planet", "binary", "body", "box", "chain", "circle", "container", "gas", "pendulum",

@@ -1,4 +1,4 @@
-"""A body of any shape."""
+"""Bodies: boxes, circles, and bodies of any shape."""
 
 from typing import TypedDict, Unpack
 
@@ -67,3 +67,31 @@ def body(world: World, shape: Shape, position: Pair, **options: Unpack[BodyOptio
     velocity = Velocity(options.get("velocity", (0.0, 0.0)), options.get("angular_velocity", 0.0))
     mass = Mass(options.get("mass", 1.0), fixed_rotation=options.get("fixed_rotation", False))
     return world.spawn(*still, velocity, mass, name=name)
+
+
+def box(
+    world: World, position: Pair, *, width: float = 0.5, height: float = 0.5, **options: Unpack[BodyOptions]
+) -> int:
+    """Spawn a rectangle of given extents [m] with its centre at ``position`` [m]; return its entity.
+
+    Examples
+    --------
+    >>> world = World()
+    >>> floor = box(world, (0, -0.5), width=20, height=1, static=True, name="floor")
+    >>> world.component(floor, Shape).width
+    20.0
+    """
+    return body(world, Shape.box(width, height), position, **options)
+
+
+def circle(world: World, position: Pair, *, radius: float = 0.25, **options: Unpack[BodyOptions]) -> int:
+    """Spawn a disc of a given radius [m] with its centre at ``position`` [m]; return its entity.
+
+    Examples
+    --------
+    >>> world = World()
+    >>> ball = circle(world, (0, 5), radius=0.1, mass=0.5, restitution=0.8, name="ball")
+    >>> world.component(ball, Shape).radius
+    0.1
+    """
+    return body(world, Shape.circle(radius), position, **options)

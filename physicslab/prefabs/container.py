@@ -3,8 +3,7 @@
 from typing import Unpack
 
 from physicslab.ecs.vector import Vector2
-from physicslab.prefabs.body import BodyOptions, Pair
-from physicslab.prefabs.box import box
+from physicslab.prefabs.body import BodyOptions, Pair, box
 from physicslab.world import World
 
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from physicslab.ecs.vector import Vector2
-from physicslab.prefabs.circle import circle
+from physicslab.prefabs.body import circle
 from physicslab.world import World
 
 

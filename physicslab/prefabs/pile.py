@@ -1,12 +1,11 @@
-"""Discs poured out."""
+"""Heaps: discs poured out, boxes in a pyramid and in a stack."""
 
 from typing import Unpack
 
 import numpy as np
 
 from physicslab.ecs.vector import Vector2
-from physicslab.prefabs.body import BodyOptions, Pair
-from physicslab.prefabs.circle import circle
+from physicslab.prefabs.body import BodyOptions, Pair, box, circle
 from physicslab.world import World
 
 
@@ -50,3 +49,66 @@ def pile(
         cell = Vector2((i % columns - (columns - 1) / 2.0) * pitch, (i // columns + 0.5) * pitch)
         discs.append(circle(world, corner + cell + Vector2(dx, dy), radius=radius, **options))
     return discs
+
+
+def pyramid(
+    world: World,
+    base: int,
+    foot: Pair = (0.0, 0.0),
+    *,
+    size: float = 1.0,
+    gap: float = 0.1,
+    **options: Unpack[BodyOptions],
+) -> list[int]:
+    """Spawn rows of ``base``, ``base - 1``, ..., 1 square boxes; return their entities, row by row.
+
+    Parameters
+    ----------
+    base : int
+        Boxes in the lowest row.
+    foot : vector
+        Middle of the lowest row's lower side [m].
+    size : float
+        Side of a box [m].
+    gap : float
+        Between neighbours of a row [m]; the rows rest on each other.
+    **options
+        Of each box, as :class:`BodyOptions` has them, with a friction of 0.6.
+    """
+    options.setdefault("friction", 0.6)
+    middle, pitch = Vector2(*foot), size + gap
+    places = (
+        middle + Vector2((i - (base - row - 1) / 2.0) * pitch, (row + 0.5) * size)
+        for row in range(base)
+        for i in range(base - row)
+    )
+    return [box(world, place, width=size, height=size, **options) for place in places]
+
+
+def stack(
+    world: World,
+    count: int,
+    base: Pair = (0.0, 0.0),
+    *,
+    width: float = 1.0,
+    height: float = 1.0,
+    gap: float = 0.0,
+    **options: Unpack[BodyOptions],
+) -> list[int]:
+    """Spawn ``count`` boxes on top of each other; return their entities from the lowest up.
+
+    Parameters
+    ----------
+    base : vector
+        Middle of the lowest side [m].
+    width, height : float
+        Of each box [m].
+    gap : float
+        Left between each and the next at the start [m].
+    **options
+        Of each box, as :class:`BodyOptions` has them, with a friction of 0.6.
+    """
+    options.setdefault("friction", 0.6)
+    foot = Vector2(*base)
+    places = (foot + Vector2(0.0, height / 2.0 + i * (height + gap)) for i in range(count))
+    return [box(world, place, width=width, height=height, **options) for place in places]

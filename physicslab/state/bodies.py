@@ -66,7 +66,7 @@ class Bodies:
         self.unkicked: NDArray[np.bool_] = np.zeros(rows, np.bool_)
 
     def set_inactive(self, asleep: NDArray[np.bool_]) -> None:
-        """Give sleeping bodies an infinite mass in the simulation."""
+        """Give those that are ``asleep`` (rows,) an infinite mass in the simulation."""
         np.copyto(self.awake_inverse_mass, self.inverse_mass)
         np.copyto(self.awake_inverse_inertia, self.inverse_inertia)
         if asleep.any():

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from physicslab.state.remainders import NO_REMAINDERS, Remainders
 
 type _Columns = Sequence[NDArray[np.float64]]
+"""Positions (rows, 2) [m], angles (rows,) [rad], velocities (rows, 2) [m/s], angular ones (rows,) [rad/s]."""
 
 
 class Checkpoint:

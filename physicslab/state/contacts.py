@@ -179,7 +179,7 @@ class Contacts:
         self.wide.reset(rows)
 
     def forget(self, bodies: NDArray[np.int64], rows: int) -> None:
-        """Drop the points of some bodies that are elsewhere now, in a world of so many ``rows``."""
+        """Drop the points of some bodies (n,) that are elsewhere now, in a world of so many ``rows``."""
         self.dissolve(rows)
         near = self.manifolds[: self.recorded]
         touched = np.isin(near["a"], bodies) | np.isin(near["b"], bodies)
@@ -221,7 +221,7 @@ class Contacts:
             self._list_touching(rows)
 
     def release(self, asleep: NDArray[np.bool_]) -> None:
-        """Write the slots of sleeping bodies to their records and empty them."""
+        """Write the slots of those that are ``asleep`` (rows,) to their records and empty them."""
         if self.wide.filled:
             self.wide.filled -= sum(
                 slots.release(constraints.slots, constraints.count, self.manifolds, self.points, asleep)
@@ -229,7 +229,7 @@ class Contacts:
             )
 
     def rescale(self, pairs: NDArray[np.bool_], before: float, after: float) -> None:
-        """Rescale the impulses of some pairs from the time ``before`` [s] to the present one."""
+        """Rescale impulses of ``pairs`` (recorded,) from the time ``before`` [s] to the one ``after``."""
         if before > 0.0 and after > 0.0 and before != after:
             chosen = np.repeat(pairs, 2)
             for name in ("normal_impulse", "tangent_impulse"):

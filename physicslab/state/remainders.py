@@ -61,7 +61,7 @@ class Remainders:
 
 
 def coordinate_keys(moving: _Keys, turning: _Keys) -> _Keys:
-    """Return a number for x and y in turn of the entities ``moving``, then for the angles of ``turning``."""
+    """Return numbers for x and y in turn of entities ``moving`` (n,), then for angles of ``turning`` (m,)."""
     places = np.repeat(3 * moving, 2)
     places[1::2] += 1
     return np.concatenate((places, 3 * turning + 2))

@@ -65,7 +65,7 @@ class Sleep:
         self._followed = self.entities
 
     def follow(self, entities: NDArray[np.int64]) -> bool:
-        """Move the values of every entity where rows are numbered again; return whether they are."""
+        """Move the values of ``entities`` (rows,) where rows have new numbers; return whether they have."""
         if entities is self._followed:
             return False
         self._followed = entities

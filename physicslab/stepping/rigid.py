@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Material, Shape, Velocity
-from physicslab.components.shape import BOX
+from physicslab.components import Material, Velocity
+from physicslab.contacts.arguments import shapes_of
 from physicslab.kernels.accounts import CONTACT, FRICTION, HAND
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.constraint.joint_rows import forces_of
 from physicslab.kernels.rigid import joined, motion, time_stepping
-from physicslab.kernels.rigid.features import OUTLINE_FIELDS
 from physicslab.kernels.wide import slots
 from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import check_finite
@@ -144,16 +143,11 @@ class Rigid:
 
     def _scene(self, state: State) -> tuple[Any, ...]:
         """Return what the kernels take of the state, beside the state of motion."""
-        shape, material, physics = state.table(Shape), state.table(Material), state.physics
+        material, physics = state.table(Material), state.physics
         present = np.concatenate((np.repeat(state.table(Velocity).present, 2), state.table(Velocity).present))
         self._ode.v[: len(present)][~present] = 0.0
-        width, height, radius = shape["width"], shape["height"], shape["radius"]
-        box = shape["kind"] == BOX
-        reach = np.where(box, 0.5 * np.hypot(width, height), radius)
-        size = np.where(box, np.minimum(width, height), 2.0 * radius)
-        outlines = np.empty((len(box), OUTLINE_FIELDS))
-        for column, values in enumerate((shape["kind"], radius, width, height, reach)):
-            outlines[:, column] = values
+        of = state.bodies.shapes
+        size = 2.0 * (np.minimum(of.half_x, of.half_y) + of.radius)
         a, b, wall = self._pairs.T
         walled = wall >= 0
         coefficients = np.empty((len(a), 3))
@@ -167,7 +161,7 @@ class Rigid:
         ode = self._ode
         accounts = np.array([ode.slots.get(cause, -1) for cause in (FRICTION, CONTACT, HAND)])
         return (
-            len(box), ode.inverse_mass, ode.damping, ode.damped_calls, outlines, walls, self._pairs,
+            len(size), ode.inverse_mass, ode.damping, ode.damped_calls, shapes_of(state), walls, self._pairs,
             coefficients, accounts, *ode.joints,
         )  # fmt: skip
 

@@ -13,7 +13,7 @@ from physicslab.kernels.accounts import PX
 from physicslab.kernels.forces.bookings import ACCOUNTS
 from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.rigid.equations import UNKNOWN, VECTORS
-from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS, REACH
+from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS
 from physicslab.kernels.rigid.piece_end import STARTS
 from physicslab.kernels.rigid.pieces import StagesTuple
 from physicslab.ode.system import OdeSystem
@@ -252,8 +252,8 @@ class RigidMotion:
 
         A step changes the velocity, and moves by what it is then.
         """
-        v, rows, outlines, sizes = self._ode.v, scene[0], scene[4], scene[7][:, 2]
-        spins = np.abs(v[2 * rows : 3 * rows]) * outlines[:, REACH]
+        v, rows, reach, sizes = self._ode.v, scene[0], scene[4][1][3], scene[7][:, 2]
+        spins = np.abs(v[2 * rows : 3 * rows]) * reach
         fastest = float((np.hypot(v[0 : 2 * rows : 2], v[1 : 2 * rows : 2]) + spins).max())
         push = time_stepping.kick(scene, self._stages[-1], self._ode.q, v, 0.0)
         way = 0.25 * float(sizes.min(initial=math.inf))

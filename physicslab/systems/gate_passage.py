@@ -69,7 +69,7 @@ class Moment:
         return part
 
     def sides(self, known: NDArray[np.int8]) -> NDArray[np.int8]:
-        """Return on which side of each gate each body is; on the gate itself, what is ``known``."""
+        """Return on which sides of gates bodies are (gates, bodies); on a gate itself, what is ``known``."""
         with np.errstate(invalid="ignore"):
             left, right = self.distance > self.width, self.distance < -self.width
         sides: NDArray[np.int8] = np.where(left, np.int8(1), np.where(right, np.int8(-1), known))

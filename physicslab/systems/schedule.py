@@ -136,7 +136,7 @@ class Schedule:
     def run_forces(
         self, state: State, h: float, note: Callable[[System, NDArray[np.float64], State], None]
     ) -> None:
-        """Run ``Stage.FORCE``; ``note`` is called after each system, with the forces from before it."""
+        """Run ``Stage.FORCE``; ``note`` gets each system, and forces and torques (3 rows,) from before it."""
         for system in self.running:
             if Stage.FORCE in self._marked[system]:
                 before = state.bodies.pull.copy()

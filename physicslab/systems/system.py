@@ -123,7 +123,7 @@ class System:
         return ()
 
     def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
-        """Go on from what :meth:`keep` returned at an earlier moment; the entities are those of then."""
+        """Go on from what :meth:`keep` returned, in its shapes; the entities are those of then."""
 
     def substep_factor(self, state: State) -> int:
         """Return the factor by which the next step needs more substeps than configured, at the end of one."""

@@ -58,7 +58,7 @@ class TrailSystem(System):
         return self._place.copy(), self._time.copy(), self._head.copy(), np.array(self._now)
 
     def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
-        """Go on with an earlier record of the same bodies."""
+        """Go on with an earlier record of the same bodies, of the shapes that :meth:`keep` gave it."""
         place, time, head, now = kept
         self._place, self._time, self._head, self._now = place.copy(), time.copy(), head.copy(), float(now)
 

@@ -48,7 +48,7 @@ class StepPath:
     def between(
         cls, first: _Numbers, last: _Numbers, before: _Numbers, after: _Numbers, h: float
     ) -> StepPath:
-        """Return the paths between two moments."""
+        """Return paths between two moments, of places (n, 2) [m] and velocities (n, 2) [m/s] at both."""
         change = (after - before)[:, :2]
         size = np.einsum("ij,ij->i", change, change)
         speed = np.maximum(*(np.einsum("ij,ij->i", v[:, :2], v[:, :2]) for v in (before, after)))

@@ -18,13 +18,6 @@ from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.ode.compensated import add
 
-__all__ = [
-    "ARM_A", "ARM_B", "AXIS", "BOOKED", "COORDINATES", "DRIVEN", "ENDS", "FIRST", "GIVEN", "JA", "JB",
-    "LAMBDA", "RANK", "RIGHT", "ROWS", "STATE", "book_rows", "constrain", "factorise", "first_state",
-    "forces_of", "given_by_rows", "measure_row", "measure_rows", "project", "push_by_rows", "room_of",
-    "solve",
-]  # fmt: skip
-
 ROWS, COORDINATES, BOOKED, DRIVEN, RANK, FIRST = range(6)
 """The whole numbers: how many rows; how many coordinates move; the accounts of joints and of what drives
 bodies, or -1; how many rows are independent, as it was found last. Then ``ENDS`` numbers a row, and where the

@@ -12,11 +12,6 @@ from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, PX, PY, SPIN
 from physicslab.kernels.arguments import Acting, Inverse, Motion
 from physicslab.kernels.constraint.joint_rows import measure_row
 
-__all__ = [
-    "MEASURED", "JointSoftness", "Joints", "JointsTuple", "begin_joints", "book_momentum",
-    "joint_softness", "sweep_joints", "warm_start_joints", "work_of_joints",
-]  # fmt: skip
-
 _FASTEST, _DAMPING, _OF_SUBSTEPS = 60.0, 2.0, 0.25
 """The frequency [Hz] of the constraint and its damping ratio; at most that share of the rate of substeps."""
 _SETTLED = 1e-10

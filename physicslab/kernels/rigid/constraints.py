@@ -17,7 +17,6 @@ from physicslab.kernels.rigid.features import (
     NY,
     ONE,
     OTHER,
-    REACH,
     TA,
     TB,
     VN,
@@ -128,7 +127,7 @@ def find_loads(scene: Scene, equations: Equations, count: int, loads: Numbers) -
         force = math.sqrt(along * along + across * across)
         for side in range(2):
             body = equations.points[i, ONE + side]
-            turning, reach = 2 * scene.rows + body, scene.outlines[body, REACH]
+            turning, reach = 2 * scene.rows + body, scene.shapes.reach[body]
             loads[2 * body] += scene.inverse_mass[2 * body] * force
             loads[2 * body + 1] += scene.inverse_mass[2 * body + 1] * force
             loads[turning] += scene.inverse_mass[turning] * force * reach

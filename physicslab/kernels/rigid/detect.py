@@ -2,24 +2,19 @@
 
 import math
 
-from physicslab.kernels import Numbers, Vectors, inlined
+from physicslab.kernels import Numbers, inlined
+from physicslab.kernels.geometry.shapes import Shapes, face, vertex
 from physicslab.kernels.rigid.features import (
-    BOX,
-    CENTRE,
     CORNER,
     FEATURE,
-    HEIGHT,
-    KIND,
     ONE,
     OTHER,
     PAIR,
     VERTEX,
     WALL,
-    WIDTH,
     Points,
     Scene,
-    face_of,
-    vertex_of,
+    beside_vertex,
 )
 
 __all__ = ["TIE", "find_points", "seen_from"]
@@ -28,7 +23,7 @@ TIE = 1e-9
 """Share of the size within which two faces are equally far, or one takes over from a corner, so that speeds
 decide."""
 Lie = tuple[float, float, float, float]
-"""Centre of a box in another one's directions, from its centre [m]; cosine and sine of the angle between
+"""Centre of a body in another one's directions, from its centre [m]; cosine and sine of the angle between
 them."""
 
 
@@ -48,60 +43,7 @@ def seen_from(q: Numbers, rows: int, row: int, x: float, y: float) -> tuple[floa
 
 
 @inlined
-def _corner(q: Numbers, rows: int, outlines: Vectors, row: int, vertex: int) -> tuple[float, float]:
-    """Return where a corner of a box is [m]."""
-    ux, uy, _ = vertex_of(outlines, row, vertex)
-    c, s = math.cos(q[2 * rows + row]), math.sin(q[2 * rows + row])
-    return q[2 * row] + c * ux - s * uy, q[2 * row + 1] + s * ux + c * uy
-
-
-@inlined
-def _disc_to_box(
-    points: Points, n: int, pair: int, q: Numbers, v: Numbers, rows: int, outlines: Vectors, box: int,
-    disc: int, tie: float,
-) -> int:  # fmt: skip
-    """Find the face or the corner of a box that is nearest to a disc.
-
-    On the line between them, where one takes over from the other, it is that towards which the disc moves.
-    """
-    x, y = seen_from(q, rows, box, q[2 * disc], q[2 * disc + 1])
-    over_x, over_y = abs(x) - 0.5 * outlines[box, WIDTH], abs(y) - 0.5 * outlines[box, HEIGHT]
-    if min(abs(over_x), abs(over_y)) <= tie:
-        c, s, spin = math.cos(q[2 * rows + box]), math.sin(q[2 * rows + box]), v[2 * rows + box]
-        vx, vy = v[2 * disc] - v[2 * box], v[2 * disc + 1] - v[2 * box + 1]
-        rate_x, rate_y = c * vx + s * vy + spin * y, c * vy - s * vx - spin * x
-        over_x = over_x if abs(over_x) > tie else (rate_x if x > 0.0 else -rate_x)
-        over_y = over_y if abs(over_y) > tie else (rate_y if y > 0.0 else -rate_y)
-    if over_x > 0.0 and over_y > 0.0:
-        corner = (0 if x > 0.0 else 1) if y > 0.0 else (3 if x > 0.0 else 2)
-        return _write(points, n, pair, box, CORNER + corner, disc, CENTRE)
-    face = (0 if x > 0.0 else 2) if over_x > over_y else (1 if y > 0.0 else 3)
-    return _write(points, n, pair, box, face, disc, CENTRE)
-
-
-@inlined
-def _box_to_wall(
-    points: Points, n: int, pair: int, q: Numbers, rows: int, outlines: Vectors, box: int, wall: int
-) -> int:
-    """Find the two corners of a box that are nearest to a wall."""
-    axis, sign = (0 if wall == 0 or wall == 2 else 1), (1.0 if wall < 2 else -1.0)
-    first, second, low, next_low = 0, 0, math.inf, math.inf
-    for vertex in range(4):
-        place = _corner(q, rows, outlines, box, vertex)
-        height = sign * (place[0] if axis == 0 else place[1])
-        if height < low:
-            second, next_low = first, low
-            first, low = vertex, height
-        elif height < next_low:
-            second, next_low = vertex, height
-    n = _write(points, n, pair, 0, WALL + wall, box, min(first, second))
-    return _write(points, n, pair, 0, WALL + wall, box, max(first, second))
-
-
-@inlined
-def _lie(
-    q: Numbers, rows: int, one: int, other: int
-) -> tuple[tuple[float, float, float, float], tuple[float, float, float, float]]:
+def _lie(q: Numbers, rows: int, one: int, other: int) -> tuple[Lie, Lie]:
     """Return how OTHER lies, seen from ONE, and how ONE does, seen from OTHER."""
     angle, angle_other = q[2 * rows + one], q[2 * rows + other]
     c, s, co, so = math.cos(angle), math.sin(angle), math.cos(angle_other), math.sin(angle_other)
@@ -112,130 +54,227 @@ def _lie(
 
 
 @inlined
-def _nearest_corner(lie: Lie, outlines: Vectors, one: int, face: int, other: int) -> tuple[float, int]:
-    """Return how far all of OTHER is from a face of ONE [m], and its corner that is nearest."""
+def _place(lie: Lie, shapes: Shapes, other: int, k: int) -> tuple[float, float]:
+    """Return where vertex k of OTHER is, seen from ONE [m]."""
     x, y, c, s = lie
-    fx, fy, distance, _ = face_of(outlines, one, face)
-    along, across = fx * c + fy * s, fy * c - fx * s  # the normal, seen from OTHER
-    nearest = 0 if across <= 0.0 else 3
-    if along > 0.0:
-        nearest = 1 if across <= 0.0 else 2
-    reach = 0.5 * (abs(along) * outlines[other, WIDTH] + abs(across) * outlines[other, HEIGHT])
-    return fx * x + fy * y - reach - distance, nearest
+    ux, uy = vertex(shapes, other, k)
+    return x + c * ux - s * uy, y + s * ux + c * uy
 
 
 @inlined
-def _farthest_face(
-    q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, other: int, lie: Lie, tie: float
-) -> tuple[int, float]:
-    """Return the face of ONE from which all of OTHER is farthest, and how far [m].
-
-    Of faces that are equally far, as where two corners meet, the one that recedes faster: only there could
-    they pass each other, and a box that slides over the joint of two tiles is not stopped by the side of
-    the next.
-    """
-    best, farthest, count = 0, -math.inf, 0
-    for face in range(4):
-        gap, _ = _nearest_corner(lie, outlines, one, face, other)
-        if gap > farthest:
-            best, farthest = face, gap
-    for face in range(4):
-        gap, _ = _nearest_corner(lie, outlines, one, face, other)
-        count += gap > farthest - tie
-    if count == 1:
-        return best, farthest
-    fastest = -math.inf
-    for face in range(4):
-        gap, _ = _nearest_corner(lie, outlines, one, face, other)
-        if gap > farthest - tie:
-            rate = _face_rate(q, v, rows, outlines, one, face, other, lie)
-            if rate > fastest:
-                best, fastest = face, rate
-    return best, farthest
-
-
-@inlined
-def _face_rate(
-    q: Numbers, v: Numbers, rows: int, outlines: Vectors, one: int, face: int, other: int, lie: Lie
-) -> float:
-    """Return how fast the nearest corner of OTHER recedes from a face of ONE [m/s]."""
-    fx, fy, _, _ = face_of(outlines, one, face)
-    _, vertex = _nearest_corner(lie, outlines, one, face, other)
-    x, y = _corner(q, rows, outlines, other, vertex)
+def _rates(
+    scene: Scene, q: Numbers, v: Numbers, one: int, other: int, lie: Lie, k: int
+) -> tuple[float, float]:
+    """Return how fast vertex k of OTHER moves, seen from ONE, in its own directions [m/s]."""
+    rows, (ux, uy) = scene.rows, vertex(scene.shapes, other, k)
+    co, so = math.cos(q[2 * rows + other]), math.sin(q[2 * rows + other])
+    spin, own = v[2 * rows + other], v[2 * rows + one]
+    vx = v[2 * other] - spin * (so * ux + co * uy) - v[2 * one]
+    vy = v[2 * other + 1] + spin * (co * ux - so * uy) - v[2 * one + 1]
     c, s = math.cos(q[2 * rows + one]), math.sin(q[2 * rows + one])
-    nx, ny = c * fx - s * fy, s * fx + c * fy
-    vx = v[2 * other] - v[2 * rows + other] * (y - q[2 * other + 1])
-    vy = v[2 * other + 1] + v[2 * rows + other] * (x - q[2 * other])
-    vx -= v[2 * one] - v[2 * rows + one] * (y - q[2 * one + 1])
-    vy -= v[2 * one + 1] + v[2 * rows + one] * (x - q[2 * one])
-    rate: float = nx * vx + ny * vy
+    x, y = _place(lie, scene.shapes, other, k)
+    return c * vx + s * vy + own * y, c * vy - s * vx - own * x
+
+
+@inlined
+def _to_wall(points: Points, pair: int, q: Numbers, scene: Scene, row: int, wall: int) -> int:
+    """Find the two vertices of a body that are nearest to a wall, or its only one."""
+    axis, sign = (0 if wall == 0 or wall == 2 else 1), (1.0 if wall < 2 else -1.0)
+    first, second, low, next_low = 0, 0, math.inf, math.inf
+    c, s = math.cos(q[2 * scene.rows + row]), math.sin(q[2 * scene.rows + row])
+    for k in range(scene.shapes.vertices[row]):
+        ux, uy = vertex(scene.shapes, row, k)
+        x, y = q[2 * row] + c * ux - s * uy, q[2 * row + 1] + s * ux + c * uy
+        height = sign * (x if axis == 0 else y)
+        if height < low:
+            second, next_low = first, low
+            first, low = k, height
+        elif height < next_low:
+            second, next_low = k, height
+    n = _write(points, 0, pair, 0, WALL + wall, row, min(first, second))
+    return n if first == second else _write(points, n, pair, 0, WALL + wall, row, max(first, second))
+
+
+@inlined
+def _nearest_vertex(lie: Lie, shapes: Shapes, one: int, k: int, other: int) -> tuple[float, int]:
+    """Return how far the core of OTHER is from face k of ONE [m], and its vertex that is nearest."""
+    x, y, c, s = lie
+    fx, fy, distance, _ = face(shapes, one, k)
+    along, across = fx * c + fy * s, fy * c - fx * s  # the normal, seen from OTHER
+    nearest, least = 0, math.inf
+    for j in range(shapes.vertices[other]):
+        ux, uy = vertex(shapes, other, j)
+        height = along * ux + across * uy
+        if height < least:
+            nearest, least = j, height
+    return fx * x + fy * y + least - distance, nearest
+
+
+@inlined
+def _face_rate(scene: Scene, q: Numbers, v: Numbers, one: int, k: int, other: int, lie: Lie) -> float:
+    """Return how fast the nearest vertex of OTHER recedes from face k of ONE [m/s]."""
+    fx, fy, _, _ = face(scene.shapes, one, k)
+    _, nearest = _nearest_vertex(lie, scene.shapes, one, k, other)
+    rate_x, rate_y = _rates(scene, q, v, one, other, lie, nearest)
+    rate: float = fx * rate_x + fy * rate_y
     return rate
 
 
 @inlined
-def _facing(q: Numbers, rows: int, one: int, face: int, other: int) -> int:
-    """Return the face of OTHER that lies most against a face of ONE."""
-    turn = q[2 * rows + other] - q[2 * rows + one] - 0.5 * math.pi * face
-    opposite = math.floor((math.pi - turn) / (0.5 * math.pi) + 0.5)
-    face_of_other: int = opposite % 4
-    return face_of_other
+def _farthest_face(
+    scene: Scene, q: Numbers, v: Numbers, one: int, other: int, lie: Lie, tie: float
+) -> tuple[int, float]:
+    """Return the face of ONE from which the core of OTHER is farthest, and how far [m].
+
+    Of faces that are equally far, as where two corners meet, the one that recedes faster: only there could
+    they pass each other, and a box that slides over the joint of two tiles is not stopped by the side of
+    the next. A core of one vertex has no face.
+    """
+    best, farthest, second, faces = 0, -math.inf, -math.inf, scene.shapes.vertices[one]
+    for k in range(faces if faces > 1 else 0):
+        gap, _ = _nearest_vertex(lie, scene.shapes, one, k, other)
+        if gap > farthest:
+            best, farthest, second = k, gap, farthest
+        else:
+            second = max(second, gap)
+    if not second > farthest - tie:
+        return best, farthest
+    fastest = -math.inf
+    for k in range(faces):
+        gap, _ = _nearest_vertex(lie, scene.shapes, one, k, other)
+        if gap > farthest - tie:
+            rate = _face_rate(scene, q, v, one, k, other, lie)
+            if rate > fastest:
+                best, fastest = k, rate
+    return best, farthest
 
 
 @inlined
-def _box_to_box(
-    points: Points, n: int, pair: int, q: Numbers, v: Numbers, rows: int, outlines: Vectors,
-    a: int, b: int, tie: float,
+def _facing(lie: Lie, shapes: Shapes, one: int, k: int, other: int) -> int:
+    """Return the face of OTHER that lies most against face k of ONE."""
+    _, _, c, s = lie
+    fx, fy, _, _ = face(shapes, one, k)
+    along, across, best, least = fx * c + fy * s, fy * c - fx * s, 0, math.inf
+    for j in range(shapes.vertices[other]):
+        gx, gy, _, _ = face(shapes, other, j)
+        if along * gx + across * gy < least:
+            best, least = j, along * gx + across * gy
+    return best
+
+
+@inlined
+def _within(
+    scene: Scene, q: Numbers, v: Numbers, one: int, k: int, other: int, j: int, lie: Lie, tie: float
+) -> float:
+    """Return how far vertex j of OTHER is from the nearer end of face k of ONE, along it [m].
+
+    Where one of the two is rounded, no more than a ``tie`` is decided by how fast that distance grows [m/s].
+    """
+    shapes = scene.shapes
+    fx, fy, _, length = face(shapes, one, k)
+    ux, uy = vertex(shapes, one, k)
+    x, y = _place(lie, shapes, other, j)
+    start = fx * uy - fy * ux
+    passed, left = (fx * y - fy * x) - start, start + length - (fx * y - fy * x)
+    within: float = min(passed, left)
+    if abs(within) <= tie and shapes.radius[one] + shapes.radius[other] > 0.0:
+        rate_x, rate_y = _rates(scene, q, v, one, other, lie, j)
+        along = fx * rate_y - fy * rate_x
+        within = along if passed < left else -along
+    return within
+
+
+@inlined
+def _beyond(distance: float, rate: float, tie: float) -> float:
+    """Return a distance, or the rate at which it grows where it is no more than a ``tie``."""
+    return rate if abs(distance) <= tie else distance
+
+
+@inlined
+def _is_outside(
+    scene: Scene, q: Numbers, v: Numbers, one: int, i: int, other: int, j: int, lie: Lie, tie: float
+) -> bool:
+    """Whether vertex j of OTHER is beyond, or leaves, both faces of ONE that meet at vertex i."""
+    if scene.shapes.vertices[one] == 1:
+        return True
+    ux, uy = vertex(scene.shapes, one, i)
+    x, y = _place(lie, scene.shapes, other, j)
+    near, far = beside_vertex(scene.shapes, one, i, x - ux, y - uy)
+    if min(abs(near), abs(far)) <= tie:
+        rate_x, rate_y = _rates(scene, q, v, one, other, lie, j)
+        near_rate, far_rate = beside_vertex(scene.shapes, one, i, rate_x, rate_y)
+        near, far = _beyond(near, near_rate, tie), _beyond(far, far_rate, tie)
+    return near > 0.0 and far > 0.0
+
+
+@inlined
+def _nearest_vertices(lie: Lie, shapes: Shapes, one: int, other: int) -> tuple[int, int]:
+    """Return the vertices of ONE and of OTHER that are nearest to each other."""
+    best, best_other, least = 0, 0, math.inf
+    for j in range(shapes.vertices[other]):
+        x, y = _place(lie, shapes, other, j)
+        for i in range(shapes.vertices[one]):
+            ux, uy = vertex(shapes, one, i)
+            square = (x - ux) * (x - ux) + (y - uy) * (y - uy)
+            if square < least:
+                best, best_other, least = i, j, square
+    return best, best_other
+
+
+@inlined
+def _to_faces(
+    scene: Scene, points: Points, p: int, q: Numbers, v: Numbers, a: int, b: int, lie: Lie, lie_back: Lie,
+    tie: float,
 ) -> tuple[int, float]:  # fmt: skip
-    """Find the ends of the stretch along which two boxes face each other, and how far they are apart [m]."""
-    b_from_a, a_from_b = _lie(q, rows, a, b)
-    face_a, gap_a = _farthest_face(q, v, rows, outlines, a, b, b_from_a, tie)
-    face_b, gap_b = _farthest_face(q, v, rows, outlines, b, a, a_from_b, tie)
-    one, other, face, lie, lie_back = a, b, face_a, b_from_a, a_from_b
+    """Find the ends of the stretch along which two bodies face each other.
+
+    Returns how many there are, and a distance that the two have at least, where it is positive [m].
+    """
+    shapes = scene.shapes
+    face_a, gap_a = _farthest_face(scene, q, v, a, b, lie, tie)
+    face_b, gap_b = _farthest_face(scene, q, v, b, a, lie_back, tie)
+    one, other, k, there, back = a, b, face_a, lie, lie_back
     instead = gap_b > gap_a + tie
     if abs(gap_b - gap_a) <= tie:
-        rate = _face_rate(q, v, rows, outlines, a, face_a, b, b_from_a)
-        instead = _face_rate(q, v, rows, outlines, b, face_b, a, a_from_b) > rate + tie
+        rate = _face_rate(scene, q, v, a, face_a, b, lie)
+        instead = _face_rate(scene, q, v, b, face_b, a, lie_back) > rate + tie
     if instead:
-        one, other, face, lie, lie_back = b, a, face_b, a_from_b, b_from_a
-    against = _facing(q, rows, one, face, other)
-    for k in range(2):
-        vertex = (against + 3) % 4 if k == 0 else against
-        if _within(lie, outlines, one, face, other, vertex) >= -tie:
-            n = _write(points, n, pair, one, face, other, vertex)
-    for k in range(2):
-        vertex = (face + 3) % 4 if k == 0 else face
-        if _within(lie_back, outlines, other, against, one, vertex) > tie:
-            n = _write(points, n, pair, other, against, one, vertex)
-    return n, max(gap_a, gap_b)
-
-
-@inlined
-def _within(lie: Lie, outlines: Vectors, one: int, face: int, other: int, vertex: int) -> float:
-    """Return how far a corner of OTHER is from the nearer end of a face of ONE, along it [m]."""
-    fx, fy, _, half = face_of(outlines, one, face)
-    ux, uy, _ = vertex_of(outlines, other, vertex)
-    x, y, c, s = lie
-    x, y = x + c * ux - s * uy, y + s * ux + c * uy
-    return half - abs(fx * y - fy * x)
+        one, other, k, there, back = b, a, face_b, lie_back, lie
+    n, count, rounding = 0, shapes.vertices[other], shapes.radius[a] + shapes.radius[b]
+    against = _facing(there, shapes, one, k, other) if count > 1 else 0
+    least = 0.0 if rounding > 0.0 else -tie
+    for turn in range(min(count, 2)):
+        j = (against + turn) % count
+        if _within(scene, q, v, one, k, other, j, there, tie) >= least:
+            n = _write(points, n, p, one, k, other, j)
+    least = 0.0 if rounding > 0.0 else tie
+    for turn in range(2 if count > 1 else 0):
+        i = (k + turn) % shapes.vertices[one]
+        if _within(scene, q, v, other, against, one, i, back, tie) > least:
+            n = _write(points, n, p, other, against, one, i)
+    return n, max(gap_a, gap_b) - rounding
 
 
 @inlined
 def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points) -> tuple[int, float]:
     """Write the points where pair ``p`` touches, or would; return how many they are.
 
-    And, of two boxes, a distance that they have at least where it is positive [m]; infinity of other pairs,
-    which have the smallest gap of their points.
+    And a distance that the two have at least where it is positive [m]; infinity where the smallest gap of
+    their points is that.
     """
-    rows, outlines, tie = scene.rows, scene.outlines, TIE * scene.coefficients[p, 2]
+    shapes, tie = scene.shapes, TIE * scene.coefficients[p, 2]
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
     if wall >= 0:
-        if outlines[b, KIND] == BOX:
-            return _box_to_wall(points, 0, p, q, rows, outlines, b, wall), math.inf
-        return _write(points, 0, p, 0, WALL + wall, b, CENTRE), math.inf
-    if outlines[a, KIND] == BOX and outlines[b, KIND] == BOX:
-        return _box_to_box(points, 0, p, q, v, rows, outlines, a, b, tie)
-    if outlines[a, KIND] == BOX:
-        return _disc_to_box(points, 0, p, q, v, rows, outlines, a, b, tie), math.inf
-    if outlines[b, KIND] == BOX:
-        return _disc_to_box(points, 0, p, q, v, rows, outlines, b, a, tie), math.inf
-    return _write(points, 0, p, a, CENTRE, b, CENTRE), math.inf
+        return _to_wall(points, p, q, scene, b, wall), math.inf
+    if shapes.vertices[a] == 1:
+        a, b = (a, b) if shapes.vertices[b] == 1 else (b, a)
+    if shapes.vertices[a] == 1:
+        return _write(points, 0, p, a, CORNER, b, 0), math.inf
+    lie, lie_back = _lie(q, scene.rows, a, b)
+    if shapes.radius[a] + shapes.radius[b] > 0.0:
+        i, j = _nearest_vertices(lie, shapes, a, b)
+        outside = _is_outside(scene, q, v, a, i, b, j, lie, tie)
+        if outside and _is_outside(scene, q, v, b, j, a, i, lie_back, tie):
+            return _write(points, 0, p, a, CORNER + i, b, j), math.inf
+    n, apart = _to_faces(scene, points, p, q, v, a, b, lie, lie_back, tie)
+    return n, math.inf if shapes.vertices[b] == 1 else apart

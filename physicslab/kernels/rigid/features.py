@@ -1,5 +1,6 @@
-"""Points where two bodies can touch: a corner or a centre of one against a face, corner or centre of another.
+"""Points where two bodies can touch: a vertex of one against a face or a vertex of another.
 
+A body is its core of 1 to 8 vertices, rounded by a radius (:mod:`physicslab.kernels.geometry.shapes`).
 Coordinates are packed as :meth:`physicslab.state.packed.StateLayout.of_rows` has them: x and y of every row,
 then all angles, then the clock; behind it v has accounts, which go on as speeds do, and q has nothing. A
 point is a row of whole numbers: its pair, the body ``ONE`` with its feature, the body ``OTHER`` with its
@@ -17,30 +18,24 @@ from numpy.typing import NDArray
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
 from physicslab.kernels.constraint.pair import ContactFrame, PairVelocity, along_and_across, point_velocity
 from physicslab.kernels.forces.force_calls import Calls
+from physicslab.kernels.geometry.shapes import MOST_VERTICES, Shapes, ShapesTuple, face, named_shapes, vertex
 from physicslab.kernels.records import Pairs
 
 __all__ = [
-    "BIAS_N", "BIAS_T", "BOX", "CENTRE", "CONTACTS", "CORNER", "DRIVEN", "FEATURE", "GAP", "GIVEN", "HEIGHT",
-    "KIND", "MARGIN", "MEASURES", "MU", "NA", "NB", "NX", "NY", "ONE", "OTHER", "OUTLINE_FIELDS", "PAIR",
-    "POINT_FIELDS", "PX", "PY", "RADIUS", "REACH", "RESTITUTION", "RUBBING", "STATUS", "TA", "TB", "VERTEX",
-    "VN", "VT", "WALL", "WIDTH", "Points", "Scene", "SceneTuple", "face_of", "measure", "named_scene",
-    "vertex_of",
+    "BIAS_N", "BIAS_T", "CONTACTS", "CORNER", "DRIVEN", "FEATURE", "GAP", "GIVEN", "MARGIN", "MEASURES", "MU",
+    "NA", "NB", "NX", "NY", "ONE", "OTHER", "PAIR", "POINT_FIELDS", "PX", "PY", "RESTITUTION", "RUBBING",
+    "STATUS", "TA", "TB", "VERTEX", "VN", "VT", "WALL", "Points", "Scene", "SceneTuple", "beside_vertex",
+    "measure", "named_scene", "turned_by",
 ]  # fmt: skip
 
 PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)
 """The columns of a point: its pair; bodies and features; what it may do, and what it does."""
-CENTRE, CORNER, WALL = 4, 5, 9
-"""Features: faces 0 to 3 of a box (its right, top, left and bottom), the centre of a disc, corners 5 to 8 of
-a box, walls 9 to 12. Vertices: corners 0 to 3 of a box, counter-clockwise from the upper right; the
-centre."""
+CORNER, WALL = MOST_VERTICES, 2 * MOST_VERTICES
+"""Where features of vertices and walls begin; those before are faces, from the vertex of that number on."""
 NX, NY, TA, TB, NA, NB, GAP, VN, VT, BIAS_N, BIAS_T, MARGIN, PX, PY, MU, RESTITUTION, MEASURES = range(17)
 """The columns of measures of a point: normal; arms of ONE and OTHER along the tangent and the normal [m]; gap
 [m]; speeds along both [m/s]; their rates at no acceleration [m/s^2]; how far it is from the end of its
 feature [m]; where it is [m]; coefficients of friction and restitution."""
-KIND, RADIUS, WIDTH, HEIGHT, REACH, OUTLINE_FIELDS = range(6)
-"""The columns of outlines (rows, 5): kind of shape, lengths [m], largest distance from the centre [m]."""
-BOX = 2.0
-"""The kind of a box."""
 RUBBING, CONTACTS, DRIVEN = range(3)
 """What ``accounts`` of a scene hold: where those of friction, of contacts and of what is driven begin behind
 the clock (:mod:`physicslab.kernels.forces.bookings`); -1 where nothing is driven."""
@@ -52,7 +47,7 @@ Points = Annotated[NDArray[np.int64], int64[:, ::1]]
 class Scene(NamedTuple):
     """What moves, and what may touch.
 
-    The number of rows; inverse masses (3 rows,), damping, forces; outlines, walls of the bounds (4,) [m];
+    The number of rows; inverse masses (3 rows,), damping, forces; shapes, walls of the bounds (4,) [m];
     pairs (n, 3), and of each the friction, restitution and smaller size [m] (n, 3); where accounts are (3,);
     the rows of joints, their numbers and whole numbers (:mod:`physicslab.kernels.constraint.joint_rows`).
     """
@@ -61,7 +56,7 @@ class Scene(NamedTuple):
     inverse_mass: Numbers
     damping: Numbers
     calls: Calls
-    outlines: Vectors
+    shapes: Shapes
     walls: Numbers
     pairs: Pairs
     coefficients: Vectors
@@ -70,38 +65,37 @@ class Scene(NamedTuple):
     joints: Rows
 
 
-SceneTuple = tuple[int, Numbers, Numbers, Calls, Vectors, Numbers, Pairs, Vectors, Rows, Numbers, Rows]
+SceneTuple = tuple[int, Numbers, Numbers, Calls, ShapesTuple, Numbers, Pairs, Vectors, Rows, Numbers, Rows]
 
 
 @fused
 def named_scene(plain: SceneTuple) -> Scene:
     """Give names to a tuple."""
     return Scene(
-        plain[0], plain[1], plain[2], plain[3], plain[4], plain[5], plain[6], plain[7], plain[8], plain[9],
-        plain[10],
+        plain[0], plain[1], plain[2], plain[3], named_shapes(plain[4]), plain[5], plain[6], plain[7],
+        plain[8], plain[9], plain[10],
     )  # fmt: skip
 
 
 @inlined
-def vertex_of(outlines: Vectors, row: int, vertex: int) -> tuple[float, float, float]:
-    """Return a vertex in the body's own directions [m], and the radius around it [m]."""
-    if vertex == CENTRE:
-        return 0.0, 0.0, outlines[row, RADIUS]
-    x, y = 0.5 * outlines[row, WIDTH], 0.5 * outlines[row, HEIGHT]
-    return (x if vertex == 0 or vertex == 3 else -x), (y if vertex < 2 else -y), 0.0
+def beside_vertex(shapes: Shapes, row: int, k: int, x: float, y: float) -> tuple[float, float]:
+    """Return how far a place is beyond both faces that meet at vertex k of a row, along each [m].
+
+    The place is seen from the vertex, in the body's own directions [m]. Where both are positive, the vertex
+    is what is nearest to it.
+    """
+    count = shapes.vertices[row]
+    before_x, before_y, _, _ = face(shapes, row, (k + count - 1) % count)
+    after_x, after_y, _, _ = face(shapes, row, k)
+    return before_x * y - before_y * x, after_y * x - after_x * y
 
 
 @inlined
-def face_of(outlines: Vectors, row: int, face: int) -> tuple[float, float, float, float]:
-    """Return the outward normal of a face in the body's own directions, its distance, its half length."""
-    x, y = 0.5 * outlines[row, WIDTH], 0.5 * outlines[row, HEIGHT]
-    if face == 0:
-        return 1.0, 0.0, x, y
-    if face == 1:
-        return 0.0, 1.0, y, x
-    if face == 2:
-        return -1.0, 0.0, x, y
-    return 0.0, -1.0, y, x
+def turned_by(scene: Scene, row: int, q: Numbers) -> tuple[float, float]:
+    """Return cosine and sine of the angle of a body; those of 0 where a core of one vertex turns nothing."""
+    if scene.shapes.vertices[row] == 1:
+        return 1.0, 0.0
+    return math.cos(q[2 * scene.rows + row]), math.sin(q[2 * scene.rows + row])
 
 
 @inlined
@@ -111,11 +105,10 @@ def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: V
     The rates follow by differentiating the gap twice, and the sliding speed of the material points once; the
     point itself moves over both bodies.
     """
-    rows, outlines = scene.rows, scene.outlines
+    rows, shapes = scene.rows, scene.shapes
     one, other, feature = points[i, ONE], points[i, OTHER], points[i, FEATURE]
-    vx, vy, radius = vertex_of(outlines, other, points[i, VERTEX])
-    angle, spin = q[2 * rows + other], v[2 * rows + other]
-    c, s = math.cos(angle), math.sin(angle)
+    (vx, vy), radius = vertex(shapes, other, points[i, VERTEX]), shapes.radius[other]
+    spin, (c, s) = v[2 * rows + other], turned_by(scene, other, q)
     rho_x, rho_y = c * vx - s * vy, s * vx + c * vy
     cx, cy = q[2 * other] + rho_x, q[2 * other + 1] + rho_y
     cvx, cvy = v[2 * other] - spin * rho_y, v[2 * other + 1] + spin * rho_x
@@ -133,13 +126,16 @@ def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: V
     else:
         one_x, one_y, one_vx, one_vy = q[2 * one], q[2 * one + 1], v[2 * one], v[2 * one + 1]
         one_spin = v[2 * rows + one]
-        co, so = math.cos(q[2 * rows + one]), math.sin(q[2 * rows + one])
-        if feature < CENTRE:
-            fx, fy, distance, half = face_of(outlines, one, feature)
+        co, so = turned_by(scene, one, q)
+        own = shapes.radius[one]
+        if feature < CORNER:
+            fx, fy, distance, length = face(shapes, one, feature)
+            ux, uy = vertex(shapes, one, feature)
             nx, ny = co * fx - so * fy, so * fx + co * fy
             dx, dy = cx - one_x, cy - one_y
-            out[i, GAP] = nx * dx + ny * dy - distance - radius
-            out[i, MARGIN] = half - abs(nx * dy - ny * dx)
+            out[i, GAP] = nx * dx + ny * dy - distance - radius - own
+            passed, start = nx * dy - ny * dx, fx * uy - fy * ux
+            out[i, MARGIN] = min(passed - start, start + length - passed)
             turning = one_spin
             along = nx * (cvy - one_vy) - ny * (cvx - one_vx)
             out[i, BIAS_N] = (
@@ -148,17 +144,19 @@ def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: V
                 - spin * spin * (nx * rho_x + ny * rho_y)
             )
         else:
-            ux, uy, own = vertex_of(outlines, one, CENTRE if feature == CENTRE else feature - CORNER)
+            ux, uy = vertex(shapes, one, feature - CORNER)
             arm_x, arm_y = co * ux - so * uy, so * ux + co * uy
             dx, dy = cx - one_x - arm_x, cy - one_y - arm_y
             distance = math.sqrt(dx * dx + dy * dy)
             nx, ny = dx / distance, dy / distance
             out[i, GAP] = distance - own - radius
             out[i, MARGIN] = math.inf
-            if feature > CENTRE:  # beyond both faces that meet at the corner
-                near_x = (co * (cx - one_x) + so * (cy - one_y)) * (1.0 if ux > 0.0 else -1.0) - abs(ux)
-                near_y = (co * (cy - one_y) - so * (cx - one_x)) * (1.0 if uy > 0.0 else -1.0) - abs(uy)
-                out[i, MARGIN] = min(near_x, near_y)
+            if shapes.vertices[one] > 1:
+                near, far = beside_vertex(shapes, one, feature - CORNER, co * dx + so * dy, co * dy - so * dx)
+                out[i, MARGIN] = min(near, far)
+            if shapes.vertices[other] > 1:
+                near, far = beside_vertex(shapes, other, points[i, VERTEX], -c * dx - s * dy, s * dx - c * dy)
+                out[i, MARGIN] = min(out[i, MARGIN], min(near, far))
             dvx = cvx - one_vx + one_spin * arm_y
             dvy = cvy - one_vy - one_spin * arm_x
             across = nx * dvy - ny * dvx

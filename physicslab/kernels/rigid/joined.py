@@ -27,11 +27,6 @@ from physicslab.kernels.constraint.joint_rows import (
 )
 from physicslab.kernels.rigid.features import NA, NX, NY, ONE, TA, Points, Scene, SceneTuple, named_scene
 
-__all__ = [
-    "answer", "book_answer", "book_impulses", "find_answer", "lessen", "measure_joints", "pass_on",
-    "strongest_joint",
-]  # fmt: skip
-
 _IMMOVABLE = 1e-12
 """Share of what a force causes alone below which joints leave nothing of it."""
 

@@ -31,7 +31,6 @@ from physicslab.kernels.rigid.features import (
     GIVEN,
     MU,
     PAIR,
-    REACH,
     STATUS,
     VN,
     VT,
@@ -128,7 +127,7 @@ def _is_slow(scene: Scene, v: Numbers, rest: float) -> bool:
     """Whether nothing moves."""
     slow = True
     for i in range(3 * scene.rows):
-        way = scene.outlines[i - 2 * scene.rows, REACH] if i >= 2 * scene.rows else 1.0
+        way = scene.shapes.reach[i - 2 * scene.rows] if i >= 2 * scene.rows else 1.0
         slow = slow and way * abs(v[i]) <= (SLOW * rest if scene.inverse_mass[i] > 0.0 else 0.0)
     return slow
 
@@ -148,7 +147,7 @@ def _is_balanced(
     find_loads(scene, equations, closed, loads)
     apply(scene, equations, closed, acceleration)
     for i in range(3 * scene.rows):
-        way = scene.outlines[i - 2 * scene.rows, REACH] if i >= 2 * scene.rows else 1.0
+        way = scene.shapes.reach[i - 2 * scene.rows] if i >= 2 * scene.rows else 1.0
         if scene.inverse_mass[i] > 0.0 and way * abs(acceleration[i]) > 10.0 * least + share * way * loads[i]:
             return False
     return True

@@ -4,7 +4,7 @@ import math
 
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.ode.dop853_tableau import LAST
-from physicslab.kernels.rigid.features import BOX, KIND, REACH, Scene
+from physicslab.kernels.rigid.features import Scene
 from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages
 from physicslab.kernels.rigid.touching import far_apart, length_of
 
@@ -30,7 +30,7 @@ def time_to_pass(way: float, speed: float, acceleration: float) -> float:
 @inlined
 def _turning_reach(scene: Scene, row: int) -> float:
     """Return how far from its centre the outline of a body moves as it turns [m]."""
-    reach: float = scene.outlines[row, REACH] if scene.outlines[row, KIND] == BOX else 0.0
+    reach: float = scene.shapes.reach[row] - scene.shapes.radius[row]
     return reach
 
 
@@ -46,7 +46,7 @@ def _relative(scene: Scene, a: int, b: int, rates: Numbers) -> float:
 
 @inlined
 def longest_piece(scene: Scene, q: Numbers, v: Numbers, acceleration: Numbers, allowed: Numbers) -> float:
-    """Return for how long no pair can pass through each other unseen, and no box turn far [s].
+    """Return for how long no pair can pass through each other unseen, and nothing turn far [s].
 
     If all went on as it begins. How far each pair may come together is noted in ``allowed`` [m].
     """
@@ -61,7 +61,7 @@ def longest_piece(scene: Scene, q: Numbers, v: Numbers, acceleration: Numbers, a
             allowed[p] += _STRIDE * scene.coefficients[p, 2]
     for row in range(scene.rows):
         turning = 2 * scene.rows + row
-        if scene.outlines[row, KIND] == BOX:
+        if scene.shapes.vertices[row] > 1:
             longest = min(longest, time_to_pass(_MAX_TURN, abs(v[turning]), abs(acceleration[turning])))
     return longest
 

@@ -8,7 +8,6 @@ from physicslab.kernels.rigid.curve import curve_is_exact, fit_curve, place_bodi
 from physicslab.kernels.rigid.detect import TIE
 from physicslab.kernels.rigid.equations import SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
-    CENTRE,
     GAP,
     MARGIN,
     MU,
@@ -16,7 +15,6 @@ from physicslab.kernels.rigid.features import (
     OTHER,
     PAIR,
     STATUS,
-    VERTEX,
     VN,
     VT,
     Scene,
@@ -133,8 +131,9 @@ def _allowance(kind: int, i: int, scene: Scene, equations: Equations, start: flo
     if kind < REACHES:
         return 0.0
     size, least = scene.coefficients[i if kind == APART else equations.points[i, PAIR], 2], _CLOSED
-    if kind == REACHES and equations.points[i, VERTEX] != CENTRE:
-        least = 2.0 * TIE
+    if kind == REACHES:
+        radius, points = scene.shapes.radius, equations.points
+        least = _CLOSED if radius[points[i, ONE]] + radius[points[i, OTHER]] > 0.0 else 2.0 * TIE
     allowance: float = least * size - min(start, 0.0) if start <= least * size else 0.0
     return allowance
 

@@ -16,23 +16,22 @@ from physicslab.kernels.rigid.constraints import apply, assemble, find_free_rate
 from physicslab.kernels.rigid.detect import find_points, seen_from
 from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
-    BOX,
-    CENTRE,
+    CORNER,
+    FEATURE,
     GAP,
     GIVEN,
-    HEIGHT,
-    KIND,
     MEASURES,
     MU,
+    ONE,
+    OTHER,
     PAIR,
     POINT_FIELDS,
-    REACH,
     RESTITUTION,
     STATUS,
     VERTEX,
     VN,
     VT,
-    WIDTH,
+    WALL,
     Points,
     Scene,
     measure,
@@ -72,11 +71,11 @@ def length_of(x: float, y: float) -> float:
 
 
 @inlined
-def _from_box(scene: Scene, box: int, other: int, q: Numbers) -> float:
-    """Return how far the centre of a body is from a box [m], 0 inside."""
-    x, y = seen_from(q, scene.rows, box, q[2 * other], q[2 * other + 1])
-    over_x = max(abs(x) - 0.5 * scene.outlines[box, WIDTH], 0.0)
-    over_y = max(abs(y) - 0.5 * scene.outlines[box, HEIGHT], 0.0)
+def _from_core(scene: Scene, row: int, other: int, q: Numbers) -> float:
+    """Return how far the centre of a body is from the box about another one's core [m], 0 inside."""
+    x, y = seen_from(q, scene.rows, row, q[2 * other], q[2 * other + 1])
+    over_x = max(abs(x) - scene.shapes.half_x[row], 0.0)
+    over_y = max(abs(y) - scene.shapes.half_y[row], 0.0)
     return length_of(over_x, over_y)
 
 
@@ -87,17 +86,18 @@ def far_apart(scene: Scene, p: int, q: Numbers, enough: float) -> float:
     One above ``enough`` is not the best that can be found.
     """
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
-    reach = scene.outlines[b, REACH]
+    shapes = scene.shapes
+    reach = shapes.reach[b]
     if wall >= 0:
         place = q[2 * b] if wall == 0 or wall == 2 else q[2 * b + 1]
         to_wall: float = (place - scene.walls[wall] if wall < 2 else scene.walls[wall] - place) - reach
         return to_wall
     dx, dy = q[2 * b] - q[2 * a], q[2 * b + 1] - q[2 * a + 1]
-    apart: float = math.sqrt(dx * dx + dy * dy) - reach - scene.outlines[a, REACH]
+    apart: float = math.sqrt(dx * dx + dy * dy) - reach - shapes.reach[a]
     for side in range(2):
-        box, other = (a, b) if side == 0 else (b, a)
-        if apart <= enough and scene.outlines[box, KIND] == BOX:
-            apart = max(apart, _from_box(scene, box, other, q) - scene.outlines[other, REACH])
+        row, other = (a, b) if side == 0 else (b, a)
+        if apart <= enough and shapes.vertices[row] > 1:
+            apart = max(apart, _from_core(scene, row, other, q) - shapes.radius[row] - shapes.reach[other])
     return apart
 
 
@@ -108,6 +108,34 @@ def _is_same(points: Points, i: int, others: Points, k: int) -> bool:
     for column in range(GIVEN):
         same = same and points[i, column] == others[k, column]
     return same
+
+
+@inlined
+def _has_vertex(points: Points, i: int, row: int, k: int) -> bool:
+    """Whether point i is one of vertex k of a row."""
+    other: bool = points[i, OTHER] == row and points[i, VERTEX] == k
+    one: bool = points[i, ONE] == row and points[i, FEATURE] == CORNER + k
+    return other or one
+
+
+@inlined
+def _is_closed(radius: Numbers, points: Points, count: int, others: Points, k: int) -> bool:
+    """Whether point k of ``others`` is among ``count`` closed points.
+
+    A vertex touches a rounded body at one point: where that comes to the end of its feature is an event.
+    """
+    for i in range(count):
+        if points[i, PAIR] != others[k, PAIR]:
+            continue
+        if _is_same(points, i, others, k):
+            return True
+        one, other, feature = others[k, ONE], others[k, OTHER], others[k, FEATURE]
+        if radius[one] + radius[other] > 0.0:
+            if _has_vertex(points, i, other, others[k, VERTEX]):
+                return True
+            if CORNER <= feature < WALL and _has_vertex(points, i, one, feature - CORNER):
+                return True
+    return False
 
 
 @inlined
@@ -126,12 +154,7 @@ def find_open(
     n = 0
     found, apart = find_points(scene, p, q, v, scratch.points)
     for k in range(found):
-        closed = False
-        for i in range(count):
-            # A disc touches a body at one point: where that comes to the end of its feature is an event.
-            round_one = equations.points[i, PAIR] == p and equations.points[i, VERTEX] == CENTRE
-            closed = closed or round_one or _is_same(equations.points, i, scratch.points, k)
-        if closed:
+        if _is_closed(scene.shapes.radius, equations.points, count, scratch.points, k):
             apart = -math.inf
         else:
             for column in range(GIVEN):
@@ -147,10 +170,10 @@ def moved_closer(scene: Scene, p: int, q: Numbers, later: Numbers) -> float:
     """Return by how much the distance of a pair can have changed from one state to a later one [m]."""
     rows, a, b = scene.rows, scene.pairs[p, 0], scene.pairs[p, 1]
     x, y = later[2 * b] - q[2 * b], later[2 * b + 1] - q[2 * b + 1]
-    turned = abs(later[2 * rows + b] - q[2 * rows + b]) * scene.outlines[b, REACH]
+    turned = abs(later[2 * rows + b] - q[2 * rows + b]) * scene.shapes.reach[b]
     if scene.pairs[p, 2] < 0:
         x, y = x - (later[2 * a] - q[2 * a]), y - (later[2 * a + 1] - q[2 * a + 1])
-        turned += abs(later[2 * rows + a] - q[2 * rows + a]) * scene.outlines[a, REACH]
+        turned += abs(later[2 * rows + a] - q[2 * rows + a]) * scene.shapes.reach[a]
     moved: float = length_of(x, y) + turned
     return moved
 
@@ -193,7 +216,7 @@ def rest_limits(scene: Scene, acceleration: Numbers, v: Numbers) -> tuple[float,
     for row in range(scene.rows):
         if scene.inverse_mass[2 * row] > 0.0:
             strongest = max(strongest, length_of(acceleration[2 * row], acceleration[2 * row + 1]))
-        turning = abs(v[2 * scene.rows + row]) * scene.outlines[row, REACH]
+        turning = abs(v[2 * scene.rows + row]) * scene.shapes.reach[row]
         fastest = max(fastest, length_of(v[2 * row], v[2 * row + 1]) + turning)
     if scene.joints[ROWS] > 0:  # what hangs at rest is pulled all the same
         strongest = max(strongest, strongest_joint(scene))
@@ -323,7 +346,7 @@ def hold_evenly(
         share = lightest / own if own > 0.0 else 1.0
         inverse_mass[i], pulled[i] = share * scene.inverse_mass[i], share * acceleration[i]
     even = Scene(
-        scene.rows, inverse_mass, scene.damping, scene.calls, scene.outlines, scene.walls, scene.pairs,
+        scene.rows, inverse_mass, scene.damping, scene.calls, scene.shapes, scene.walls, scene.pairs,
         scene.coefficients, scene.accounts, scene.joint_numbers, scene.joints,
     )  # fmt: skip
     _note_given(equations, count, changed, rest)

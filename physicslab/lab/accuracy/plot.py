@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from physicslab.lab.accuracy.contacts.study import ContactCurve, ContactRow, ContactStudy
+from physicslab.lab.accuracy.measure import Row
 from physicslab.lab.accuracy.study import Study
 from physicslab.lab.accuracy.tables import order_text
-from physicslab.lab.accuracy.watch import Row
 from physicslab.lab.plot import COLOURS, new_figure, png, prepare_axes
 
 if TYPE_CHECKING:

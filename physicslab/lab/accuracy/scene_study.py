@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Trail, Transform, Velocity
-from physicslab.diagnostics.audit import Audit
+from physicslab.diagnostics.energy import Audit
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.writer import write_scene
 from physicslab.integrators import INTEGRATORS
 from physicslab.integrators.dop853 import DOP853
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error, find_order
-from physicslab.lab.accuracy.horizon import find_horizon
+from physicslab.lab.accuracy.paths import find_horizon
 from physicslab.lab.accuracy.twins import GOLDEN, Document, refined, with_ids
 from physicslab.lab.case import attempt, cpu_time
 from physicslab.lab.jobs import Job, scaled

@@ -3,11 +3,9 @@
 from dataclasses import dataclass, field
 
 from physicslab.integrators import INTEGRATORS, Integrator
-from physicslab.lab.accuracy.measure import measure, rounding_floor
-from physicslab.lab.accuracy.problem import Problem
-from physicslab.lab.accuracy.settings import Setting, ladder, refusal, sees_velocity
+from physicslab.lab.accuracy.measure import Row, measure, rounding_floor
+from physicslab.lab.accuracy.problem import Problem, Setting, ladder, refusal, sees_velocity
 from physicslab.lab.accuracy.verdict import measured_order, why_order_short
-from physicslab.lab.accuracy.watch import Row
 from physicslab.lab.jobs import Job
 
 _LADDER_ENDS_MS = 300.0

@@ -8,11 +8,11 @@ from physicslab.lab.accuracy.catalogue import LEFT_OUT
 from physicslab.lab.accuracy.contacts.study import ROUNDING, ContactCurve, ContactStudy
 from physicslab.lab.accuracy.estimate import Departure
 from physicslab.lab.accuracy.honesty.study import FAMILIES, QUANTITIES, HonestRow, share_of
+from physicslab.lab.accuracy.measure import Row
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
 from physicslab.lab.accuracy.study import Curve, Study
 from physicslab.lab.accuracy.trust import Trust
 from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
-from physicslab.lab.accuracy.watch import Row
 from physicslab.lab.case import Verdict
 from physicslab.lab.table import cell, table
 

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 
 from physicslab.files.reader import read_scene
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error
-from physicslab.lab.accuracy.horizon import find_horizon, sizes_of
-from physicslab.lab.accuracy.paths import Path, differences, run_path
+from physicslab.lab.accuracy.paths import Path, differences, find_horizon, run_path, sizes_of
 from physicslab.lab.accuracy.twins import NUDGE_SHARE, NUDGES, ROUNDING, TWINS, Document, nudged
 from physicslab.lab.case import attempt
 from physicslab.lab.document import plain

@@ -8,21 +8,11 @@ from functools import partial
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.reader import read_scene
 from physicslab.files.writer import write_scene
+from physicslab.lab.accuracy import twins
 from physicslab.lab.accuracy.contacts.case import ContactCase
-from physicslab.lab.accuracy.contacts.engines import OWN, ContactEngine
-from physicslab.lab.accuracy.problem import KnownCase, Problem
-from physicslab.lab.accuracy.settings import Setting
+from physicslab.lab.accuracy.contacts.study import OWN, ContactEngine
+from physicslab.lab.accuracy.problem import KnownCase, Problem, Setting
 from physicslab.lab.accuracy.trust import STEP_SAFETY
-from physicslab.lab.accuracy.twins import (
-    NUDGE_SHARE,
-    NUDGES,
-    ROUNDING,
-    TWINS,
-    Document,
-    Twin,
-    nudged,
-    with_ids,
-)
 from physicslab.lab.case import attempt
 from physicslab.lab.jobs import Job
 from physicslab.world import World
@@ -60,7 +50,7 @@ class TrustRow:
         """The true error over the estimate; both are taken to be a rounding at least."""
         if self.estimate is None or self.error is None:
             return None
-        return max(self.error, ROUNDING) / max(self.estimate, ROUNDING)
+        return max(self.error, twins.ROUNDING) / max(self.estimate, twins.ROUNDING)
 
     @property
     def near(self) -> bool:
@@ -126,7 +116,7 @@ def _assess(
 ) -> Job[TrustRow]:
     """Estimate an error by how much the case's figure changes where it is computed in other ways."""
     worlds, ready = case.worlds(simulation), case.worlds(simulation)
-    documents = [with_ids(write_scene(world)) for world in worlds]
+    documents = [twins.with_ids(write_scene(world)) for world in worlds]
     for world in ready:
         world.synchronise()
     error, _ = attempt(partial(case.finish, worlds))
@@ -139,20 +129,22 @@ def _assess(
         return 0.0 if found is None else abs(error - found)
 
     known = [change(case.worlds(other)) for other in others]
-    ways = [twin for twin in TWINS if twin.differs_in_step or twin.name == "tightest"]
-    whole = len(ways) + NUDGES + 1
+    ways = [twin for twin in twins.TWINS if twin.differs_in_step or twin.name == "tightest"]
+    whole = len(ways) + twins.NUDGES + 1
     for n, twin in enumerate(ways):
         known.append(change(_twins(twin, documents, ready)) * (STEP_SAFETY if twin.differs_in_step else 1.0))
         yield (n + 1) / whole
     squares = []
-    for n in range(NUDGES):
-        squares.append(change([read_scene(nudged(document, n)) for document in documents]) ** 2)
+    for n in range(twins.NUDGES):
+        squares.append(change([read_scene(twins.nudged(document, n)) for document in documents]) ** 2)
         yield (len(ways) + n + 1) / whole
-    known.append(NUDGE_SHARE * math.sqrt(sum(squares) / NUDGES))
+    known.append(twins.NUDGE_SHARE * math.sqrt(sum(squares) / twins.NUDGES))
     return TrustRow(case, method, max(known), error)
 
 
-def _twins(twin: Twin, documents: Sequence[Document], worlds: Sequence[World]) -> list[World] | None:
+def _twins(
+    twin: twins.Twin, documents: Sequence[twins.Document], worlds: Sequence[World]
+) -> list[World] | None:
     """Return the twins of all worlds, ``None`` where one has no such."""
     made = [twin.make(document, world) for document, world in zip(documents, worlds, strict=True)]
     found = [world for world in made if world is not None]

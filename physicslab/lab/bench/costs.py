@@ -10,8 +10,8 @@ import numpy as np
 
 from physicslab.components import Transform
 from physicslab.lab.bench.catalogue import discs, ten_discs
-from physicslab.lab.bench.clock import Spread, take_turns
 from physicslab.lab.bench.engine import OurEngine
+from physicslab.lab.bench.result import Spread, take_turns
 from physicslab.lab.jobs import Job
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem

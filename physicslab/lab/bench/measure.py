@@ -8,9 +8,8 @@ from numpy.typing import ArrayLike
 
 from physicslab.components import Transform, Velocity
 from physicslab.kernels import compile_kernels
-from physicslab.lab.bench.clock import Spread, Times, take_turns
 from physicslab.lab.bench.engine import Engine, OtherEngine, OurEngine, prepared
-from physicslab.lab.bench.result import EngineResult, SceneResult
+from physicslab.lab.bench.result import EngineResult, SceneResult, Spread, Times, take_turns
 from physicslab.lab.bench.scene import BenchScene, Moment, When
 from physicslab.lab.jobs import Job
 from physicslab.lab.peers.peer import CannotBuild, Peer

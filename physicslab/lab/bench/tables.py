@@ -3,10 +3,9 @@
 from collections.abc import Callable
 
 from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT
-from physicslab.lab.bench.clock import Spread
 from physicslab.lab.bench.engine import OURS
 from physicslab.lab.bench.report import BenchReport
-from physicslab.lab.bench.result import EngineResult, SceneResult
+from physicslab.lab.bench.result import EngineResult, SceneResult, Spread
 from physicslab.lab.document import machine_text
 from physicslab.lab.table import cell, table
 

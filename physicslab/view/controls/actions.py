@@ -3,7 +3,6 @@
 import copy
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from physicslab.components import Held, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import Component
@@ -16,7 +15,7 @@ from physicslab.view.controls.measuring import nudged
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import HAND
 from physicslab.view.overlay.instruments import instruments_of
-from physicslab.view.window.window import Action, Window
+from physicslab.view.window.window import OPENED, Action, Window
 from physicslab.world import World
 
 _ZOOM_STEP = 3.0
@@ -203,18 +202,11 @@ def leave(world: World, window: Window) -> None:
 
 
 def _close_panel(window: Window) -> bool:
-    """Close the first panel of these that is open; return whether there is one."""
-    panels: tuple[tuple[Any, str, bool | None], ...] = (
-        (window, "help", False), (window, "shows_gallery", False), (window.filming, "choosing", False),
-        (window, "opening", None), (window, "naming", None), (window, "lists_history", False),
-        (window.microscope, "record", None), (window.impacts, "shown", False),
-        (window.error_study, "shown", False),
-    )  # fmt: skip
-    for owner, name, closed in panels:
-        if getattr(owner, name) is not closed:
-            setattr(owner, name, closed)
-            return True
-    return False
+    """Close the first panel that is open of those that Esc closes; return whether there is one."""
+    panel = next((panel for panel in OPENED if window.is_open(panel) and panel != "shows_stopwatch"), None)
+    if panel is not None:
+        window.closing_of(panel)()
+    return panel is not None
 
 
 def close(world: World, window: Window) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 import pygame
@@ -180,18 +181,11 @@ class Control:
 
 def _switch(label: str, does: str, key: str, flag: str, group: str, tip: str) -> Control:
     """Return what turns a flag of the window on and off, such as ``"pace.slow_motion"``."""
-    path, _, name = flag.rpartition(".")
-
-    def owner(window: Window) -> Any:
-        return getattr(window, path) if path else window
-
-    def toggle(world: World, window: Window) -> None:
-        setattr(owner(window), name, not getattr(owner(window), name))
-
-    def is_on(world: World, window: Window) -> bool:
-        return bool(getattr(owner(window), name))
-
-    return Control(label, does, key, toggle, group=group, tip=tip, state=is_on)
+    state = attrgetter(flag)
+    return Control(
+        label, does, key, lambda _, window: window.put(flag, not state(window)), group=group, tip=tip,
+        state=lambda _, window: bool(state(window)),
+    )  # fmt: skip
 
 
 def _gravity_is(world: World, mode: str) -> bool:

@@ -8,9 +8,8 @@ from pathlib import Path
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable
 from physicslab.export.film import ENDINGS
-from physicslab.files.new_scene import file_stem, save_new_scene
 from physicslab.files.replace import create_file
-from physicslab.files.scene import SceneError, load_scene, open_plain, save_scene
+from physicslab.files.scene import SceneError, file_stem, load_scene, open_plain, save_new_scene, save_scene
 from physicslab.view.window.filming import FROM_NOW
 from physicslab.view.window.window import Window
 from physicslab.world import World

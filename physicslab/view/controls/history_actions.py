@@ -3,8 +3,7 @@
 from pathlib import Path
 
 from physicslab.ecs.text import printable
-from physicslab.files.new_scene import file_stem
-from physicslab.files.scene import SceneError
+from physicslab.files.scene import SceneError, file_stem
 from physicslab.history import Branch
 from physicslab.view.controls.file_actions import new_paths
 from physicslab.view.window.window import Window

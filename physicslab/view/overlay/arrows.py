@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.theme import Colour, Theme
 
 MIN_LENGTH = 3.0
@@ -92,8 +93,7 @@ def draw_arrows(
     start: Points,
     span: Points,
     kind: ArrowKind,
-    canvas: Canvas,
-    theme: Theme,
+    on: Drawing,
     *,
     opacity: float | Numbers = 1.0,
     width: float | None = None,
@@ -104,11 +104,11 @@ def draw_arrows(
     across the middle. Arrows shorter than ``MIN_LENGTH``, not finite, or out of the picture are left out.
     Each arrow may have an opacity of its own.
     """
-    limit = max_length(canvas)
+    limit = max_length(on.canvas)
     with np.errstate(invalid="ignore", over="ignore"):
         length = np.hypot(span[:, 0], span[:, 1])
         seen = (length >= MIN_LENGTH) & np.isfinite(length)
-        for place, side in zip(start.T, canvas.size, strict=True):
+        for place, side in zip(start.T, on.canvas.size, strict=True):
             seen &= (place > -limit) & (place < side + limit)
     if not seen.any():
         return
@@ -118,15 +118,15 @@ def draw_arrows(
     cut = length > limit
     length = np.minimum(length, limit)
     end = start + length[:, None] * unit
-    colour, width = kind.colour(theme), kind.width if width is None else width
+    colour, width = kind.colour(on.theme), kind.width if width is None else width
     head = _HEAD + width
     if len(length) > _BOLD_LIMIT:
         width, head, share = max(0.5 * width, 1.0), 0.6 * _HEAD, 0.6 * share
     if kind.dashed:
         froms, tos, whose = dashes(start, end)
-        canvas.lines(froms, tos, colour, width, share[whose])
+        on.canvas.lines(froms, tos, colour, width, share[whose])
     else:
-        canvas.lines(start, end, colour, width, share)
+        on.canvas.lines(start, end, colour, width, share)
     size = np.minimum(head, 0.5 * length)
     froms, tos = _placed(kind.head.value, end, unit, size)
     shares = np.tile(share, len(kind.head.value))
@@ -135,7 +135,7 @@ def draw_arrows(
         marks = _placed(_CUT, middle, unit[cut], np.full(int(cut.sum()), _HEAD))
         froms, tos = np.concatenate((froms, marks[0])), np.concatenate((tos, marks[1]))
         shares = np.concatenate((shares, np.tile(share[cut], len(_CUT))))
-    canvas.lines(froms, tos, colour, width, shares)
+    on.canvas.lines(froms, tos, colour, width, shares)
 
 
 def _placed(strokes: Strokes, tip: Points, unit: Points, size: NDArray[np.float64]) -> tuple[Points, Points]:

@@ -6,13 +6,8 @@ from dataclasses import dataclass
 from physicslab.diagnostics.warnings import ModelWarning
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
-from physicslab.view.canvas.theme import Colour, Theme
-
-
-def text_size(canvas: Canvas, scale: float = 1.0) -> int:
-    """Return the height of text [px]: larger in a larger window, times a scale that was chosen."""
-    width, height = canvas.size
-    return round(min(max(min(height / 48, width / 80), 12), 20) * scale)
+from physicslab.view.canvas.drawing import Drawing
+from physicslab.view.canvas.theme import Colour
 
 
 def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str]:
@@ -59,19 +54,17 @@ def pill_height(lines: int, style: TextStyle, canvas: Canvas) -> int:
     return canvas.text_size("Ag", style)[1] * lines + round(0.55 * style.size)
 
 
-def draw_pill(
-    words: Sequence[str], middle: int, top: int, size: int, colour: Colour, canvas: Canvas, theme: Theme
-) -> Rect:
+def draw_pill(words: Sequence[str], middle: int, top: int, size: int, colour: Colour, on: Drawing) -> Rect:
     """Draw lines of words in a box around ``middle``, and return where it is [px]."""
     style = TextStyle(size, colour, bold=True)
     pad = round(0.55 * size)
-    widths = [canvas.text_size(line, style)[0] for line in words]
-    line_height = canvas.text_size("Ag", style)[1]
+    widths = [on.canvas.text_size(line, style)[0] for line in words]
+    line_height = on.canvas.text_size("Ag", style)[1]
     width, height = max(widths) + pill_margin(size), line_height * len(words) + pad
     rect = (middle - width // 2, top, width, height)
-    canvas.panel(rect, theme.panel, colour, 0.95)
+    on.canvas.panel(rect, on.theme.panel, colour, 0.95)
     for n, line in enumerate(words):
-        canvas.text(line, (middle, top + pad // 2 + n * line_height), style, "centre")
+        on.canvas.text(line, (middle, top + pad // 2 + n * line_height), style, "centre")
     return rect
 
 
@@ -108,14 +101,7 @@ class DroppedTime:
 
 
 def draw_banners(
-    banners: Iterable[tuple[str, Colour]],
-    middle: int,
-    top: int,
-    bottom: int,
-    room: int,
-    size: int,
-    canvas: Canvas,
-    theme: Theme,
+    banners: Iterable[tuple[str, Colour]], middle: int, top: int, bottom: int, room: int, on: Drawing
 ) -> list[Rect]:
     """Draw banners in their colours below each other, from ``top`` on, and return where they are [px].
 
@@ -123,11 +109,11 @@ def draw_banners(
     """
     taken: list[Rect] = []
     for words, colour in banners:
-        style = TextStyle(size + 2, colour, bold=True)
-        lines = broken(words, max(room - pill_margin(size + 2), 1), canvas, style)
-        if top + pill_height(len(lines), style, canvas) <= bottom:
-            taken.append(draw_pill(lines, middle, top, size + 2, colour, canvas, theme))
-            top += size // 2 + taken[-1][3]
+        style = TextStyle(on.size + 2, colour, bold=True)
+        lines = broken(words, max(room - pill_margin(on.size + 2), 1), on.canvas, style)
+        if top + pill_height(len(lines), style, on.canvas) <= bottom:
+            taken.append(draw_pill(lines, middle, top, on.size + 2, colour, on))
+            top += on.size // 2 + taken[-1][3]
     return taken
 
 
@@ -141,36 +127,32 @@ class Message:
     height: int
 
 
-def lay_out_messages(
-    words: Iterable[tuple[str, Colour]], size: int, room: int, canvas: Canvas
-) -> list[Message]:
+def lay_out_messages(words: Iterable[tuple[str, Colour]], on: Drawing, room: int) -> list[Message]:
     """Break messages into lines of a height [px], no wider than ``room``; empty ones are left out."""
     messages: list[Message] = []
     for message, colour in words:
-        style = TextStyle(size, colour, bold=True)
-        lines = broken(message, max(room - pill_margin(size), 1), canvas, style)
+        style = TextStyle(on.size, colour, bold=True)
+        lines = broken(message, max(room - pill_margin(on.size), 1), on.canvas, style)
         if lines:
-            height = pill_height(len(lines), style, canvas)
-            width = max(canvas.text_size(line, style)[0] for line in lines) + pill_margin(size)
+            height = pill_height(len(lines), style, on.canvas)
+            width = max(on.canvas.text_size(line, style)[0] for line in lines) + pill_margin(on.size)
             messages.append(Message(lines, colour, width, height))
     return messages
 
 
-def draw_messages(
-    messages: Iterable[Message], middle: int, top: int, bottom: int, size: int, canvas: Canvas, theme: Theme
-) -> list[Rect]:
+def draw_messages(messages: Iterable[Message], middle: int, top: int, bottom: int, on: Drawing) -> list[Rect]:
     """Draw messages around ``middle`` above ``bottom``, the first lowest, and return where they are [px].
 
     Further ones that would reach above ``top`` are left out.
     """
-    bottom -= size // 2
+    bottom -= on.size // 2
     taken: list[Rect] = []
     for message in messages:
         if taken and bottom - message.height < top:
             continue
         bottom -= message.height
-        taken.append(draw_pill(message.lines, middle, bottom, size, message.colour, canvas, theme))
-        bottom -= size // 2
+        taken.append(draw_pill(message.lines, middle, bottom, on.size, message.colour, on))
+        bottom -= on.size // 2
     return taken
 
 
@@ -182,9 +164,15 @@ stands alone where they would take more."""
 
 
 def draw_advice(
-    advice: Sequence[ModelWarning], middle: int, top: int, bottom: int, room: int, size: int, canvas: Canvas,
-    theme: Theme, *, plainly: bool = False,
-) -> Rect | None:  # fmt: skip
+    advice: Sequence[ModelWarning],
+    middle: int,
+    top: int,
+    bottom: int,
+    room: int,
+    on: Drawing,
+    *,
+    plainly: bool = False,
+) -> Rect | None:
     """Write what is not to be trusted, around ``middle`` and no wider than ``room`` px; return where [px].
 
     The worst comes first, and ``plainly`` alone; what is beyond a limit comes before what has none. Without a
@@ -193,20 +181,20 @@ def draw_advice(
     if not advice:
         return None
     ordered = sorted(advice, key=lambda one: (bool(one.limit), one.excess), reverse=True)
-    small = max(size - 1, 10)
-    width = min(room, _MAX_WIDTH * size) - 3 * size
-    style, inner = TextStyle(small, theme.warning, bold=True), max(width, 4 * size)
+    small = max(on.size - 1, 10)
+    width = min(room, _MAX_WIDTH * on.size) - 3 * on.size
+    style, inner = TextStyle(small, on.theme.warning, bold=True), max(width, 4 * on.size)
     told = ordered[0].told if ordered[0].entity else ordered[0].told.capitalize()
     rest = f" And {len(ordered) - 1} more." if len(ordered) > 1 else ""
-    brief = broken(f"! {told}.{' More under Engineer.' if plainly else rest}", inner, canvas, style)
+    brief = broken(f"! {told}.{' More under Engineer.' if plainly else rest}", inner, on.canvas, style)
     lines = ["! Not to be trusted"]
     for one in ordered[:_MAX_SHOWN]:
-        pieces = broken(str(one), inner, canvas, style)
+        pieces = broken(str(one), inner, on.canvas, style)
         lines += [f"- {pieces[0]}", *pieces[1:]]
     if len(ordered) > _MAX_SHOWN:
         lines.append(f"and {len(ordered) - _MAX_SHOWN} more")
-    if plainly or pill_height(len(lines), style, canvas) > _MAX_HEIGHT * (bottom - top):
+    if plainly or pill_height(len(lines), style, on.canvas) > _MAX_HEIGHT * (bottom - top):
         lines = brief
-    if top + pill_height(len(lines), style, canvas) > bottom:
+    if top + pill_height(len(lines), style, on.canvas) > bottom:
         return None
-    return draw_pill(lines, middle, top, small, theme.warning, canvas, theme)
+    return draw_pill(lines, middle, top, small, on.theme.warning, on)

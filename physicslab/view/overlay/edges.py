@@ -10,13 +10,13 @@ from physicslab.components import Shape, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.quantities import round_quantity
-from physicslab.view.canvas.theme import Theme
 from physicslab.view.picture.backdrop import grid_spacing
 from physicslab.world import World
 
 
-def draw_scale_bar(camera: Camera, right: int, bottom: int, size: int, canvas: Canvas, theme: Theme) -> Rect:
+def draw_scale_bar(on: Drawing, right: int, bottom: int) -> Rect:
     """Draw a bar as long as a square of the grid is wide, in a corner at the right, and return where [px].
 
     Parameters
@@ -28,25 +28,25 @@ def draw_scale_bar(camera: Camera, right: int, bottom: int, size: int, canvas: C
     size : int
         Height of the text [px].
     """
-    length = grid_spacing(camera.scale)
-    bar = length * camera.scale
-    style = TextStyle(size, theme.text)
+    length = grid_spacing(on.camera.scale)
+    bar = length * on.camera.scale
+    style = TextStyle(on.size, on.theme.text)
     words = round_quantity(length, "m")
-    width = canvas.text_size(words, style)[0]
-    pad, tick = round(0.7 * size), 4.0
+    width = on.canvas.text_size(words, style)[0]
+    pad, tick = round(0.7 * on.size), 4.0
     panel_width = round(max(bar, width)) + 2 * pad
-    panel_height = canvas.text_size(words, style)[1] + size + round(0.7 * size) // 2
-    left, top = right - round(0.8 * size) - panel_width, bottom - panel_height
+    panel_height = on.canvas.text_size(words, style)[1] + on.size + round(0.7 * on.size) // 2
+    left, top = right - round(0.8 * on.size) - panel_width, bottom - panel_height
     rect = (left, top, panel_width, panel_height)
-    canvas.panel(rect, theme.panel, theme.outline, theme.panel_opacity)
+    on.canvas.panel(rect, on.theme.panel, on.theme.outline, on.theme.panel_opacity)
     middle = left + panel_width // 2
-    canvas.text(words, (middle, top + pad // 3), style, "centre")
+    on.canvas.text(words, (middle, top + pad // 3), style, "centre")
     y = float(bottom - pad)
     start, end = middle - 0.5 * bar, middle + 0.5 * bar
-    canvas.lines(
+    on.canvas.lines(
         np.array([(start, y), (start, y - tick), (end, y - tick)]),
         np.array([(end, y), (start, y + tick), (end, y + tick)]),
-        theme.text, 2.0,
+        on.theme.text, 2.0,
     )  # fmt: skip
     return rect
 
@@ -57,26 +57,26 @@ _MAX_LINES = 400
 """In a picture with more lines than that, which would be a speck, none has."""
 
 
-def draw_axis_numbers(camera: Camera, room: Rect, right: int, size: int, canvas: Canvas, theme: Theme) -> int:
+def draw_axis_numbers(on: Drawing, room: Rect, right: int) -> int:
     """Write the coordinates [m] of lines of the grid at the lower and the left edge of a room [px].
 
     Those at the lower edge end before ``right`` [px], where the scale bar begins. Return how high they
     are there [px].
     """
     left, top, width, height = room
-    step = _EVERY * grid_spacing(camera.scale)
-    low, high = camera.to_world((left, top + height)), camera.to_world((left + width, top))
-    style = TextStyle(max(size - 3, 9), theme.faint)
-    text_height = canvas.text_size("0", style)[1]
+    step = _EVERY * grid_spacing(on.camera.scale)
+    low, high = on.camera.to_world((left, top + height)), on.camera.to_world((left + width, top))
+    style = TextStyle(max(on.size - 3, 9), on.theme.faint)
+    text_height = on.canvas.text_size("0", style)[1]
     for x in _multiples(low.x, high.x, step):
-        place = round(camera.to_screen(Vector2(x, camera.centre.y))[0])
+        place = round(on.camera.to_screen(Vector2(x, on.camera.centre.y))[0])
         words = _words(x, step)
-        if left + size < place and place + canvas.text_size(words, style)[0] + size // 2 < right:
-            canvas.text(words, (place + 3, top + height - text_height - 2), style)
+        if left + on.size < place and place + on.canvas.text_size(words, style)[0] + on.size // 2 < right:
+            on.canvas.text(words, (place + 3, top + height - text_height - 2), style)
     for y in _multiples(low.y, high.y, step):
-        place = round(camera.to_screen(Vector2(camera.centre.x, y))[1])
+        place = round(on.camera.to_screen(Vector2(on.camera.centre.x, y))[1])
         if top + 2 * text_height < place < top + height - 2 * text_height:
-            canvas.text(_words(y, step), (left + 4, place - text_height - 1), style)
+            on.canvas.text(_words(y, step), (left + 4, place - text_height - 1), style)
     return text_height + 2
 
 
@@ -100,9 +100,7 @@ _STEP = 4
 """How far an arrow makes way at a time [px]."""
 
 
-def draw_edge_arrows(
-    world: World, camera: Camera, room: Rect, taken: Sequence[Rect], size: int, canvas: Canvas, theme: Theme
-) -> None:
+def draw_edge_arrows(world: World, on: Drawing, room: Rect, taken: Sequence[Rect]) -> None:
     """Draw an arrow at each edge of a room beyond which there are moving bodies, with their number.
 
     Parameters
@@ -114,7 +112,7 @@ def draw_edge_arrows(
     size : int
         Height of the text [px].
     """
-    places = _out_of_sight(world, camera, room)
+    places = _out_of_sight(world, on.camera, room)
     half = 0.5 * np.array(room[2:])
     middle = np.array(room[:2]) + half
     # The side is that on which the way from the middle of the room to the body leaves it.
@@ -126,11 +124,11 @@ def draw_edge_arrows(
         count = int(here.sum())
         if count:
             aim = middle + _mean_way(places[here] - middle)
-            style = TextStyle(size, theme.accent, bold=True)
-            rect = _free_place(_at_edge(aim, room, f"{count}", style, canvas), side, obstacles, room)
+            style = TextStyle(on.size, on.theme.accent, bold=True)
+            rect = _free_place(_at_edge(aim, room, f"{count}", style, on.canvas), side, obstacles, room)
             if rect is not None:
                 obstacles.append(rect)
-                _draw_arrow(rect, aim, f"{count}", style, canvas, theme)
+                _draw_arrow(rect, aim, f"{count}", style, on)
 
 
 def _out_of_sight(world: World, camera: Camera, room: Rect) -> NDArray[np.float64]:
@@ -187,14 +185,12 @@ def _meet(a: Rect, b: Rect) -> bool:
     )  # fmt: skip
 
 
-def _draw_arrow(
-    rect: Rect, aim: NDArray[np.float64], words: str, style: TextStyle, canvas: Canvas, theme: Theme
-) -> None:
+def _draw_arrow(rect: Rect, aim: NDArray[np.float64], words: str, style: TextStyle, on: Drawing) -> None:
     size = style.size
     left, top, width, height = rect
-    canvas.panel(rect, theme.panel, theme.accent, 0.95)
-    text_width, text_height = canvas.text_size(words, style)
-    canvas.text(words, (left + width - size - text_width, top + (height - text_height) // 2), style)
+    on.canvas.panel(rect, on.theme.panel, on.theme.accent, 0.95)
+    text_width, text_height = on.canvas.text_size(words, style)
+    on.canvas.text(words, (left + width - size - text_width, top + (height - text_height) // 2), style)
     centre = np.array([left + 1.1 * size, top + 0.5 * height])
     angle = math.atan2(aim[1] - centre[1], aim[0] - centre[0])
     reach = 0.5 * size
@@ -202,4 +198,4 @@ def _draw_arrow(
     barbs = [
         tip - 0.8 * reach * np.array([math.cos(angle + turn), math.sin(angle + turn)]) for turn in (0.6, -0.6)
     ]
-    canvas.lines(np.array([tail, tip, tip]), np.array([tip, *barbs]), theme.accent, 2.0)
+    on.canvas.lines(np.array([tail, tip, tip]), np.array([tip, *barbs]), on.theme.accent, 2.0)

@@ -7,10 +7,8 @@ import numpy as np
 from physicslab.components import Transform
 from physicslab.diagnostics.free_body import LastStep, NamedForce, forces_on, last_step, net_force
 from physicslab.ecs.vector import Vector2
-from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Canvas
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.canvas.theme import Theme
 from physicslab.view.overlay.arrows import ArrowKind, Head, draw_arrows
 from physicslab.view.overlay.labels import Label
 from physicslab.view.overlay.overlays import Gauge, Overlays
@@ -89,14 +87,7 @@ _REACH = 0.16
 
 
 def draw_free_body(
-    forces: Sequence[NamedForce],
-    moved: Vector2,
-    time: float,
-    overlays: Overlays,
-    camera: Camera,
-    theme: Theme,
-    canvas: Canvas,
-    text_size: int,
+    forces: Sequence[NamedForce], moved: Vector2, time: float, overlays: Overlays, on: Drawing
 ) -> None:
     """Draw the forces on a body as arrows that end with their names and sizes; one scale for all of them.
 
@@ -111,19 +102,17 @@ def draw_free_body(
     """
     gauge: Gauge = overlays.body_force
     sizes = np.array([one.force.magnitude for one in forces])
-    gauge.follow(sizes, _REACH * min(camera.size) / camera.scale, time)
+    gauge.follow(sizes, _REACH * min(on.camera.size) / on.camera.scale, time)
     if not len(forces) or not gauge.per_metre:
         return
-    labels = [_draw(one, moved, n, gauge, camera, theme, canvas) for n, one in enumerate(forces)]
-    overlays.force_labels.draw(labels, overlays.covered, text_size, canvas, theme)
+    labels = [_draw(one, moved, n, gauge, on) for n, one in enumerate(forces)]
+    overlays.force_labels.draw(labels, overlays.covered, on)
 
 
-def _draw(
-    one: NamedForce, moved: Vector2, number: int, gauge: Gauge, camera: Camera, theme: Theme, canvas: Canvas
-) -> Label:
+def _draw(one: NamedForce, moved: Vector2, number: int, gauge: Gauge, on: Drawing) -> Label:
     """Draw one arrow, and return its label."""
-    start = camera.project(np.array([(one.place.x + moved.x, one.place.y + moved.y)]))
-    span = np.array([(one.force.x, -one.force.y)]) * (camera.scale / gauge.per_metre)
-    draw_arrows(start, span, _KINDS[one.kind], canvas, theme, width=_WIDTH)
+    start = on.camera.project(np.array([(one.place.x + moved.x, one.place.y + moved.y)]))
+    span = np.array([(one.force.x, -one.force.y)]) * (on.camera.scale / gauge.per_metre)
+    draw_arrows(start, span, _KINDS[one.kind], on, width=_WIDTH)
     x, y = (start + span)[0].tolist()
     return Label((number, hash(one.name)), (x, y), [f"{one.name}: {quantity(one.force.magnitude, 'N')}"])

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Canvas, Numbers, Points, Rect
+from physicslab.view.canvas.canvas import Numbers, Points, Rect
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.canvas.theme import Theme
 from physicslab.view.overlay.arrows import FRICTION_IMPULSE, NORMAL_IMPULSE, dashes, draw_arrows, max_length
 from physicslab.view.overlay.contact_samples import (
     ContactSamples,
@@ -35,10 +35,7 @@ _ROUNDING = 1e-9
 """Friction of so small a share of the normal impulse is rounding, and written as 0."""
 
 
-def draw_impulses(
-    world: World, overlays: Overlays, written: Collection[int], camera: Camera, theme: Theme, canvas: Canvas,
-    text_size: int,
-) -> None:  # fmt: skip
+def draw_impulses(world: World, overlays: Overlays, written: Collection[int], on: Drawing) -> None:
     """Draw the impulses of the impacts of the last second, and of what rests, with cones and numbers.
 
     Resting contacts have their numbers beside them only for the bodies in ``written``, the points of a
@@ -51,21 +48,21 @@ def draw_impulses(
     fresh = RecentImpacts.freshness(impacts, world.time)
     overlays.impact.follow(impacts["normal"], overlays.reach, world.time)
     overlays.rest.follow(resting["normal"], overlays.reach, world.time)
-    _draw_impulses_of(resting, overlays.rest, REST_WIDTH, 0.9, camera, theme, canvas)
-    _draw_impulses_of(impacts, overlays.impact, IMPACT_WIDTH, fresh, camera, theme, canvas)
+    _draw_impulses_of(resting, overlays.rest, REST_WIDTH, 0.9, on)
+    _draw_impulses_of(impacts, overlays.impact, IMPACT_WIDTH, fresh, on)
     ends = np.array(sorted(written), np.int64)
     of_written = _by_pair(resting[np.isin(resting["a"], ends) | np.isin(resting["b"], ends)])
 
     def rank(one: _Candidate) -> float:
         return -one.weight * (_KEEP_RATIO if overlays.labels.known(one.key) else 1.0)
 
-    met = _strongest(impacts, fresh, overlays.impact, True, camera, overlays.covered)
+    met = _strongest(impacts, fresh, overlays.impact, True, on.camera, overlays.covered)
     met = sorted(met, key=rank)[: LABELLED if len(impacts) <= CROWD else LABELLED_IN_CROWD]
     still = np.ones(len(of_written))
-    held = _strongest(of_written, still, overlays.rest, False, camera, overlays.covered)
+    held = _strongest(of_written, still, overlays.rest, False, on.camera, overlays.covered)
     chosen = sorted([*met, *held], key=rank)[:LABELLED]
     labels = [Label(one.key, one.at, _words_of(one, world.contacts.impulse_dt)) for one in chosen]
-    overlays.labels.draw(labels, overlays.covered, text_size, canvas, theme)
+    overlays.labels.draw(labels, overlays.covered, on)
 
 
 def _seen(at: Points, size: tuple[int, int], covered: Sequence[Rect]) -> NDArray[np.bool_]:
@@ -101,26 +98,20 @@ def _by_pair(resting: ContactSamples) -> ContactSamples:
 
 
 def _draw_impulses_of(
-    samples: ContactSamples,
-    gauge: Gauge,
-    width: float,
-    opacity: float | Numbers,
-    camera: Camera,
-    theme: Theme,
-    canvas: Canvas,
+    samples: ContactSamples, gauge: Gauge, width: float, opacity: float | Numbers, on: Drawing
 ) -> None:
     """Draw cones, then friction, then normal impulses, all from the points of contact."""
     if not len(samples) or not gauge.per_metre:
         return
-    start = camera.project(samples["place"])
+    start = on.camera.project(samples["place"])
     normal = samples["direction"] * (1.0, -1.0)  # the screen's y points down
     tangent = np.stack((normal[:, 1], -normal[:, 0]), axis=1)  # counter-clockwise, as seen
-    scale = camera.scale / gauge.per_metre
-    _draw_cones(start, normal, tangent, samples, scale, opacity, theme, canvas)
+    scale = on.camera.scale / gauge.per_metre
+    _draw_cones(start, normal, tangent, samples, scale, opacity, on)
     friction_impulse = tangent * (samples["tangent"] * scale)[:, None]
-    draw_arrows(start, friction_impulse, FRICTION_IMPULSE, canvas, theme, opacity=opacity, width=width)
+    draw_arrows(start, friction_impulse, FRICTION_IMPULSE, on, opacity=opacity, width=width)
     push = normal * (samples["normal"] * scale)[:, None]
-    draw_arrows(start, push, NORMAL_IMPULSE, canvas, theme, opacity=opacity, width=width)
+    draw_arrows(start, push, NORMAL_IMPULSE, on, opacity=opacity, width=width)
 
 
 def _draw_cones(
@@ -130,11 +121,10 @@ def _draw_cones(
     samples: ContactSamples,
     scale: float,
     opacity: float | Numbers,
-    theme: Theme,
-    canvas: Canvas,
+    on: Drawing,
 ) -> None:
     """Draw both sides of friction cones, as high as the normal impulse; broken where the contact slips."""
-    height = np.minimum(samples["normal"] * scale, max_length(canvas))
+    height = np.minimum(samples["normal"] * scale, max_length(on.canvas))
     shown = (samples["friction"] > 0.0) & (height >= 8.0)
     slips = sliding(samples)
     share = np.full(len(samples), 0.75) * opacity
@@ -150,7 +140,7 @@ def _draw_cones(
         if broken:
             froms, tos, line = dashes(froms, tos)
             shares = shares[line]
-        canvas.lines(froms, tos, theme.friction_cone, 1.2, shares)
+        on.canvas.lines(froms, tos, on.theme.friction_cone, 1.2, shares)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,8 +14,9 @@ from physicslab.ecs.vector import Vector2
 from physicslab.state.attached import INSTRUMENTS, place_of
 from physicslab.systems.gate import GateSystem
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Canvas, Look, Rect, TextStyle
+from physicslab.view.canvas.canvas import Look, Rect, TextStyle
 from physicslab.view.canvas.drawable_text import drawable
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.quantities import quantity, rounded_up
 from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.overlay.arrows import even_dashes
@@ -136,10 +137,7 @@ def draw_instruments(
     selected: Collection[int],
     labels: Labels,
     covered: Sequence[Rect],
-    camera: Camera,
-    theme: Theme,
-    canvas: Canvas,
-    size: int,
+    on: Drawing,
 ) -> dict[int, Rect]:
     """Draw instruments with what they read; return where the words of each are [px].
 
@@ -149,29 +147,29 @@ def draw_instruments(
         return {}
     shown: list[tuple[Instrument, dict[str, _Pixels]]] = []
     for one in instruments:
-        pixels = {name: np.array(camera.to_screen(place)) for name, place in one.points.items()}
+        pixels = {name: np.array(on.camera.to_screen(place)) for name, place in one.points.items()}
         if all((np.abs(pixel) < _FAR).all() for pixel in pixels.values()):
             shown.append((one, pixels))
     taken, written = list(covered), list[Label]()
     last = _last_crossings(world)
     for one, pixels in shown:
-        taken += _room_of(pixels, camera.size)
+        taken += _room_of(pixels, on.camera.size)
         if one.kind is not Note:
-            taken += _bodies_of(world, one, camera)
+            taken += _bodies_of(world, one, on.camera)
     rects: dict[int, Rect] = {}
     for one, pixels in shown:
         chosen = one.entity in selected or not one.entity
         if one.kind is Note:
-            rects[one.entity] = _draw_note(world, one, pixels["place"], chosen, camera, theme, canvas, size)
+            rects[one.entity] = _draw_note(world, one, pixels["place"], chosen, on)
             taken.append(rects[one.entity])
             continue
-        at, lines = _DRAW[one.kind](world, one, pixels, chosen, last, camera, theme, canvas)
-        if 0 <= at[0] < camera.size[0] and 0 <= at[1] < camera.size[1]:
+        at, lines = _DRAW[one.kind](world, one, pixels, chosen, last, on)
+        if 0 <= at[0] < on.camera.size[0] and 0 <= at[1] < on.camera.size[1]:
             written.append(Label((one.entity,), (float(at[0]), float(at[1])), lines))
-    placed = labels.draw(written, taken, size, canvas, theme, always=True)
+    placed = labels.draw(written, taken, on, always=True)
     for one, pixels in shown:
         if one.entity in selected:
-            _draw_handles(list(pixels.values()), theme, canvas)
+            _draw_handles(list(pixels.values()), on)
     return rects | {key[0]: rect for key, rect in placed.items()}
 
 
@@ -179,30 +177,34 @@ def _line_colour(chosen: bool, theme: Theme) -> tuple[Colour, float]:
     return (theme.accent, _CHOSEN_WIDTH) if chosen else (theme.kinematic, _WIDTH)
 
 
-def _draw_handles(pixels: Sequence[_Pixels], theme: Theme, canvas: Canvas) -> None:
-    look = Look.plain(theme.background, theme.accent, len(pixels))
-    canvas.discs(np.array(pixels), np.full(len(pixels), _POST + 1.5), np.zeros(len(pixels)), look)
+def _draw_handles(pixels: Sequence[_Pixels], on: Drawing) -> None:
+    look = Look.plain(on.theme.background, on.theme.accent, len(pixels))
+    on.canvas.discs(np.array(pixels), np.full(len(pixels), _POST + 1.5), np.zeros(len(pixels)), look)
 
 
 def _draw_ruler(
-    world: World, one: Instrument, pixels: Mapping[str, _Pixels], chosen: bool, last: Mapping[int, float],
-    camera: Camera, theme: Theme, canvas: Canvas,
-) -> tuple[_Pixels, list[str]]:  # fmt: skip
+    world: World,
+    one: Instrument,
+    pixels: Mapping[str, _Pixels],
+    chosen: bool,
+    last: Mapping[int, float],
+    on: Drawing,
+) -> tuple[_Pixels, list[str]]:
     """Draw a line with strokes at round lengths."""
-    colour, width = _line_colour(chosen, theme)
+    colour, width = _line_colour(chosen, on.theme)
     start, end = pixels["start"], pixels["end"]
     length = float(np.hypot(*(end - start)))
-    canvas.lines(start[None], end[None], colour, width)
+    on.canvas.lines(start[None], end[None], colour, width)
     if length > 0.0:
         along = (end - start) / length
         aside = np.array((along[1], -along[0]))
-        step = rounded_up(_APART / camera.scale) * camera.scale
+        step = rounded_up(_APART / on.camera.scale) * on.camera.scale
         turns = np.arange(1, min(math.ceil(length / step), _MAX_TICKS))
         reach = np.where(turns % 10 == 0, 2.0, np.where(turns % 5 == 0, 1.5, 1.0)) * _TICK
         foot = start + (turns * step)[:, None] * along
-        canvas.lines(foot, foot + reach[:, None] * aside, colour, 1.0, 0.8)
+        on.canvas.lines(foot, foot + reach[:, None] * aside, colour, 1.0, 0.8)
         ends, stroke = np.stack((start, end)), 1.6 * _TICK * aside
-        canvas.lines(ends - stroke, ends + stroke, colour, width)
+        on.canvas.lines(ends - stroke, ends + stroke, colour, width)
     values = dict(reading_of(one))
     way = one.points["end"] - one.points["start"]
     lines = [values["Length"], f"({way.x:.3g}, {way.y:.3g}) m   {values['From the right'][:-2]}°"]
@@ -210,14 +212,18 @@ def _draw_ruler(
 
 
 def _draw_protractor(
-    world: World, one: Instrument, pixels: Mapping[str, _Pixels], chosen: bool, last: Mapping[int, float],
-    camera: Camera, theme: Theme, canvas: Canvas,
-) -> tuple[_Pixels, list[str]]:  # fmt: skip
+    world: World,
+    one: Instrument,
+    pixels: Mapping[str, _Pixels],
+    chosen: bool,
+    last: Mapping[int, float],
+    on: Drawing,
+) -> tuple[_Pixels, list[str]]:
     """Draw two arms and the arc between them."""
-    colour, width = _line_colour(chosen, theme)
+    colour, width = _line_colour(chosen, on.theme)
     vertex = pixels["vertex"]
     ends = np.stack((pixels["first"], pixels["second"]))
-    canvas.lines(np.stack((vertex, vertex)), ends, colour, width)
+    on.canvas.lines(np.stack((vertex, vertex)), ends, colour, width)
     first, second = ((one.points[name] - one.points["vertex"]) for name in ("first", "second"))
     words = [f"{angle_between(one.points):.1f}°"]
     if not (first and second):
@@ -226,23 +232,27 @@ def _draw_protractor(
     turn = math.remainder(second.angle - first.angle, 2.0 * math.pi)
     angles = first.angle + np.linspace(0.0, turn, max(2, math.ceil(abs(turn) / 0.1)))
     arc = vertex + radius * np.stack((np.cos(angles), -np.sin(angles)), axis=1)
-    canvas.lines(arc[:-1], arc[1:], colour, 0.8 * width)
+    on.canvas.lines(arc[:-1], arc[1:], colour, 0.8 * width)
     middle = first.angle + 0.5 * turn
     return vertex + radius * np.array((math.cos(middle), -math.sin(middle))), words
 
 
 def _draw_gate(
-    world: World, one: Instrument, pixels: Mapping[str, _Pixels], chosen: bool, last: Mapping[int, float],
-    camera: Camera, theme: Theme, canvas: Canvas,
-) -> tuple[_Pixels, list[str]]:  # fmt: skip
+    world: World,
+    one: Instrument,
+    pixels: Mapping[str, _Pixels],
+    chosen: bool,
+    last: Mapping[int, float],
+    on: Drawing,
+) -> tuple[_Pixels, list[str]]:
     """Draw a dashed beam between two posts."""
     start, end = pixels["start"], pixels["end"]
     crossed = world.time - last.get(one.entity, -math.inf) < _FLASH
-    colour = theme.accent if chosen else theme.force if crossed else theme.notice
+    colour = on.theme.accent if chosen else on.theme.force if crossed else on.theme.notice
     beam = even_dashes(start, end, _BEAM_DASH)
-    canvas.lines(*beam, colour, _CHOSEN_WIDTH if chosen or crossed else _WIDTH)
+    on.canvas.lines(*beam, colour, _CHOSEN_WIDTH if chosen or crossed else _WIDTH)
     ends = np.stack((start, end))
-    canvas.discs(ends, np.full(2, _POST), np.zeros(2), Look.plain(colour, colour, 2))
+    on.canvas.discs(ends, np.full(2, _POST), np.zeros(2), Look.plain(colour, colour, 2))
     words = world.label(one.entity) if one.entity else "gate"
     lines = [drawable(words[:_LETTERS])]
     if one.entity in last:
@@ -253,28 +263,27 @@ def _draw_gate(
 _DRAW = {Ruler: _draw_ruler, Protractor: _draw_protractor, Gate: _draw_gate}
 
 
-def _draw_note(
-    world: World, one: Instrument, at: _Pixels, chosen: bool, camera: Camera, theme: Theme, canvas: Canvas,
-    size: int,
-) -> Rect:  # fmt: skip
+def _draw_note(world: World, one: Instrument, at: _Pixels, chosen: bool, on: Drawing) -> Rect:
     """Draw a note with its left upper corner at its place."""
     text = world.component(one.entity, Note).text if one.entity else ""
     lines = [part for line in text.split("\n") for part in (textwrap.wrap(drawable(line), _LETTERS) or [""])]
-    style = TextStyle(size, theme.text)
-    height = canvas.text_size("Ag", style)[1]
-    width = max((canvas.text_size(line, style)[0] for line in lines), default=0)
+    style = TextStyle(on.size, on.theme.text)
+    height = on.canvas.text_size("Ag", style)[1]
+    width = max((on.canvas.text_size(line, style)[0] for line in lines), default=0)
     left, top = round(at[0]), round(at[1])
     rect = (left, top, width + 2 * _PAD, height * len(lines) + 2 * _PAD)
     body = world.component(one.entity, Note).place_body if one.entity else None
     if body is not None and world.has(body, Transform):
-        middle = np.array(camera.to_screen(world.component(body, Transform).position))
+        middle = np.array(on.camera.to_screen(world.component(body, Transform).position))
         corner = np.array(rect[:2], np.float64)
         nearest = np.clip(middle, corner, corner + np.array(rect[2:]))
         if (np.abs(middle) < _FAR).all():
-            canvas.lines(middle[None], nearest[None], theme.faint, 1.0, 0.8)
-    canvas.panel(rect, theme.panel, theme.accent if chosen else theme.outline, theme.panel_opacity)
+            on.canvas.lines(middle[None], nearest[None], on.theme.faint, 1.0, 0.8)
+    on.canvas.panel(
+        rect, on.theme.panel, on.theme.accent if chosen else on.theme.outline, on.theme.panel_opacity
+    )
     for n, line in enumerate(lines):
-        canvas.text(line, (left + _PAD, top + _PAD + n * height), style)
+        on.canvas.text(line, (left + _PAD, top + _PAD + n * height), style)
     return rect
 
 

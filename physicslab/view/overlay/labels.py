@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
-from physicslab.view.canvas.theme import Theme
+from physicslab.view.canvas.canvas import Rect, TextStyle
+from physicslab.view.canvas.drawing import Drawing
 
 type Key = tuple[int, ...]
 
@@ -69,14 +69,7 @@ class Labels:
         return key in self._slot
 
     def draw(
-        self,
-        labels: Sequence[Label],
-        covered: Sequence[Rect],
-        size: int,
-        canvas: Canvas,
-        theme: Theme,
-        *,
-        always: bool = False,
+        self, labels: Sequence[Label], covered: Sequence[Rect], on: Drawing, *, always: bool = False
     ) -> dict[Key, Rect]:
         """Draw labels, those of the last frame and the first ones first; return where they are [px].
 
@@ -88,24 +81,24 @@ class Labels:
         ]
         taken, slots = [*covered, *points], {}
         turn = {key: n for n, key in enumerate(self._slot)}
-        style = TextStyle(size, theme.text)
-        line_height = canvas.text_size("Ag", style)[1] - 2
+        style = TextStyle(on.size, on.theme.text)
+        line_height = on.canvas.text_size("Ag", style)[1] - 2
         placed: list[tuple[Label, Rect]] = []
         for label in sorted(labels, key=lambda label: turn.get(label.key, len(turn))):
-            width = max(canvas.text_size(line, style)[0] for line in label.lines) + 2 * _PAD
+            width = max(on.canvas.text_size(line, style)[0] for line in label.lines) + 2 * _PAD
             extent = width, line_height * len(label.lines) + 2 * _PAD
-            found = self._find(label, extent, taken, canvas.size)
+            found = self._find(label, extent, taken, on.canvas.size)
             if found is None and always:
-                found = self._find(label, extent, (), canvas.size)
+                found = self._find(label, extent, (), on.canvas.size)
             if found is None:
                 continue
             slots[label.key], rect = found
             taken.append(rect)
             placed.append((label, rect))
         self._slot = slots
-        _draw_leaders(placed, canvas, theme)
+        _draw_leaders(placed, on)
         for label, rect in placed:
-            _draw(label, rect, style, line_height, canvas, theme)
+            _draw(label, rect, style, line_height, on)
         return {label.key: rect for label, rect in placed}
 
     def _find(
@@ -137,16 +130,16 @@ def _beside(at: tuple[float, float], extent: tuple[int, int]) -> NDArray[np.int6
     return np.rint(np.stack((x, y), axis=1)).astype(np.int64)
 
 
-def _draw(label: Label, rect: Rect, style: TextStyle, line_height: int, canvas: Canvas, theme: Theme) -> None:
+def _draw(label: Label, rect: Rect, style: TextStyle, line_height: int, on: Drawing) -> None:
     left, top, _, _ = rect
-    canvas.panel(rect, theme.panel, theme.outline, theme.panel_opacity)
+    on.canvas.panel(rect, on.theme.panel, on.theme.outline, on.theme.panel_opacity)
     for n, line in enumerate(label.lines):
-        canvas.text(line, (left + _PAD, top + _PAD + n * line_height - 1), style)
+        on.canvas.text(line, (left + _PAD, top + _PAD + n * line_height - 1), style)
 
 
-def _draw_leaders(placed: Sequence[tuple[Label, Rect]], canvas: Canvas, theme: Theme) -> None:
+def _draw_leaders(placed: Sequence[tuple[Label, Rect]], on: Drawing) -> None:
     """Draw the thin lines from places to their labels."""
     if placed:
         start = np.array([label.at for label, _ in placed])
         corner, extent = np.split(np.array([rect for _, rect in placed], np.float64), 2, axis=1)
-        canvas.lines(start, np.clip(start, corner, corner + extent), theme.faint, 1.0, 0.8)
+        on.canvas.lines(start, np.clip(start, corner, corner + extent), on.theme.faint, 1.0, 0.8)

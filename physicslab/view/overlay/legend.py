@@ -1,11 +1,11 @@
 """The legend of the overlays' arrows: colour, head and scale of each."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from physicslab.view.canvas.canvas import Align, Canvas, Rect, TextStyle
-from physicslab.view.canvas.theme import Theme
+from physicslab.view.canvas.canvas import Align, Rect, TextStyle
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.overlay.arrows import (
     CONTACT_NORMAL,
     FORCE,
@@ -53,19 +53,19 @@ class Legend:
     texts: tuple[tuple[str, tuple[int, int], TextStyle, Align], ...]
     samples: tuple[tuple[Sample, tuple[float, float], float], ...]
 
-    def draw(self, left: int, top: int, canvas: Canvas, theme: Theme) -> Rect:
+    def draw(self, left: int, top: int, on: Drawing) -> Rect:
         """Draw it with its corner at a place, and return where it is [px]."""
         rect = (left, top, *self.size)
-        canvas.panel(rect, theme.panel, theme.outline, theme.panel_opacity)
+        on.canvas.panel(rect, on.theme.panel, on.theme.outline, on.theme.panel_opacity)
         for words, (x, y), style, side in self.texts:
-            canvas.text(words, (left + x, top + y), style, side)
+            on.canvas.text(words, (left + x, top + y), style, side)
         for sample, (across, down), length in self.samples:
             start, span = np.array([(left + across, top + down)]), np.array([(length, 0.0)])
             if sample.kind is not None:
-                draw_arrows(start, span, sample.kind, canvas, theme, width=sample.width)
+                draw_arrows(start, span, sample.kind, on, width=sample.width)
             else:
                 line = dashes(start, start + span)[:2] if sample.dashed else (start, start + span)
-                canvas.lines(line[0], line[1], theme.friction_cone, 1.2)
+                on.canvas.lines(line[0], line[1], on.theme.friction_cone, 1.2)
         return rect
 
 
@@ -98,9 +98,7 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
     return rows, remarks
 
 
-def legend_of(
-    overlays: Overlays, room: tuple[int, int], size: int, canvas: Canvas, theme: Theme
-) -> Legend | None:
+def legend_of(overlays: Overlays, room: tuple[int, int], on: Drawing) -> Legend | None:
     """Return the legend of the overlays that are on, its corner at the origin; ``None`` if none is.
 
     Where it would be too wide for the room [px], or take too much of it, scales and remarks are left out, and
@@ -108,24 +106,27 @@ def legend_of(
     """
     if not (overlays.arrows or overlays.impulses):
         return None
-    width = round(_WIDTH * size)
-    legend = _laid_out(overlays, width, size, canvas, theme)
+    width = round(_WIDTH * on.size)
+    legend = _laid_out(overlays, width, on)
     if width <= room[0] and width * legend.size[1] <= _MAX_SHARE * room[0] * room[1]:
         return legend
-    brief = _laid_out(overlays, 0, size, canvas, theme)
+    brief = _laid_out(overlays, 0, on)
     if brief.size[0] <= room[0]:
         return brief
-    return _laid_out(overlays, 0, max(size * room[0] // brief.size[0], 8), canvas, theme)
+    return _laid_out(overlays, 0, replace(on, size=max(on.size * room[0] // brief.size[0], 8)))
 
 
-def _laid_out(overlays: Overlays, width: int, size: int, canvas: Canvas, theme: Theme) -> Legend:
+def _laid_out(overlays: Overlays, width: int, on: Drawing) -> Legend:
     """Return the legend, so wide [px]; with names alone where that is 0."""
     rows, remarks = _rows(overlays)
-    pad, sample_length = round(0.7 * size), 2.4 * size
-    label, value = TextStyle(size - 1, theme.text), TextStyle(size - 1, theme.faint)
-    title, small = TextStyle(size, theme.heading, bold=True), TextStyle(max(size - 2, 10), theme.faint)
-    heights = {style: canvas.text_size("Ag", style)[1] for style in (label, title, small)}
-    inset, y = round(pad + sample_length + 0.6 * size), pad
+    pad, sample_length = round(0.7 * on.size), 2.4 * on.size
+    label, value = TextStyle(on.size - 1, on.theme.text), TextStyle(on.size - 1, on.theme.faint)
+    title, small = (
+        TextStyle(on.size, on.theme.heading, bold=True),
+        TextStyle(max(on.size - 2, 10), on.theme.faint),
+    )
+    heights = {style: on.canvas.text_size("Ag", style)[1] for style in (label, title, small)}
+    inset, y = round(pad + sample_length + 0.6 * on.size), pad
     texts: list[tuple[str, tuple[int, int], TextStyle, Align]] = []
     if width:
         kept = "scale, kept" if overlays.keeps_scales else "scale"
@@ -134,7 +135,7 @@ def _laid_out(overlays: Overlays, width: int, size: int, canvas: Canvas, theme: 
         y += heights[title]
     else:
         rows, remarks = list({name: (sample, name, "") for sample, name, _ in rows}.values()), []
-        width = inset + max(canvas.text_size(name, label)[0] for _, name, _ in rows) + pad
+        width = inset + max(on.canvas.text_size(name, label)[0] for _, name, _ in rows) + pad
     samples = []
     for sample, name, scale in rows:
         texts.append((name, (inset, y), label, "left"))
@@ -143,7 +144,7 @@ def _laid_out(overlays: Overlays, width: int, size: int, canvas: Canvas, theme: 
         samples.append((sample, (float(pad), y + 0.5 * heights[label]), sample_length))
         y += heights[label]
     y += pad - pad // 2 if remarks else 0
-    for line in (line for remark in remarks for line in broken(remark, width - 2 * pad, canvas, small)):
+    for line in (line for remark in remarks for line in broken(remark, width - 2 * pad, on.canvas, small)):
         texts.append((line, (pad, y), small, "left"))
         y += heights[small]
     return Legend((width, y + pad), tuple(texts), tuple(samples))

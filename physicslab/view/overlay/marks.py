@@ -8,9 +8,9 @@ import numpy as np
 from physicslab.components import Shape, Transform
 from physicslab.diagnostics.period import spring_state
 from physicslab.ecs.vector import Vector2
-from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look, Numbers, Points, Rect, TextStyle
-from physicslab.view.canvas.theme import Colour, Theme
+from physicslab.view.canvas.drawing import Drawing
+from physicslab.view.canvas.theme import Colour
 from physicslab.view.overlay.arrows import VELOCITY, draw_arrows
 from physicslab.view.picture.bodies import POINT_RADIUS
 from physicslab.world import World
@@ -23,32 +23,30 @@ _SQUARE = np.array(((-1, -1), (1, -1), (1, 1), (-1, 1)), np.float64)
 type Pixel = tuple[float, float]
 
 
-def draw_handles(middle: Pixel, places: Sequence[tuple[str, Pixel]], theme: Theme, canvas: Canvas) -> None:
+def draw_handles(middle: Pixel, places: Sequence[tuple[str, Pixel]], on: Drawing) -> None:
     """Draw handles at their places [px], each with the line that joins it to the middle of the body."""
     for kind, place in places:
         start, span = np.array([middle]), np.array([place]) - np.array([middle])
         if kind == "velocity":
-            draw_arrows(start, span, VELOCITY, canvas, theme)
+            draw_arrows(start, span, VELOCITY, on)
         elif kind == "angle":
-            canvas.lines(start, start + span, theme.accent, 1.0, 0.6)
+            on.canvas.lines(start, start + span, on.theme.accent, 1.0, 0.6)
     spots = np.array([place for _, place in places])
     if len(spots):
-        look = Look.plain(theme.background, theme.accent, len(spots))
-        canvas.discs(spots, np.full(len(spots), _RADIUS), np.zeros(len(spots)), look)
+        look = Look.plain(on.theme.background, on.theme.accent, len(spots))
+        on.canvas.discs(spots, np.full(len(spots), _RADIUS), np.zeros(len(spots)), look)
 
 
-def draw_reading(
-    words: str, pointer: Pixel, size: int, theme: Theme, canvas: Canvas, room: Rect | None = None
-) -> None:
+def draw_reading(words: str, pointer: Pixel, on: Drawing, room: Rect | None = None) -> None:
     """Write words beside the cursor, within the room that is given or the picture [px]."""
-    low, top_edge, across, _ = room or (0, 0, *canvas.size)
-    style = TextStyle(size, theme.text, bold=True)
-    width, height = canvas.text_size(words, style)
-    left = max(min(round(pointer[0]) + size, low + across - width - size), low + size)
-    top = max(round(pointer[1]) - 2 * size, top_edge + size)
-    rect: Rect = (left - size // 2, top - size // 4, width + size, height + size // 2)
-    canvas.panel(rect, theme.panel, theme.outline, 0.95)
-    canvas.text(words, (left, top), style)
+    low, top_edge, across, _ = room or (0, 0, *on.canvas.size)
+    style = TextStyle(on.size, on.theme.text, bold=True)
+    width, height = on.canvas.text_size(words, style)
+    left = max(min(round(pointer[0]) + on.size, low + across - width - on.size), low + on.size)
+    top = max(round(pointer[1]) - 2 * on.size, top_edge + on.size)
+    rect: Rect = (left - on.size // 2, top - on.size // 4, width + on.size, height + on.size // 2)
+    on.canvas.panel(rect, on.theme.panel, on.theme.outline, 0.95)
+    on.canvas.text(words, (left, top), style)
 
 
 _GAP = 4.0
@@ -62,32 +60,23 @@ _FAR = 1e6
 """Lines farther out of the picture than this are not drawn [px]."""
 
 
-def draw_selection(
-    world: World,
-    entities: Sequence[int],
-    camera: Camera,
-    theme: Theme,
-    canvas: Canvas,
-    colour: Colour | None = None,
-) -> None:
+def draw_selection(world: World, entities: Sequence[int], on: Drawing, colour: Colour | None = None) -> None:
     """Draw a line around each body, or along a spring; in a colour, or that of the selection."""
     for entity in entities:
         if world.has(entity, Transform):
-            corners = camera.project(_outline(world, entity, _GAP / camera.scale))
-            canvas.lines(corners, np.roll(corners, -1, axis=0), colour or theme.accent, _WIDTH)
+            corners = on.camera.project(_outline(world, entity, _GAP / on.camera.scale))
+            on.canvas.lines(corners, np.roll(corners, -1, axis=0), colour or on.theme.accent, _WIDTH)
         elif (spring := spring_state(world, entity)) is not None:
-            ends = camera.project(np.array([tuple(spring.start), tuple(spring.end)]))
+            ends = on.camera.project(np.array([tuple(spring.start), tuple(spring.end)]))
             if (np.abs(ends) < _FAR).all():
-                canvas.lines(ends[:1], ends[1:], colour or theme.accent, _SPRING_WIDTH, 0.5)
+                on.canvas.lines(ends[:1], ends[1:], colour or on.theme.accent, _SPRING_WIDTH, 0.5)
 
 
-def draw_band(
-    corner: tuple[float, float], pointer: tuple[float, float], theme: Theme, canvas: Canvas
-) -> None:
+def draw_band(corner: tuple[float, float], pointer: tuple[float, float], on: Drawing) -> None:
     """Draw the rectangle that is being drawn around bodies, from its corner to the cursor [px]."""
     (x0, y0), (x1, y1) = corner, pointer
     corners = np.array(((x0, y0), (x1, y0), (x1, y1), (x0, y1)), np.float64)
-    canvas.lines(corners, np.roll(corners, -1, axis=0), theme.accent, 1.0, 0.8)
+    on.canvas.lines(corners, np.roll(corners, -1, axis=0), on.theme.accent, 1.0, 0.8)
 
 
 def _outline(world: World, entity: int, gap: float) -> Points:
@@ -130,20 +119,14 @@ def draw_cursor(pixel: tuple[float, float], colour: Colour, canvas: Canvas) -> N
 
 
 def draw_ghost(
-    place: Points,
-    half: Points,
-    radius: Numbers,
-    angle: Numbers,
-    colour: Colour,
-    camera: Camera,
-    canvas: Canvas,
+    place: Points, half: Points, radius: Numbers, angle: Numbers, colour: Colour, on: Drawing
 ) -> None:
     """Draw the outlines of discs (with a radius) and boxes (with half extents), a row each [m]."""
     ring = _ring(_GHOST_CORNERS)
     for n in range(len(place)):
         own = radius[n] * ring if radius[n] > 0.0 else half[n] * _SQUARE
-        corners = camera.project(_placed(own, float(angle[n]), place[n]))
-        canvas.lines(corners, np.roll(corners, -1, axis=0), colour, 1.4, _GHOST_OPACITY)
+        corners = on.camera.project(_placed(own, float(angle[n]), place[n]))
+        on.canvas.lines(corners, np.roll(corners, -1, axis=0), colour, 1.4, _GHOST_OPACITY)
 
 
 _SNAP_OPACITY = 0.75
@@ -151,20 +134,18 @@ _DOT = 3.5
 """Radius of the disc at the middle of what has snapped [px]."""
 
 
-def draw_snap_marks(
-    marks: Sequence[tuple[int, float]], middle: Vector2, camera: Camera, theme: Theme, canvas: Canvas
-) -> None:
+def draw_snap_marks(marks: Sequence[tuple[int, float]], middle: Vector2, on: Drawing) -> None:
     """Draw a line across the picture for each mark, and a disc at the middle of what has snapped [m].
 
     A mark is an axis (0 for x, 1 for y) and the coordinate along it [m].
     """
-    width, height = camera.size
-    x, y = camera.to_screen(middle)
+    width, height = on.camera.size
+    x, y = on.camera.to_screen(middle)
     for axis, at in marks:
-        across, down = camera.to_screen(Vector2(at, at))
+        across, down = on.camera.to_screen(Vector2(at, at))
         start, end = ((across, 0), (across, height)) if axis == 0 else ((0, down), (width, down))
-        canvas.lines(
-            np.array([start], np.float64), np.array([end], np.float64), theme.accent, 1.0, _SNAP_OPACITY
+        on.canvas.lines(
+            np.array([start], np.float64), np.array([end], np.float64), on.theme.accent, 1.0, _SNAP_OPACITY
         )
-    look = Look.plain(theme.accent, theme.accent, 1)
-    canvas.discs(np.array([(x, y)]), np.full(1, _DOT), np.zeros(1), look)
+    look = Look.plain(on.theme.accent, on.theme.accent, 1)
+    on.canvas.discs(np.array([(x, y)]), np.full(1, _DOT), np.zeros(1), look)

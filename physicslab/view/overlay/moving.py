@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.overlay.instruments import draw_instruments, instruments_of
@@ -35,19 +36,16 @@ class MovingPicture:
     def __init__(self, size: tuple[int, int], extent: Extent, theme: Theme = DARK) -> None:
         self._surface = pygame.Surface(size, 0, 32)
         self._labels = Labels()
-        self._canvas, self._theme = PygameCanvas(self._surface), theme
-        self._camera = Camera(size, scale=100.0)
-        scale = self._camera.fitting_scale(extent, (0, 0, *size), _AROUND)
-        self._camera.look_at(extent, scale)
+        camera = Camera(size, scale=100.0)
+        camera.look_at(extent, camera.fitting_scale(extent, (0, 0, *size), _AROUND))
+        self._drawing = Drawing(PygameCanvas(self._surface), camera, theme, _TEXT)
 
     def pixels(self, world: World) -> NDArray[np.uint8]:
         """Return the world as it is now: uint8 (height, width, 4), red, green, blue and one unused."""
+        on = self._drawing
         with world.active():
-            draw_world(world, self._camera, self._theme, self._canvas)
-            draw_instruments(
-                world, list(instruments_of(world)), (), self._labels, (), self._camera, self._theme,
-                self._canvas, _TEXT,
-            )  # fmt: skip
+            draw_world(world, on.camera, on.theme, on.canvas)
+            draw_instruments(world, list(instruments_of(world)), (), self._labels, (), on)
         return pixels_of(self._surface)
 
 

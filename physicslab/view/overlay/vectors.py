@@ -4,9 +4,7 @@ import numpy as np
 
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.free_body import applied_forces, contact_forces
-from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Canvas
-from physicslab.view.canvas.theme import Theme
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.overlay.arrows import CONTACT_NORMAL, FORCE, MIN_LENGTH, VELOCITY, draw_arrows
 from physicslab.view.overlay.contact_samples import resting_of
 from physicslab.view.overlay.overlays import Overlays
@@ -16,7 +14,7 @@ NORMAL_LENGTH = 26.0
 """Length of the arrows of contact normals, which are directions only [px]; shorter in a crowd."""
 
 
-def draw_vectors(world: World, overlays: Overlays, camera: Camera, theme: Theme, canvas: Canvas) -> None:
+def draw_vectors(world: World, overlays: Overlays, on: Drawing) -> None:
     """Draw the velocity of each body that moves, the sum of the forces on it, and the normals of contacts."""
     applied = applied_forces(world)
     force = applied + contact_forces(world)
@@ -34,14 +32,14 @@ def draw_vectors(world: World, overlays: Overlays, camera: Camera, theme: Theme,
     overlays.velocity.follow(speed, overlays.reach, world.time)
     flip = np.array((1.0, -1.0))  # the screen's y points down
     if overlays.force.per_metre:
-        start = camera.project(world.table(Transform)["position"][pulled])
-        span = force * flip * (camera.scale / overlays.force.per_metre)
-        draw_arrows(start, span, FORCE, canvas, theme)
+        start = on.camera.project(world.table(Transform)["position"][pulled])
+        span = force * flip * (on.camera.scale / overlays.force.per_metre)
+        draw_arrows(start, span, FORCE, on)
     if overlays.velocity.per_metre:
-        span = linear * flip * (camera.scale / overlays.velocity.per_metre)
-        draw_arrows(camera.project(position), span, VELOCITY, canvas, theme)
+        span = linear * flip * (on.camera.scale / overlays.velocity.per_metre)
+        draw_arrows(on.camera.project(position), span, VELOCITY, on)
     contacts = resting_of(world)
     contacts = contacts[contacts["normal"] > 0.0]
-    start = camera.project(contacts["place"])
-    length = min(NORMAL_LENGTH, max(0.5 * overlays.reach * camera.scale, MIN_LENGTH))
-    draw_arrows(start, contacts["direction"] * flip * length, CONTACT_NORMAL, canvas, theme)
+    start = on.camera.project(contacts["place"])
+    length = min(NORMAL_LENGTH, max(0.5 * overlays.reach * on.camera.scale, MIN_LENGTH))
+    draw_arrows(start, contacts["direction"] * flip * length, CONTACT_NORMAL, on)

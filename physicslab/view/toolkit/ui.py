@@ -2,176 +2,20 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from typing import Any
 
-import pygame
 from imgui_bundle import ImVec2, imgui
 
-from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable, encodable
-from physicslab.view.canvas.theme import Colour, Theme
-from physicslab.view.toolkit.labels import widget_label
-from physicslab.view.toolkit.style import Fonts, packed
+from physicslab.view.canvas.theme import Colour
+from physicslab.view.toolkit.style import packed
+from physicslab.view.toolkit.windows import Windows, widget_label
 
-_FLAGS = imgui.WindowFlags_
-_FIXED = (
-    _FLAGS.no_title_bar | _FLAGS.no_resize | _FLAGS.no_move | _FLAGS.no_collapse | _FLAGS.no_saved_settings
-    | _FLAGS.no_bring_to_front_on_focus | _FLAGS.no_nav_focus
-)  # fmt: skip
-_FLOATING = _FLAGS.no_collapse | _FLAGS.always_auto_resize
-_ONLY_SIDES = (
-    imgui.DockNodeFlags_.passthru_central_node | imgui.DockNodeFlags_.no_docking_over_central_node
-    | imgui.internal.DockNodeFlagsPrivate_.no_close_button
-)  # fmt: skip
-"""The middle stays in sight, and takes the mouse."""
-_APART = _FLAGS.no_saved_settings | _FLAGS.no_docking
-_TITLE = 6.0
-"""Height of what a floating window has above what fills it, at most, in heights of the text."""
 _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
 
 
-class Ui:
-    """The widgets of one frame. Each is noted: where it is, by its words, and all that is written.
-
-    Parameters
-    ----------
-    fonts : Fonts
-        The letters.
-    theme : Theme
-        The colours; the toolkit has them too.
-
-    Attributes
-    ----------
-    places : dict of str to Rect
-        Where each button, field and line of a menu is [px], by its words.
-    words : list of str
-        All that is written, in its order.
-    rows : dict of str to str
-        The value beside each label.
-    once : Cond_
-        When windows that come back where they were are put where they are at first.
-    keys_go_to : str
-        What is to get the keys in this frame: ``"menu"`` or ``"fields"``.
-    scenes : int
-        How many scenes were shown: what is half written or dragged in a widget is for one of them.
-    focused : str
-        The widget that keys go to, by its words.
-    room : Rect
-        What of the window is left for the world; what opens lies within it [px].
-    pictures : list of tuples
-        What is laid over panels: a surface, its corner, and the part of the window in which it is seen [px].
-    """
-
-    def __init__(self, fonts: Fonts, theme: Theme) -> None:
-        self.fonts, self.theme = fonts, theme
-        self.places: dict[str, Rect] = {}
-        self.words: list[str] = []
-        self.rows: dict[str, str] = {}
-        self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
-        self.once = imgui.Cond_.first_use_ever
-        self.keys_go_to = self.focused = ""
-        self.scenes = 0
-        self.room: Rect = (0, 0, 1 << 20, 1 << 20)
-
-    def begin(self, theme: Theme, room: Rect = (0, 0, 1 << 20, 1 << 20), *, rearranged: bool = False) -> None:
-        """Forget the frame before; ``rearranged`` puts windows back where they are at first."""
-        self.theme, self.room = theme, room
-        self.once = imgui.Cond_.always if rearranged else imgui.Cond_.first_use_ever
-        self.places, self.words, self.rows, self.pictures, self.focused = {}, [], {}, [], ""
-
-    @property
-    def size(self) -> float:
-        """Height of the text [px]."""
-        return float(imgui.get_font_size())
-
-    # ---- panels --------------------------------------------------------------------------------------------
-
-    @contextmanager
-    def panel(self, name: str, rect: Rect, *, padded: bool = True, rounded: bool = False) -> Iterator[None]:
-        """Begin a panel that stays where it is put; its corners are round where it lies over the world."""
-        left, top, width, height = rect
-        imgui.set_next_window_pos(ImVec2(left, top))
-        imgui.set_next_window_size(ImVec2(max(width, 1), max(height, 1)))
-        if not rounded:
-            imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
-        if not padded:
-            imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(6.0, 6.0))
-        imgui.begin(name, None, _FIXED)
-        try:
-            yield
-        finally:
-            imgui.end()
-            imgui.pop_style_var(2 - padded - rounded)
-
-    def dock(self, rect: Rect) -> Rect:
-        """Let windows be docked to the sides of a part of the display; return what they leave of it [px]."""
-        imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
-        imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(0.0, 0.0))
-        imgui.set_next_window_pos(ImVec2(*rect[:2]))
-        imgui.set_next_window_size(ImVec2(*rect[2:]))
-        unseen = _FLAGS.no_background | _FLAGS.no_mouse_inputs | _FLAGS.no_docking | _FLAGS.no_nav
-        imgui.begin("sides", None, _FIXED | unseen)
-        imgui.pop_style_var(2)
-        name = imgui.get_id("sides")
-        imgui.dock_space(name, ImVec2(0.0, 0.0), _ONLY_SIDES)
-        imgui.end()
-        node = imgui.internal.dock_builder_get_central_node(name)
-        return round(node.pos.x), round(node.pos.y), round(node.size.x), round(node.size.y)
-
-    @contextmanager
-    def floating(
-        self, title: str, middle: tuple[float, float], *, docks: bool = False
-    ) -> Iterator[list[bool]]:
-        """Begin a window with a title, within the display; what is yielded holds whether it stays open.
-
-        One that ``docks`` can be docked to the sides of the world, and comes back where it was.
-        """
-        free = imgui.get_main_viewport()  # without the menu bar
-        low, room = free.work_pos, free.work_size
-        when = self.once if docks else imgui.Cond_.appearing
-        imgui.set_next_window_pos(ImVec2(*middle), when, ImVec2(0.5, 0.5))
-        imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
-        _, stays = imgui.begin(title, True, _FLOATING if docks else _FLOATING | _APART)
-        place, size = imgui.get_window_pos(), imgui.get_window_size()
-        within = ImVec2(
-            max(min(place.x, low.x + room.x - size.x), low.x),
-            max(min(place.y, low.y + room.y - size.y), low.y),
-        )
-        if (within.x, within.y) != (place.x, place.y) and not imgui.is_window_docked():
-            imgui.set_window_pos(within)
-        self.words.append(title)
-        try:
-            yield [bool(stays)]
-        finally:
-            imgui.end()
-
-    def fitted(self, width: float, height: float) -> tuple[float, float]:
-        """Return a size for what is in a floating window, so that it lies over no other panel [px]."""
-        _, _, across, down = self.room
-        around = 2.0 * imgui.get_style().window_padding.x + self.size
-        return max(min(width, across - around), 1.0), max(
-            min(height, down - around - _TITLE * self.size), 1.0
-        )
-
-    def extent(self, width: float, height: float) -> ImVec2:
-        """Return a size [px] for what fills a floating window: of a docked one all its room."""
-        if imgui.is_window_docked():
-            return imgui.get_content_region_avail()
-        return ImVec2(*self.fitted(width, height))
-
-    def picture(self, surface: pygame.Surface, corner: tuple[int, int], clip: pygame.Rect) -> None:
-        """Lay a picture over a panel, as far as it lies within ``clip``."""
-        self.pictures.append((surface, corner, clip))
-
-    def show_pictures(self, surface: pygame.Surface) -> None:
-        """Lay the pictures over a surface, after the panels."""
-        for picture, corner, clip in self.pictures:
-            surface.set_clip(clip)
-            surface.blit(picture, corner)
-        surface.set_clip(None)
-
-    def held(self, label: str) -> str:
-        """Return a label without words for what is written or dragged in, which ends with the scene."""
-        return widget_label("", f"{label} of scene {self.scenes}")
+class Ui(Windows):
+    """The widgets of one frame. Each is noted: where it is, by its words, and all that is written."""
 
     # ---- words ---------------------------------------------------------------------------------------------
 
@@ -201,8 +45,10 @@ class Ui:
         """Leave some room, in heights of the text."""
         imgui.dummy(ImVec2(1.0, share * self.size))
 
-    def rule(self) -> None:
-        """Draw a thin line across."""
+    def rule(self, above: float = 0.0) -> None:
+        """Draw a thin line across, below some room in heights of the text."""
+        if above:
+            self.gap(above)
         imgui.separator()
 
     def row(self, label: str, value: str, tip: str = "", *, lesser: bool = False) -> None:
@@ -247,7 +93,7 @@ class Ui:
         )
 
     def button(
-        self, label: str, tip: str = "", *, shown: str | None = None, on: bool = False,
+        self, label: str, tip: str = "", *action: Any, shown: str | None = None, on: bool = False,
         size: tuple[float, float] = (0.0, 0.0), enabled: bool = True,
     ) -> bool:  # fmt: skip
         """Draw a button, and return whether it was clicked.
@@ -256,6 +102,8 @@ class Ui:
         ----------
         label : str
             What it is found by.
+        action : callable, and its further arguments
+            What a click does next.
         shown : str, optional
             What is written on it, where that is not the label.
         on : bool
@@ -276,13 +124,19 @@ class Ui:
         if on:
             imgui.pop_style_color(3)
         self.tip(tip)
+        return self._did(clicked, action)
+
+    def _did(self, clicked: bool, action: tuple[Any, ...]) -> bool:
+        """Have an action done next where a widget was clicked, and return whether it was."""
+        if clicked and action:
+            self.do_next(*action)
         return bool(clicked)
 
     def item(
-        self, label: str, keys: str = "", *, on: bool = False, enabled: bool = True, tip: str = "",
+        self, label: str, *action: Any, keys: str = "", on: bool = False, enabled: bool = True, tip: str = "",
         shown: str | None = None, identity: str | None = None,
     ) -> bool:  # fmt: skip
-        """Draw a line of the menu that is open, and return whether it was chosen.
+        """Draw a line of the menu that is open, and return whether it was chosen; that does an ``action``.
 
         ``shown`` is written on it, where not the label; ``identity`` tells it from lines with the same one.
         """
@@ -291,7 +145,7 @@ class Ui:
         chosen, _ = imgui.menu_item(widget_label(words, identity or label), keys, on, enabled)
         self.note(label)
         self.tip(tip)
-        return bool(chosen)
+        return self._did(chosen, action)
 
     @contextmanager
     def menu(self, label: str, identity: str | None = None) -> Iterator[bool]:
@@ -390,15 +244,18 @@ class Ui:
         return chosen
 
     def selectable(
-        self, label: str, *, on: bool = False, faint: bool = False, identity: str | None = None
+        self, label: str, *action: Any, on: bool = False, faint: bool = False, identity: str | None = None
     ) -> bool:
-        """Draw a line that can be clicked, and return whether it was. ``identity`` as in :meth:`item`."""
+        """Draw a line that can be clicked, which does an ``action``, and return whether it was.
+
+        ``identity`` as in :meth:`item`.
+        """
         self.words.append(drawable(label))
         imgui.push_style_color(imgui.Col_.text, packed(self.theme.faint if faint else self.theme.text))
         clicked, _ = imgui.selectable(widget_label(label, identity or label), on)
         imgui.pop_style_color()
         self.note(label)
-        return bool(clicked)
+        return self._did(clicked, action)
 
     def slider(
         self, label: str, value: float, low: float, high: float, shown: str, width: float = -1.0
@@ -443,3 +300,34 @@ class Ui:
             imgui.pop_style_var()
             imgui.pop_style_color()
         return text, bool(imgui.is_item_active())
+
+    # ---- bars ----------------------------------------------------------------------------------------------
+
+    def bar(
+        self, label: str, value: str, share: float, colour: Colour, *, zero: float = 0.0, tip: str = ""
+    ) -> None:
+        """Write a label and its value over a bar as long as a share (-1 to 1), which begins at ``zero``."""
+        self.row(label, value, tip)
+        width, height = imgui.get_content_region_avail().x, round(0.4 * self.size)
+        corner = imgui.get_cursor_screen_pos()
+        paper = imgui.get_window_draw_list()
+        paper.add_rect_filled(
+            corner, ImVec2(corner.x + width, corner.y + height), packed(self.theme.key), 0.5 * height
+        )
+        low, high = (min(max(end, 0.0), 1.0) * width for end in sorted((zero, zero + share)))
+        if high - low >= 1.0:
+            if zero == 0.0:
+                high = max(high, height)  # as wide as its ends are round
+            paper.add_rect_filled(
+                ImVec2(corner.x + low, corner.y), ImVec2(corner.x + high, corner.y + height), packed(colour),
+                0.5 * height,
+            )  # fmt: skip
+        if 0.0 < zero < 1.0:
+            self.zero_line(corner.x + zero * width, corner.y, height)
+        imgui.dummy(ImVec2(width, height))
+
+    def zero_line(self, x: float, top: float, height: float) -> None:
+        """Draw where zero is on a bar [px]."""
+        beyond = 0.15 * self.size
+        ends = ImVec2(x - 0.5, top - beyond), ImVec2(x + 0.5, top + height + beyond)
+        imgui.get_window_draw_list().add_rect_filled(*ends, packed(self.theme.text))

@@ -6,9 +6,8 @@ import numpy as np
 
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
-from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Canvas, Look
-from physicslab.view.canvas.theme import Theme
+from physicslab.view.canvas.canvas import Look
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.overlay.arrows import even_dashes
 from physicslab.view.window.points import local_point, point_of
 from physicslab.world import World
@@ -61,18 +60,16 @@ class SpringTool:
             return ""
         return spring_between(world, entity, target, (start, place))
 
-    def draw(
-        self, world: World, camera: Camera, pointer: tuple[float, float], theme: Theme, canvas: Canvas
-    ) -> None:
+    def draw(self, world: World, on: Drawing, pointer: tuple[float, float]) -> None:
         """Draw where the spring would be: a dashed line from the body to the cursor [px]."""
         start = self._start(world)
         if start is None:
             return
-        ends = np.array([camera.to_screen(start), pointer])
+        ends = np.array([on.camera.to_screen(start), pointer])
         if not (np.abs(ends) < 1e6).all():
             return
-        canvas.lines(*even_dashes(ends[0], ends[1], _DASH), theme.accent, 2.0)
-        canvas.discs(ends, np.full(2, _END), np.zeros(2), Look.plain(theme.accent, theme.accent, 2))
+        on.canvas.lines(*even_dashes(ends[0], ends[1], _DASH), on.theme.accent, 2.0)
+        on.canvas.discs(ends, np.full(2, _END), np.zeros(2), Look.plain(on.theme.accent, on.theme.accent, 2))
 
     def _start(self, world: World) -> Vector2 | None:
         """Return where the spring begins [m]; nowhere if its body is gone."""

@@ -8,8 +8,7 @@ from typing import Any
 
 from physicslab.components import Held, Transform, Velocity
 from physicslab.files.checks import SceneError
-from physicslab.files.snapshot import WorldSnapshot
-from physicslab.files.writer import text_pieces
+from physicslab.files.writer import WorldSnapshot, text_pieces
 from physicslab.view.window.lab_process import LabProcess
 from physicslab.world import World
 

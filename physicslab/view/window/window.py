@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
 from typing import Concatenate
 
@@ -13,6 +14,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import History
 from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas, Rect
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.overlay.free_body import Measured
 from physicslab.view.overlay.overlays import Overlays
@@ -47,6 +49,12 @@ LEVELS = {
     "Engineer": "Methods, systems and their cost",
 }
 """How much the panel at the right shows, with what each level is for."""
+OPENED: dict[str, object] = {
+    "help": False, "shows_gallery": False, "filming.choosing": False, "opening": None, "naming": None,
+    "lists_history": False, "microscope.record": None, "impacts.shown": False, "error_study.shown": False,
+    "shows_stopwatch": False,
+}  # fmt: skip
+"""Panels that can be closed: what of the window says that they are open, and its value when they are not."""
 _AROUND = 0.04
 """Room left around the world, as a share of what the panels leave."""
 
@@ -271,6 +279,13 @@ class Window:
         self._room: Rect | None = None
 
     @property
+    def drawing(self) -> Drawing:
+        """What the world is drawn with; text is larger in a larger window, times the chosen scale."""
+        width, height = self.canvas.size
+        size = round(min(max(min(height / 48, width / 80), 12), 20) * self.text_scale)
+        return Drawing(self.canvas, self.camera, self.theme, size)
+
+    @property
     def middle(self) -> tuple[float, float]:
         """The middle of what is left for the world [px]."""
         left, top, width, height = self.room()
@@ -290,6 +305,19 @@ class Window:
     def notice(self) -> str:
         """The message that is shown for a few seconds; empty when there is none."""
         return self._notice if self.now < self._notice_until else ""
+
+    def put(self, path: str, value: object) -> None:
+        """Give a part of the state another value, by its path from the window, as ``"pace.paused"``."""
+        owner, _, name = path.rpartition(".")
+        setattr(attrgetter(owner)(self) if owner else self, name, value)
+
+    def is_open(self, panel: str) -> bool:
+        """Whether a panel is open, one of ``OPENED``."""
+        return attrgetter(panel)(self) is not OPENED[panel]
+
+    def closing_of(self, panel: str) -> Callable[[], None]:
+        """Return what closes a panel, one of ``OPENED``."""
+        return lambda: self.put(panel, OPENED[panel])
 
     def has_unsaved(self, world: World) -> bool:
         """Whether the world was edited since it was opened or saved."""

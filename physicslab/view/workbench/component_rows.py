@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from imgui_bundle import imgui
@@ -29,20 +29,18 @@ _MAX_LISTED = 60
 type Kind = type[Component]
 
 
+@dataclass(frozen=True, slots=True)
 class ComponentRows:
-    """Builds the rows of components, and makes edits of what is written there.
+    """Builds the rows of the components of the selection, and makes edits of what is written there."""
 
-    Parameters
-    ----------
-    numbers : NumberFields
-        What keeps what is half written.
-    """
+    ui: Ui
+    numbers: NumberFields
+    world: World
+    window: Window
 
-    def __init__(self, numbers: NumberFields) -> None:
-        self._numbers = numbers
-
-    def build(self, ui: Ui, world: World, window: Window, kind: Kind) -> None:
+    def build(self, kind: Kind) -> None:
         """Build a row for each field of a component that all of the selection has."""
+        ui, world, window = self.ui, self.world, self.window
         held = [world.component(entity, kind) for entity in window.selection.entities]
         rows = [spec for spec in kind.FIELDS if all(_is_shown(spec, part) for part in held)]
         scales = scales_of(world) if kind in (Transform, Velocity) else {}
@@ -51,77 +49,61 @@ class ComponentRows:
         if rows:
             ui.gap(0.2)
         for spec in rows:
-            key = f"{kind.__name__}.{spec.name}"
+            key, scale = f"{kind.__name__}.{spec.name}", scales.get(spec.unit, 0.0)
             values = [getattr(part, spec.name) for part in held]
             match spec.kind:
                 case "vector":
-                    scale = scales.get(spec.unit, 0.0)
                     values = [Vector2(*(without_rounding(part, scale) for part in value)) for value in values]
-                    self._vector(ui, window, kind, spec, key, values)
+                    self._vector(kind, spec, key, values)
                 case "flag":
-                    self._flag(ui, window, kind, spec, values)
+                    words = _label(spec) if _common(values) is not None else f"{_label(spec)} ({_VARIOUS})"
+                    on = all(value is True for value in values)
+                    if ui.checkbox(words, on, spec.meaning):
+                        self._set(kind, spec, not on)
                 case "choice":
-                    self._choice(ui, window, kind, spec, key, values)
+                    now = _common(values) or _VARIOUS
+                    self.numbers.label(ui, key, _label(spec), spec)
+                    if (chosen := ui.choice(key, now, spec.choices)) != now:
+                        self._set(kind, spec, chosen)
                 case "entity":
-                    self._entity(ui, world, window, kind, spec, key, values)
+                    if len(values) == 1:
+                        self._entity(kind, spec, key, values[0])
                 case _:
                     if spec.unit in scales:
-                        values = [without_rounding(value, scales[spec.unit]) for value in values]
-                    self._number(ui, world, window, kind, spec, key, values)
+                        values = [without_rounding(value, scale) for value in values]
+                    self._number(kind, spec, key, _common(values))
 
-    def _number(
-        self, ui: Ui, world: World, window: Window, kind: Kind, spec: Field, key: str, values: Sequence[Any]
-    ) -> None:
+    def _number(self, kind: Kind, spec: Field, key: str, now: Any) -> None:
         def commit(new: object) -> None:
             spec.check(new)
-            for entity in window.selection.entities:  # some fields depend on others: a radius is above 0
-                kind(**(world.component(entity, kind).given() | {spec.name: new}))
-            _set(window, kind, spec, new)
+            for entity in self.window.selection.entities:  # some fields depend on others: a radius is above 0
+                kind(**(self.world.component(entity, kind).given() | {spec.name: new}))
+            self._set(kind, spec, new)
 
-        now = _common(values)
-        if spec.unit != "rad" or window.level != "Explore":
-            self._numbers.row(ui, key, _label(spec), spec, now, commit)
+        if spec.unit != "rad" or self.window.level != "Explore":
+            self.numbers.row(self.ui, key, _label(spec), spec, now, commit)
             return
-        degrees = None if now is None else math.degrees(now)
-        self._numbers.row(
-            ui, key, _label(spec), replace(spec, unit="deg"), degrees, lambda new: commit(math.radians(new))
-        )
+        degrees, shown = None if now is None else math.degrees(now), replace(spec, unit="deg")
+        self.numbers.row(self.ui, key, _label(spec), shown, degrees, lambda new: commit(math.radians(new)))
 
-    def _vector(
-        self, ui: Ui, window: Window, kind: Kind, spec: Field, key: str, values: Sequence[Vector2]
-    ) -> None:
-        parts = _common([value.x for value in values]), _common([value.y for value in values])
-
+    def _vector(self, kind: Kind, spec: Field, key: str, values: Sequence[Vector2]) -> None:
         def commit(axis: int, new: float) -> None:
             spec.check((new, new))
-            _set_part(window, kind, spec, axis, new)
 
-        self._numbers.vector_row(ui, key, _label(spec), spec, parts, commit)
+            def moved(entity: int) -> Vector2:
+                vector = getattr(self.window.edits.world.component(entity, kind), spec.name)
+                return Vector2(new, vector.y) if axis == 0 else Vector2(vector.x, new)
 
-    def _flag(self, ui: Ui, window: Window, kind: Kind, spec: Field, values: Sequence[Any]) -> None:
-        words = _label(spec) if _common(values) is not None else f"{_label(spec)} ({_VARIOUS})"
-        on = all(value is True for value in values)
-        if ui.checkbox(words, on, spec.meaning):
-            _set(window, kind, spec, not on)
+            self._change(kind, spec, moved)
 
-    def _choice(
-        self, ui: Ui, window: Window, kind: Kind, spec: Field, key: str, values: Sequence[str]
-    ) -> None:
-        now = _common(values) or _VARIOUS
-        self._numbers.label(ui, key, _label(spec), spec)
-        chosen = ui.choice(key, now, spec.choices)
-        if chosen != now:
-            _set(window, kind, spec, chosen)
+        parts = _common([value.x for value in values]), _common([value.y for value in values])
+        self.numbers.vector_row(self.ui, key, _label(spec), spec, parts, commit)
 
-    def _entity(
-        self, ui: Ui, world: World, window: Window, kind: Kind, spec: Field, key: str, values: Sequence[Any]
-    ) -> None:
+    def _entity(self, kind: Kind, spec: Field, key: str, end: int | None) -> None:
         """Build the list of the bodies that a field can name; one can be clicked in the world as well."""
-        if len(values) > 1:
-            return
-        (entity,), end = window.selection.entities, values[0]
-        self._numbers.label(ui, key, _label(spec), spec)
-        none = _ABSENT.get(key, "none")
+        ui, world, window = self.ui, self.world, self.window
+        (entity,), none = window.selection.entities, _ABSENT.get(key, "none")
+        self.numbers.label(ui, key, _label(spec), spec)
         room = imgui.get_content_region_avail().x - 3.6 * ui.size
         now = none if end is None else world.label(end)
         picked = ui.choice(key, end, lambda: _ends(world, entity, none), width=room, shown=now)
@@ -131,6 +113,18 @@ class ComponentRows:
             window.notify("Click the body; empty space for none", 6.0)
         if picked != end:
             window.do_first(set_end, entity, kind, spec.name, picked)
+
+    def _set(self, kind: Kind, spec: Field, value: object) -> None:
+        self._change(kind, spec, lambda entity: value)
+
+    def _change(self, kind: Kind, spec: Field, value_of: Callable[[int], object]) -> None:
+        """Give the field of all that is selected a value, before the click that ended the writing is done."""
+        chosen, name = self.window.selection.entities, kind.__name__
+        self.window.do_first(
+            lambda world, window: change_fields(
+                world, window, [SetField(entity, name, spec.name, value_of(entity)) for entity in chosen]
+            )
+        )
 
 
 def _ends(world: World, entity: int, none: str) -> dict[int | None, str]:
@@ -142,25 +136,6 @@ def _ends(world: World, entity: int, none: str) -> dict[int | None, str]:
 def _common(values: Sequence[Any]) -> Any:
     """Return the value that all have, or ``None``."""
     return values[0] if all(value == values[0] for value in values) else None
-
-
-def _set(window: Window, kind: Kind, spec: Field, value: object) -> None:
-    """Give the field of all that is selected a value, before the click that ended the writing is done."""
-    _do_first(window, lambda entity: SetField(entity, kind.__name__, spec.name, value))
-
-
-def _set_part(window: Window, kind: Kind, spec: Field, axis: int, new: float) -> None:
-    def change(entity: int) -> SetField:
-        vector = getattr(window.edits.world.component(entity, kind), spec.name)
-        value = Vector2(new, vector.y) if axis == 0 else Vector2(vector.x, new)
-        return SetField(entity, kind.__name__, spec.name, value)
-
-    _do_first(window, change)
-
-
-def _do_first(window: Window, change: Callable[[int], SetField]) -> None:
-    chosen = window.selection.entities
-    window.do_first(lambda world, window: change_fields(world, window, [change(entity) for entity in chosen]))
 
 
 def _is_shown(spec: Field, held: Component) -> bool:

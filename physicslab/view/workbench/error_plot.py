@@ -1,6 +1,7 @@
 """Error against run time: how far measuring has come, then a plot, and a table to choose a method from."""
 
 import math
+from functools import partial
 
 import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
@@ -9,7 +10,6 @@ from numpy.typing import NDArray
 from physicslab.history import SetSimulation
 from physicslab.view.canvas.quantities import round_quantity
 from physicslab.view.controls import file_actions
-from physicslab.view.toolkit.bars import bar
 from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lab_process import ErrorStudy, Sample
@@ -45,11 +45,10 @@ def build_error_plot(ui: Ui, window: Window) -> None:
 
 def _build_progress(ui: Ui, window: Window) -> None:
     study, (left, top, width, _) = window.error_study, window.room()
-    with ui.floating("Measuring the error", (left + 0.5 * width, top + 4.0 * ui.size)) as stays:
-        bar(ui, "Measuring this scene with every method", f"{study.share:.0%}", study.share, ui.theme.accent)
-        stopped = ui.button("Stop", "Give up measuring (F5)")
-    if stopped or not stays[0]:
-        window.do_next(file_actions.study_error)
+    place, stop = (left + 0.5 * width, top + 4.0 * ui.size), partial(window.do_next, file_actions.study_error)
+    with ui.floating("Measuring the error", place, stop):
+        ui.bar("Measuring this scene with every method", f"{study.share:.0%}", study.share, ui.theme.accent)
+        ui.button("Stop", "Give up measuring (F5)", file_actions.study_error)
 
 
 def _build_result(ui: Ui, window: Window) -> None:
@@ -59,17 +58,16 @@ def _build_result(ui: Ui, window: Window) -> None:
     wide = (_TABLE + _PLOT[1]) * size
     wide = min(room, wide) if beside else min(max(room, 0.6 * width), 0.9 * width)
     high = min(0.9 * height - _WORDS * size, _HEIGHT * size)
-    with ui.floating(_TITLE, window.middle) as stays:
-        imgui.push_text_wrap_pos(wide)
-        ui.faint(
-            f"How far bodies are off after {study.seconds:g} s: each mark is one run, left is fast, low is "
-            f"right. Compared with {study.reference}; there is no known answer. A click on a mark, or on a "
-            "name in the table, runs the scene by it.",
-            wrapped=False,
-        )
-        if study.chaotic:
-            ui.text(_chaos(study), ui.theme.paused)
-        imgui.pop_text_wrap_pos()
+    with ui.floating(_TITLE, window.middle, window.closing_of("error_study.shown")):
+        with ui.wrapping(wide):
+            ui.faint(
+                f"How far bodies are off after {study.seconds:g} s: each mark is one run, left is fast, low "
+                f"is right. Compared with {study.reference}; there is no known answer. A click on a mark, or "
+                "on a name in the table, runs the scene by it.",
+                wrapped=False,
+            )
+            if study.chaotic:
+                ui.text(_chaos(study), ui.theme.paused)
         _build_plot(ui, study, window, (wide - _TABLE * size, high) if beside else (wide, 0.55 * high))
         if beside:
             imgui.same_line()
@@ -77,10 +75,7 @@ def _build_result(ui: Ui, window: Window) -> None:
         if ui.button("Close"):
             study.shown = False
         imgui.same_line()
-        if ui.button("CSV of all runs", "Write the table to a file", shown="CSV"):
-            window.do_next(_save)
-    if not stays[0]:
-        study.shown = False
+        ui.button("CSV of all runs", "Write the table to a file", _save, shown="CSV")
 
 
 def _chaos(study: ErrorStudy) -> str:
@@ -166,8 +161,7 @@ def _build_table(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, f
     for n, run in enumerate(sorted(study.samples, key=lambda run: run.cpu_ms)):
         imgui.table_next_row()
         imgui.table_next_column()
-        if ui.button(f"Use run {n + 1}", "Run this scene by it from here on", shown=run.name):
-            window.do_next(_use, run)
+        ui.button(f"Use run {n + 1}", "Run this scene by it from here on", _use, run, shown=run.name)
         for words in (run.step, f"{run.cpu_ms:.3g} ms", run.words):
             imgui.table_next_column()
             ui.text(words)

@@ -8,8 +8,7 @@ from typing import Literal
 
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
-from physicslab.diagnostics.audit import Audit
-from physicslab.diagnostics.energy import Energy, Momentum, summation
+from physicslab.diagnostics.energy import Audit, Energy, Momentum, summation
 from physicslab.diagnostics.reference_solution import ReferenceSolution, reference_solution
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.vector import Vector2

@@ -16,8 +16,8 @@ from physicslab.view.canvas.theme import Theme
 from physicslab.view.controls import file_actions
 from physicslab.view.controls.file_actions import begin_film, open_from_list, scene_files
 from physicslab.view.picture.picture import picture_of
-from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.filming import ALL, BACK, FORWARD, FROM_NOW
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -38,17 +38,18 @@ def _build_name(ui: Ui, label: str, text: str, width: float, refused: str) -> tu
     return text, entered
 
 
-def build_save(ui: Ui, window: Window) -> None:
+def build_save(ui: Ui, world: World, window: Window) -> None:
     """Build the field and its buttons, in a window of its own."""
-    with ui.floating("Save as", window.middle) as stays:
+    close = window.closing_of("naming")
+    with ui.floating("Save as", window.middle, close):
         ui.faint("A file in the working directory, or a path", wrapped=False)
         text, entered = _build_name(ui, "File name", window.naming or "", _SAVE, window.naming_refused)
         window.naming = text
         if ui.button("Save") or entered:
-            window.do_next(file_actions.save_under, text)
+            ui.do_next(file_actions.save_under, text)
         imgui.same_line()
-        if ui.button("Cancel") or not stays[0]:
-            window.naming = None
+        if ui.button("Cancel"):
+            close()
 
 
 def recent_label(number: int, path: Path) -> str:
@@ -56,27 +57,27 @@ def recent_label(number: int, path: Path) -> str:
     return f"{number}. {printable(path.name)}"
 
 
-def build_open(ui: Ui, window: Window) -> None:
+def build_open(ui: Ui, world: World, window: Window) -> None:
     """Build the field, a list of the last few files and the buttons, in a window of its own."""
-    with ui.floating("Open a file", window.middle) as stays:
+    close = window.closing_of("opening")
+    with ui.floating("Open a file", window.middle, close):
         ui.faint("A path, or the number of a line below", wrapped=False)
         text, entered = _build_name(ui, "File to open", window.opening or "", _OPEN, window.opening_refused)
         window.opening = text
         for number, path in enumerate(window.recent.there, start=1):
-            if ui.selectable(recent_label(number, path)):
-                window.do_next(file_actions.open_from_list, path)
+            ui.selectable(recent_label(number, path), file_actions.open_from_list, path)
             ui.tip(printable(str(path)))
         if ui.button("Open") or entered:
             window.do_next(file_actions.open_named, text)
         imgui.same_line()
-        if ui.button("Do not open") or not stays[0]:
-            window.opening = None
+        if ui.button("Do not open"):
+            close()
 
 
-def build_film(ui: Ui, window: Window) -> None:
+def build_film(ui: Ui, world: World, window: Window) -> None:
     """Build the choices, the field and the buttons, in a window of its own."""
-    filming, width = window.filming, _FILM * ui.size
-    with ui.floating("Film", window.middle) as stays:
+    filming, width, close = window.filming, _FILM * ui.size, window.closing_of("filming.choosing")
+    with ui.floating("Film", window.middle, close):
         filming.what = ui.choice("Film of", filming.what, (ALL, BACK, FORWARD, FROM_NOW), width=width)
         ending = Path(filming.name).suffix.lower()
         now = next((kind for kind, other in _KINDS.items() if other == ending), next(iter(_KINDS)))
@@ -87,8 +88,8 @@ def build_film(ui: Ui, window: Window) -> None:
         if ui.button("Make the film", "It plays as fast as time runs in the window now") or entered:
             window.do_next(begin_film)
         imgui.same_line()
-        if ui.button("No film") or not stays[0]:
-            filming.choosing = False
+        if ui.button("No film"):
+            close()
 
 
 # ---- the gallery: every scene as a card with its picture, its title and its sentence -----------------------
@@ -141,16 +142,16 @@ class Gallery:
         columns = max(int(_SHARE * width / ((_CARD[0] + 0.6) * size)), 1)
         inner = ImVec2(columns * (_CARD[0] + 0.6) * size + 1.5 * size, _SHARE * height - 4.0 * size)
         self._missing = False
-        with ui.floating("Scenes", (left + 0.5 * width, top + 0.5 * height), docks=True) as stays:
-            if imgui.begin_child("cards", inner):
-                clip = _visible()
-                for n, card in enumerate(self._cards):
-                    if n % columns:
-                        imgui.same_line(0.0, 0.6 * size)
-                    self._build_card(ui, card, clip, window)
-            imgui.end_child()
-        if not stays[0]:
-            window.shows_gallery = False
+        place = left + 0.5 * width, top + 0.5 * height
+        with (
+            ui.floating("Scenes", place, window.closing_of("shows_gallery"), docks=True),
+            ui.child("cards", inner) as is_seen,
+        ):
+            clip = _visible()
+            for n, card in enumerate(self._cards if is_seen else ()):
+                if n % columns:
+                    imgui.same_line(0.0, 0.6 * size)
+                self._build_card(ui, card, clip, window)
 
     def _build_card(self, ui: Ui, card: _Card, clip: pygame.Rect, window: Window) -> None:
         size = ui.size
@@ -250,6 +251,5 @@ def build_recovery(ui: Ui, window: Window, free: Rect) -> int:
         for n, (label, action) in enumerate(_OFFERS.items()):
             if in_line or (beside and n):
                 imgui.same_line()
-            if ui.button(label):
-                window.do_next(action)
+            ui.button(label, "", action)
     return round(height) + 2 * _PAD

@@ -12,9 +12,9 @@ from physicslab.diagnostics.scales import scales_of
 from physicslab.view.canvas.quantities import ROUNDING, written_unit
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.controls import dashboard_actions
-from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.style import as_vector, packed
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.record import Key, Record, line_to_show, path_to_show, range_to_show, unbroken
 from physicslab.view.window.window import Window

@@ -85,10 +85,6 @@ class Hud:
         interface.draw(window.canvas)
         window.overlays.covered = [*taken, *interface.covered]
 
-    @property
-    def _text_size(self) -> int:
-        return self._interface.text
-
     # ---- what is read: what is not shown is not ------------------------------------------------------------
 
     def _follow(self, world: World, elapsed: float) -> None:
@@ -131,12 +127,11 @@ class Hud:
 
     def _draw_advice(self, world: World, middle: int, top: int, bottom: int, width: int) -> Rect | None:
         """Write what is not to be trusted, and put a ring around each body that is spoken of."""
-        window, size = self._window, self._text_size
-        canvas, theme = window.canvas, window.theme
+        on = self._window.drawing
         bodies = [one.number for one in self._advice if one.number is not None]
-        draw_selection(world, bodies, window.camera, theme, canvas, colour=theme.warning)
-        plainly = window.level == "Explore"
-        return draw_advice(self._advice, middle, top, bottom, width, size, canvas, theme, plainly=plainly)
+        draw_selection(world, bodies, on, colour=on.theme.warning)
+        plainly = self._window.level == "Explore"
+        return draw_advice(self._advice, middle, top, bottom, width, on, plainly=plainly)
 
     # ---- drawing -------------------------------------------------------------------------------------------
 
@@ -145,28 +140,27 @@ class Hud:
 
         If there is no room for all of them, messages come first, then banners, then advice.
         """
-        window, size = self._window, self._text_size
-        canvas, theme, room = window.canvas, window.theme, self._interface.visible
-        left, top, width, height = room
+        window, on, room = self._window, self._window.drawing, self._interface.visible
+        (left, top, width, height), size = room, on.size
         margin = round(0.6 * size)
-        bar = draw_scale_bar(window.camera, left + width, top + height - margin, size, canvas, theme)
+        bar = draw_scale_bar(on, left + width, top + height - margin)
         numbers = 0
         if window.grid:
-            numbers = draw_axis_numbers(window.camera, room, bar[0], size, canvas, theme)
+            numbers = draw_axis_numbers(on, room, bar[0])
         taken = [bar, *self._draw_messages(bar, numbers)]
         bottom = min(rect[1] for rect in taken) - margin
         banners = self._banners(world)
         begin, wide = self._free_span(top, top + _STRIP * size)
         middle, across = begin + wide // 2, wide - 2 * margin
-        shown = draw_banners(banners, middle, top + margin, bottom, across, size, canvas, theme)
+        shown = draw_banners(banners, middle, top + margin, bottom, across, on)
         below = shown[-1][1] + shown[-1][3] + margin if shown else top + margin
         advice = self._draw_advice(world, middle, below, bottom, across)
         taken += [*shown, *([] if advice is None else [advice])]
-        legend = legend_of(window.overlays, (width - 2 * margin, height), size, canvas, theme)
+        legend = legend_of(window.overlays, (width - 2 * margin, height), on)
         if legend is not None:
-            taken.append(legend.draw(left + margin, top + margin, canvas, theme))
+            taken.append(legend.draw(left + margin, top + margin, on))
         above = left, top, width, max(height - numbers, 1)
-        draw_edge_arrows(world, window.camera, above, [*taken, *self._windows], size, canvas, theme)
+        draw_edge_arrows(world, on, above, [*taken, *self._windows])
         return taken
 
     def _free_span(self, top: int, bottom: int) -> tuple[int, int]:
@@ -183,15 +177,14 @@ class Hud:
         for begin, end in [*sorted(over), (left + width, 0)]:
             widest = max(widest, (at, min(begin, left + width) - at), key=lambda span: span[1])
             at = max(at, end)
-        return widest if widest[1] >= _LEAST * self._text_size else (left, width)
+        return widest if widest[1] >= _LEAST * self._interface.text else (left, width)
 
     def _draw_messages(self, bar: Rect, numbers: int) -> list[Rect]:
         """Draw what went wrong or was just done, beside the scale bar or above it; return where.
 
         They lie above the ``numbers`` at the lower edge, which are so high [px].
         """
-        window, size = self._window, self._text_size
-        canvas, theme = window.canvas, window.theme
+        window, on, theme, size = self._window, self._window.drawing, self._window.theme, self._interface.text
         _, top, _, height = self._interface.visible
         left, width = self._free_span(top + height - _STRIP * size, top + height)
         words = (
@@ -199,8 +192,8 @@ class Hud:
             (window.notice, theme.error if window.notice_failed else theme.notice),
         )
         middle, bottom = left + width // 2, top + height - numbers
-        messages = lay_out_messages(words, size, round(_MESSAGE_WIDTH * width), canvas)
+        messages = lay_out_messages(words, on, round(_MESSAGE_WIDTH * width))
         if any(middle + message.width // 2 > bar[0] - size // 2 for message in messages):
-            messages = lay_out_messages(words, size, width - size, canvas)
+            messages = lay_out_messages(words, on, width - size)
             bottom = min(bottom, bar[1])
-        return draw_messages(messages, middle, top + size // 2, bottom, size, canvas, theme)
+        return draw_messages(messages, middle, top + size // 2, bottom, on)

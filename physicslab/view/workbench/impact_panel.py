@@ -35,7 +35,7 @@ def build_impacts(ui: Ui, world: World, window: Window) -> None:
     wide = sum(_WIDTHS) * ui.size + len(_WIDTHS) * 2.0 * imgui.get_style().cell_padding.x + _SLACK * ui.size
     wide = min(wide, max(width, 0.6 * window.canvas.size[0]) - 2.0 * ui.size)
     place = left + 0.5 * width, top + 0.5 * (_HEIGHT + 7.5) * ui.size
-    with ui.floating("Impacts", place, docks=True) as stays:
+    with ui.floating("Impacts", place, window.closing_of("impacts.shown"), docks=True):
         _build_head(ui, world, window)
         rows = window.impacts.order(window.selection.entities)
         room = ui.extent(wide, _HEIGHT * ui.size)
@@ -43,12 +43,9 @@ def build_impacts(ui: Ui, world: World, window: Window) -> None:
         if len(rows):
             _build_table(ui, world, window, rows, size)
         else:
-            imgui.push_text_wrap_pos(size.x)
-            ui.faint(_nothing(window), wrapped=False)
-            imgui.pop_text_wrap_pos()
+            with ui.wrapping(size.x):
+                ui.faint(_nothing(window), wrapped=False)
             imgui.dummy(ImVec2(size.x, max(size.y - 3.0 * ui.size, 1.0)))
-    if not stays[0]:
-        window.impacts.shown = False
 
 
 def _nothing(window: Window) -> str:
@@ -67,11 +64,15 @@ def _build_head(ui: Ui, world: World, window: Window) -> None:
     ui.same_line_if_room("Pause at the next")
     waits = window.microscope.waits_for is not None
     tip = "Run until the next impact of the selection, or of any body, and pause there (Shift+Z)"
-    if ui.button("Pause at the next", tip, on=waits):
-        window.do_next(impact_actions.pause_at_next)
+    ui.button("Pause at the next", tip, impact_actions.pause_at_next, on=waits)
     ui.same_line_if_room("CSV")
-    if ui.button("CSV of impacts", "Write all of them to a file", shown="CSV", enabled=count > 0):
-        window.do_next(impact_actions.save_table)
+    ui.button(
+        "CSV of impacts",
+        "Write all of them to a file",
+        impact_actions.save_table,
+        shown="CSV",
+        enabled=count > 0,
+    )
     ui.same_line_if_room(f"{count} impacts")
     ui.faint(f"{count} impacts", wrapped=False)
 

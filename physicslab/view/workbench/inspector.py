@@ -59,8 +59,7 @@ def _build_motion(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
     scales = scales_of(world)
     linear = velocity.linear if without_rounding(velocity.linear.magnitude, scales["m/s"]) else Vector2()
     angular = without_rounding(velocity.angular, scales["rad/s"])
-    ui.gap(0.2)
-    ui.rule()
+    ui.rule(0.2)
     speed = linear.magnitude
     ui.row("Speed", quantity(speed, "m/s"))
     if speed > 0.0 and not is_brief:
@@ -83,8 +82,7 @@ def _build_motion(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
 def _build_spring(ui: Ui, state: SpringState | None) -> None:
     if state is None:
         return
-    ui.gap(0.2)
-    ui.rule()
+    ui.rule(0.2)
     ui.row("Length", quantity(state.length, "m"))
     ui.row(
         "Longer by",
@@ -104,8 +102,7 @@ def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
     step = measured.step
     if not measured.forces and step is None:
         return
-    ui.gap(0.2)
-    ui.rule()
+    ui.rule(0.2)
     ui.faint("Forces on it")
     for one in measured.forces:
         ui.row(one.name.capitalize(), quantity(one.force.magnitude, "N"), vector_quantity(one.force, "N"))
@@ -172,114 +169,88 @@ _SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
 """Components that are one click away; all others are in a list."""
 
 
-class Inspector:
-    """The rows of the selection. One body: all its fields; several: what they have in common."""
+def build_inspector(ui: Ui, numbers: NumberFields, world: World, window: Window) -> None:
+    """Build the rows of the selection. One body: all its fields; several: what they have in common."""
+    chosen, is_brief = window.selection.entities, window.level == "Explore"
+    first, is_one = chosen[-1], len(chosen) == 1
+    numbers.share = _LABELS
+    ui.heading(world.label(first) if is_one else f"{len(chosen)} selected")
+    ui.faint(_kind(world, first) if is_one else "Changes go to all of them")
+    if is_one:
+        _build_name(ui, numbers, world, window, first)
+    kinds = [
+        type(held)
+        for held in world.components(first)
+        if isinstance(held, Component)
+        and not isinstance(held, Held)
+        and all(world.has(other, type(held)) for other in chosen)
+    ]
+    rows = ComponentRows(ui, numbers, world, window)
+    for kind in sorted(kinds, key=lambda kind: ORDER.get(kind, len(ORDER))):
+        rows.build(kind)
+    if is_one:
+        for label, value in readings_of(world, first):
+            ui.row(label, value)
+        build_derived(ui, world, first, is_brief=is_brief)
+        build_body_digits(ui, world, window, first)
+        if not is_brief or window.overlays.arrows:
+            build_forces(ui, window.measured, is_brief=window.level != "Engineer")
+        build_pairs(ui, window.measured)
+    _build_components(ui, world, window)
+    _build_buttons(ui, world, window)
 
-    def __init__(self) -> None:
-        self._numbers = NumberFields(_LABELS)
-        self._rows = ComponentRows(self._numbers)
-        self._shown: tuple[object, ...] = ()
 
-    def build(self, ui: Ui, world: World, window: Window) -> None:
-        """Build it for the selection."""
-        chosen = window.selection.entities
-        if self._shown != (world, chosen):
-            self._shown = world, chosen
-            self._numbers.clear()
-        first = chosen[-1]
-        ui.heading(world.label(first) if len(chosen) == 1 else f"{len(chosen)} selected")
-        ui.faint(_kind(world, first) if len(chosen) == 1 else "Changes go to all of them")
-        if len(chosen) == 1:
-            self._build_name(ui, world, window, first)
-        kinds = [
-            type(held)
-            for held in world.components(first)
-            if isinstance(held, Component)
-            and not isinstance(held, Held)
-            and all(world.has(other, type(held)) for other in chosen)
-        ]
-        for kind in sorted(kinds, key=lambda kind: ORDER.get(kind, len(ORDER))):
-            self._rows.build(ui, world, window, kind)
-        if len(chosen) == 1:
-            for label, value in readings_of(world, first):
-                ui.row(label, value)
-            build_derived(ui, world, first, is_brief=window.level == "Explore")
-            build_body_digits(ui, world, window, first)
-            if window.level != "Explore" or window.overlays.arrows:
-                build_forces(ui, window.measured, is_brief=window.level != "Engineer")
-            build_pairs(ui, window.measured)
-        self._build_components(ui, world, window)
-        self._build_buttons(ui, world, window)
+def _build_name(ui: Ui, numbers: NumberFields, world: World, window: Window, entity: int) -> None:
+    """Build the row of a name."""
 
-    def finish(self, window: Window) -> str:
-        """Take over what is half written in a field, and return why it is refused; empty where it is not.
+    def commit(name: str) -> None:
+        if name:
+            _check_name(world, entity, name)
+        window.do_first(changing.name_entity, entity, name)
 
-        Text for bodies that are shown no more is dropped.
-        """
-        if self._shown != (window.edits.world, window.selection.entities):
-            self._numbers.clear()
-        return self._numbers.finish()
+    held = world.component(entity, Name).id if world.has(entity, Name) else ""
+    numbers.row(ui, "Name", "Name", _NAME, held, commit)
 
-    def _build_name(self, ui: Ui, world: World, window: Window, entity: int) -> None:
-        """Build the row of a name."""
 
-        def commit(name: str) -> None:
-            if name:
-                _check_name(world, entity, name)
-            window.do_first(changing.name_entity, entity, name)
+def _build_components(ui: Ui, world: World, window: Window) -> None:
+    """Build what components can be added, and which can be taken away."""
+    chosen = window.selection.entities
+    if not all(world.has(entity, Transform) for entity in chosen):
+        return
+    ui.rule(0.2)
+    width = imgui.get_content_region_avail().x
+    for n, (kind, words, tip) in enumerate(_SWITCHES):
+        if n % 2 and _SECOND_COLUMN * width + ui.checkbox_width(words) <= width:
+            imgui.same_line(_SECOND_COLUMN * width + imgui.get_style().window_padding.x)
+        on = all(world.has(entity, kind) for entity in chosen)
+        if ui.checkbox(words, on, tip):
+            if on:
+                window.do_next(changing.take, chosen, kind)
+            else:
+                window.do_next(changing.give, chosen, partial(_made, kind))
+    with ui.list("Add ...", "Properties that can be added") as shown:
+        for words, (meaning, make) in (changing.addable(world, chosen) if shown else {}).items():
+            ui.item(f"add {words}", changing.give, chosen, make, tip=meaning, shown=f"{words}: {meaning}")
+    imgui.same_line()
+    with ui.list("Take away ...", "Properties that it has") as shown:
+        for words, (meaning, kind) in (changing.removable(world, chosen) if shown else {}).items():
+            ui.item(f"no {words}", changing.take, chosen, kind, tip=meaning, shown=f"{words}: {meaning}")
+    ui.same_line_if_room("Plot")
+    ui.button("Plot", "Its speed and position against time", plot_selected)
 
-        held = world.component(entity, Name).id if world.has(entity, Name) else ""
-        self._numbers.row(ui, "Name", "Name", _NAME, held, commit)
 
-    # ---- components ----------------------------------------------------------------------------------------
-
-    def _build_components(self, ui: Ui, world: World, window: Window) -> None:
-        """Build what components can be added, and which can be taken away."""
-        chosen = window.selection.entities
-        if not all(world.has(entity, Transform) for entity in chosen):
-            return
-        ui.gap(0.2)
-        ui.rule()
-        width = imgui.get_content_region_avail().x
-        for n, (kind, words, tip) in enumerate(_SWITCHES):
-            if n % 2 and _SECOND_COLUMN * width + ui.checkbox_width(words) <= width:
-                imgui.same_line(_SECOND_COLUMN * width + imgui.get_style().window_padding.x)
-            on = all(world.has(entity, kind) for entity in chosen)
-            if ui.checkbox(words, on, tip):
-                if on:
-                    window.do_next(changing.take, chosen, kind)
-                else:
-                    window.do_next(changing.give, chosen, partial(_made, kind))
-        with ui.list("Add ...", "Properties that can be added") as shown:
-            for words, (meaning, make) in (changing.addable(world, chosen) if shown else {}).items():
-                if ui.item(f"add {words}", tip=meaning, shown=f"{words}: {meaning}"):
-                    window.do_next(changing.give, chosen, make)
-        imgui.same_line()
-        with ui.list("Take away ...", "Properties that it has") as shown:
-            for words, (meaning, kind) in (changing.removable(world, chosen) if shown else {}).items():
-                if ui.item(f"no {words}", tip=meaning, shown=f"{words}: {meaning}"):
-                    window.do_next(changing.take, chosen, kind)
-        ui.same_line_if_room("Plot")
-        if ui.button("Plot", "Its speed and position against time"):
-            window.do_next(plot_selected)
-
-    @staticmethod
-    def _build_buttons(ui: Ui, world: World, window: Window) -> None:
-        ui.gap(0.2)
-        attached = attachments(world, window.selection.entities)
-        for n, (words, (tip, action)) in enumerate(attached.items()):
-            if n:
-                ui.same_line_if_room(words)
-            if ui.button(words, tip):
-                window.do_next(action)
-        if ui.button("Duplicate", "A copy beside it (Ctrl+D)"):
-            window.do_next(duplicate_selected)
-        imgui.same_line()
-        if ui.button("Delete", "Remove the selection (Del)"):
-            window.do_next(remove_selected)
-        ui.same_line_if_room("Done")
-        if ui.button("Done", "Select nothing (Esc)"):
-            window.do_next(lambda _, window: window.selection.clear())
+def _build_buttons(ui: Ui, world: World, window: Window) -> None:
+    ui.gap(0.2)
+    attached = attachments(world, window.selection.entities)
+    for n, (words, (tip, action)) in enumerate(attached.items()):
+        if n:
+            ui.same_line_if_room(words)
+        ui.button(words, tip, action)
+    ui.button("Duplicate", "A copy beside it (Ctrl+D)", duplicate_selected)
+    imgui.same_line()
+    ui.button("Delete", "Remove the selection (Del)", remove_selected)
+    ui.same_line_if_room("Done")
+    ui.button("Done", "Select nothing (Esc)", lambda _, window: window.selection.clear())
 
 
 def _made(kind: type[Component], entity: int) -> Component:

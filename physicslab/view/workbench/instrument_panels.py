@@ -13,7 +13,6 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, table_cell
 from physicslab.state.attached import place_of
 from physicslab.systems.gate import GateSystem
-from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.file_actions import save_new
@@ -38,23 +37,20 @@ _MEAN = 10
 _ARROWS = "→↗↑↖←↙↓↘"
 
 
-def build_stopwatch(ui: Ui, world: World, window: Window, room: Rect) -> None:
-    """Build it in a window of its own, which begins in a corner of the room [px] where no graph is."""
+def build_stopwatch(ui: Ui, world: World, window: Window) -> None:
+    """Build it in a window of its own, which begins in a corner of the room where no graph is."""
     system = world.schedule.find(GateSystem)
     gates = len(world.batch(Gate))
     every = laps(system.crossings, gates) if system is not None else []
-    left, top, width, _ = room
+    left, top, width, _ = ui.room
     columns = _COLUMNS if width > _width(_COLUMNS) * ui.size else _COLUMNS[_NARROW:]
     half = 0.5 * _width(columns) * ui.size
     is_taken = any(graph.side == "right" for graph in window.dashboard.graphs)
     place = left + half if is_taken else left + width - half, top + 10.0 * ui.size
-    with ui.floating("Stopwatch", place) as stays:
+    with ui.floating("Stopwatch", place, window.closing_of("shows_stopwatch")):
         _build_times(ui, world, every, gates)
         _build_table(ui, world, every[-(_ROWS if columns is _COLUMNS else _FEWER_ROWS) :], columns)
-        if ui.button("CSV of crossings", "Write all of them to a file", shown="CSV", enabled=bool(every)):
-            window.do_next(_save)
-    if not stays[0]:
-        window.shows_stopwatch = False
+        ui.button("CSV of crossings", "Write all of them to a file", _save, shown="CSV", enabled=bool(every))
 
 
 def _build_times(ui: Ui, world: World, every: Sequence[Lap], gates: int) -> None:

@@ -1,12 +1,11 @@
 """The panels around the world: menus, tools, transport, and the selection or the world in figures."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from operator import attrgetter
 
 import pygame
 
 from physicslab.view.canvas.canvas import Canvas, Rect
-from physicslab.view.overlay.banners import text_size
 from physicslab.view.toolkit.toolkit import Toolkit, Walk
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
@@ -14,14 +13,15 @@ from physicslab.view.workbench.error_plot import build_error_plot
 from physicslab.view.workbench.figures import Line, WorldFigures
 from physicslab.view.workbench.file_panels import Gallery, build_film, build_open, build_recovery, build_save
 from physicslab.view.workbench.impact_panel import build_impacts
-from physicslab.view.workbench.inspector import Inspector
+from physicslab.view.workbench.inspector import build_inspector
 from physicslab.view.workbench.instrument_panels import NotePanel, build_stopwatch
 from physicslab.view.workbench.layout import Layout
 from physicslab.view.workbench.menus import build_help, build_menu_bar
 from physicslab.view.workbench.microscope_panel import build_microscope
+from physicslab.view.workbench.number_field import NumberFields
 from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.scene_panels import ScenePanels
-from physicslab.view.workbench.settings_panel import RecipePanel, SettingsPanel
+from physicslab.view.workbench.settings_panel import build_recipe, build_settings
 from physicslab.view.workbench.transport import build_history, build_transport
 from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
 from physicslab.world import World
@@ -37,6 +37,15 @@ _WATCHED = attrgetter(
     "recovery.offered", "selection.entities", "shows_gallery", "shows_stopwatch", "tool", "trust.state",
 )  # fmt: skip
 """The state of a window that panels show beside figures."""
+type _Build = Callable[[Ui, World, Window], None]
+_BEFORE: dict[str, _Build] = {
+    "shows_stopwatch": build_stopwatch, "impacts.shown": build_impacts, "microscope.record": build_microscope,
+}  # fmt: skip
+_AFTER: dict[str, _Build] = {
+    "naming": build_save, "filming.choosing": build_film, "opening": build_open,
+    "lists_history": build_history, "help": build_help,
+}  # fmt: skip
+"""What builds the panels that are open, those below and those above others at first."""
 _BUTTONS = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 
 
@@ -61,10 +70,9 @@ class Interface:
         self.toolkit = Toolkit()
         self._walk = Walk(self.toolkit)
         self.ui = Ui(self.toolkit.fonts, window.theme)
-        self._inspector = Inspector()
-        self._settings = SettingsPanel()
+        self.ui.do_next = window.do_next
+        self._numbers = NumberFields()
         self._gallery = Gallery()
-        self._recipe = RecipePanel()
         self._scene_panels = ScenePanels()
         self._note = NotePanel()
         self._next = 0.0
@@ -75,14 +83,14 @@ class Interface:
 
     def forget(self) -> None:
         """Drop all that is half written or dragged in panels: it was for a world that is shown no more."""
-        self._inspector, self._settings, self._note = Inspector(), SettingsPanel(), NotePanel()
+        self._numbers, self._note = NumberFields(), NotePanel()
         self._scene_panels.forget()
         self.ui.scenes += 1
 
     @property
     def text(self) -> int:
         """Height of the text [px]."""
-        return text_size(self._window.canvas, self._window.text_scale)
+        return self._window.drawing.size
 
     @property
     def layout(self) -> Layout:
@@ -116,14 +124,15 @@ class Interface:
         return taken
 
     def _finish_fields(self) -> str:
-        """Take over what is half written in a field, and return why it is refused; empty where it is not."""
-        return (
-            self._inspector.finish(self._window)
-            or self._settings.finish()
-            or self._recipe.finish()
-            or self._scene_panels.finish()
-            or self._note.finish(self._window)
-        )
+        """Take over what is half written in a field, and return why it is refused; empty where it is not.
+
+        Text for bodies that are shown no more is dropped.
+        """
+        self._begin_numbers()
+        return self._numbers.finish() or self._note.finish(self._window)
+
+    def _begin_numbers(self) -> None:
+        self._numbers.begin((self._window.edits.world, self._window.selection.entities))
 
     def build(
         self,
@@ -192,6 +201,8 @@ class Interface:
         ui, window, layout = self.ui, self._window, self.layout
         free = ui.dock(layout.visible)
         self._free = free if free != layout.visible else None
+        ui.room = self.visible
+        self._begin_numbers()
         build_menu_bar(ui, world, window)
         build_palette(ui, layout.palette, window)
         build_transport(ui, layout.transport, world, window)
@@ -199,47 +210,35 @@ class Interface:
             with ui.panel("side", layout.side):
                 build_levels(ui, window)
                 if window.selection.entities:
-                    self._inspector.build(ui, world, window)
+                    build_inspector(ui, self._numbers, world, window)
                 else:
                     build_world(ui, world, figures, window)
                     if window.tool in _RECIPES:
-                        self._recipe.build(ui, _RECIPES[window.tool], window)
+                        build_recipe(ui, self._numbers, _RECIPES[window.tool], window)
                     if window.level == "Engineer":
-                        self._settings.build(ui, world, window)
+                        build_settings(ui, self._numbers, world, window)
                 if window.level != "Explore":
-                    ui.gap(0.3)
-                    ui.rule()
+                    ui.rule(0.3)
                     build_figures(ui, measures if window.level == "Measure" else [*measures, *details])
                 if window.level != "Explore" or not window.selection.entities:
-                    ui.gap(0.3)
-                    ui.rule()
+                    ui.rule(0.3)
                     self._build_counts(ui, figures)
-        self._scene_panels.build(ui, world, window, self.visible)
-        if window.shows_stopwatch:
-            build_stopwatch(ui, world, window, self.visible)
-        if window.impacts.shown:
-            build_impacts(ui, world, window)
-        if window.microscope.is_open:
-            build_microscope(ui, world, window)
+        self._scene_panels.build(ui, self._numbers, world, window, self.visible)
+        for panel, build in _BEFORE.items():
+            if window.is_open(panel):
+                build(ui, world, window)
         if window.measuring.writing is not None:
             self._note.build(ui, window)
         if window.recovery.offered:
             self._offer_height = build_recovery(ui, window, layout.visible)
         build_error_plot(ui, window)
-        if window.naming is not None:
-            build_save(ui, window)
-        if window.filming.choosing:
-            build_film(ui, window)
-        if window.opening is not None:
-            build_open(ui, window)
+        for panel, build in _AFTER.items():
+            if window.is_open(panel):
+                build(ui, world, window)
         if window.shows_gallery:
             self._gallery.build(ui, window)
             if not self._gallery.is_complete:
                 self.toolkit.wake()
-        if window.lists_history:
-            build_history(ui, window)
-        if window.help:
-            build_help(ui, window)
 
     def _build_counts(self, ui: Ui, figures: WorldFigures) -> None:
         """Write the numbers that say how much there is to do."""

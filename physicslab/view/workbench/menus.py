@@ -11,8 +11,8 @@ from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import file_actions
 from physicslab.view.controls.controls import CONTROLS, Control
 from physicslab.view.controls.file_actions import scene_files
-from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.file_panels import recent_label
 from physicslab.view.workbench.trust_badge import badge_width, build_badge
@@ -68,10 +68,9 @@ def _build_controls(ui: Ui, groups: tuple[str, ...], world: World, window: Windo
         if n:
             ui.rule()
         for control in CONTROLS:
-            if control.group == group and ui.item(
-                control.title, control.label, on=control.on(world, window), tip=control.tip
-            ):
-                window.do_next(control.pressed)
+            if control.group == group:
+                on, keys = control.on(world, window), control.label
+                ui.item(control.title, control.pressed, keys=keys, on=on, tip=control.tip)
         if group == "file":
             with ui.menu("Recent files") as shown:
                 if shown:
@@ -84,15 +83,20 @@ def _build_recent(ui: Ui, window: Window) -> None:
     if not there:
         ui.faint("None was opened or saved yet", wrapped=False)
     for number, path in enumerate(there, start=1):
-        if ui.item(recent_label(number, path), tip=printable(str(path))):
-            window.do_next(file_actions.open_from_list, path)
+        ui.item(recent_label(number, path), file_actions.open_from_list, path, tip=printable(str(path)))
 
 
 def _build_scenes(ui: Ui, world: World, window: Window) -> None:
     """Build a line for each scene, built-in or in the working directory."""
     for name, scene in SCENES.items():
-        if ui.item(scene.title, identity=name, on=world.title == scene.title, tip=scene.description):
-            window.do_next(file_actions.open_from_list, name)
+        ui.item(
+            scene.title,
+            file_actions.open_from_list,
+            name,
+            identity=name,
+            on=world.title == scene.title,
+            tip=scene.description,
+        )
     try:
         files = scene_files(Path.cwd())
     except OSError as error:
@@ -102,8 +106,7 @@ def _build_scenes(ui: Ui, world: World, window: Window) -> None:
         ui.rule()
         ui.faint("Files in the working directory")
     for path in files:
-        if ui.item(printable(path.name), identity=str(path)):
-            window.do_next(file_actions.open_from_list, path)
+        ui.item(printable(path.name), file_actions.open_from_list, path, identity=str(path))
 
 
 # ---- help --------------------------------------------------------------------------------------------------
@@ -116,12 +119,12 @@ _SHARE = 0.94
 _GAP = "   "
 
 
-def build_help(ui: Ui, window: Window) -> None:
+def build_help(ui: Ui, world: World, window: Window) -> None:
     """Build the window of keys, in columns."""
     lines = [(_keys(control), f"{control.does}{_GAP}") for control in CONTROLS]
     room = _SHARE * window.canvas.size[0]
     columns = next((n for n in range(_MAX_COLUMNS, 1, -1) if _width(lines, n) <= room), 1)
-    with ui.floating("Keys and buttons", window.middle, docks=True) as stays:
+    with ui.floating("Keys and buttons", window.middle, window.closing_of("help"), docks=True):
         rows = -(-len(lines) // columns)
         if imgui.begin_table("keys", 2 * columns, imgui.TableFlags_.sizing_fixed_fit):
             for n in range(rows):
@@ -133,8 +136,6 @@ def build_help(ui: Ui, window: Window) -> None:
                     ui.text(does)
             imgui.end_table()
         ui.faint("F1 or Esc closes this")
-    if not stays[0]:
-        window.help = False
 
 
 def _keys(control: Control) -> str:

@@ -31,29 +31,26 @@ _FLAT = 0.6
 
 def build_microscope(ui: Ui, world: World, window: Window) -> None:
     """Build it in a window of its own."""
-    microscope = window.microscope
     wide, high, beside = _room(ui, window)
     left, top, across, _ = window.room()
     place = left + 0.5 * across, top + 0.5 * (high + 9.0 * ui.size)
-    with ui.floating("Collision microscope", place, docks=True) as stays:
+    with ui.floating("Collision microscope", place, window.closing_of("microscope.record"), docks=True):
         _build_head(ui, world, window, wide)
         if imgui.is_window_docked():
             free = imgui.get_content_region_avail()
             wide, high = free.x, max(free.y, 6.0 * ui.size)
             beside = wide >= (_PICTURE + _WORDS) * ui.size
         drawn = _PICTURE * ui.size if beside else wide - 1.2 * ui.size
-        if imgui.begin_child("drawings", ImVec2(_PICTURE * ui.size if beside else wide, high)):
-            _build_drawings(ui, world, window, drawn - 0.8 * ui.size)
-            if not beside:
-                _build_words(ui, world, window)
-        imgui.end_child()
+        with ui.child("drawings", ImVec2(_PICTURE * ui.size if beside else wide, high)) as is_seen:
+            if is_seen:
+                _build_drawings(ui, world, window, drawn - 0.8 * ui.size)
+                if not beside:
+                    _build_words(ui, world, window)
         if beside:
             imgui.same_line()
-            if imgui.begin_child("words", ImVec2(wide - _PICTURE * ui.size - ui.size, high)):
-                _build_words(ui, world, window)
-            imgui.end_child()
-    if not stays[0]:
-        microscope.close()
+            with ui.child("words", ImVec2(wide - _PICTURE * ui.size - ui.size, high)) as is_seen:
+                if is_seen:
+                    _build_words(ui, world, window)
 
 
 def _room(ui: Ui, window: Window) -> tuple[float, float, bool]:
@@ -70,10 +67,9 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
     """Build when and what it was, what can be done from there, and the observers."""
     microscope, collision = window.microscope, window.microscope.collision
     a, b = (body_name(world, body.entity, collision.wall) for body in (collision.a, collision.b))
-    imgui.push_text_wrap_pos(wide)
     pair = f"mu = {collision.friction:.4g}, e = {collision.restitution:.4g}"
-    ui.text(f"At {collision.time:.6f} s   ·   A: {a}   ·   B: {b}   ·   {pair}")
-    imgui.pop_text_wrap_pos()
+    with ui.wrapping(wide):
+        ui.text(f"At {collision.time:.6f} s   ·   A: {a}   ·   B: {b}   ·   {pair}")
     end = imgui.get_cursor_pos_x() + wide
     buttons: tuple[tuple[str, str, Action, bool], ...] = (
         ("Earlier", "The impact before this one; time goes back to it",
@@ -83,13 +79,13 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
          impact_actions.run_slowly, microscope.slow is not None),
         ("Pause at the next impact", "Run until the next impact of the selection, or of any body (Shift+Z)",
          impact_actions.pause_at_next, microscope.waits_for is not None),
-        ("All impacts", "The table of impacts (Z)", _toggle_table, window.impacts.shown),
+        ("All impacts", "The table of impacts (Z)",
+         lambda _, window: window.put("impacts.shown", not window.impacts.shown), window.impacts.shown),
     )  # fmt: skip
     for n, (label, tip, action, on) in enumerate(buttons):
         if n:
             ui.same_line_if_room(label, end)
-        if ui.button(label, tip, on=on):
-            window.do_next(action)
+        ui.button(label, tip, action, on=on)
     for n, (frame, tip) in enumerate(FRAMES.items()):
         label = f"Seen by: {frame}"
         if n:
@@ -99,10 +95,6 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
             microscope.frame = frame
     imgui.same_line()
     ui.faint("observer", wrapped=False)
-
-
-def _toggle_table(world: World, window: Window) -> None:
-    window.impacts.shown = not window.impacts.shown
 
 
 def _build_drawings(ui: Ui, world: World, window: Window, wide: float) -> None:

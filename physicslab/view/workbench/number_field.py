@@ -14,6 +14,8 @@ from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 
+_SHARE = 0.42
+"""Share of the width of a panel that labels take as a rule."""
 _DRAG = 0.005
 """Share of its size by which a number changes a pixel; of numbers below one, share of one."""
 _FINER, _COARSER = 0.1, 10.0
@@ -80,22 +82,25 @@ class _Target:
 class NumberFields:
     """The rows of numbers of a panel; what is half written in one is kept from frame to frame.
 
-    Parameters
+    Attributes
     ----------
     share : float
         Share of the panel's width that labels take.
     """
 
-    def __init__(self, share: float = 0.42) -> None:
-        self._share = share
+    def __init__(self) -> None:
+        self.share = _SHARE
+        self._for: object = None
         self._drafts: dict[str, _Draft] = {}
         self._edited: _Target | None = None
         self._dragged: tuple[str, float] | None = None
 
-    def clear(self) -> None:
-        """Forget what was half written."""
-        self._drafts.clear()
-        self._edited = self._dragged = None
+    def begin(self, subject: object) -> None:
+        """Begin the rows of a subject; what was half written for another one is forgotten."""
+        self.share = _SHARE
+        if self._for != subject:
+            self._for, self._edited, self._dragged = subject, None, None
+            self._drafts.clear()
 
     def row(
         self, ui: Ui, key: str, words: str, spec: Field, value: float | str | None, commit: Commit, *,
@@ -195,7 +200,7 @@ class NumberFields:
 
         Dragging the label of a number to the side changes it, Shift finer, Ctrl coarser.
         """
-        width, corner = self._share * imgui.get_content_region_avail().x, imgui.get_cursor_screen_pos()
+        width, corner = self.share * imgui.get_content_region_avail().x, imgui.get_cursor_screen_pos()
         imgui.push_item_flag(_ONLY_MOUSE, True)
         imgui.invisible_button(ui.held(f"drag {key}"), ImVec2(width, imgui.get_frame_height()))
         imgui.pop_item_flag()

@@ -20,23 +20,23 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
     with ui.panel("palette", rect, padded=False):
         imgui.push_style_var(imgui.StyleVar_.button_text_align, ImVec2(0.0, 0.5))
         room, gap = imgui.get_content_region_avail(), imgui.get_style().item_spacing.y
-        width, least = room.x, _LOWEST * ui.size
+        least = _LOWEST * ui.size
         shown = _shown(int((room.y + gap) / (least + gap)) - 1)
         buttons = len(shown) + 1
         height = min(1.9 * ui.size, max((room.y - (buttons - 1) * gap) // buttons, least))
         behind = [tool for tool in (*PALETTE, *MORE_TOOLS) if tool not in shown]
+        size = room.x, height
         for tool in shown:
-            if ui.button(
-                tool.title, tool.usage, shown=_words(tool), on=window.tool == tool.name, size=(width, height)
-            ):
-                window.do_next(actions.choose_tool, tool)
+            ui.button(
+                tool.title, tool.usage, actions.choose_tool, tool, shown=_words(tool),
+                on=window.tool == tool.name, size=size,
+            )  # fmt: skip
         hidden = next((tool for tool in behind if tool.name == window.tool), None)
         words = f"{ICONS['more']}  More" if hidden is None else _words(hidden)
-        tip, is_hidden, size = "More to put into the world", hidden is not None, (width, height)
-        with ui.list("More", tip, shown=words, on=is_hidden, size=size) as is_open:
+        tip = "More to put into the world"
+        with ui.list("More", tip, shown=words, on=hidden is not None, size=size) as is_open:
             for tool in behind if is_open else ():
-                if ui.item(tool.title, on=window.tool == tool.name, tip=tool.usage):
-                    window.do_next(actions.choose_tool, tool)
+                ui.item(tool.title, actions.choose_tool, tool, on=window.tool == tool.name, tip=tool.usage)
         imgui.pop_style_var()
 
 

@@ -10,14 +10,15 @@ from physicslab.components.graph import TIME
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.controls import dashboard_actions
-from physicslab.view.toolkit.labels import widget_label
 from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_plot import GraphPlot
 from physicslab.view.workbench.graph_readings import build_cursors, build_moment, build_readings
+from physicslab.view.workbench.number_field import NumberFields
 from physicslab.view.workbench.panel_places import bar_at_top, has_room, is_bar, places
 from physicslab.view.workbench.quantity_menu import build_quantities, named_key
 from physicslab.view.workbench.small_panels import MeterPanels, SliderPanels
@@ -173,8 +174,7 @@ class GraphPanels:
         if ui.item("No cursors", enabled=dashboard.marks != [None, None]):
             dashboard.marks[:] = [None, None]
         ui.rule()
-        if ui.item("Save as a table (CSV)"):
-            window.do_next(dashboard_actions.save_table, graph)
+        ui.item("Save as a table (CSV)", dashboard_actions.save_table, graph)
         if ui.item("Save as a picture (PNG)"):
             dashboard.picture_of = graph.entity
         ui.rule()
@@ -219,7 +219,7 @@ class ScenePanels:
         self._meters = MeterPanels()
         self._sliders = SliderPanels()
 
-    def build(self, ui: Ui, world: World, window: Window, area: Rect) -> None:
+    def build(self, ui: Ui, numbers: NumberFields, world: World, window: Window, area: Rect) -> None:
         """Build all that the scene has, within a part of the window."""
         dashboard = window.dashboard
         if ui.once == imgui.Cond_.always:
@@ -232,12 +232,8 @@ class ScenePanels:
         small = [*self._meters.sizes(ui, world, window), *self._sliders.sizes(ui, window)]
         found = places(area, ui.size, self._graphs.free(dashboard.graphs), small, dashboard.active)
         self._meters.build(ui, world, window, found)
-        self._sliders.build(ui, world, window, found)
+        self._sliders.build(ui, numbers, world, window, found)
         self._graphs.build(ui, world, window, found)
-
-    def finish(self) -> str:
-        """Take over what is half written in a field; return why it is refused, empty where it is not."""
-        return self._sliders.finish()
 
     def forget(self) -> None:
         """Drop what is dragged or half written in panels, and how wide they were."""

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 from imgui_bundle import imgui
@@ -12,7 +13,6 @@ from physicslab.components.meter import CORNERS
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
 from physicslab.diagnostics.quantities import Reading, why_undefined
 from physicslab.diagnostics.scales import scales_of
-from physicslab.ecs.fields import Field
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable, shortened
 from physicslab.view.canvas.quantities import quantity, without_rounding, written_unit
@@ -142,8 +142,7 @@ def _build_menu(ui: Ui, world: World, window: Window, meter: MeterShown) -> None
     if corner is not None:
         made = Meter(meter.key[1], meter.key[0], corner)
         window.do_next(dashboard_actions.change, meter.entity, made)
-    if ui.item("Remove the meter"):
-        window.do_next(dashboard_actions.remove, meter.entity)
+    ui.item("Remove the meter", dashboard_actions.remove, meter.entity)
 
 
 # ---- sliders -----------------------------------------------------------------------------------------------
@@ -159,11 +158,6 @@ class SliderPanels:
 
     def __init__(self) -> None:
         self._held: dict[int, float] = {}
-        self._numbers = NumberFields()
-
-    def finish(self) -> str:
-        """Take over what is half written in a field; return why it is refused, empty where it is not."""
-        return self._numbers.finish()
 
     def sizes(self, ui: Ui, window: Window) -> list[Small]:
         """Return how large each slider is."""
@@ -173,7 +167,9 @@ class SliderPanels:
             for one in window.dashboard.sliders
         ]
 
-    def build(self, ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
+    def build(
+        self, ui: Ui, numbers: NumberFields, world: World, window: Window, places: dict[int, Rect]
+    ) -> None:
         """Build every slider at its place."""
         self._held = {one.entity: self._held[one.entity] for one in window.dashboard.sliders
                       if one.entity in self._held}  # fmt: skip
@@ -181,7 +177,7 @@ class SliderPanels:
             with ui.panel(f"slider {slider.entity}", places[slider.entity], rounded=True):
                 with build_title(ui, _title(slider, window), f"Slider {slider.number}") as is_open:
                     if is_open:
-                        self._build_menu(ui, world, window, slider)
+                        _build_slider_menu(ui, numbers, world, window, slider)
                 self._build_slider(ui, world, window, slider)
 
     def _build_slider(self, ui: Ui, world: World, window: Window, slider: SliderShown) -> None:
@@ -206,40 +202,41 @@ class SliderPanels:
             last = self._held.pop(slider.entity)
             window.do_next(dashboard_actions.slide, slider, last, held=False)
 
-    def _build_menu(self, ui: Ui, world: World, window: Window, slider: SliderShown) -> None:
-        given: dict[str, Any] = {
-            "changes": slider.changes, "entity": slider.target, "low": slider.low, "high": slider.high,
-            "corner": slider.corner,
-        }  # fmt: skip
 
-        def change(**changes: Any) -> None:
-            made = Slider(**(given | changes))  # raises where they are refused
-            window.do_next(dashboard_actions.change, slider.entity, made)
+def _build_slider_menu(
+    ui: Ui, numbers: NumberFields, world: World, window: Window, slider: SliderShown
+) -> None:
+    given: dict[str, Any] = {
+        "changes": slider.changes, "entity": slider.target, "low": slider.low, "high": slider.high,
+        "corner": slider.corner,
+    }  # fmt: skip
 
-        for name, words in _ENDS:
-            spec = next(spec for spec in Slider.FIELDS if spec.name == name)
-            imgui.align_text_to_frame_padding()
-            ui.faint(words, wrapped=False)
-            imgui.same_line(3.0 * ui.size)
-            refusal = self._build_end(ui, slider, spec, given[name], change)
-            if refusal:
-                ui.text(refusal, ui.theme.error, wrapped=True)
-        ui.rule()
-        _build_choice(ui, world, window, slider, change)
-        corner = build_corners(ui, slider.corner, CORNERS)
-        if corner is not None:
-            change(corner=corner)
-        if ui.item("Remove the slider"):
-            window.do_next(dashboard_actions.remove, slider.entity)
+    def change(**changes: Any) -> None:
+        made = Slider(**(given | changes))  # raises where they are refused
+        window.do_next(dashboard_actions.change, slider.entity, made)
 
-    def _build_end(self, ui: Ui, slider: SliderShown, spec: Field, value: float, change: Any) -> str:
-        key = f"{spec.name} of slider {slider.number}"
-        refusal = self._numbers.build(
-            ui, key, value, spec, 6.0 * ui.size, lambda new: change(**{spec.name: new})
-        )
+    for name, words in _ENDS:
+        spec = next(spec for spec in Slider.FIELDS if spec.name == name)
+        imgui.align_text_to_frame_padding()
+        ui.faint(words, wrapped=False)
+        imgui.same_line(3.0 * ui.size)
+        key, width = f"{name} of slider {slider.number}", 6.0 * ui.size
+        commit = partial(_change_end, change, name)
+        refusal = numbers.build(ui, key, given[name], spec, width, commit)
         imgui.same_line()
         ui.faint(written_unit(slider.unit), wrapped=False)
-        return refusal
+        if refusal:
+            ui.text(refusal, ui.theme.error, wrapped=True)
+    ui.rule()
+    _build_choice(ui, world, window, slider, change)
+    corner = build_corners(ui, slider.corner, CORNERS)
+    if corner is not None:
+        change(corner=corner)
+    ui.item("Remove the slider", dashboard_actions.remove, slider.entity)
+
+
+def _change_end(change: Any, name: str, new: float) -> None:
+    change(**{name: new})
 
 
 def _build_choice(ui: Ui, world: World, window: Window, slider: SliderShown, change: Any) -> None:

@@ -29,24 +29,17 @@ def build_transport(ui: Ui, rect: Rect, world: World, window: Window) -> None:
     """Build the row of buttons, the time line and the hint."""
     with ui.panel("transport", rect, padded=False):
         pace, size, icons = window.pace, ui.size, ICONS
-        height, narrow = _HEIGHT * size, _NARROW * size
+        height = _HEIGHT * size
         imgui.set_cursor_pos_y(max(0.5 * (rect[3] - height), 0.0))
-        if ui.button("Restart", "Restart this scene (Ctrl+R)", shown=icons["restart"], size=(narrow, height)):
-            window.do_next(file_actions.restart)
-        imgui.same_line()
-        if ui.button(
-            "Step back", "Pause, and go back by one step (B)", shown=icons["back"], size=(narrow, height)
+        play = ("Play", "play") if pace.paused else ("Pause", "pause")
+        for label, tip, action, shown, width in (
+            ("Restart", "Restart this scene (Ctrl+R)", file_actions.restart, icons["restart"], _NARROW),
+            ("Step back", "Pause, and go back by one step (B)", actions.step_back, icons["back"], _NARROW),
+            (play[0], f"{play[0]} (Space)", actions.toggle_pause, f"{icons[play[1]]}  {play[0]}", _WIDE),
+            ("Step", "Pause, and make one step (.)", actions.step, icons["step"], _NARROW),
         ):
-            window.do_next(actions.step_back)
-        imgui.same_line()
-        label, icon = ("Play", "play") if pace.paused else ("Pause", "pause")
-        words = f"{icons[icon]}  {label}"
-        if ui.button(label, f"{label} (Space)", shown=words, on=True, size=(_WIDE * size, height)):
-            window.do_next(actions.toggle_pause)
-        imgui.same_line()
-        if ui.button("Step", "Pause, and make one step (.)", shown=icons["step"], size=(narrow, height)):
-            window.do_next(actions.step)
-        imgui.same_line()
+            ui.button(label, tip, action, shown=shown, on=width == _WIDE, size=(width * size, height))
+            imgui.same_line()
         imgui.push_style_var_y(imgui.StyleVar_.frame_padding, 0.5 * (height - imgui.get_font_size()))
         _build_speed(ui, pace, window)
         imgui.same_line()
@@ -128,31 +121,25 @@ _LETTERS = 34
 """How much of a branch is written in its line; the rest is in its tip."""
 
 
-def build_history(ui: Ui, window: Window) -> None:
+def build_history(ui: Ui, world: World, window: Window) -> None:
     """Build the list in a window of its own."""
     history = window.edits.history
     entries, done = history.entries, history.position
     left, top, _, _ = window.room()
     width, height = ui.fitted(_LIST_WIDTH * ui.size, _LIST_HEIGHT * ui.size)
     place = left + 0.5 * width + ui.size, top + 0.5 * height + 4.0 * ui.size
-    with ui.floating("History", place, docks=True) as stays:
-        if ui.button("Undo", "Undo the last edit or run (Ctrl+Z)", enabled=done > 0):
-            window.do_next(actions.undo)
+    with ui.floating("History", place, window.closing_of("lists_history"), docks=True):
+        ui.button("Undo", "Undo the last edit or run (Ctrl+Z)", actions.undo, enabled=done > 0)
         imgui.same_line()
-        if ui.button("Redo", "Redo what was undone (Ctrl+Y)", enabled=done < len(entries)):
-            window.do_next(actions.redo)
+        ui.button("Redo", "Redo what was undone (Ctrl+Y)", actions.redo, enabled=done < len(entries))
         below = _LINE * (len(history.branches) + 2) * ui.size if history.branches else 0.0
         room = ui.extent(width, height)
         if imgui.begin_child("entries", ImVec2(room.x, max(room.y - below, 3.0 * ui.size))):
-            if ui.selectable("As it was opened", on=done == 0, faint=False):
-                window.do_next(_go_to, 0)
+            ui.selectable("As it was opened", _go_to, 0, on=done == 0, faint=False)
             for n, entry in enumerate(entries, start=1):
-                if ui.selectable(f"{n}. {entry.words}", on=n == done, faint=not entry.done):
-                    window.do_next(_go_to, n)
+                ui.selectable(f"{n}. {entry.words}", _go_to, n, on=n == done, faint=not entry.done)
         imgui.end_child()
         _build_branches(ui, window)
-    if not stays[0]:
-        window.lists_history = False
 
 
 def _build_branches(ui: Ui, window: Window) -> None:
@@ -165,8 +152,7 @@ def _build_branches(ui: Ui, window: Window) -> None:
     ui.tip("Edits and runs that a change in the past replaced; Ctrl+B switches from one to the next")
     for n, branch in enumerate(history.branches, start=1):
         words = branch_words(branch, history.start)
-        if ui.selectable(f"{n}. {shortened(words, _LETTERS)}"):
-            window.do_next(switch, branch)
+        ui.selectable(f"{n}. {shortened(words, _LETTERS)}", switch, branch)
         ui.tip(words)
 
 

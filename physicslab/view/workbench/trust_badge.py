@@ -4,7 +4,6 @@ import math
 
 from imgui_bundle import ImVec2, imgui
 
-from physicslab.view.toolkit.bars import bar
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.trust_watch import RUNS, Finding, TrustWatch
@@ -177,9 +176,13 @@ def _build_details(ui: Ui, world: World, window: Window) -> None:
         ui.faint(f"They were not checked for longer: {trust.failure}")
     if trust.running:
         ui.gap(0.2)
-        bar(ui, "Checking", f"{trust.share:.0%}", trust.share, ui.theme.accent)
+        ui.bar("Checking", f"{trust.share:.0%}", trust.share, ui.theme.accent)
     elif not trust.wanted:
         ui.faint(f"It computes the scene about {RUNS} times over, beside the window: frames have priority.")
     ui.rule()
-    if ui.item("Check digits", on=trust.wanted, tip="In a separate process, again as time goes on"):
-        window.do_next(lambda _, window: window.trust.toggle())
+    ui.item(
+        "Check digits",
+        lambda _, window: window.trust.toggle(),
+        on=trust.wanted,
+        tip="In a separate process, again as time goes on",
+    )

@@ -13,7 +13,6 @@ from physicslab.history import SetPhysics
 from physicslab.view.canvas.quantities import quantity, round_quantity, without_rounding
 from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.controls.actions import gravity_in_words, has_gravity
-from physicslab.view.toolkit.bars import bar, zero_line
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import LEVELS, Window
@@ -125,7 +124,7 @@ def _build_sums(ui: Ui, figures: WorldFigures) -> None:
     high = max(high, -_BEYOND * low)  # what is below zero is seen to be
     scale = max(high - low, 1e-300)
     for label, value, colour, tip in rows:
-        bar(ui, label, figures.joules(value), value / scale, colour, zero=-low / scale, tip=tip)
+        ui.bar(label, figures.joules(value), value / scale, colour, zero=-low / scale, tip=tip)
 
 
 def _rounded(energy: float) -> str:
@@ -162,7 +161,7 @@ def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
         left += long
     zero = corner.x + sum(max(-part.energy, 0.0) for part in parts) / whole * width
     if zero > corner.x:
-        zero_line(ui, zero, corner.y, height)
+        ui.zero_line(zero, corner.y, height)
     imgui.dummy(ImVec2(width, height))
     figures = [f"{part.name} {quantity(part.energy, 'J')}" for part in parts]
     ui.tip(". ".join(("; ".join(figures), _ZERO_TIP)))

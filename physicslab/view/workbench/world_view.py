@@ -1,15 +1,16 @@
 """The world as the camera sees it, with the overlays that are on."""
 
+from dataclasses import replace
 from typing import Any
 
 from numpy.typing import NDArray
 
 from physicslab.components import Transform
 from physicslab.view.canvas.canvas import is_within
+from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.tools import TOOLS
-from physicslab.view.overlay.banners import text_size
 from physicslab.view.overlay.free_body import draw_free_body
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.instruments import draw_instruments, instruments_of
@@ -43,8 +44,8 @@ class WorldView:
 
     def draw(self, world: World, impacts: NDArray[Any]) -> None:
         """Draw the world and the overlays; ``impacts`` are those since the last picture, of IMPACT (n,)."""
-        window = self._window
-        camera, theme, canvas, overlays = window.camera, window.theme, window.canvas, window.overlays
+        window, on = self._window, self._window.drawing
+        camera, theme, canvas, overlays = on.camera, on.theme, on.canvas, window.overlays
         window.sparks.advance(impacts, world.time, camera.scale)
         window.microscope.note(impacts, world.time)
         if overlays.impulses:
@@ -52,98 +53,83 @@ class WorldView:
         draw_world(world, camera, theme, canvas, grid=window.grid)
         window.sparks.draw(camera, theme, canvas)
         if overlays.arrows:
-            draw_vectors(world, overlays, camera, theme, canvas)
+            draw_vectors(world, overlays, on)
         if overlays.impulses:
-            self._draw_impulses(world)
-        draw_selection(world, window.selection.entities, camera, theme, canvas)
-        self._draw_forces(world)
+            self._draw_impulses(world, on)
+        draw_selection(world, window.selection.entities, on)
+        self._draw_forces(world, on)
         if window.band is not None:
-            draw_band(camera.to_screen(window.band), window.pointer, theme, canvas)
-        self._draw_instruments(world)
+            draw_band(camera.to_screen(window.band), window.pointer, on)
+        self._draw_instruments(world, on)
         if not window.filming.running:  # a film has no cursor
-            self._draw_handles(world)
-            self._draw_ghost(world)
-            self._draw_snapping()
+            self._draw_handles(world, on)
+            self._draw_ghost(world, on)
+            self._draw_snapping(on)
             if window.points_by_key:
                 draw_cursor(window.pointer, theme.accent, canvas)
-        window.spring_tool.draw(world, camera, window.pointer, theme, canvas)
+        window.spring_tool.draw(world, on, window.pointer)
 
-    def _draw_snapping(self) -> None:
+    def _draw_snapping(self, on: Drawing) -> None:
         """Draw where what is dragged snaps, and the length of a spring whose pin is dragged."""
-        window, canvas, theme = self._window, self._window.canvas, self._window.theme
+        window, snapping = self._window, self._window.snapping
         if window.pins.words:
-            size = text_size(canvas, window.text_scale)
-            draw_reading(window.pins.words, window.pointer, size, theme, canvas)
-        snapping = window.snapping
+            draw_reading(window.pins.words, window.pointer, on)
         if snapping.place is not None:
-            marks = [(mark.axis, mark.at) for mark in snapping.marks]
-            draw_snap_marks(marks, snapping.place, window.camera, theme, canvas)
+            draw_snap_marks([(mark.axis, mark.at) for mark in snapping.marks], snapping.place, on)
 
-    def _draw_forces(self, world: World) -> None:
+    def _draw_forces(self, world: World, on: Drawing) -> None:
         """Measure the forces on the selection where its panel is shown, and draw them with the arrows."""
-        window, overlays = self._window, self._window.overlays
+        window, overlays, measured = self._window, self._window.overlays, self._window.measured
         chosen = window.selection.entities
         shown = len(chosen) == 1 and (overlays.arrows or window.figures)
-        window.measured.follow(world, chosen[0] if shown else None, window.now, paused=window.pace.paused)
-        if overlays.arrows and window.measured.forces:
-            size = text_size(window.canvas, window.text_scale) - 1
-            moved = window.measured.moved(world, chosen[0])
-            draw_free_body(
-                window.measured.forces, moved, world.time, overlays, window.camera, window.theme,
-                window.canvas, size,
-            )  # fmt: skip
+        measured.follow(world, chosen[0] if shown else None, window.now, paused=window.pace.paused)
+        if overlays.arrows and measured.forces:
+            moved, smaller = measured.moved(world, chosen[0]), replace(on, size=on.size - 1)
+            draw_free_body(measured.forces, moved, world.time, overlays, smaller)
 
-    def _draw_impulses(self, world: World) -> None:
+    def _draw_impulses(self, world: World, on: Drawing) -> None:
         """Draw impulses; resting contacts have numbers where they are selected or under the cursor."""
         window = self._window
         hovered = None if window.pointer_on_panel else body_at(world, window.camera, window.pointer)
         written = {*window.selection.entities, *(() if hovered is None else (hovered,))}
-        size = text_size(window.canvas, window.text_scale) - 2
-        draw_impulses(world, window.overlays, written, window.camera, window.theme, window.canvas, size)
+        draw_impulses(world, window.overlays, written, replace(on, size=on.size - 2))
 
-    def _draw_instruments(self, world: World) -> None:
+    def _draw_instruments(self, world: World, on: Drawing) -> None:
         """Draw what measures, what is being placed of it, and beside the cursor what to do next."""
-        window = self._window
-        camera, theme, canvas, state = window.camera, window.theme, window.canvas, window.measuring
-        tool = TOOLS[window.tool]
+        window, state, tool = self._window, self._window.measuring, TOOLS[self._window.tool]
         preview = state.preview(spot_of(world, window)) if state.spots else None
         shown = [*instruments_of(world, state.overrides), *([] if preview is None else [preview])]
         if state.writing is not None:
             shown = [one for one in shown if one.entity != state.writing.entity]
-        size, chosen = text_size(canvas, window.text_scale), window.selection.entities
-        covered = window.overlays.covered
-        state.rects = draw_instruments(
-            world, shown, chosen, state.labels, covered, camera, theme, canvas, size
-        )
+        chosen, covered = window.selection.entities, window.overlays.covered
+        state.rects = draw_instruments(world, shown, chosen, state.labels, covered, on)
         if state.hovered is not None:
-            draw_selection(world, (state.hovered,), camera, theme, canvas)
+            draw_selection(world, (state.hovered,), on)
         idle = not (window.pointer_on_panel or window.filming.running)
         if tool.prompts and idle and state.dragged is None and state.writing is None:
             words = tool.prompts[min(len(state.spots), len(tool.prompts) - 1)]
-            draw_reading(words, window.pointer, size, theme, canvas, window.room())
+            draw_reading(words, window.pointer, on, window.room())
 
-    def _draw_handles(self, world: World) -> None:
+    def _draw_handles(self, world: World, on: Drawing) -> None:
         """Draw the handles of the selection while paused, and the number that one has given."""
-        window, entity = self._window, self._window.handled
+        window, entity, camera = self._window, self._window.handled, on.camera
         if entity is None or not world.has(entity, Transform):
             return
-        camera, theme, canvas = window.camera, window.theme, window.canvas
         middle = camera.to_screen(world.component(entity, Transform).position)
         places = [(one.kind, camera.to_screen(one.place)) for one in window.handles.of(world, entity, camera)]
-        draw_handles(middle, places, theme, canvas)
+        draw_handles(middle, places, on)
         if window.handles.words:
-            size = text_size(canvas, window.text_scale)
-            draw_reading(window.handles.words, window.pointer, size, theme, canvas)
+            draw_reading(window.handles.words, window.pointer, on)
 
-    def _draw_ghost(self, world: World) -> None:
+    def _draw_ghost(self, world: World, on: Drawing) -> None:
         """Show at the cursor what a click would make, in the colour of errors where there is no room."""
         window, spawn = self._window, TOOLS[self._window.tool].spawn
         held = window.hand.entity, window.handles.dragged, window.spring_tool.entity
         idle = held == (None, None, None) and not window.pointer_on_panel and window.has_pointed
         if spawn is None or not idle or not is_within(window.pointer, window.room()):
             return
-        if body_at(world, window.camera, window.pointer) is not None:
+        if body_at(world, on.camera, window.pointer) is not None:
             return
-        ghost, theme = spawn.outlines(window), window.theme
-        colour = theme.error if refused_place(world, ghost) else theme.accent
-        draw_ghost(ghost.place, ghost.half, ghost.radius, ghost.angle, colour, window.camera, window.canvas)
+        ghost = spawn.outlines(window)
+        colour = on.theme.error if refused_place(world, ghost) else on.theme.accent
+        draw_ghost(ghost.place, ghost.half, ghost.radius, ghost.angle, colour, on)

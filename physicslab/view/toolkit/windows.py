@@ -1,0 +1,201 @@
+"""Windows of panels: fixed at the edges, floating, or docked to the sides of the world."""
+
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import pygame
+from imgui_bundle import ImVec2, imgui
+
+from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.drawable_text import drawable
+from physicslab.view.canvas.theme import Theme
+from physicslab.view.toolkit.style import Fonts
+
+_FLAGS = imgui.WindowFlags_
+_FIXED = (
+    _FLAGS.no_title_bar | _FLAGS.no_resize | _FLAGS.no_move | _FLAGS.no_collapse | _FLAGS.no_saved_settings
+    | _FLAGS.no_bring_to_front_on_focus | _FLAGS.no_nav_focus
+)  # fmt: skip
+_FLOATING = _FLAGS.no_collapse | _FLAGS.always_auto_resize
+_ONLY_SIDES = (
+    imgui.DockNodeFlags_.passthru_central_node | imgui.DockNodeFlags_.no_docking_over_central_node
+    | imgui.internal.DockNodeFlagsPrivate_.no_close_button
+)  # fmt: skip
+"""The middle stays in sight, and takes the mouse."""
+_APART = _FLAGS.no_saved_settings | _FLAGS.no_docking
+_TITLE = 6.0
+"""Height of what a floating window has above what fills it, at most, in heights of the text."""
+_UNSEEN = "\u200b"
+"""A space without width: it parts two signs ``#`` that Dear ImGui would take for a mark of its own."""
+
+
+def widget_label(words: str, identity: str) -> str:
+    r"""Return a label of Dear ImGui that shows words and is known by an identity, whatever either holds.
+
+    >>> widget_label("a", "b"), widget_label("a", "b\0#\udce9").isascii()
+    ('a###b', True)
+    """
+    shown = re.sub("#(?=#)", f"#{_UNSEEN}", drawable(words))
+    return f"{shown}###{ascii(identity)[1:-1].replace('#', '|23')}"
+
+
+class Windows:
+    """The windows of one frame, and what is noted of the widgets in them.
+
+    Parameters
+    ----------
+    fonts : Fonts
+        The letters.
+    theme : Theme
+        The colours; the toolkit has them too.
+
+    Attributes
+    ----------
+    places : dict of str to Rect
+        Where each button, field and line of a menu is [px], by its words.
+    words : list of str
+        All that is written, in its order.
+    rows : dict of str to str
+        The value beside each label.
+    once : Cond_
+        When windows that come back where they were are put where they are at first.
+    keys_go_to : str
+        What is to get the keys in this frame: ``"menu"`` or ``"fields"``.
+    scenes : int
+        How many scenes were shown: what is half written or dragged in a widget is for one of them.
+    focused : str
+        The widget that keys go to, by its words.
+    room : Rect
+        What of the window is left for the world; what opens lies within it [px].
+    do_next : callable
+        Has an action done next; further arguments are the action's.
+    pictures : list of tuples
+        What is laid over panels: a surface, its corner, and the part of the window in which it is seen [px].
+    """
+
+    def __init__(self, fonts: Fonts, theme: Theme) -> None:
+        self.fonts, self.theme = fonts, theme
+        self.places: dict[str, Rect] = {}
+        self.words: list[str] = []
+        self.rows: dict[str, str] = {}
+        self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
+        self.once = imgui.Cond_.first_use_ever
+        self.keys_go_to = self.focused = ""
+        self.scenes = 0
+        self.room: Rect = (0, 0, 1 << 20, 1 << 20)
+        self.do_next: Callable[..., object] = lambda action, *arguments: None
+
+    def begin(self, theme: Theme, room: Rect = (0, 0, 1 << 20, 1 << 20), *, rearranged: bool = False) -> None:
+        """Forget the frame before; ``rearranged`` puts windows back where they are at first."""
+        self.theme, self.room = theme, room
+        self.once = imgui.Cond_.always if rearranged else imgui.Cond_.first_use_ever
+        self.places, self.words, self.rows, self.pictures, self.focused = {}, [], {}, [], ""
+
+    @property
+    def size(self) -> float:
+        """Height of the text [px]."""
+        return float(imgui.get_font_size())
+
+    @contextmanager
+    def panel(self, name: str, rect: Rect, *, padded: bool = True, rounded: bool = False) -> Iterator[None]:
+        """Begin a panel that stays where it is put; its corners are round where it lies over the world."""
+        left, top, width, height = rect
+        imgui.set_next_window_pos(ImVec2(left, top))
+        imgui.set_next_window_size(ImVec2(max(width, 1), max(height, 1)))
+        if not rounded:
+            imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
+        if not padded:
+            imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(6.0, 6.0))
+        imgui.begin(name, None, _FIXED)
+        try:
+            yield
+        finally:
+            imgui.end()
+            imgui.pop_style_var(2 - padded - rounded)
+
+    def dock(self, rect: Rect) -> Rect:
+        """Let windows be docked to the sides of a part of the display; return what they leave of it [px]."""
+        imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
+        imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(0.0, 0.0))
+        imgui.set_next_window_pos(ImVec2(*rect[:2]))
+        imgui.set_next_window_size(ImVec2(*rect[2:]))
+        unseen = _FLAGS.no_background | _FLAGS.no_mouse_inputs | _FLAGS.no_docking | _FLAGS.no_nav
+        imgui.begin("sides", None, _FIXED | unseen)
+        imgui.pop_style_var(2)
+        name = imgui.get_id("sides")
+        imgui.dock_space(name, ImVec2(0.0, 0.0), _ONLY_SIDES)
+        imgui.end()
+        node = imgui.internal.dock_builder_get_central_node(name)
+        return round(node.pos.x), round(node.pos.y), round(node.size.x), round(node.size.y)
+
+    @contextmanager
+    def floating(
+        self, title: str, middle: tuple[float, float], close: Callable[[], object], *, docks: bool = False
+    ) -> Iterator[None]:
+        """Begin a window with a title, within the display; ``close`` is called where it is clicked away.
+
+        One that ``docks`` can be docked to the sides of the world, and comes back where it was.
+        """
+        free = imgui.get_main_viewport()  # without the menu bar
+        low, room = free.work_pos, free.work_size
+        when = self.once if docks else imgui.Cond_.appearing
+        imgui.set_next_window_pos(ImVec2(*middle), when, ImVec2(0.5, 0.5))
+        imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
+        _, stays = imgui.begin(title, True, _FLOATING if docks else _FLOATING | _APART)
+        place, size = imgui.get_window_pos(), imgui.get_window_size()
+        x, y = (
+            max(min(place.x, low.x + room.x - size.x), low.x),
+            max(min(place.y, low.y + room.y - size.y), low.y),
+        )
+        if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
+            imgui.set_window_pos(ImVec2(x, y))
+        self.words.append(title)
+        try:
+            yield
+        finally:
+            imgui.end()
+        if not stays:
+            close()
+
+    @contextmanager
+    def child(self, name: str, size: ImVec2) -> Iterator[bool]:
+        """Begin a part of a window that is scrolled by itself; the yielded value says whether it is seen."""
+        yield bool(imgui.begin_child(name, size))
+        imgui.end_child()
+
+    @contextmanager
+    def wrapping(self, width: float) -> Iterator[None]:
+        """Break words at a width [px] from the left edge of the window."""
+        imgui.push_text_wrap_pos(width)
+        yield
+        imgui.pop_text_wrap_pos()
+
+    def fitted(self, width: float, height: float) -> tuple[float, float]:
+        """Return a size for what is in a floating window, so that it lies over no other panel [px]."""
+        _, _, across, down = self.room
+        around = 2.0 * imgui.get_style().window_padding.x + self.size
+        return max(min(width, across - around), 1.0), max(
+            min(height, down - around - _TITLE * self.size), 1.0
+        )
+
+    def extent(self, width: float, height: float) -> ImVec2:
+        """Return a size [px] for what fills a floating window: of a docked one all its room."""
+        if imgui.is_window_docked():
+            return imgui.get_content_region_avail()
+        return ImVec2(*self.fitted(width, height))
+
+    def picture(self, surface: pygame.Surface, corner: tuple[int, int], clip: pygame.Rect) -> None:
+        """Lay a picture over a panel, as far as it lies within ``clip``."""
+        self.pictures.append((surface, corner, clip))
+
+    def show_pictures(self, surface: pygame.Surface) -> None:
+        """Lay the pictures over a surface, after the panels."""
+        for picture, corner, clip in self.pictures:
+            surface.set_clip(clip)
+            surface.blit(picture, corner)
+        surface.set_clip(None)
+
+    def held(self, label: str) -> str:
+        """Return a label without words for what is written or dragged in, which ends with the scene."""
+        return widget_label("", f"{label} of scene {self.scenes}")
