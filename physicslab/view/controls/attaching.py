@@ -1,13 +1,15 @@
-"""Springs made from a list: between the bodies that are selected, or from one to a point above it."""
+"""Springs and pins made from a list: between two bodies that are selected, or from one to a fixed point."""
 
 from collections.abc import Sequence
 from functools import partial
 
-from physicslab.components import Transform
+from physicslab.components import Pin, Transform, Velocity
 from physicslab.diagnostics.period import gives_way
+from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Spawn
 from physicslab.view.canvas.quantities import quantity
+from physicslab.view.window.points import local_point
 from physicslab.view.window.spring_tool import spring_between
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
@@ -22,19 +24,36 @@ def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, A
     """Return how the selection can be attached: the words on a button, its tip, and what it does."""
     if not entities or len(entities) > 2 or not all(world.has(entity, Transform) for entity in entities):
         return {}
-    if len(entities) == 2:
-        return {
-            f"Join by a {way}": (
-                f"A {way} between these two, its rest length their present distance",
-                partial(_join, entities[0], entities[1], stiff),
-            )
-            for way, stiff in _WAYS.items()
-        }
-    words = {"spring": "Hang on a spring", "rod": "Hang on a rod"}
-    return {
-        words[way]: (f"A {way} to a point above it, which can be dragged", partial(_hang, entities[0], stiff))
-        for way, stiff in _WAYS.items()
-    }
+    joins = len(entities) == 2
+    found: dict[str, tuple[str, Action]] = {}
+    for way, stiff in _WAYS.items():
+        if joins:
+            tip = f"A {way} between these two, its rest length their present distance"
+            found[f"Join by a {way}"] = tip, partial(_join, entities[0], entities[1], stiff)
+        else:
+            tip = f"A {way} to a point above it, which can be dragged"
+            found[f"Hang on a {way}"] = tip, partial(_hang, entities[0], stiff)
+    if joins:
+        tip = "A pin half way between the middles of these two, about which they turn"
+        found["Join by a pin"] = tip, partial(_pin, entities[0], entities[1])
+    else:
+        tip = "A pin through its middle, about which it turns"
+        found["Pin in place"] = tip, partial(_pin, entities[0], None)
+    return found
+
+
+def _pin(one: int, other: int | None, world: World, window: Window) -> None:
+    place = world.component(one, Transform).position
+    if other is not None:
+        place = 0.5 * (place + world.component(other, Transform).position)
+    if not any(world.has(entity, Velocity) for entity in (one, other) if entity is not None):
+        window.notify("No pin: neither of its ends could move")
+        return
+    anchors = [local_point(world, entity, place) for entity in (one, other)]
+    try:
+        window.edits.do(Spawn([Pin(a=one, b=other, anchor_a=anchors[0], anchor_b=anchors[1])]))
+    except InvalidValue as error:
+        window.notify(f"No pin: {error.field} must be {error.allowed}", 6.0, failed=True)
 
 
 def _join(one: int, other: int, stiff: bool, world: World, window: Window) -> None:

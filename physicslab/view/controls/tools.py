@@ -4,10 +4,12 @@ from collections.abc import Sequence
 
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.history import Command, Group, Remove, RemoveComponent, Spawn
+from physicslab.state.joints import KINDS
 from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument
 from physicslab.view.controls.picking import body_at, instrument_at, spring_at
 from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawnable
 from physicslab.view.controls.tool import Tool
+from physicslab.view.picture.joints import joint_at
 from physicslab.view.window.pins import pin_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -26,8 +28,13 @@ def let_go(world: World, window: Window) -> None:
 def take_hold(world: World, window: Window) -> bool:
     """Take hold of the body under the cursor, of an instrument, or of the end of a spring, and select it.
 
-    Return whether there is one; a spring that is not held at its end is selected alone.
+    A joint, which lies over bodies, is selected alone, and so is a spring that is not held at its end. Return
+    whether there is one.
     """
+    joint = joint_at(world, window.camera, window.pointer)
+    if joint is not None:
+        window.selection.take(joint, add=window.adding)
+        return True
     pin = pin_at(world, window.camera, window.pointer)
     entity = body_at(world, window.camera, window.pointer) if pin is None else None
     fixed = entity is None or not world.has(entity, Velocity)
@@ -71,7 +78,11 @@ def end_select(world: World, window: Window) -> None:
 
 
 def remove(world: World, window: Window) -> None:
-    """Remove the instrument, the body or the spring under the cursor; a body's springs go with it."""
+    """Remove the joint, the instrument, the body or the spring under the cursor; what ends at a body too."""
+    joint = joint_at(world, window.camera, window.pointer)
+    if joint is not None:
+        remove_joints(world, window, joint)
+        return
     entity = instrument_at(world, window.camera, window.pointer, window.measuring.rects)
     entity = body_at(world, window.camera, window.pointer) if entity is None else entity
     spring = spring_at(world, window.camera, window.pointer) if entity is None else None
@@ -83,6 +94,15 @@ def remove(world: World, window: Window) -> None:
         window.notify("Nothing to remove: put the cursor on a body or a spring, or select one")
         return
     remove_entities(world, window, (entity,))
+
+
+def remove_joints(world: World, window: Window, entity: int) -> None:
+    """Remove the joints that an entity carries; a body that carries them stays."""
+    if not world.has(entity, Transform):
+        remove_entities(world, window, (entity,))
+        return
+    kinds = [kind.__name__ for kind in KINDS if world.has(entity, kind)]
+    window.edits.do(Group("removed a joint", [RemoveComponent(entity, kind) for kind in kinds]))
 
 
 def remove_selected(world: World, window: Window) -> None:
