@@ -1,7 +1,5 @@
 """The commands of the contract: ``physicslab [SCENE]``, ``physicslab run SCENE``, ``physicslab scenes``."""
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys
@@ -14,8 +12,6 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import SceneError
 from physicslab.scenes import SCENES
-
-__all__ = ["main"]
 
 _LINE_LIMIT = 4_000
 """Characters of what is said on stderr: names of files and values come from outside."""

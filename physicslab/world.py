@@ -1,13 +1,13 @@
 """A world: a state, the systems that act on it, and the stepper that advances it."""
 
-from __future__ import annotations
-
 import logging
 import math
 import sys
 import time
 from collections.abc import Iterable, Iterator
 from typing import Never
+
+import numpy as np
 
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows
@@ -19,18 +19,17 @@ from physicslab.state.state import State
 from physicslab.stepping.accounting import book_account, close_account, open_account
 from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.forces import add_up_forces
+from physicslab.stepping.islands import Islands
 from physicslab.stepping.plan import StepPlan, default_plan, plan_for_jumps
 from physicslab.stepping.run import run_length, strides
 from physicslab.stepping.select import Steppers, choose, remake, resume
-from physicslab.stepping.stepper import Advance, Stepper
+from physicslab.stepping.stepper import Advance, Advancer
 from physicslab.stepping.undo import Undoing
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage, System
-
-__all__ = ["World"]
 
 _log = logging.getLogger(__name__)
 _told: set[str] = set()
@@ -63,8 +62,10 @@ class World(State):
         The method that moves the bodies, how collisions are found, and why.
     steppers : Steppers
         What can advance this world as it is now, the best first.
-    stepper : Stepper, optional
-        The one that made the last step.
+    stepper : Advancer, optional
+        What made the last step: one of them, or the islands.
+    islands : Islands
+        The bodies that have nothing to do with each other, each with steppers of their own.
 
     Notes
     -----
@@ -84,7 +85,7 @@ class World(State):
     -0.0981
     """
 
-    __slots__ = ("_motion", "plan", "schedule", "stepper", "steppers")
+    __slots__ = ("_motion", "islands", "plan", "schedule", "stepper", "steppers")
 
     def __init__(
         self,
@@ -100,7 +101,8 @@ class World(State):
         self.schedule = Schedule((AccelerateSystem(), *chosen))
         self.plan: StepPlan = default_plan(self.simulation)
         self.steppers = Steppers((), ())
-        self.stepper: Stepper | None = None
+        self.stepper: Advancer | None = None
+        self.islands = Islands(self.schedule, _island_world)
         self._motion = motion_of(self)
 
     # ---- time ----------------------------------------------------------------------------------------------
@@ -157,15 +159,21 @@ class World(State):
 
     def _make(self, h: float, steps: int) -> Advance:
         """Make steps with the best stepper for the coming one, with its kernels compiled."""
-        self.stepper = self.stepper_for(h)
-        self.compile(self.stepper.kernels)
-        if not (self.stepper.keeps_balance or self.account.is_open):
+        self.stepper = stepper = self.stepper_for(h)
+        self.compile(stepper.kernels)
+        if not (stepper.keeps_balance or self.account.is_open):
             open_account(self, self.schedule.forces)
-        return self.stepper.advance(self, h, self.steppers.at_once(self.stepper, steps))
+        made = stepper.advance(self, h, self.steppers.at_once(stepper, steps))
+        self._follow_islands()
+        return made
 
-    def stepper_for(self, h: float) -> Stepper:
+    def stepper_for(self, h: float) -> Advancer:
         """Return the best stepper for a coming step of ``h`` seconds."""
-        return self.steppers.ready(self, h)
+        return self.islands if self.islands.members else self.steppers.ready(self, h)
+
+    def steps_ahead(self, h: float) -> int:
+        """Return how many steps of ``h`` seconds may be one call."""
+        return sys.maxsize if self.islands.members else self.islands.steps_ahead(self, h)
 
     def run(
         self,
@@ -240,13 +248,19 @@ class World(State):
                 derive_masses(self)
                 if not self.steppers.hold(self):
                     self._choose()
-                check_edits(self)
+                self.islands.follow(self)
+                self._follow_islands()
+                if not self.islands.members:
+                    check_edits(self)
         finally:
             self.in_step = False
 
     @quiet
     def _adapt(self) -> None:
         """Compute masses and choose systems and steppers again, until nothing changes any more."""
+        if self.entity_index.motion_edited:
+            self.islands.give_back(self)
+            self.islands.find_again()
         while True:
             self.stale = True  # and stays so if a system refuses what it finds
             self.generation += 1
@@ -264,6 +278,12 @@ class World(State):
             if not self.entity_index.synchronise():
                 self._tell_what_stands_still()
                 return
+
+    def _follow_islands(self) -> None:
+        """Choose systems and steppers again, and the method, where all islands have become one."""
+        if self.islands.joined:
+            self.islands.joined = False
+            self.plan, self.steppers = remake(self, self.schedule, None)
 
     def _tell_what_stands_still(self) -> None:
         """Say once where bodies have velocities, and no system changes positions by them."""
@@ -323,6 +343,13 @@ class World(State):
         """The forces that Python computes, call by call, where a compiled loop could run."""
         return self.schedule.interpreted
 
+    @property
+    def parts(self) -> "tuple[World, ...]":
+        """The worlds that advance this one: itself, or those of its islands, that with most bodies first."""
+        worlds = [island.state for island in self.islands.members]
+        parts = tuple(world for world in worlds if isinstance(world, World)) or (self,)
+        return tuple(sorted(parts, key=lambda part: -int(np.count_nonzero(part.bodies.inverse_mass))))
+
     @quiet
     def add_up_forces(self) -> None:
         """Update ``bodies.force`` and ``.torque`` to the forces that act.
@@ -339,6 +366,13 @@ class World(State):
         with self.active():
             self.synchronise()
             self.schedule.run(stage, self, dt)
+
+
+def _island_world(systems: Iterable[System], physics: PhysicsConfig, simulation: SimulationConfig) -> World:
+    """Return a world for an island of another: it is one itself."""
+    world = World(systems=systems, physics=physics, simulation=simulation)
+    world.islands = Islands(world.schedule, None)
+    return world
 
 
 def _refuse_unnamed(method: str, values: tuple[object, ...]) -> None:

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from physicslab.kernels.events import encounter, meeting
 from physicslab.kernels.events.meeting import Course
 from physicslab.kernels.events.path import FIELDS
+from physicslab.kernels.geometry.outline import Outline
+from physicslab.kernels.geometry.shapes import BOX
 from physicslab.kernels.interpreter import twin_of
-from physicslab.kernels.narrow.outline import Outline
 from physicslab.kernels.records import MANIFOLD
 from physicslab.state.shapes import blank_shapes, with_names
 
@@ -74,8 +75,8 @@ def test_two_boxes(
     d: float, turn: float, ux: float, uy: float, wx: float, wy: float, a: float, b: float
 ) -> None:
     dx, dy = d * math.cos(turn), d * math.sin(turn)
-    one = Outline(True, math.cos(a), math.sin(a), 0.5, 0.3, 0.0)
-    other = Outline(True, math.cos(b), math.sin(b), 0.4, 0.2, 0.0)
+    one = Outline(True, math.cos(a), math.sin(a), 0.5, 0.3, 0.0, 4, BOX)
+    other = Outline(True, math.cos(b), math.sin(b), 0.4, 0.2, 0.0, 4, BOX)
     t, face = meet_box_box(Course(dx, dy, ux, uy, wx, wy), one, other, 0.0)
 
     def gap(at: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -96,6 +96,56 @@ class KeptContacts:
         rest = shared((*colours, contacts.counts), last.arrays()[2:] if last is not None else None)
         return cls(*fresh, rest[:2], rest[2], contacts.impulse_dt, contacts.substep_factor)
 
+    @classmethod
+    def joined(cls, parts: Sequence[KeptContacts], counts: _Array, *, rescaled: bool = True) -> KeptContacts:
+        """Return those of several parts of a world, with its ``counts`` (COUNTED,); one at most has slots.
+
+        Impulses act over the time of the first part: others are ``rescaled`` to that.
+        """
+        spans = [part.impulse_dt for part in parts]
+        span = next((span for span in spans if span > 0.0), 0.0)
+        points = [part.points.copy() for part in parts]
+        for own, before in zip(points, spans if rescaled else (), strict=False):
+            for name in ("normal_impulse", "tangent_impulse") if before not in (0.0, span) else ():
+                own[name] *= span / before
+        manifolds = np.concatenate([part.manifolds for part in parts])
+        order = np.lexsort((manifolds["wall"], manifolds["entity_b"], manifolds["entity_a"]))
+        colours = max((part.colours for part in parts), key=lambda kinds: sum(map(len, kinds)))
+        factor = max(part.substep_factor for part in parts)
+        return cls(manifolds[order], np.concatenate(points)[order], colours, counts.copy(), span, factor)
+
+    def among(self, entities: NDArray[np.int64], *, apart: bool) -> KeptContacts:
+        """Return those that some entities (n,) have; where these are ``apart`` now, without slots."""
+        has = np.isin(self.manifolds["entity_a"], entities) | np.isin(self.manifolds["entity_b"], entities)
+        manifolds, colours = self.manifolds[has], self.colours
+        if apart:
+            manifolds["slot"] = -1
+        if not (manifolds["slot"] >= 0).any():
+            colours = tuple(colour[:0] for colour in colours)
+        rest = self.counts, self.impulse_dt, self.substep_factor
+        return KeptContacts(manifolds, self.points[has], colours, *rest)
+
+    def as_contacts(self) -> Contacts:
+        """Return contacts that hold copies of them, to be written to a file."""
+        held = Contacts()
+        held.recorded, held.impulse_dt = len(self.manifolds), self.impulse_dt
+        held.substep_factor = self.substep_factor
+        held.manifolds, held.points = self.manifolds.copy(), self.points.reshape(-1).copy()
+        for kind, colour in zip(held.wide.kinds, self.colours, strict=True):
+            kind.colour = colour.copy()
+        return held
+
+    def show(self, state: State) -> None:
+        """Give them to a state in which others are not found, so that they can be read."""
+        self.restore(state)
+        contacts = state.contacts
+        contacts.manifolds["slot"][: contacts.recorded] = -1
+        contacts.restoring = contacts.stale = False
+        count = len(self.manifolds)
+        if len(contacts.touching) < count:
+            contacts.touching, contacts.scalar, contacts.sleeping = np.zeros((3, count), np.int64)
+        contacts.set_inactive(contacts.inactive, len(state.entity_index))
+
     def arrays(self) -> tuple[_Array, ...]:
         """Return every array."""
         return (self.manifolds, self.points, *self.colours, self.counts)
@@ -172,6 +222,23 @@ class KeptSleep:
         sleep.count = int(np.count_nonzero(sleep.asleep))
         if sleep.count:
             set_inactive(state)
+
+
+def carry_sleep(state: State, part: State) -> None:
+    """Let the bodies of a part of a world sleep and rest as they do in ``state``, which has some of them."""
+    source, sleep = state.sleep, part.sleep
+    if not (sleep.on and source.on):
+        return
+    # The rows of a world whose structure was changed may be numbered again, and those of its sleep not yet.
+    _, own, there = np.intersect1d(sleep.entities, source.entities, return_indices=True)
+    own, there = own[sleep.entities[own] > 0], there[source.entities[there] > 0]
+    for name in _OF_ALL + _OF_SLEEPERS:
+        getattr(sleep, name)[own] = getattr(source, name)[there]
+    sleep.gone, sleep.laws = np.union1d(sleep.gone, source.gone), source.laws or sleep.laws
+    sleep.unverified |= source.unverified
+    sleep.count = int(np.count_nonzero(sleep.asleep))
+    if sleep.count and len(sleep.asleep) == len(part.entity_index):
+        set_inactive(part)
 
 
 def forget_sleep(sleep: Sleep) -> None:

@@ -15,6 +15,8 @@ from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
 from physicslab.ecs.text import printable, unique_name
 from physicslab.ecs.vector import Vector2
+from physicslab.stepping.partition import MAX_BODIES
+from physicslab.stepping.stepper import Advancer
 from physicslab.world import World
 
 _MOMENTA: dict[str, float | Vector2] = dict.fromkeys(MOMENTUM_CAUSES, math.nan)
@@ -77,7 +79,8 @@ def advice_of(warnings: Iterable[ModelWarning]) -> list[dict[str, Any]]:
 def run_report(world: World, record: RunRecord) -> dict[str, Any]:
     """Return the document of a run, as the contract of ``run --json`` has it; SI units."""
     world.synchronise()
-    momentum, stepper = measure_momentum(world), world.steppers.main(world)
+    momentum, most = measure_momentum(world), world.parts[0]
+    stepper: Advancer = world.islands if world.islands.members else world.steppers.main(world)
     # A system that ran and is not needed any more is not among those left out.
     timings = {name: timing for name, timing in world.schedule.timings.items() if timing.calls}
     return {
@@ -86,12 +89,12 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "steps": record.steps,
         "dt": world.simulation.dt,
         "substeps": world.simulation.substeps,
-        "integrator": world.plan.integrator.name,
-        "integrator_reason": world.plan.reason,
-        "collision_method": world.plan.collisions,
-        "collision_reason": world.plan.collision_reason,
-        "contact_model": "none" if world.plan.collisions == "none" else world.plan.contacts,
-        "contact_reason": world.plan.contact_reason,
+        "integrator": most.plan.integrator.name,
+        "integrator_reason": most.plan.reason,
+        "collision_method": most.plan.collisions,
+        "collision_reason": most.plan.collision_reason,
+        "contact_model": _contact_model(most),
+        "contact_reason": most.plan.contact_reason,
         "summation": summation(world),
         "interpreted": list(world.interpreted),
         "force_evaluations": world.force_evaluations,
@@ -100,7 +103,9 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "interpreted_steps": record.interpreted_steps,
         "interpreted_s": record.interpreted_s,
         "stepper": {"name": stepper.name, "reason": stepper.reason},
-        "steppers_left_out": [{"name": left.name, "reason": left.reason} for left in world.steppers.left_out],
+        "steppers_left_out": [{"name": left.name, "reason": left.reason} for left in most.steppers.left_out],
+        "islands": [_island(world, part) for part in world.parts],
+        "islands_reason": world.islands.reason if world.islands.members else world.islands.why_one,
         "systems": [
             {"name": name, "calls": timing.calls, "ms": timing.ms} for name, timing in timings.items()
         ],
@@ -153,6 +158,23 @@ def _energy(audit: Audit) -> dict[str, Any]:
         "max_relative_drift": audit.error,
         "max_relative_change": audit.change,
         "changed_by": list(audit.causes),
+    }
+
+
+def _contact_model(world: World) -> str:
+    return "none" if world.plan.collisions == "none" else world.plan.contacts
+
+
+def _island(world: World, part: World) -> dict[str, Any]:
+    """Return what advances some bodies, and why: their names, or of more than a few their number."""
+    bodies = part.entity_index.entities[part.bodies.inverse_mass > 0.0].tolist()
+    stepper = part.steppers.main(part)
+    return {
+        "bodies": [world.label(body) for body in bodies] if len(bodies) <= MAX_BODIES else len(bodies),
+        "stepper": stepper.name,
+        "method": part.plan.integrator.name,
+        "contact_model": _contact_model(part),
+        "reason": stepper.reason,
     }
 
 
@@ -254,6 +276,8 @@ def run_summary(report: Mapping[str, Any], title: str) -> str:
         f"{report['collisions']} collisions, deepest overlap {report['max_penetration']:.3g} m",
         f"  systems     {systems or 'none'}",
     ]
+    if len(report["islands"]) > 1:
+        lines.insert(3, f"  islands     {report['islands_reason']}; the methods are those of the largest")
     if report["contact_model"] != "none":
         lines.insert(4, f"  touching    {report['contact_model']} contacts: {report['contact_reason']}")
     if report["asleep"]:

@@ -53,7 +53,10 @@ def find_warnings(world: World) -> tuple[ModelWarning, ...]:
 
     Nothing is changed; the figures are those of the last step.
     """
-    return tuple(warning for rule in RULES for warning in rule(world))
+    worst = WorstWarnings()
+    for part in world.parts:
+        worst.add(tuple(warning for rule in RULES for warning in rule(part)))
+    return worst.all
 
 
 def _rigid_stepper(world: World) -> Rigid | None:

@@ -86,6 +86,13 @@ class Table:
         self._present[row] = True
         self.handles[entity] = handle
 
+    def blank(self) -> Component:
+        """Return a component of no entity, whose values are all zero: its row is written later."""
+        made: Component = Component.__new__(self.component)
+        made._views = [[column.dtype.type(0).item()] * (column.ndim) for column in self.columns]
+        made._row = 0
+        return made
+
     def release(self, entity: int) -> None:
         """Detach the entity's handle, which keeps its last values, and blank its row."""
         handle = self.handles.pop(entity)

@@ -1,5 +1,6 @@
 """From a scene document, the parsed JSON, to a world, with every check."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +25,7 @@ from physicslab.integrators import SPLIT_METHODS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import View
+from physicslab.stepping.islands import KeptIsland
 from physicslab.stepping.plan import MAX_STEPS
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
@@ -38,7 +40,7 @@ TITLE_LIMIT = 200
 
 _KEYS = (
     "format", "name", "title", "description", "view", "time", "physics", "simulation", "entities", "contacts",
-    "joints", "rests", "solver", "remainders",
+    "joints", "rests", "solver", "remainders", "islands",
 )  # fmt: skip
 
 
@@ -69,6 +71,8 @@ class SceneDraft:
     solver : tuple of float, int and tuple
         The time over which the contacts' impulses act [s], the factor by which the coming step needs more
         substeps than configured, and what was chosen for an earlier state of motion, if anything was.
+    islands : list of KeptIsland, optional
+        The islands, where they are not those that are found first; their entities are places in the list.
     """
 
     name: str
@@ -84,6 +88,7 @@ class SceneDraft:
     rests: list[list[Any]]
     remainders: dict[int, tuple[list[float], list[float]]]
     solver: tuple[float, int, tuple[str, str, int] | None]
+    islands: list[KeptIsland] | None
 
 
 def read_scene(document: object, source: str = "scene") -> World:
@@ -118,6 +123,7 @@ def read_scene(document: object, source: str = "scene") -> World:
     world.view, world.time = draft.view, draft.time
     for number, (id_, components) in enumerate(draft.entities, start=1):
         world.spawn(*components, name=id_, entity=number)  # by which springs name bodies that are yet to come
+    world.islands.paused = True
     world.contacts.impulse_dt, world.contacts.substep_factor, chosen = draft.solver
     if draft.contacts or draft.joints or draft.rests or chosen:
         world.synchronise()
@@ -132,6 +138,10 @@ def read_scene(document: object, source: str = "scene") -> World:
         world.remainders = Remainders.of_bodies(draft.remainders)
     if chosen is not None:
         world.resume(*chosen)
+    if draft.islands is not None:
+        world.synchronise()
+        world.islands.restore(world, draft.islands)
+    world.islands.paused = False
     return world
 
 
@@ -162,6 +172,7 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
         rests=check_rests(scene.get("rests", []), scene["entities"], ids, source),
         remainders=check_remainders(scene.get("remainders", []), entities, ids, source),
         solver=_solver(scene.get("solver", {}), simulation, f"{source}: solver"),
+        islands=_islands(scene["islands"], ids, simulation, source) if "islands" in scene else None,
     )
 
 
@@ -185,12 +196,46 @@ def _solver(
     """Return the values that the solver takes from the last step; those left out are as configured."""
     found = checks.checked_object(value, where, 'an object {"span": ..., "finer": ...}')
     checks.checked_keys(found, f"{where}: ", "key", ("span", "finer", "chosen"))
+    return _solver_values(found, simulation, where)
+
+
+def _solver_values(
+    found: Mapping[str, Any], simulation: SimulationConfig, where: str
+) -> tuple[float, int, tuple[str, str, int] | None]:
+    """Return the values that a checked object has; those left out are as configured."""
     given: dict[str, Any] = {"span": simulation.dt / simulation.substeps, "finer": 1, **found}
     try:
         span, finer = float(_SPAN.check(given["span"])), int(_FINER.check(given["finer"]))
     except InvalidValue as error:
         raise checks.SceneError(f"{where.removesuffix('solver')}{error}") from error
     return span, finer, _chosen(found["chosen"], f"{where}.chosen") if "chosen" in found else None
+
+
+def _islands(
+    value: object, ids: Mapping[str, int], simulation: SimulationConfig, source: str
+) -> list[KeptIsland]:
+    """Return the islands, of which no two have a body in common."""
+    islands: list[KeptIsland] = []
+    seen: set[int] = set()
+    for where, row in checks.checked_rows(value, f"{source}: islands", "a list of objects"):
+        found = checks.checked_object(row, where, 'an object {"bodies": [...], "span": ..., "finer": ...}')
+        checks.checked_keys(found, f"{where}: ", "key", ("bodies", "span", "finer", "chosen", "driven"))
+        bodies: list[int] = []
+        for place, body in checks.checked_rows(found.get("bodies"), f"{where}.bodies", "a list of ids"):
+            number = ids.get(body, 0) if isinstance(body, str) else 0
+            if not number or number in seen:
+                raise checks.refusal(place, body, "the id of an entity that no other island has")
+            seen.add(number)
+            bodies.append(number)
+        driven: list[list[float]] = []
+        poses = checks.checked_rows(found.get("driven", []), f"{where}.driven", "a list of [id, x, y, angle]")
+        for place, pose in poses:
+            known = isinstance(pose, list) and len(pose) == 4 and all(map(checks.is_number, pose[1:]))
+            if not (known and isinstance(pose[0], str) and pose[0] in ids):
+                raise checks.refusal(place, pose, "[id, x, y, angle], an entity and three finite numbers")
+            driven.append([ids[pose[0]], *map(float, pose[1:])])
+        islands.append(KeptIsland(bodies, *_solver_values(found, simulation, where), driven))
+    return islands
 
 
 def _chosen(value: Any, where: str) -> tuple[str, str, int]:

@@ -1,7 +1,7 @@
 """From a world to a scene document, by way of a copy that may be written while the world goes on."""
 
 import copy
-from collections.abc import Generator, Iterable, Iterator, Mapping
+from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import esper
@@ -22,6 +22,8 @@ from physicslab.files.json_text import json_pieces
 from physicslab.files.reader import FORMAT
 from physicslab.files.remainders import export_remainders
 from physicslab.state.contacts import Contacts
+from physicslab.state.state import State
+from physicslab.stepping.islands import KeptIsland
 from physicslab.stepping.plan import outlived
 from physicslab.world import World
 
@@ -50,6 +52,8 @@ class WorldSnapshot:
         What rounding left out of positions and velocities, where it is not zero.
     chosen : tuple, optional
         What was chosen for the motion as it once was, where it would not be chosen now.
+    islands : list of KeptIsland, optional
+        The islands, where a loaded world would find others.
     texts : dict of str to str
         Name, title and description of the world.
     view : View, optional
@@ -63,6 +67,7 @@ class WorldSnapshot:
         with world.active():
             self.entities = world.entities()
             self.chosen = outlived(world, world.schedule, world.plan)
+            self.islands = world.islands.keep(world)
             named = [(entity, name.id) for entity, name in esper.get_component(Name)]
         self.living = living = set(self.entities)
         self.names = {entity: name for entity, name in named if entity in living}
@@ -70,10 +75,15 @@ class WorldSnapshot:
         self.time, self.physics, self.simulation = world.time, world.physics, world.simulation
         self.view = world.view
         self.shaped = set(world.batch(Shape).entities.tolist())
-        self.contacts: Contacts = copied(world.contacts)
+        members = world.islands.members
+        self.contacts: Contacts = (
+            world.islands.contacts(world, rescaled=False).as_contacts() if members else copied(world.contacts)
+        )
         self.joints = list(world.joints.kept())
-        self.rests = export_rests(world)
-        self.remainders = export_remainders(world)
+        parts: list[State] = [island.state for island in members] or [world]
+        self.rests = [rest for part in parts for rest in export_rests(part)]
+        low = {row[0]: row for part in reversed(parts) for row in export_remainders(part)}
+        self.remainders = [low[entity] for entity in sorted(low)]
         self._rows = dict(world.entity_index.row_of)
         self._tables = _copied(world.entity_index)
 
@@ -156,6 +166,8 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
     ids = dict(snapshot.names)
     referred = {end for row in contacts for end in row[:2]} | {rest[0] for rest in snapshot.rests}
     referred |= {row[0] for row in (*snapshot.remainders, *snapshot.joints)}
+    for island in snapshot.islands or ():
+        referred |= {*island.bodies, *(int(row[0]) for row in island.driven)}
     ids |= yield from _invented(entities, ids, referred)
     document: dict[str, Any] = {"format": FORMAT} | {
         key: text for key, text in snapshot.texts.items() if text
@@ -185,7 +197,18 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
         "solver": _solver(snapshot),
         "remainders": remainders,
     }
-    return document | {key: value for key, value in kept.items() if value}
+    islands = {} if snapshot.islands is None else {"islands": _islands(snapshot.islands, ids)}
+    return document | {key: value for key, value in kept.items() if value} | islands
+
+
+def _islands(islands: Sequence[KeptIsland], ids: Mapping[int, str]) -> list[dict[str, Any]]:
+    """Return the bodies of each island, and what its world does not begin with."""
+    return [
+        {"bodies": [ids[body] for body in island.bodies], "span": island.span, "finer": island.finer}
+        | ({"chosen": list(island.chosen)} if island.chosen is not None else {})
+        | ({"driven": [[ids[int(row[0])], *row[1:]] for row in island.driven]} if island.driven else {})
+        for island in islands
+    ]
 
 
 def _solver(snapshot: WorldSnapshot) -> dict[str, Any]:

@@ -8,7 +8,7 @@ numbers, and entities keep theirs.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
@@ -21,9 +21,9 @@ from physicslab.contacts.kept import KeptContacts, KeptSleep, forget_sleep, shar
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.context import create_numbered
-from physicslab.ecs.table import Table
 from physicslab.state.account import KeptAccount
 from physicslab.state.remainders import Remainders
+from physicslab.stepping.island import Island
 from physicslab.stepping.plan import StepPlan
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import System
@@ -88,7 +88,7 @@ class _Structure:
         living = set(esper.get_entities())
         for entity, others in wanted.items():
             if entity not in living:
-                made = [_blank(world.table(kind)) for kind in kinds[entity]]
+                made = [world.table(kind).blank() for kind in kinds[entity]]
                 create_numbered(entity, [*made, *others])
                 continue
             there: tuple[Any, ...] = esper.components_for_entity(entity)
@@ -98,7 +98,7 @@ class _Structure:
                     esper.remove_component(entity, kind)
             for kind in kinds[entity]:
                 if not esper.has_component(entity, kind):
-                    esper.add_component(entity, _blank(world.table(kind)))
+                    esper.add_component(entity, world.table(kind).blank())
             for other in others:
                 if esper.try_component(entity, type(other)) is not other:
                     esper.add_component(entity, other)
@@ -116,8 +116,8 @@ class Keyframe:
     """
 
     __slots__ = (
-        "_account", "_columns", "_contacts", "_counts", "_forces", "_joints", "_laws", "_own", "_plan",
-        "_rates", "_remainders", "_sleep", "_structure",
+        "_account", "_columns", "_contacts", "_counts", "_forces", "_islands", "_joints", "_laws", "_own",
+        "_plan", "_rates", "_remainders", "_sleep", "_structure",
     )  # fmt: skip
 
     def __init__(self, world: World, last: Keyframe | None = None) -> None:
@@ -144,6 +144,12 @@ class Keyframe:
         self._own: dict[System, _Columns] = {
             system: kept for system in world.schedule.running if (kept := system.keep())
         }
+        parts = {} if last is None else {entities.tobytes(): part for entities, part in last._islands}
+        self._islands: list[tuple[_Array, Keyframe]] = []
+        for island in world.islands.members:
+            assert isinstance(island.state, World)
+            part = Keyframe(island.state, parts.get(island.entities.tobytes()))
+            self._islands.append((island.entities, part))
         before = (last._contacts, last._sleep) if last is not None else (None, None)
         self._contacts: KeptContacts = KeptContacts.of(world.contacts, before[0])
         self._sleep: KeptSleep = KeptSleep.of(world.sleep, before[1])
@@ -160,6 +166,9 @@ class Keyframe:
             yield from kept
         yield from self._contacts.arrays()
         yield from self._sleep.arrays()
+        for entities, part in self._islands:
+            yield entities
+            yield from part.arrays()
         low = self._remainders
         yield from (low.keys, low.q, low.v, low.q_low, low.v_low)
 
@@ -173,6 +182,8 @@ class Keyframe:
     def restore(self, world: World) -> None:
         """Put the world back to this moment, in place; every entity has the number that it had."""
         world.edited()
+        before, world.islands.paused = world.islands.members, True
+        world.islands.forget(world)
         structure, index = self._structure, world.entity_index
         with world.active():
             if index.synchronise():
@@ -203,6 +214,21 @@ class Keyframe:
         world.remainders = self._remainders
         world.account.bring_back(self._account)
         world.fastest_rates.update(self._rates)
+        self._restore_islands(world, before)
+
+    def _restore_islands(self, world: World, before: Sequence[Island]) -> None:
+        """Let the islands go on from that moment, in the worlds that the same ones had ``before``."""
+        there = {island.entities.tobytes(): island.world for island in before}
+        members: list[Island] = []
+        for entities, frame in self._islands:
+            part = there.get(entities.tobytes())
+            if part is None:
+                part, frame = world.islands.blank(world), copy(frame)
+                frame._structure = replace(frame._structure, changes=-1)
+            assert isinstance(part, World)
+            frame.restore(part)
+            members.append(Island(part, entities))
+        world.islands.adopt(world, members)
 
 
 def _put(then: _Array, now: _Array, rows: NDArray[np.int64]) -> None:
@@ -211,11 +237,3 @@ def _put(then: _Array, now: _Array, rows: NDArray[np.int64]) -> None:
         now[1:] = then[1:]
     else:
         now[rows[rows > 0]] = then[rows > 0]
-
-
-def _blank(table: Table) -> Component:
-    """Return a component of no entity, whose values are all zero: its row is written later."""
-    made: Component = Component.__new__(table.component)
-    made._views = [[column.dtype.type(0).item()] * (column.ndim) for column in table.columns]
-    made._row = 0
-    return made

@@ -1,5 +1,6 @@
 """The near pairs of a world, those that may touch with a record, and which of them do: arrays."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -7,17 +8,19 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import compile_kernels, near_counts
 from physicslab.kernels.broad import near_pairs
-from physicslab.kernels.narrow.contact import AS_FOUND
+from physicslab.kernels.geometry.contact import AS_FOUND
 from physicslab.kernels.records import IMPACT, MANIFOLD, POINT
 from physicslab.kernels.solver import impulse
 from physicslab.kernels.wide import refresh, slots
 from physicslab.state.wide_contacts import WideContacts
 
 
-def _count(place: int, meaning: str) -> Any:
+def _count(place: int, meaning: str, *, of_pairs: bool = True) -> Any:
     """Return a property that reads and writes one of the counts that kernels change."""
 
     def read(contacts: "Contacts") -> int:
+        if of_pairs and contacts.source is not None:
+            contacts.fetch()
         return int(contacts.counts[place])
 
     def write(contacts: "Contacts", value: int) -> None:
@@ -71,6 +74,8 @@ class Contacts:
     read : bool
         Whether the impacts of the contact step are read from the log, and so written to it (a gas takes 5 %
         longer for that); those located in time are there in any case.
+    source : callable, optional
+        Brings the pairs here when they are read, where they are found in the worlds of islands.
     """
 
     LOGGED = 100_000
@@ -82,13 +87,16 @@ class Contacts:
     sleeping_count = _count(near_counts.SLEEPING, "How many inactive pairs have points.")
     active = _count(near_counts.ACTIVE, "How many scalar pairs have points.")
     left = _count(near_counts.LEFT, "How many pairs the impacts of this substep have left to the solver.")
-    logged = _count(near_counts.LOGGED, "How many impacts were ever logged.")
+    logged = _count(near_counts.LOGGED, "How many impacts were ever logged.", of_pairs=False)
     restitutions_lowered = _count(
         near_counts.LOWERED,
         "How many impacts of two points had their restitution lowered, so that no energy was made.",
+        of_pairs=False,
     )
     energetic_impacts = _count(
-        near_counts.ENERGETIC, "How many impacts obeyed Stronge's law, as Newton's would have made energy."
+        near_counts.ENERGETIC,
+        "How many impacts obeyed Stronge's law, as Newton's would have made energy.",
+        of_pairs=False,
     )
     outside = _count(near_counts.OUTSIDE, "Whether a body was beyond the bounds in the step at hand.")
     unordered = _count(
@@ -105,6 +113,7 @@ class Contacts:
         self.stale = True
         self.log: NDArray[Any] = np.zeros(self.LOGGED, IMPACT)
         self.read = False
+        self.source: Callable[[], None] | None = None
         self.make_room(64)
 
     @property
@@ -154,10 +163,17 @@ class Contacts:
     @property
     def count(self) -> int:
         """How many near pairs have points; until they are listed again, how many did before."""
+        self.fetch()
         if self.stale:
             self.sync()
             return int(np.count_nonzero(self.manifolds["count"][: self.recorded]))
         return int(self.active + self.wide.filled + self.sleeping_count)
+
+    def fetch(self) -> None:
+        """Take the pairs from where they are found, if that is elsewhere."""
+        source, self.source = self.source, None
+        if source is not None:
+            source()
 
     def changed(self) -> None:
         """Note that slots are newer than their records."""
@@ -165,6 +181,7 @@ class Contacts:
 
     def sync(self) -> None:
         """Write slots into the records of their pairs, if they are newer."""
+        self.fetch()
         if not self._synced:
             for constraints in self.wide.kinds:
                 slots.store(constraints.slots, constraints.count, self.manifolds, self.points)
@@ -246,6 +263,7 @@ class Contacts:
     @property
     def max_penetration(self) -> float:
         """The deepest overlap now [m]."""
+        self.fetch()
         compile_kernels((impulse.deepest,))
         pairs = ((self.touching, self.active), (self.sleeping, self.sleeping_count))
         depth = max(float(impulse.deepest(self.manifolds, self.points, *listed)) for listed in pairs)

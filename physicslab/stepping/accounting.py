@@ -1,7 +1,5 @@
 """The balance of a world before and after each step: what was booked between is what changed it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -15,12 +13,6 @@ from physicslab.state.state import State
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import ForceSystem, Stage, System
-
-__all__ = [
-    "acts_unbooked", "balance_of", "book_account", "close_account", "held_in", "motion_totals_of",
-    "open_account", "run_measured",
-]  # fmt: skip
-
 
 _MANY = 256
 """Rows from which on it is seen by a digest that nothing was changed since the last step."""

@@ -1,7 +1,5 @@
 """Steps in which everything sleeps."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from physicslab.contacts.islands import all_asleep
@@ -9,8 +7,6 @@ from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.stepper import Advance
 from physicslab.systems.schedule import Schedule
-
-__all__ = ["Asleep"]
 
 
 class Asleep:

@@ -1,12 +1,11 @@
 """Which worlds can have their collisions located exactly, and which benefit."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Material, Shape, Transform, Velocity
-from physicslab.components.shape import BOX, CIRCLE
+from physicslab.components.shape import BOX, CIRCLE, KINDS
+from physicslab.kernels.geometry.shapes import BOX as FIRST_OF_BOX
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
@@ -15,17 +14,6 @@ from physicslab.systems.joint import JointSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
-
-__all__ = [
-    "CONTACT_STEP",
-    "MAX_BODIES",
-    "MAX_PAIRS",
-    "count_pairs",
-    "pairs_that_may_meet",
-    "turning_boxes",
-    "why_not_exact",
-    "why_not_worthwhile",
-]
 
 MAX_BODIES = 32
 """Number of moving bodies above which ``auto`` prefers the contact step."""
@@ -55,6 +43,9 @@ def why_not_exact(state: State, schedule: Schedule) -> str | None:
         return "a body is held"
     if (state.table(Velocity).present & ~state.table(Transform).present).any():
         return "something moves that is nowhere"
+    reason = why_not_located(state)
+    if reason is not None:
+        return reason
     rows = turning_boxes(state)
     if len(rows):
         label = state.label_of_row(int(rows[0]))
@@ -83,6 +74,16 @@ def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:
         elif not (system.is_engine or type(system).marked().keys() <= _OBSERVING):
             return f"{system.name} acts within the step"
     return None
+
+
+def why_not_located(state: State) -> str | None:
+    """Return which shape has impacts that cannot be located yet, or ``None``: discs' and boxes' can."""
+    shapes = state.bodies.shapes
+    rows = np.flatnonzero((shapes.vertices > 1) & (shapes.first != FIRST_OF_BOX))
+    if not len(rows):
+        return None
+    label, code = state.label_of_row(int(rows[0])), int(state.table(Shape)["kind"][rows[0]])
+    return f"{label} is a {list(KINDS)[code - 1]}, whose impacts are found within steps"
 
 
 def turning_boxes(state: State) -> NDArray[np.int64]:

@@ -5,8 +5,6 @@ floor does, neither has an end: the bounds win. The body is put to the nearest p
 overlaps nothing fixed, and loses the part of its velocity that points outwards.
 """
 
-from __future__ import annotations
-
 import heapq
 import itertools
 
@@ -21,8 +19,6 @@ from physicslab.kernels.solver.separate import BEYOND
 from physicslab.state.state import State
 from physicslab.stepping.accounting import balance_of
 from physicslab.systems.schedule import Schedule
-
-__all__ = ["bring_back"]
 
 _OUTWARDS = -0.1
 """Along the inward normal of a wall: a fixed body whose push has less keeps what is beyond the wall there."""

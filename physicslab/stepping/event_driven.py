@@ -1,7 +1,5 @@
 """Scenes of few bodies that bounce: ballistic motion between impacts, each impact at its own time."""
 
-from __future__ import annotations
-
 import time
 from typing import Any
 
@@ -26,8 +24,6 @@ from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import Stage
-
-__all__ = ["EventDriven"]
 
 _ACCELERATION = slice(8, 10)
 """The columns of a path's acceleration."""

@@ -1,7 +1,5 @@
 """Which body to name where a method finds no step: the one that moves or speeds up fastest."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np
@@ -9,8 +7,6 @@ import numpy as np
 from physicslab.components import Velocity
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem, Stage
-
-__all__ = ["fastest_body"]
 
 
 @np.errstate(all="ignore")

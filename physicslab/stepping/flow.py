@@ -1,7 +1,5 @@
 """Scenes in which nothing but forces acts: one compiled flow, however many steps."""
 
-from __future__ import annotations
-
 import math
 import time
 from typing import Any
@@ -16,9 +14,6 @@ from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.joint import JointSystem
 from physicslab.systems.schedule import Schedule
-
-__all__ = ["Flow", "NotSmooth"]
-
 
 _PROJECTED = 16
 """Steps after which what joints hold together is put there again, by a method that chooses its steps: it is

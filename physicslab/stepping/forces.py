@@ -1,7 +1,5 @@
 """The forces that act at the present state: their sum, added up beside the steps, and their rates."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np
@@ -11,8 +9,6 @@ from physicslab.state.state import State
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import ForceSystem, Stage
-
-__all__ = ["add_up_forces", "fastest_rate", "forces_by_system"]
 
 
 def add_up_forces(state: State, schedule: Schedule) -> None:

@@ -1,7 +1,5 @@
 """Which method moves a world, and why."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -32,11 +30,6 @@ from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import ForceSystem, Stage
-
-__all__ = [
-    "StepPlan", "choose_plan", "default_plan", "outlived", "plan_for_jumps", "resumed_plan", "tolerance_for",
-    "why_not_smooth",
-]  # fmt: skip
 
 _SAMPLED_LIMIT = 200
 """Number of attracting bodies from which sampling their forces takes longer than the accuracy is worth."""

@@ -1,7 +1,5 @@
 """Few bodies that touch: rigid contacts, their laws solved to rounding, events located in time."""
 
-from __future__ import annotations
-
 import time
 from typing import Any
 
@@ -27,8 +25,6 @@ from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import Stage
-
-__all__ = ["Rigid"]
 
 
 class Rigid:

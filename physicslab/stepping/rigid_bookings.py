@@ -1,15 +1,11 @@
 """What corrections of rigid contacts have given, by the change of the motion that they made."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.kernels.accounts import ENERGY, OVERLAP, PX, PY, SPIN
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
-
-__all__ = ["book_overlap"]
 
 type Numbers = NDArray[np.float64]
 
@@ -25,7 +21,7 @@ def _momenta(ode: OdeSystem, q: Numbers, v: Numbers) -> Numbers:
 
 
 def book_overlap(state: State, ode: OdeSystem, place: Numbers, speed: Numbers, energy: float) -> None:
-    """Book that bodies were moved apart, from a place and a speed, which changed the energy [J]."""
+    """Book that bodies were moved apart, from a place (n,) and a speed (n,), which changed the energy [J]."""
     row = state.account.sums[OVERLAP]
     row[ENERGY] += energy
     row[[PX, PY, SPIN]] += _momenta(ode, ode.q, ode.v) - _momenta(ode, place, speed)

@@ -1,7 +1,5 @@
 """A step of rigid contacts: from event to event, and by impulses where events accumulate."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -20,8 +18,6 @@ from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.rigid_bookings import book_overlap
-
-__all__ = ["MAX_POINTS", "MadeStep", "RigidMotion"]
 
 MAX_POINTS = 64
 """Largest number of points that touch at one time: their equations are dense."""

@@ -1,7 +1,5 @@
 """What rigid contacts leave to be read: records of pairs, with points, impulses and impacts."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 
@@ -13,8 +11,6 @@ from physicslab.contacts.near_pairs import list_all
 from physicslab.kernels.rigid.features import GAP, MU, NX, NY, ONE, PAIR, PX, PY, RESTITUTION
 from physicslab.state.state import State
 from physicslab.stepping.rigid_motion import MadeStep
-
-__all__ = ["RigidRecords"]
 
 _IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 

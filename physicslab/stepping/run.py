@@ -1,7 +1,5 @@
 """A run: how long it is, in whole steps and a rest, and how it goes on, a call of a stepper at a time."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Iterator
@@ -14,10 +12,8 @@ from physicslab.ecs.config import MIN_TIME, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.state.masses import Diverged, quiet
 from physicslab.stepping.flow import Flow
-from physicslab.stepping.stepper import Stepper
+from physicslab.stepping.stepper import Advancer
 from physicslab.systems.schedule import Schedule
-
-__all__ = ["RunLength", "Stepped", "run_length", "strides"]
 
 _STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
 _SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
@@ -75,8 +71,11 @@ class Stepped(Protocol):
     def advance(self, h: float, steps: int) -> int:
         """Make steps of ``h`` seconds; return how many."""
 
-    def stepper_for(self, h: float) -> Stepper:
+    def stepper_for(self, h: float) -> Advancer:
         """Return the best stepper for a coming step of ``h`` seconds."""
+
+    def steps_ahead(self, h: float) -> int:
+        """Return how many steps of ``h`` seconds may be one call."""
 
 
 def run_length(world: Stepped, seconds: float | None, steps: int | None) -> RunLength:
@@ -159,8 +158,8 @@ def _go_on(world: Stepped, length: RunLength, done: int, stride: int, at_once: i
     if world.schedule.observer is not None:
         return world.advance(h, 1)
     wanted = stride - done % stride
-    count = max(1, min(wanted, length.whole - done))
     best = world.stepper_for(h)
+    count = max(1, min(wanted, length.whole - done, world.steps_ahead(h)))
     if not best.leaps:
         return world.advance(h, min(count, at_once))
     if isinstance(best, Flow) and best.whole and wanted >= length.steps - done:

@@ -1,7 +1,5 @@
 """Which steppers there are, in one list, and which of them can advance a world."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from physicslab.state.state import State
@@ -11,10 +9,8 @@ from physicslab.stepping.flow import Flow
 from physicslab.stepping.plan import StepPlan, choose_plan, resumed_plan
 from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.soft import Soft
-from physicslab.stepping.stepper import Stepper
+from physicslab.stepping.stepper import Advancer, Stepper
 from physicslab.systems.schedule import LeftOut, Schedule
-
-__all__ = ["STEPPERS", "Steppers", "choose", "remake", "resume", "select_steppers"]
 
 STEPPERS: tuple[type[Stepper], ...] = (Asleep, Flow, EventDriven, Rigid, Soft)
 """All of them, the best first. The last can advance any world."""
@@ -39,14 +35,14 @@ class Steppers:
         awake = [stepper for stepper in self.usable if not isinstance(stepper, Asleep)]
         return next(stepper for stepper in awake if stepper.ready(state, state.simulation.dt))
 
-    def at_once(self, stepper: Stepper, steps: int) -> int:
-        """Return how many of ``steps`` a stepper makes in one call.
+    def at_once(self, stepper: Advancer, steps: int) -> int:
+        """Return how many of ``steps`` a stepper makes in one call; one that is none of these, all.
 
         It is one where a better stepper has left the coming step to it, and may make the next: a run makes
         the same steps as single ones.
         """
-        if steps == 1:
-            return 1
+        if steps == 1 or stepper not in self.usable:
+            return steps
         first = next(one for one in self.usable if not isinstance(one, Asleep))
         return steps if stepper is first or isinstance(stepper, Asleep) else 1
 

@@ -1,10 +1,6 @@
 """Which worlds are so small that kernels can be interpreted for them, until they are compiled."""
 
-from __future__ import annotations
-
 from physicslab.state.state import State
-
-__all__ = ["_ENTITY_LIMIT", "is_small"]
 
 _ENTITY_LIMIT = 40
 """So many entities a small world has at most: forty boxes in a heap take 30 ms a step, ten bodies on ten

@@ -1,7 +1,5 @@
 """Steps with soft contacts: any scene, any systems."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from physicslab.contacts.islands import keep_places
@@ -18,8 +16,6 @@ from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.sleep import SleepSystem
-
-__all__ = ["Soft"]
 
 _MAX_STEPS = 4096
 """Largest number of steps of one call."""

@@ -1,7 +1,5 @@
 """Split forces: sub-integration, between contacts, of bodies that springs and drag act on."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,8 +16,6 @@ from physicslab.state.state import State
 from physicslab.stepping.fastest_body import fastest_body
 from physicslab.stepping.spring_flow import SpringFlow, why_no_spring_flow
 from physicslab.systems.system import ForceSystem, Stage
-
-__all__ = ["OF_SPLIT_FORCES", "SplitForces", "sees_velocity_in_python", "sub_integrated_rows"]
 
 OF_SPLIT_FORCES = frozenset({Stage.DRIFT, Stage.PREDICT})
 """The stages in which they take part."""

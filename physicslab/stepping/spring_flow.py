@@ -1,7 +1,5 @@
 """Springs between the middles of bodies, beside contacts: packed for a flow of their own."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,8 +16,6 @@ from physicslab.state.state import State
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import ForceSystem
-
-__all__ = ["SpringFlow", "why_no_spring_flow"]
 
 _SHORTEST = 0.5
 """Share of its rest length below which a spring is not followed: across it, the pull changes faster."""

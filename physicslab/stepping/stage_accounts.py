@@ -1,7 +1,5 @@
 """What forces do within a substep that no kernel books."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
@@ -17,8 +15,6 @@ from physicslab.state.packed import spring_ends, turned_anchors
 from physicslab.state.state import State
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import ForceSystem, System
-
-__all__ = ["StageAccounts"]
 
 
 class StageAccounts:
@@ -80,7 +76,7 @@ class StageAccounts:
         self._start = transform["position"].copy(), transform["angle"].copy()
 
     def note_force(self, system: System, before: NDArray[np.float64], state: State) -> None:
-        """Note the pull of a force that stores no energy; ``before`` is that of those before it."""
+        """Note the pull of a force that stores no energy; ``before`` (3 rows,) is that of those before it."""
         if system in self._pulls:
             np.subtract(state.bodies.pull, before, out=self._pulls[system])
         elif self._damps and isinstance(system, SpringSystem):

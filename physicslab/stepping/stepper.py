@@ -1,7 +1,5 @@
 """What a stepper is: one way to advance a state."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -10,8 +8,6 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
 from physicslab.systems.schedule import Schedule
-
-__all__ = ["MAX_FACTOR", "MAX_FALL", "Advance", "Stepper", "divisions", "falls_far"]
 
 _MAX_DIVISIONS = 100_000
 """Largest number of parts of a step that is longer than the scene's own."""
@@ -33,11 +29,8 @@ class Advance:
     divisions: int = 1
 
 
-class Stepper(Protocol):
-    """One way to advance a state, made for its structure and remade when that changes.
-
-    To add one, write its file, and name it in the list of :mod:`physicslab.stepping.select`, before those
-    over which it is preferred.
+class Advancer(Protocol):
+    """What advances a state.
 
     Attributes
     ----------
@@ -59,9 +52,10 @@ class Stepper(Protocol):
     title: str
     keeps_balance: bool
     leaves_forces: bool
-    reason: str
 
-    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...
+    @property
+    def reason(self) -> str:
+        """Return the reason for it."""
 
     @property
     def leaps(self) -> bool:
@@ -70,10 +64,6 @@ class Stepper(Protocol):
     @property
     def kernels(self) -> tuple[Any, ...]:
         """Return the kernels that it calls."""
-
-    @classmethod
-    def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
-        """Return why this stepper cannot advance such a world, or ``None``."""
 
     def holds(self, state: State) -> bool:
         """Whether the numbers that it was made from are still the same."""
@@ -89,6 +79,20 @@ class Stepper(Protocol):
         Diverged
             If a value would not be finite. Whole steps before that one are counted by the stepper.
         """
+
+
+class Stepper(Advancer, Protocol):
+    """One way to advance a state, made for its structure and remade when that changes.
+
+    To add one, write its file, and name it in the list of :mod:`physicslab.stepping.select`, before those
+    over which it is preferred.
+    """
+
+    def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...
+
+    @classmethod
+    def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
+        """Return why this stepper cannot advance such a world, or ``None``."""
 
 
 def divisions(state: State, h: float) -> int:

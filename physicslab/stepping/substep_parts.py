@@ -1,7 +1,5 @@
 """What a substep consists of: the stages of the integrator as parts of the compiled loop, or of Python."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from physicslab.kernels.solver import soft
@@ -19,8 +17,6 @@ from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.system import ForceSystem, Stage, System
-
-__all__ = ["SubstepParts"]
 
 _BOOKED = "the work of a force along the way of bodies is booked"
 _NOTHING_TOUCHES = "nothing can touch, so that each system is called by itself"

@@ -1,7 +1,5 @@
 """Substeps with soft contacts: one compiled loop, which hands over to Python where other systems act."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -41,8 +39,6 @@ from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.system import ForceSystem, System
-
-__all__ = ["Span", "Substeps"]
 
 _KERNELS = (
     soft.advance, fat_boxes, leaving.index_bodies, leaving.add_pairs, grid.find_pairs, near_pairs.partition,

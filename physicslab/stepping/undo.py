@@ -1,15 +1,11 @@
 """A step at hand, and back to before one that failed."""
 
-from __future__ import annotations
-
 from types import TracebackType
 
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import wake_all
 from physicslab.kernels.arguments import MotionTuple
 from physicslab.state.state import State
-
-__all__ = ["Undoing", "go_back"]
 
 
 class Undoing:

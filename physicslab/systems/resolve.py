@@ -31,6 +31,10 @@ class ResolveSystem(System):
     def __init__(self, push: float = 0.17, stiffness: float = 7.0, max_push: float = 1.5) -> None:
         self.push, self.stiffness, self.max_push = push, stiffness, max_push
 
+    def fresh(self) -> "ResolveSystem":
+        """Return another one with the same contact spring."""
+        return ResolveSystem(self.push, self.stiffness, self.max_push)
+
     def why_left_out(self, state: State) -> str | None:
         """Needed where two things could ever meet."""
         reason = nothing_to_touch(state)

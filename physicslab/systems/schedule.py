@@ -77,6 +77,10 @@ class Schedule:
             settle()
         return self._timings
 
+    def note_into(self, other: "Schedule") -> None:
+        """Note costs where another schedule notes its own."""
+        self._timings = other._timings
+
     def defer(self, settle: Callable[[], None]) -> None:
         """Let ``settle`` be called, which notes costs, before timings are next read."""
         if self._settle != settle:

@@ -114,6 +114,10 @@ class System:
         """Return which of ``kernels`` the world needs as it is; what it does not need is not waited for."""
         return self.kernels
 
+    def fresh(self) -> "System":
+        """Return another one with the same settings, for a world of its own."""
+        return type(self)()
+
     def keep(self) -> tuple[NDArray[Any], ...]:
         """Return copies of the arrays that the system goes on from, if it keeps any from step to step.
 

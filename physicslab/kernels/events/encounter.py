@@ -12,10 +12,10 @@ from physicslab.kernels.events.meeting import (
     meet_line,
 )
 from physicslab.kernels.events.path import place, seen_from, velocity
+from physicslab.kernels.geometry.manifold import circle_box
+from physicslab.kernels.geometry.outline import Outline, Way, outline_of
+from physicslab.kernels.geometry.pair import touch_wall, touch_with_circle
 from physicslab.kernels.geometry.shapes import BOX, Shapes
-from physicslab.kernels.narrow.manifold import circle_box
-from physicslab.kernels.narrow.outline import Outline, Way, outline_of
-from physicslab.kernels.narrow.pair import touch_wall, touch_with_circle
 from physicslab.kernels.records import Manifold, Point
 
 __all__ = ["gap_of", "meeting_of", "time_apart", "touch_pair"]
@@ -171,7 +171,7 @@ def touch_pair(
     """Fill normal, points and arms of a pair that meets, B at (x, y) and (dx, dy) from A."""
     two = outline_of(manifold.b, angle, shapes)
     if manifold.wall >= 0:
-        touch_wall(manifold, first, second, Way(x, y, 0.0, 0.0), 0.0, 0.0, two, walls)
+        touch_wall(manifold, first, second, Way(x, y, 0.0, 0.0), 0.0, 0.0, two, walls, shapes.pool)
         return
     one = outline_of(manifold.a, angle, shapes)
     if one.box and two.box:

@@ -26,8 +26,8 @@ from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of
 from physicslab.kernels.events.encounter import gap_of, meeting_of, time_apart, touch_pair
 from physicslab.kernels.events.path import advance_to, begin, place, seen_from
 from physicslab.kernels.events.path_impact import path_velocity, resolve_ballistic_impacts
+from physicslab.kernels.geometry.contact import effective_masses, mix
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
-from physicslab.kernels.narrow.contact import effective_masses, mix
 from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.records import Impacts, Manifolds, Points
 from physicslab.kernels.solver.impact_log import (

@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import inlined
-from physicslab.kernels.narrow.outline import Outline
+from physicslab.kernels.geometry.outline import Outline
 
 __all__ = ["Course", "box_normal", "meet_box_box", "meet_circle_box", "meet_circle_circle", "meet_line"]
 

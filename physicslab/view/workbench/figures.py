@@ -251,6 +251,10 @@ def impulse_lines(figures: WorldFigures) -> list[Line]:
     ]
 
 
+_ISLANDS = 3
+"""Number of islands whose steppers are shown."""
+
+
 def method_lines(world: World) -> list[Line]:
     """Return how the world is stepped, and why so."""
     simulation = world.simulation
@@ -258,12 +262,28 @@ def method_lines(world: World) -> list[Line]:
     return [
         Line(kind="gap"),
         Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
-        Line(world.plan.integrator.title, kind="remark"),
-        Line(f"because: {world.plan.reason}", kind="remark"),
+        *(_island_lines(world) or _plan_lines(world)),
         *_division_lines(world),
         *(Line(f"{_plain(name)} is computed by Python: slower", kind="remark") for name in world.interpreted),
-        *_stepper_lines(world),
+        *([] if world.islands.members else _stepper_lines(world)),
     ]
+
+
+def _plan_lines(world: World) -> list[Line]:
+    method = Line(world.plan.integrator.title, kind="remark")
+    return [method, Line(f"because: {world.plan.reason}", kind="remark")]
+
+
+def _island_lines(world: World) -> list[Line]:
+    """Say what advances the largest islands, where there are several."""
+    if not world.islands.members:
+        return []
+    lines = [Line(f"{len(world.parts)} islands, each by its own stepper", kind="remark")]
+    for part in world.parts[:_ISLANDS]:
+        count = int((part.bodies.inverse_mass > 0.0).sum())
+        title = part.steppers.main(part).title
+        lines.append(Line(f"{count} {'body' if count == 1 else 'bodies'}: {title}", kind="remark"))
+    return lines
 
 
 def _division_lines(world: World) -> list[Line]:

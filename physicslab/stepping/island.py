@@ -1,0 +1,231 @@
+"""An island: some bodies of a world, and a world of their own that advances them."""
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import esper
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Name, Shape
+from physicslab.contacts.arguments import motion_of
+from physicslab.ecs.component import Component
+from physicslab.ecs.context import create_numbered
+from physicslab.ecs.table import Table
+from physicslab.kernels import near_counts
+from physicslab.state.state import State
+from physicslab.stepping.flow import Flow
+from physicslab.stepping.partition import Extent
+from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.run import Stepped
+from physicslab.stepping.select import Steppers
+
+type Rows = NDArray[np.int64]
+
+_COUNTED = ("force_evaluations", "collisions", "brought_back")
+"""What a world counts that is the sum of its islands."""
+_IMPACTS = [near_counts.LOWERED, near_counts.ENERGETIC]
+
+
+class Part(Stepped, Protocol):
+    """What an island needs of the world that advances it."""
+
+    plan: StepPlan
+    steppers: Steppers
+
+    def resume(self, collisions: str, method: str, steps: int) -> None:
+        """Go on with what was chosen earlier."""
+
+    def book_edits(self) -> None:
+        """Book what was changed since the last step."""
+
+
+class Island:
+    """Some bodies, and the world that advances them.
+
+    Attributes
+    ----------
+    world, state : Part, State
+        That world, and the same as what it holds.
+    entities : int64 array (n,)
+        The bodies that are its own, in order.
+    own, there : int64 arrays (n,)
+        Their rows in its world, and in the whole one.
+    every, every_there : int64 arrays (m,)
+        Those of all its entities, fixed bodies and springs among them.
+    touches : bool
+        Whether any of its bodies can touch another.
+    """
+
+    def __init__(self, world: Part, entities: Rows) -> None:
+        assert isinstance(world, State)
+        self.world: Part = world
+        self.state: State = world
+        self.entities = entities
+        self.touches = False
+        self.own = self.there = self.every = self.every_there = np.zeros(0, np.int64)
+
+    def follow_rows(self, state: State) -> None:
+        """Find its rows again in the whole world."""
+        index = self.state.entity_index
+        self.own, self.there = index.rows_of(self.entities), state.entity_index.rows_of(self.entities)
+        self.every = np.flatnonzero(index.entities)
+        self.every_there = state.entity_index.rows_of(index.entities[self.every])
+        self.touches = bool(self.state.table(Shape).present[self.own].any())
+
+    def extent(self) -> Extent:
+        """Return where its bodies are now."""
+        stores = [force for force in self.world.schedule.forces if force.potential is not None]
+        stored = sum(
+            force.potential_energy(self.state)
+            for force in stores
+            if force.uniform_acceleration(self.state) is None
+        )
+        return Extent.of(self.state, self.own, stored)
+
+    def take(self, state: State, changed: NDArray[np.bool_]) -> None:
+        """Follow what was edited in rows (rows,) of the whole world, which books it."""
+        edited = changed[self.every_there]
+        if edited.any():
+            copy_rows(state, self.state, self.every_there[edited], self.every[edited])
+            self.world.book_edits()
+
+    def go(self, state: State, time: float, h: float, steps: int) -> int:
+        """Advance by ``steps`` steps of ``h`` seconds from ``time`` [s] on; return the parts of each.
+
+        What it books and counts is added to that of the whole world.
+        """
+        own, done = self.state, 0
+        own.contacts.read = state.contacts.read
+        counts, impacts = [getattr(own, name) for name in _COUNTED], own.contacts.counts[_IMPACTS]
+        own.time, sums = time, own.account.sums.copy()
+        with own.active():
+            while done < steps:
+                self.world.synchronise()
+                # Smooth motion depends on where it is divided, and that on what else there is.
+                single = self.touches and isinstance(self.world.stepper_for(h), Flow)
+                done += self.world.advance(h, 1 if single else steps - done)
+                own.time = time + done * h
+        state.account.sums += own.account.sums - sums
+        for name, count in zip(_COUNTED, counts, strict=True):
+            setattr(state, name, getattr(state, name) + getattr(own, name) - count)
+        state.contacts.counts[_IMPACTS] += own.contacts.counts[_IMPACTS] - impacts
+        state.substeps = max(state.substeps, own.substeps)
+        for name, rate in own.fastest_rates.items():
+            state.fastest_rates[name] = max(rate, state.fastest_rates.get(name, 0.0))
+        return own.step_divisions
+
+    def write_back(self, state: State, driven: Rows) -> None:
+        """Write how its bodies move, and which sleep, to the whole world, and so ``driven`` rows of that."""
+        own, there = self.own, self.there
+        if len(driven):
+            entities = state.entity_index.entities[driven]
+            own = np.concatenate((own, self.state.entity_index.rows_of(entities)))
+            there = np.concatenate((there, driven))
+        for column, part in zip(motion_of(state), motion_of(self.state), strict=True):
+            column[there] = part[own]
+        if self.state.sleep.on:
+            for name in ("asleep", "rest", "slowest"):
+                getattr(state.sleep, name)[self.there] = getattr(self.state.sleep, name)[self.own]
+
+
+def fill(state: State, part: State, entities: Rows, fixed: Rows) -> None:
+    """Make in another state the same entities: ``entities`` and their springs, and what is ``fixed``.
+
+    Bodies get their numbers, columns and names; components that nothing moves by are left out.
+    """
+    index = state.entity_index
+    kinds = [
+        (kind, table) for kind, table in index.tables.items() if issubclass(kind, Component) and table.handles
+    ]
+    physical = [(kind, table) for kind, table in kinds if kind.physical]
+    own, placed = set(entities.tolist()), set(entities.tolist()) | set(fixed.tolist())
+    made: dict[int, list[Any]] = {entity: [] for entity in sorted(placed)}
+    for kind, table in physical:
+        ends = [spec.name for spec in kind.FIELDS if spec.kind == "entity"]
+        for entity in sorted(table.handles):
+            if ends:
+                row = index.row_of[entity]
+                held = {int(table[name][row]) for name in ends} - {0}
+                held |= {entity} & placed if _holds_itself(table, row, ends) else set()
+                if not (held <= placed and held & own):
+                    continue
+            elif entity not in placed:
+                continue
+            made.setdefault(entity, []).append(table.blank())
+    with state.active():
+        names = {entity: esper.try_component(entity, Name) for entity in made}
+    with part.active():
+        for entity in sorted(made):
+            name = names[entity]
+            create_numbered(entity, made[entity] + ([] if name is None else [name]))
+        part.entity_index.synchronise()
+    every = np.array(sorted(made), np.int64)
+    copy_rows(state, part, index.rows_of(every), part.entity_index.rows_of(every))
+
+
+def _holds_itself(table: Table, row: int, ends: list[str]) -> bool:
+    """Whether a component holds the body of its own entity: its first end is not given."""
+    return int(table[ends[0]][row]) == 0
+
+
+def copy_rows(state: State, part: State, there: Rows, own: Rows) -> None:
+    """Copy rows ``there`` of the components that a part has to its ``own`` rows."""
+    for kind, table in part.entity_index.tables.items():
+        if not table.handles:
+            continue
+        has = table.present[own]
+        for column, whole in zip(table.columns, state.table(kind).columns, strict=True):
+            column[own[has]] = whole[there[has]]
+
+
+def copy_joints(part: State, state: State) -> None:
+    """Copy what the joints of a part hold bodies with to those of the whole world."""
+    if len(part.joints):
+        first = {(joint.entity, joint.kind): joint.first for joint in state.joints.joints}
+        for joint in part.joints.joints:
+            there = first[joint.entity, joint.kind]
+            own = slice(joint.first, joint.first + joint.size)
+            for name in ("impulse", "force"):
+                getattr(state.joints, name)[there : there + joint.size] = getattr(part.joints, name)[own]
+        state.joints.rank = part.joints.rank
+
+
+def numbers_of(state: State) -> list[NDArray[Any]]:
+    """Return every column that motion may depend on."""
+    tables = state.entity_index.tables.items()
+    return [
+        column
+        for kind, table in tables
+        if table.handles and getattr(kind, "physical", True)
+        for column in table.columns
+    ]
+
+
+def rows_changed(numbers: Sequence[NDArray[Any]], left: bytes) -> NDArray[np.bool_]:
+    """Return in which rows (rows,) columns are not as they were ``left``; all if there were others."""
+    changed = np.zeros(len(numbers[0]), np.bool_)
+    if len(left) != sum(column.nbytes for column in numbers):
+        return ~changed
+    start = 0
+    for column in numbers:
+        end = start + column.nbytes
+        before = np.frombuffer(left[start:end], column.dtype).reshape(column.shape)
+        changed |= (column != before).reshape(len(changed), -1).any(axis=1)
+        start = end
+    return changed
+
+
+def join_logs(state: State, parts: list[State], logged: list[int]) -> None:
+    """Add the impacts of all parts, from numbers ``logged`` on, to the log of the whole, in order of time."""
+    new = [
+        part.contacts.log[np.arange(first, part.contacts.logged) % len(part.contacts.log)]
+        for part, first in zip(parts, logged, strict=True)
+        if part.contacts.logged > first
+    ]
+    if new:
+        log, first = state.contacts.log, state.contacts.logged
+        impacts = np.concatenate(new)
+        impacts = impacts[np.argsort(impacts["time"], kind="stable")][-len(log) :]
+        log[np.arange(first, first + len(impacts)) % len(log)] = impacts
+        state.contacts.logged += len(impacts)

@@ -1,0 +1,496 @@
+"""A world as islands, each advanced by the best stepper for it in a world of its own.
+
+Bodies that forces couple, or that may meet, are one island (:mod:`physicslab.stepping.partition`); what is
+fixed, or moves at a given speed, belongs to every one. While there are several, each is a world that holds
+the columns of its bodies, made as a loaded file is. It follows edits of the whole world, and writes back how
+its bodies move. So the bits of an island are those that it has alone.
+"""
+
+import math
+import weakref
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from physicslab.components import Transform, Velocity
+from physicslab.contacts.arguments import motion_of
+from physicslab.contacts.kept import KeptContacts, carry_sleep
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.state.masses import Diverged
+from physicslab.state.remainders import Remainders
+from physicslab.state.state import State
+from physicslab.stepping.island import (
+    Island,
+    Part,
+    Rows,
+    copy_joints,
+    fill,
+    join_logs,
+    numbers_of,
+    rows_changed,
+)
+from physicslab.stepping.partition import MAX_BODIES, MAX_ISLANDS, groups_of, join, movable_in, why_whole
+from physicslab.stepping.plan import outlived
+from physicslab.stepping.stepper import Advance
+from physicslab.stepping.undo import go_back
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.standard import PHYSICS_SYSTEMS
+from physicslab.systems.system import Stage, System
+
+type Make = Callable[[Sequence[System], PhysicsConfig, SimulationConfig], Part]
+
+EXAMINED_S = 2.0
+"""At each multiple of this time [s] it is looked whether an island has come apart."""
+_LATE = 1e-9
+"""Share of that time by which the clock, a sum of rounded steps, may be late."""
+_NEVER = 1 << 60
+
+
+@dataclass(frozen=True, slots=True)
+class KeptIsland:
+    """What a file keeps of an island, beside the contacts, rests and remainders of all bodies.
+
+    Attributes
+    ----------
+    bodies : list of int
+        Its entities.
+    span, finer : float, int
+        The time [s] over which impulses of its contacts act; by which factor its next step needs more
+        substeps.
+    chosen : tuple, optional
+        What was chosen for it as it once moved, where it would not be chosen now (:attr:`StepPlan.kept`).
+    driven : list of lists
+        Of bodies that move at given speeds the entity, x, y [m] and the angle, where rounding has led them
+        elsewhere than in the whole world.
+    """
+
+    bodies: list[int]
+    span: float
+    finer: int
+    chosen: tuple[str, str, int] | None
+    driven: list[list[float]]
+
+    def is_fresh(self, state: State) -> bool:
+        """Whether an island begins so."""
+        simulation = state.simulation
+        begins = self.finer == 1 and self.chosen is None and not self.driven
+        return begins and self.span == simulation.dt / simulation.substeps
+
+
+class Islands:
+    """The islands of one world: none while it is one, which its own steppers then advance.
+
+    Parameters
+    ----------
+    schedule : Schedule
+        The systems of the world.
+    make : callable, optional
+        Makes the world of an island, of systems, laws and settings. Without it a world is never divided.
+
+    Attributes
+    ----------
+    members : tuple of Island
+        The islands, in the order of their first bodies; empty while the world is one.
+    why_one : str
+        The reason, if it is.
+    due, paused : bool
+        Whether they are all to be found again before the next step; whether they are not, as a world that is
+        being restored knows which they are.
+    joined : bool
+        Whether all have become one, for which steppers must be chosen.
+    """
+
+    name: str = "islands"
+    title: str = "Islands, each by a stepper of its own"
+    leaps: bool = False
+    keeps_balance: bool = False
+    leaves_forces: bool = False
+
+    def __init__(self, schedule: Schedule, make: Make | None) -> None:
+        self._schedule, self._make = schedule, make
+        self.members: tuple[Island, ...] = ()
+        self.why_one = "an island itself"
+        self.due, self.paused, self.joined = make is not None, False, False
+        self._comes_apart = False
+        self._examined = 0
+        self._apart_until = -math.inf
+        self._left = b""
+        self._entities: Rows | None = None
+
+    # ---- as a stepper --------------------------------------------------------------------------------------
+
+    @property
+    def reason(self) -> str:
+        """The reason for several steppers."""
+        return f"{len(self.members)} islands are too far apart to meet, and no force couples them"
+
+    @property
+    def kernels(self) -> tuple[Any, ...]:
+        """What the steppers of all islands call."""
+        mains = (island.world.steppers.main(island.state) for island in self.members)
+        return tuple(dict.fromkeys(kernel for stepper in mains for kernel in stepper.kernels))
+
+    def holds(self, state: State) -> bool:
+        """Return True: edits are followed at each step."""
+        return True
+
+    def ready(self, state: State, h: float) -> bool:
+        """Whether there are several islands."""
+        return bool(self.members)
+
+    def advance(self, state: State, h: float, steps: int) -> Advance:
+        """Make the steps, or those until all is one island.
+
+        Where one fails, those before it are counted; islands are then found again.
+        """
+        opened = state.account.is_open
+        try:
+            return self._advance(state, h, steps)
+        except Diverged:
+            self.forget(state)
+            if steps == 1:
+                raise
+        except BaseException:
+            self.forget(state)
+            raise
+        go_back(state)
+        return self._advance_singly(state, h, steps, opened)
+
+    def _advance_singly(self, state: State, h: float, steps: int, opened: bool) -> Advance:
+        """Make the steps one by one up to that which fails, with islands found again."""
+        start, made = state.time, 0
+        self.follow(state)
+        try:
+            while made < steps and self.members:
+                state.account.is_open = opened
+                made += self._advance(state, h, 1).steps
+                state.time = start + made * h
+                state.checkpoint.take(motion_of(state), state.counts)
+                state.account.begin_step()
+                self.follow(state)
+        except BaseException:
+            self.forget(state)
+            state.steps += made
+            raise
+        finally:
+            state.time, state.account.is_open = start, opened
+        return Advance(made)
+
+    def _advance(self, state: State, h: float, steps: int) -> Advance:
+        if self._schedule.observer is not None:  # it may have written at the beginning of the step
+            self._take_edits(state)
+        if h > state.simulation.dt:
+            self._join_near(state, h)
+        start, made, parts = state.time, 0, 1
+        state.substeps = state.simulation.substeps
+        smooth = [island for island in self.members if not island.touches]
+        try:
+            for island in smooth:
+                parts = max(parts, island.go(state, start, h, steps))
+            while made < steps and self.members:
+                touching = [island for island in self.members if island.touches]
+                count = min(self.steps_ahead(state, h), steps - made) if touching else steps - made
+                logged = [island.state.contacts.logged for island in touching]
+                for island in touching:
+                    parts = max(parts, island.go(state, state.time, h, count))
+                join_logs(state, [island.state for island in touching], logged)
+                made += count
+                state.time = start + made * h
+                self._write_back(state)
+                if made < steps and not self._join_near(state, h):
+                    self._examine(state)
+        finally:
+            state.time = start
+        return Advance(made, parts)
+
+    def steps_ahead(self, state: State, h: float) -> int:
+        """Return how many steps of ``h`` seconds are made at most before islands are looked for again."""
+        if not self._comes_apart:
+            return _NEVER
+        until = (self._examined + 1) * EXAMINED_S - _LATE
+        steps = math.ceil((until - state.time) / h)
+        if self.members:
+            apart = max(0.0, self._apart_until - state.time)
+            steps = min(steps, math.floor(apart / h + 0.5))
+        return max(1, steps)
+
+    def _take_edits(self, state: State) -> None:
+        """Let the islands follow what was changed in the whole world since the last step."""
+        self._follow_rows(state)
+        if b"".join(numbers_of(state)) == self._left:
+            return
+        changed = rows_changed(numbers_of(state), self._left)
+        for island in self.members:
+            island.take(state, changed)
+        self._apart_until = -math.inf
+        self._join_near(state, state.simulation.dt)
+
+    def _write_back(self, state: State) -> None:
+        """Write the motion of all islands into the whole world."""
+        driven = state.table(Transform).present & state.table(Velocity).present & ~movable_in(state)
+        rows = np.flatnonzero(driven)
+        for n, island in enumerate(self.members):
+            island.write_back(state, rows if n == 0 else rows[:0])
+            copy_joints(island.state, state)
+        state.sleep.count = int(np.count_nonzero(state.sleep.asleep))
+        self._left = b"".join(numbers_of(state))
+        own, whole = weakref.ref(self), weakref.ref(state)
+
+        def show() -> None:
+            islands, of = own(), whole()
+            if islands is not None and of is not None and islands.members:
+                islands.contacts(of).show(of)
+
+        state.contacts.source = show
+        self._schedule.defer(self._settle)
+
+    def _settle(self) -> None:
+        """Let the islands note the costs that they have deferred."""
+        for island in self.members:
+            _ = island.world.schedule.timings
+
+    def _follow_rows(self, state: State) -> None:
+        """Find the rows of all islands, where those of the whole world are numbered again."""
+        if self._entities is not state.entity_index.entities:
+            self._entities = state.entity_index.entities
+            for island in self.members:
+                island.follow_rows(state)
+
+    # ---- which they are ------------------------------------------------------------------------------------
+
+    def follow(self, state: State) -> None:
+        """Divide what has come apart, and join what is near; nothing is done twice in one state."""
+        if self._make is None or self.paused:
+            return
+        if self.due:
+            self.due, self._examined = False, _period(state)
+            self._divide(state)
+            return
+        if self.members:
+            self._take_edits(state)
+        if not self._join_near(state, state.simulation.dt):
+            self._examine(state)
+
+    def _divide(self, state: State) -> None:
+        """Find all islands of a world that is one."""
+        rows = self._survey(state)
+        if self.why_one:
+            return
+        groups, self.why_one = groups_of(state, self._schedule, rows)
+        if len(groups) > 1:
+            entities = state.entity_index.entities
+            self.members = tuple(self._island(state, entities[group], [state]) for group in groups)
+            self._begin(state)
+
+    def _survey(self, state: State) -> Rows:
+        """Find whether a world that is one may be divided; return the rows of its bodies."""
+        self._apart_until, rows = -math.inf, np.flatnonzero(movable_in(state))
+        self.why_one = why_whole(state, self._schedule) or ""
+        self._comes_apart = not self.why_one and len(rows) > 1 and self._schedule.runs(Stage.CONTACT)
+        return rows
+
+    def _begin(self, state: State) -> None:
+        """Go on with islands that were found or joined."""
+        self._entities = None
+        self._follow_rows(state)
+        self._comes_apart = any(island.touches for island in self.members)
+        self._apart_until = -math.inf
+        self._write_back(state)
+
+    def _examine(self, state: State) -> bool:
+        """Divide islands that have come apart, where it is time to look; return whether any were."""
+        period = _period(state)
+        if period == self._examined or not self._comes_apart:
+            return False
+        self._examined = period
+        if not self.members:
+            self._divide(state)
+            return bool(self.members)
+        found = [
+            groups_of(island.state, island.world.schedule, island.own).groups
+            if island.touches
+            else (island.own,)
+            for island in self.members
+        ]
+        if not len(self.members) < sum(map(len, found)) <= MAX_ISLANDS:
+            return False
+        members: list[Island] = []
+        for island, groups in zip(self.members, found, strict=True):
+            entities, sources = island.state.entity_index.entities, [island.state]
+            apart = [entities[group] for group in groups] if len(groups) > 1 else []
+            members += [self._island(state, part, sources) for part in apart] or [island]
+        self.members = _in_order(members)
+        self._begin(state)
+        return True
+
+    def _join_near(self, state: State, h: float) -> bool:
+        """Join islands whose bodies may meet soon, in steps of ``h`` seconds; return whether any were."""
+        touching = [island for island in self.members if island.touches]
+        if not touching or (state.time < self._apart_until - 0.5 * h and h <= state.simulation.dt):
+            return False
+        near: list[tuple[int, int]] = []
+        steps = _NEVER
+        extents = [island.extent() for island in touching]
+        for (i, one), (j, other) in combinations(enumerate(extents), 2):
+            apart = one.steps_apart(other, h)
+            near += [(i, j)] if apart == 0 else []
+            steps = min(steps, apart or steps)
+        self._apart_until = state.time + min(steps, 1 << 20) * h
+        if not near:
+            return False
+        labels = join(np.arange(len(touching)), near)
+        members = [island for island in self.members if not island.touches]
+        all_one = not members and not labels.any()
+        for label in dict.fromkeys(labels.tolist()):
+            group = [touching[n] for n in np.flatnonzero(labels == label)]
+            if len(group) > 1 and not all_one:
+                entities = np.sort(np.concatenate([island.entities for island in group]))
+                group = [self._island(state, entities, [island.state for island in group])]
+            members += group
+        self.members = _in_order(members)
+        if all_one:
+            self.give_back(state)
+            self.joined, self.why_one = True, "bodies came near each other"
+        else:
+            self._begin(state)
+        return True
+
+    # ---- making and keeping them ---------------------------------------------------------------------------
+
+    def blank(self, state: State) -> Part:
+        """Return a world without bodies that can become an island of a state."""
+        assert self._make is not None
+        systems = [
+            system.fresh()
+            for system in self._schedule.systems
+            if type(system) in PHYSICS_SYSTEMS and system.acts_within_step()
+        ]
+        with state.active():  # a new world is the active one until the end of the block
+            part = self._make(systems, state.physics, state.simulation)
+        part.schedule.note_into(self._schedule)
+        return part
+
+    def _island(self, state: State, entities: Rows, sources: Sequence[State]) -> Island:
+        """Return an island of some bodies, of which ``sources`` have contacts, sleep and remainders."""
+        island = Island(self.blank(state), entities)
+        part = island.state
+        fixed = state.table(Transform).present & ~movable_in(state)
+        fill(state, part, entities, state.entity_index.entities[np.flatnonzero(fixed)])
+        part.time, part.steps = state.time, state.steps
+        island.world.synchronise()
+        # Slots of wide contacts are those of one world, and no matter of few bodies.
+        apart = len(sources) > 1 or len(entities) <= MAX_BODIES
+        kept = [KeptContacts.of(source.contacts).among(entities, apart=apart) for source in sources]
+        KeptContacts.joined(kept, part.contacts.counts).restore(part)
+        for source in sources:
+            carry_sleep(source, part)
+        part.joints.restore([kept for source in sources for kept in source.joints.kept()])
+        part.remainders = _joined_remainders([source.remainders for source in sources])
+        return island
+
+    def adopt(self, state: State, members: Sequence[Island]) -> None:
+        """Go on with islands that were made elsewhere; without any the world is one."""
+        self.due, self.paused, self._examined = False, False, _period(state)
+        self._survey(state)
+        self.members = _in_order(members)
+        if self.members:
+            self._begin(state)
+
+    def keep(self, state: State) -> list[KeptIsland] | None:
+        """Return what a file keeps of the islands; ``None`` where a loaded world would find the same."""
+        present = [island.entities.tolist() for island in self.members]
+        kept = [_kept(state, island) for island in self.members]
+        found: list[list[int]] = []
+        if self._make is not None and why_whole(state, self._schedule) is None:
+            groups, _ = groups_of(state, self._schedule, np.flatnonzero(movable_in(state)))
+            entities = state.entity_index.entities
+            found = [entities[group].tolist() for group in groups] if len(groups) > 1 else []
+        return None if found == present and all(one.is_fresh(state) for one in kept) else kept
+
+    def restore(self, state: State, kept: Sequence[KeptIsland]) -> None:
+        """Go on with the islands of a file, whose contacts, rests and remainders the state has."""
+        bodies = np.array(sorted(body for one in kept for body in one.bodies), np.int64)
+        if len(kept) and not np.array_equal(bodies, state.entity_index.entities[movable_in(state)]):
+            self.find_again()  # what moves was edited in the file
+            return
+        members: list[Island] = []
+        for one in kept:
+            island = self._island(state, np.array(sorted(one.bodies), np.int64), [state])
+            part = island.state
+            part.contacts.impulse_dt, part.contacts.substep_factor = one.span, one.finer
+            for entity, *pose in one.driven:
+                row, transform = part.entity_index.row_of[int(entity)], part.table(Transform)
+                transform["position"][row], transform["angle"][row] = pose[:2], pose[2]
+            if one.chosen is not None:
+                with part.active():
+                    island.world.resume(*one.chosen)
+            members.append(island)
+        self.adopt(state, members)
+
+    def contacts(self, state: State, *, rescaled: bool = True) -> KeptContacts:
+        """Return the contacts of all islands.
+
+        Their impulses are ``rescaled`` to act over one time, so that one rate makes forces of them.
+        """
+        kept = [KeptContacts.of(island.state.contacts) for island in self.members]
+        return KeptContacts.joined(kept, state.contacts.counts, rescaled=rescaled)
+
+    def give_back(self, state: State) -> None:
+        """Let the world be one again, with all that its islands know."""
+        if self.members:
+            self.contacts(state).restore(state)
+            for island in self.members:
+                carry_sleep(island.state, state)
+            state.joints.restore([kept for island in self.members for kept in island.state.joints.kept()])
+            state.remainders = _joined_remainders([island.state.remainders for island in self.members])
+        state.contacts.source, self.members, self._left = None, (), b""
+
+    def find_again(self) -> None:
+        """Let all islands be found before the next step."""
+        self.due = self._make is not None
+
+    def forget(self, state: State) -> None:
+        """Let the world be one, as it is; islands are found again before its next step."""
+        state.contacts.source, self.members, self._left = None, (), b""
+        self.find_again()
+
+
+def _in_order(members: Iterable[Island]) -> tuple[Island, ...]:
+    """Return islands in the order of their first bodies."""
+    return tuple(sorted(members, key=lambda island: int(island.entities[0])))
+
+
+def _kept(state: State, island: Island) -> KeptIsland:
+    """Return what a file keeps of an island."""
+    part, contacts = island.state, island.state.contacts
+    span = contacts.impulse_dt or part.simulation.dt / part.simulation.substeps
+    rows = np.flatnonzero(part.table(Velocity).present & ~movable_in(part))
+    there = state.entity_index.rows_of(part.entity_index.entities[rows])
+    own, whole = part.table(Transform), state.table(Transform)
+    moved = (own["position"][rows] != whole["position"][there]).any(axis=1)
+    moved |= own["angle"][rows] != whole["angle"][there]
+    driven = [
+        [int(part.entity_index.entities[row]), *own["position"][row].tolist(), float(own["angle"][row])]
+        for row in rows[moved]
+    ]
+    with part.active():
+        chosen = outlived(part, island.world.schedule, island.world.plan)
+    return KeptIsland(island.entities.tolist(), span, contacts.substep_factor, chosen, driven)
+
+
+def _period(state: State) -> int:
+    """Return how often it was time to look for islands."""
+    return math.floor((state.time + _LATE) / EXAMINED_S) if math.isfinite(state.time) else 0
+
+
+def _joined_remainders(kept: Sequence[Remainders]) -> Remainders:
+    """Return all remainders; each coordinate has one."""
+    if len(kept) == 1:
+        return kept[0]
+    names = ("keys", "q", "v", "q_low", "v_low")
+    columns = [np.concatenate([getattr(one, name) for one in kept]) for name in names]
+    _, first = np.unique(columns[0], return_index=True)
+    return Remainders(*(column[first] for column in columns))

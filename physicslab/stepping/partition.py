@@ -1,0 +1,214 @@
+"""Which bodies of a world are one island: those that forces couple, and those that may meet soon.
+
+All of it is local: whether two bodies are joined depends on these two alone, so that islands here are the
+same whatever there is elsewhere.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Shape, Transform, Velocity
+from physicslab.state.state import State
+from physicslab.systems.accelerate import AccelerateSystem
+from physicslab.systems.schedule import Schedule
+from physicslab.systems.standard import PHYSICS_SYSTEMS
+
+type Rows = NDArray[np.int64]
+type Numbers = NDArray[np.float64]
+
+MAX_BODIES = 12
+"""Number of bodies with a Shape above which an island has none of its own steppers: all such are together."""
+MAX_ISLANDS = 32
+"""Number of islands above which a world is not divided: each costs a call of a stepper."""
+FAR_S = 1.0
+"""Bodies that could not meet within so long [s] are divided, if none of ``FAR_RADII`` is between them."""
+FAR_RADII = 4.0
+"""Distance, in radii of both, up to which they stay one island in any case."""
+NEAR_S, NEAR_STEPS = 0.1, 4.0
+"""Islands that could meet within so long [s], or so many steps, become one."""
+_SAFETY = 2.0
+"""Factor by which bodies may become faster while no meeting is looked for."""
+_MAX_STEPS = 128
+"""Largest number of steps before it is looked for again."""
+
+
+class Partition(NamedTuple):
+    """The islands of a world, each as sorted rows of movable bodies; one alone has a reason."""
+
+    groups: tuple[Rows, ...]
+    reason: str = ""
+
+
+def movable_in(state: State) -> NDArray[np.bool_]:
+    """Return which rows (rows,) belong to one island each; what else is somewhere belongs to every one."""
+    present = state.table(Transform).present & state.table(Velocity).present
+    movable: NDArray[np.bool_] = present & (state.bodies.inverse_mass > 0.0)
+    return movable
+
+
+def why_whole(state: State, schedule: Schedule) -> str | None:
+    """Return why a world cannot be divided, whatever is where, or ``None``."""
+    for system in schedule.running:
+        if type(system) not in (AccelerateSystem, *PHYSICS_SYSTEMS) and system.acts_within_step():
+            return f"{system.name} acts within the step"
+    if (state.table(Velocity).present & ~state.table(Transform).present).any():
+        return "something moves that is nowhere"
+    for force in schedule.forces:
+        if force.couples(state) is None:
+            return f"{force.name} acts between all bodies"
+    return None
+
+
+def groups_of(state: State, schedule: Schedule, rows: Rows) -> Partition:
+    """Return into which islands some movable bodies are to be divided."""
+    if len(rows) < 2:
+        return Partition((rows,), "one body moves")
+    labels = _labels(state, schedule, rows)
+    groups = [rows[labels == label] for label in dict.fromkeys(labels.tolist())]
+    if len(groups) == 1:
+        return Partition((rows,), "all bodies that move are near each other, or coupled")
+    shaped = state.table(Shape).present
+    small = [np.count_nonzero(shaped[group]) <= MAX_BODIES for group in groups]
+    own = [group for group, alone in zip(groups, small, strict=True) if alone]
+    if len(own) > MAX_ISLANDS:
+        return Partition((rows,), f"more than {MAX_ISLANDS} islands would cost more than one")
+    rest = [group for group, alone in zip(groups, small, strict=True) if not alone]
+    if rest:
+        own.append(np.sort(np.concatenate(rest)))
+    if len(own) == 1:
+        return Partition((rows,), f"islands of more than {MAX_BODIES} bodies are advanced together")
+    return Partition(tuple(sorted(own, key=lambda group: int(group[0]))))
+
+
+def _labels(state: State, schedule: Schedule, rows: Rows) -> Rows:
+    """Return a number for each of the bodies, the same for those that are one island."""
+    reach = _radii(state, rows)
+    speed = np.hypot(*state.table(Velocity)["linear"][rows].T)
+    soon = max(FAR_S, 2.5 * NEAR_STEPS * state.simulation.dt)
+    reach = reach + np.maximum(FAR_RADII * reach, speed * soon + 0.25 * _gravity(state) * soon * soon)
+    position, labels = state.table(Transform)["position"][rows], np.full(len(rows), -1)
+    left = np.flatnonzero(state.table(Shape).present[rows])
+    number = 0
+    while len(left):
+        waiting, left = [int(left[0])], left[1:]
+        labels[waiting] = number
+        while waiting and len(left):
+            one = waiting.pop()
+            x, y = (position[left] - position[one]).T
+            near = x * x + y * y <= (reach[left] + reach[one]) ** 2
+            labels[left[near]] = number
+            waiting += left[near].tolist()
+            left = left[~near]
+        number += 1
+    shapeless = np.flatnonzero(labels < 0)
+    labels[shapeless] = number + np.arange(len(shapeless))
+    place = np.full(len(state.entity_index), -1)
+    place[rows] = np.arange(len(rows))
+    pairs = [couples for force in schedule.forces if (couples := force.couples(state)) is not None]
+    ends = place[np.concatenate([state.joints.edges, *pairs])]
+    return join(labels, labels[ends[(ends >= 0).all(axis=1)]].tolist())
+
+
+def join(labels: Rows, pairs: Iterable[Iterable[int]]) -> Rows:
+    """Return labels (n,) in which those of each pair are one."""
+    root = dict.fromkeys(labels.tolist())
+    parent = {label: label for label in root}
+
+    def find(label: int) -> int:
+        while parent[label] != label:
+            label = parent[label]
+        return label
+
+    for one, other in pairs:
+        low, high = sorted((find(one), find(other)))
+        parent[high] = low
+    return np.array([find(label) for label in labels.tolist()], np.int64)
+
+
+def _radii(state: State, rows: Rows) -> Numbers:
+    """Return the radii (n,) [m] of circles around the shapes in some rows."""
+    shape = state.table(Shape)
+    radii: Numbers = shape["radius"][rows] + 0.5 * np.hypot(shape["width"][rows], shape["height"][rows])
+    return radii
+
+
+def _gravity(state: State) -> float:
+    """Return how fast uniform gravity accelerates bodies [m/s^2]."""
+    return state.physics.gravity.magnitude if state.physics.gravity_mode == "linear" else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """Where the bodies of an island are that can touch others, and how fast they move.
+
+    Attributes
+    ----------
+    position : float64 array (n, 2)
+        Their centres [m].
+    radius, speed : float64 arrays (n,)
+        Of the circles around them [m]; how fast these move [m/s].
+    low, high : float64 arrays (2,)
+        The box around all of them [m].
+    fastest : float
+        The highest speed that they may soon have [m/s], gravity left out.
+    gravity : float
+        By which they are accelerated [m/s^2].
+    """
+
+    position: Numbers
+    radius: Numbers
+    speed: Numbers
+    low: Numbers
+    high: Numbers
+    fastest: float
+    gravity: float
+
+    @classmethod
+    def of(cls, state: State, rows: Rows, stored: float) -> Extent:
+        """Return that of the rows of an island, whose springs hold ``stored`` energy [J]."""
+        shaped, velocity = state.table(Shape).present, state.table(Velocity)
+        rows, inverse_mass = rows[shaped[rows]], state.bodies.inverse_mass
+        position, radius = state.table(Transform)["position"][rows], _radii(state, rows)
+        speed = np.hypot(*velocity["linear"][rows].T)
+        driven = shaped & velocity.present & (inverse_mass == 0.0)
+        pushed = np.hypot(*velocity["linear"][driven].T) + np.abs(velocity["angular"][driven])
+        fastest = float(speed.max()) + 2.0 * float(pushed.max(initial=0.0))
+        if stored > 0.0:
+            fastest += math.sqrt(2.0 * stored * float(inverse_mass[rows].max()))
+        around = radius[:, None]
+        low, high = (position - around).min(axis=0), (position + around).max(axis=0)
+        return cls(position, radius, speed, low, high, fastest, _gravity(state))
+
+    def steps_apart(self, other: Extent, h: float) -> int:
+        """Return how many steps of ``h`` seconds it is certain that no body comes near one of another island.
+
+        Zero means that two may meet soon; whether they do so depends on these two alone.
+        """
+        soon = max(NEAR_S, NEAR_STEPS * h)
+        fall, fastest = self.gravity * soon * soon, self.fastest + other.fastest
+        gap = float(np.maximum(self.low - other.high, other.low - self.high).max())
+        steps = self._steps(gap, fastest, soon, h)
+        if steps > 1:
+            return steps
+        apart = self.position[:, None] - other.position
+        gaps = np.hypot(apart[..., 0], apart[..., 1]) - self.radius[:, None] - other.radius
+        if (gaps <= (self.speed[:, None] + other.speed) * soon + fall).any():
+            return 0
+        return max(1, self._steps(float(gaps.min()), fastest, soon, h))
+
+    def _steps(self, gap: float, fastest: float, soon: float, h: float) -> int:
+        """Return how many steps bodies need at least to be near that are ``gap`` metres apart."""
+        steps = _MAX_STEPS
+        while steps:
+            speed = fastest + 2.0 * self.gravity * steps * h
+            if gap > _SAFETY * speed * (steps * h + soon) + self.gravity * soon * soon:
+                break
+            steps //= 2
+        return steps

@@ -1,0 +1,367 @@
+"""Islands: the bits of some bodies are those that they have alone, whatever is far away."""
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from physicslab import World, load_scene, save_scene
+from physicslab.components import Drag, Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.history import History
+from physicslab.kernels.accounts import EDITS
+from physicslab.state.masses import Diverged
+from physicslab.systems.standard import standard_systems
+from physicslab.systems.system import Stage, System, at
+
+FAR = 500.0
+NO_GRAVITY = PhysicsConfig(gravity_mode="none")
+
+
+def floor(world: World) -> None:
+    world.spawn(
+        Transform((0, -0.5)), Shape(kind="box", width=4000, height=1), Material(0.4, 0.5), name="floor"
+    )
+
+
+def disc(world: World, x: float, y: float, vx: float = 0.0, vy: float = 0.0) -> int:
+    return world.spawn(
+        Transform((x, y)), Velocity((vx, vy)), Mass(1.0), Shape(kind="circle", radius=0.3), Material(0.5, 0.4)
+    )
+
+
+def few(world: World, x: float = 0.0) -> list[int]:
+    """Drop three boxes and a disc onto each other."""
+    boxes = [
+        world.spawn(
+            Transform((x + 0.2 * k, 0.5 + 0.9 * k), 0.1 * k), Velocity((0.3, 0.0)), Mass(1.0 + k),
+            Shape(kind="box", width=0.7, height=0.5), Material(0.4, 0.5),
+        )
+        for k in range(3)
+    ]  # fmt: skip
+    return [*boxes, disc(world, x - 0.8, 1.5, 1.0)]
+
+
+def crowd(world: World, x: float = FAR, count: int = 14) -> list[int]:
+    return [disc(world, x + 0.7 * (k % 4), 0.4 + 0.7 * (k // 4)) for k in range(count)]
+
+
+def pendulum(world: World, x: float) -> list[int]:
+    held = Spring(anchor_b=(x, 5.0), rest_length=0.0, stiffness=20.0)
+    return [world.spawn(Transform((x + 1.0, 4.0)), Velocity((0.0, 0.5)), Mass(1.0), held)]
+
+
+def motion(world: World, bodies: Sequence[int]) -> NDArray[np.float64]:
+    rows = world.entity_index.rows_of(np.array(bodies))
+    transform, velocity = world.table(Transform), world.table(Velocity)
+    columns = (
+        transform["position"],
+        transform["angle"][:, None],
+        velocity["linear"],
+        velocity["angular"][:, None],
+    )
+    return np.concatenate([column[rows] for column in columns], axis=1)
+
+
+def sizes(world: World) -> list[int]:
+    return [len(island.entities) for island in world.islands.members]
+
+
+type Add = Callable[[World], Sequence[int]]
+
+
+@pytest.mark.parametrize(
+    "far", [crowd, lambda world: [disc(world, FAR, 3.0)], lambda world: pendulum(world, FAR)]
+)
+def test_the_bits_of_an_island_are_those_that_it_has_alone(far: Add) -> None:
+    alone, beside = World(), World()
+    for world in (alone, beside):
+        floor(world)
+    own, same = few(alone), few(beside)
+    far(beside)
+    alone.run(steps=90)
+    beside.run(steps=90)
+    assert len(sizes(beside)) == 2
+    assert sizes(alone) == []
+    assert np.array_equal(motion(alone, own), motion(beside, same))
+    assert alone.stepper is not None
+    assert beside.islands.members[0].world.stepper_for(0.01).name == alone.stepper.name == "rigid"
+
+
+def test_single_steps_have_the_bits_of_a_run() -> None:
+    worlds = World(), World()
+    bodies = []
+    for world in worlds:
+        floor(world)
+        bodies.append([*few(world), *crowd(world)])
+    worlds[0].run(steps=40)
+    for _ in range(40):
+        worlds[1].step()
+    assert np.array_equal(motion(worlds[0], bodies[0]), motion(worlds[1], bodies[1]))
+    assert worlds[0].collisions == worlds[1].collisions
+
+
+def passing(world: World) -> list[int]:
+    """Let a disc hit another, that flies on to a third."""
+    return [disc(world, 0.0, 0.0, 8.0), disc(world, 16.0, 0.0), disc(world, 34.0, 0.0)]
+
+
+def test_islands_that_meet_are_one_and_come_apart_again() -> None:
+    world = World(physics=NO_GRAVITY)
+    passing(world)
+    disc(world, FAR, 0.0)
+    met: list[list[int]] = []
+    for _ in world.stepping(seconds=8.0, stride=8):
+        if not met or sizes(world) != met[-1]:
+            met.append(sizes(world))
+    assert met == [[1, 1, 1, 1], [2, 1, 1], [1, 1, 1, 1], [1, 2, 1]]
+    assert world.collisions == 2
+    assert world.account.sums[:, 1].sum() == pytest.approx(0.0)
+
+
+def test_islands_that_meet_have_the_bits_that_they_have_alone() -> None:
+    alone, beside = World(physics=NO_GRAVITY), World(physics=NO_GRAVITY)
+    own, same = passing(alone), passing(beside)
+    crowd(beside)
+    alone.run(steps=240)
+    beside.run(steps=240)
+    assert np.array_equal(motion(alone, own), motion(beside, same))
+
+
+def test_all_islands_may_become_one() -> None:
+    world = World(physics=NO_GRAVITY)
+    left, right = disc(world, 0.0, 0.0, 5.0), disc(world, 30.0, 0.0, -5.0)
+    world.step()
+    assert sizes(world) == [1, 1]
+    world.run(seconds=3.5)
+    assert sizes(world) == []
+    assert world.collisions == 1
+    assert world.islands.why_one
+    assert world.component(left, Velocity).linear.x < 0.0 < world.component(right, Velocity).linear.x
+
+
+def test_ten_pendulums_are_ten_closed_forms() -> None:
+    world = World()
+    bodies = [pendulum(world, 3.0 * k)[0] for k in range(10)]
+    world.run(seconds=5.0)
+    assert sizes(world) == [1] * 10
+    assert {island.world.plan.integrator.name for island in world.islands.members} == {"exact"}
+    alone = World()
+    own = pendulum(alone, 6.0)
+    alone.run(seconds=5.0)
+    assert np.array_equal(motion(alone, own)[0], motion(world, bodies)[2])
+
+
+def test_springs_couple_over_any_distance() -> None:
+    world = World()
+    floor(world)
+    near, far = disc(world, 0.0, 0.3), disc(world, FAR, 0.3)
+    world.spawn(Spring(a=near, b=far, rest_length=FAR, stiffness=10.0))
+    world.step()
+    assert sizes(world) == []
+    assert "coupled" in world.islands.why_one
+
+
+def test_planets_are_one_island_and_the_reason_is_told() -> None:
+    world = World(physics=PhysicsConfig(gravity_mode="planet"))
+    disc(world, 0.0, 0.0)
+    disc(world, FAR, 0.0)
+    world.step()
+    assert sizes(world) == []
+    assert world.islands.why_one == "GravitySystem acts between all bodies"
+
+
+class Wind(System):
+    """Blows on everything."""
+
+    @at(Stage.DRIFT)
+    def blow(self, state: World, h: float) -> None:
+        state.table(Velocity)["linear"][1:, 0] += 0.1 * h
+
+
+def test_a_system_that_acts_within_the_step_sees_one_world() -> None:
+    world = World(*standard_systems(), Wind())
+    disc(world, 0.0, 0.0)
+    disc(world, FAR, 0.0)
+    world.step()
+    assert sizes(world) == []
+    assert world.islands.why_one == "Wind acts within the step"
+
+
+def test_accounts_counts_and_the_log_are_those_of_all_islands() -> None:
+    alone, beside = World(), World()
+    for world in (alone, beside):
+        floor(world)
+        world.contacts.read = True
+        few(world)
+    few(beside, FAR)
+    alone.run(seconds=1.0)
+    beside.run(seconds=1.0)
+    assert beside.collisions == 2 * alone.collisions > 0
+    assert beside.contacts.count == 2 * alone.contacts.count > 0
+    assert len(beside.contacts.impacts) == 2 * len(alone.contacts.impacts)
+    assert (np.diff(beside.contacts.impacts["time"]) >= 0.0).all()
+    assert beside.account.sums[:, 0] == pytest.approx(
+        2.0 * alone.account.sums[:, 0],
+        abs=1e-6,  # far places are rounded more
+    )
+    change = beside.account.last.energy - (beside.account.start or beside.account.last).energy
+    assert beside.account.sums[:, 0].sum() == pytest.approx(change, abs=1e-7)
+
+
+def test_an_edit_reaches_its_island_and_is_booked_once() -> None:
+    worlds = World(), World()
+    for world in worlds:
+        floor(world)
+        few(world)
+    few(worlds[1], FAR)
+    for world in worlds:
+        world.run(steps=30)
+        world.table(Velocity)["linear"][2, 1] += 3.0
+        world.run(steps=30)
+    bodies = worlds[0].entities()[1:]
+    assert np.array_equal(motion(worlds[0], bodies), motion(worlds[1], bodies))
+    edits = [world.account.sums[EDITS, 0] for world in worlds]
+    assert edits[1] == pytest.approx(edits[0])
+    assert edits[0] > 1.0
+
+
+def two_crowds() -> World:
+    world = World(physics=dataclasses.replace(PhysicsConfig(), gravity=Vector2(0.0, -9.81)))
+    floor(world)
+    few(world)
+    crowd(world)
+    disc(world, -30.0, 0.31, 12.0)  # rolls into the few after two seconds and a half
+    return world
+
+
+def test_a_saved_world_goes_on_with_all_bits(tmp_path: Path) -> None:
+    world, path = two_crowds(), tmp_path / "scene.json"
+    for seconds, expected in ((1.0, 3), (2.0, 2)):
+        world.run(seconds=seconds)
+        assert len(sizes(world)) == expected
+        save_scene(world, path)
+        again = load_scene(path)
+        again.synchronise()
+        assert sizes(again) == sizes(world)
+        world.run(steps=30)
+        again.run(steps=30)
+        bodies = world.entities()[1:]
+        assert np.array_equal(motion(world, bodies), motion(again, again.entities()[1:]))
+
+
+def test_seeking_across_islands_that_meet_gives_the_same_bits() -> None:
+    world = two_crowds()
+    history = History(world)
+    history.step(steps=60)
+    bodies, early = world.entities()[1:], motion(world, world.entities()[1:])
+    history.step(steps=140)
+    late, count = motion(world, bodies), sizes(world)
+    history.seek(60)
+    assert np.array_equal(motion(world, bodies), early)
+    assert len(sizes(world)) == 3
+    history.seek(200)
+    assert np.array_equal(motion(world, bodies), late)
+    assert sizes(world) == count
+    assert history.difference is None
+
+
+def test_a_step_that_diverges_in_one_island_is_made_in_none() -> None:
+    world = World()
+    floor(world)
+    bodies = few(world)
+    wild = world.spawn(Transform((FAR, 3.0)), Velocity(), Mass(1.0))
+    world.run(steps=20)
+    assert len(sizes(world)) == 2
+    before, time, dt = motion(world, [*bodies, wild]), world.time, world.simulation.dt
+    world.component(wild, Velocity).linear = Vector2(1e302, 0.0)
+    with pytest.raises(Diverged):
+        world.step()
+    assert world.time == time
+    assert np.array_equal(motion(world, bodies), before[:4])
+    world.component(wild, Velocity).linear = Vector2(
+        7e300, 0.0
+    )  # it leaves what a file may hold in the ninth
+    with pytest.raises(Diverged, match="Transform is beyond"):
+        world.run(steps=20)
+    assert world.time == pytest.approx(time + 8 * dt)
+    assert not np.array_equal(motion(world, bodies), before[:4])
+    world.component(wild, Velocity).linear = Vector2()
+    world.run(steps=5)
+    assert len(sizes(world)) == 2
+
+
+SHAPELESS, CHAINED = 4, 3
+
+
+def random_scene(world: World, seed: int) -> list[int]:
+    """Drop 2 to 12 bodies of random kinds between two walls; in some scenes springs or drag act on them."""
+    random = np.random.default_rng(seed)
+    kind, spread = random.integers(0, 5), random.choice([2.0, 5.0, 12.0])
+    restitution = float(random.choice([0.0, 0.3, 0.6, 0.9, 1.0]))
+    for x in (-20.0, 20.0):
+        world.spawn(Transform((x, 10.0)), Shape(kind="box", width=1, height=22), Material(0.5, 0.5))
+    bodies: list[int] = []
+    for k in range(int(random.integers(2, 13))):
+        place = random.uniform(-spread, spread), 0.6 + 0.9 * k + random.uniform(0.0, 0.3)
+        is_disc = random.random() < 0.5 or kind == 0
+        shape = (
+            Shape(kind="circle", radius=random.uniform(0.1, 0.5))
+            if is_disc
+            else Shape(kind="box", width=random.uniform(0.3, 1.0), height=random.uniform(0.3, 0.8))
+        )
+        components = [
+            Transform(place, random.uniform(0.0, 3.0)),
+            Velocity(tuple(random.uniform(-2.0, 2.0, 2)), random.uniform(-2.0, 2.0)),
+            Mass(random.uniform(0.5, 2.0)),
+            Material(restitution, float(random.choice([0.0, 0.3, 0.8]))),
+            *([] if kind == SHAPELESS else [shape]),
+            *([Drag(linear=0.1)] if random.random() < 0.1 else []),
+        ]
+        bodies.append(world.spawn(*components))
+    if kind in (CHAINED, SHAPELESS):
+        for a, b in pairwise(bodies):
+            if random.random() < 0.6:
+                stiffness, damping = random.uniform(20.0, 200.0), float(random.choice([0.0, 0.5]))
+                world.spawn(Spring(a=a, b=b, rest_length=1.0, stiffness=stiffness, damping=damping))
+        world.spawn(Spring(a=bodies[0], anchor_b=(0.0, 8.0), rest_length=2.0, stiffness=100.0))
+    return bodies
+
+
+def thirteen(world: World) -> None:
+    """Drop thirteen boxes onto each other: more than rigid contacts are taken for."""
+    random = np.random.default_rng(98)
+    for k in range(13):
+        world.spawn(
+            Transform((FAR + random.uniform(-3.0, 3.0), 0.6 + k)), Velocity((random.uniform(-1.0, 1.0), 0.0)),
+            Mass(1.0), Shape(kind="box", width=0.6, height=0.5), Material(0.4, 0.4),
+        )  # fmt: skip
+
+
+def orbits(world: World) -> None:
+    """Let bodies go round fixed points, and two round each other, by springs: planets attract all."""
+    for k in range(4):
+        held = Spring(anchor_b=(FAR, 8.0), rest_length=0.0, stiffness=3.0 + k)
+        world.spawn(Transform((FAR + 1.0 + k, 8.0)), Velocity((0.0, 1.0)), Mass(1.0), held)
+    one = world.spawn(Transform((FAR + 1.0, 20.0)), Velocity((0.0, 1.0)), Mass(2.0))
+    other = world.spawn(Transform((FAR - 1.0, 20.0)), Velocity((0.0, -1.0)), Mass(2.0))
+    world.spawn(Spring(a=one, b=other, rest_length=0.5, stiffness=5.0))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("far", [lambda world: crowd(world, count=500), thirteen, orbits])
+def test_random_scenes_have_the_bits_that_they_have_alone(far: Callable[[World], object]) -> None:
+    for seed in range(200):
+        alone, beside = World(), World()
+        for world in (alone, beside):
+            floor(world)
+        own, same = random_scene(alone, seed), random_scene(beside, seed)
+        far(beside)
+        alone.run(steps=150)
+        beside.run(steps=150)
+        assert np.array_equal(motion(alone, own), motion(beside, same)), seed
