@@ -8,7 +8,7 @@ from pathlib import Path
 PACKAGE = Path(__file__).parent.parent / "physicslab"
 FOLDERS = (
     "commands", "contacts", "diagnostics", "ecs", "export", "files", "history", "integrators", "lab", "ode",
-    "state", "stepping", "systems",
+    "state", "systems",
 )  # fmt: skip
 """The folders that hold to it; the others follow."""
 SHAPE = re.compile(r"\((?:\.{3}|\w[\w +-]*)(?:,(?: [\w. +-]+)?)+\)|\bshapes?\b")

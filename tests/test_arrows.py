@@ -16,8 +16,7 @@ from physicslab.diagnostics.free_body import applied_forces
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
-from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.drawing import Drawing
+from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.view.overlay.arrows import (
     CONTACT_NORMAL,
@@ -30,8 +29,8 @@ from physicslab.view.overlay.arrows import (
     draw_arrows,
     max_length,
 )
-from physicslab.view.overlay.overlays import Gauge
-from physicslab.view.overlay.vectors import NORMAL_LENGTH
+from physicslab.view.overlay.forces import NORMAL_LENGTH
+from physicslab.view.overlay.legend import Gauge
 from physicslab.world import World
 
 KINDS = (VELOCITY, FORCE, CONTACT_NORMAL, NORMAL_IMPULSE, FRICTION_IMPULSE)

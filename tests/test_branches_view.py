@@ -14,7 +14,7 @@ from physicslab.components import Transform
 from physicslab.files.scene import load_scene
 from physicslab.history import SetField
 from physicslab.prefabs import circle
-from physicslab.view.controls import actions, file_actions, history_actions
+from physicslab.view.controls import actions, file_actions
 
 
 @pytest.fixture
@@ -97,11 +97,11 @@ def test_a_recording_that_cannot_be_saved_is_a_sentence_and_nothing_is_lost(
 
     there, entries = bits(desk.world), desk.sandbox.history.entries
     monkeypatch.setattr("physicslab.history.recording.replace_file", full)
-    history_actions.save_recording(desk.world, desk.window)
+    actions.save_recording(desk.world, desk.window)
     assert desk.window.notice == "The recording could not be saved: No space left on device"
     assert desk.window.notice_failed and list(tmp_path.iterdir()) == []
     assert bits(desk.world) == there and desk.sandbox.history.entries == entries
-    monkeypatch.setattr("physicslab.files.new_scene.create_file", full)
+    monkeypatch.setattr("physicslab.files.scene.create_file", full)
     file_actions.save(desk.world, desk.window)
     assert "could not be saved" in desk.window.notice and "No space left on device" in desk.window.notice
 
@@ -110,7 +110,7 @@ def test_a_recording_that_cannot_be_saved_is_a_sentence_and_nothing_is_lost(
 def test_a_recording_cut_off_is_refused_in_one_line(
     cut: float, desk: Desk, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    history_actions.save_recording(desk.world, desk.window)
+    actions.save_recording(desk.world, desk.window)
     whole = (tmp_path / "scene-1.replay").read_bytes()
     (tmp_path / "part.replay").write_bytes(whole[: int(cut * len(whole))])
     assert main(["replay", "part.replay"]) == 2

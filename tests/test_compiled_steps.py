@@ -17,7 +17,7 @@ from physicslab.diagnostics.energy import measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene
 from physicslab.integrators.leapfrog import LEAPFROG
-from physicslab.kernels.narrow.contact import AS_FOUND
+from physicslab.kernels.geometry.contact import AS_FOUND
 from physicslab.lab.bench.catalogue import SCENES as BENCH
 from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES

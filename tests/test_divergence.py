@@ -176,7 +176,7 @@ def test_a_state_that_cannot_be_saved_is_reported(
     def refuse(*arguments: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("physicslab.files.new_scene.save_new_scene", refuse)
+    monkeypatch.setattr("physicslab.files.scene.save_new_scene", refuse)
     assert "could not be saved: [Errno 28] No space left" in failed(capsys)
 
 

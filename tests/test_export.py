@@ -18,9 +18,8 @@ from numpy.typing import NDArray
 from physicslab import World, cli, load_scene, save_scene
 from physicslab.components import Drag, Mass, Shape, Spring, Trail, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
-from physicslab.export.framing import frame_run
 from physicslab.export.packing import pack
-from physicslab.export.recording import RunRecorder
+from physicslab.export.recording import RunRecorder, frame_run
 from physicslab.prefabs import gas
 from physicslab.systems.standard import standard_systems
 

@@ -20,7 +20,7 @@ from physicslab.view.canvas.quantities import percentage, quantity, round_quanti
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.overlay.edges import draw_scale_bar
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.workbench.figures import EnergyWatch, measure_world
+from physicslab.view.workbench.figures import EnergyWatch, WorldFigures
 from physicslab.view.workbench.world_panel import parts_of
 from physicslab.world import World
 
@@ -126,7 +126,7 @@ def test_both_bars_of_the_energy_are_equally_long(scene: str) -> None:
     world = load_scene(scene)
     watch = EnergyWatch()
     for _ in world.stepping(seconds=2.0, stride=30):
-        figures = measure_world(world, watch)
+        figures = WorldFigures(world, watch)
         came, went = parts_of(figures, DARK)
         assert [went[0].energy, went[1].energy] == [figures.energy.kinetic, figures.energy.stored]
         assert all(part.energy >= 0.0 for part in (*came[1:], *went[2:])), "an account is what was taken"
@@ -137,7 +137,7 @@ def test_both_bars_of_the_energy_are_equally_long(scene: str) -> None:
 
 
 def test_the_first_picture_of_the_bar_is_what_the_figures_above_it_say() -> None:
-    figures = measure_world(load_scene("drop"), EnergyWatch())
+    figures = WorldFigures(load_scene("drop"), EnergyWatch())
     _, went = parts_of(figures, DARK)
     assert [(part.name, round(part.energy, 2)) for part in went] == [("kinetic", 0.5), ("potential", 39.24)]
 
@@ -148,14 +148,14 @@ def test_an_edit_that_is_taken_back_leaves_no_trace_in_the_bar() -> None:
     desk.key("space")
     desk.frames(SETTLED)
     watch = EnergyWatch()
-    before = parts_of(measure_world(desk.world, watch), DARK)
+    before = parts_of(WorldFigures(desk.world, watch), DARK)
     desk.press(0, -2.5)
     desk.release(0, -2.5)
     desk.frames(SETTLED)
-    assert parts_of(measure_world(desk.world, watch), DARK) != before
+    assert parts_of(WorldFigures(desk.world, watch), DARK) != before
     desk.key("z", pygame.KMOD_CTRL)
     desk.frames(SETTLED)
-    assert parts_of(measure_world(desk.world, watch), DARK) == before
+    assert parts_of(WorldFigures(desk.world, watch), DARK) == before
 
 
 def test_a_bar_of_what_is_negative_lies_left_of_its_zero(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,8 +22,7 @@ from numpy.typing import NDArray
 
 from physicslab import cli, load_scene
 from physicslab.components import Note
-from physicslab.export import mp4
-from physicslab.export.film import Film
+from physicslab.export.film import Film, check_encoder
 from physicslab.export.gif import GifWriter
 from physicslab.export.palette import find_palette
 from physicslab.kernels.lzw import CODES, pack_lzw
@@ -239,7 +238,7 @@ def test_an_mp4_film_has_the_size_the_length_and_the_colours(tmp_path: Path) -> 
     path = tmp_path / "drop.mp4"
     command = ["export", "drop", "--mp4", str(path), "--seconds", "1", "--every", "0.1", "--size", "321x201"]
     assert cli.main(command) == 0
-    ffmpeg = mp4.check_encoder()
+    ffmpeg = check_encoder()
     probe = subprocess.run([ffmpeg, "-i", str(path)], capture_output=True, text=True).stderr
     assert "320x200" in probe and "h264" in probe and re.search(r"\b10 fps", probe)
     assert "Duration: 00:00:01.10" in probe

@@ -30,7 +30,7 @@ from physicslab.diagnostics.collision import Body, Motion
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
-from physicslab.prefabs import box, circle
+from physicslab.prefabs import box, capsule, circle
 from physicslab.view.canvas.quantities import quantity, vector_quantity
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.workbench.collision_drawing import colours_of
@@ -49,6 +49,7 @@ WRITTEN: dict[str, tuple[str, float]] = {
     "Shape.radius": ("12 mm", 0.012),
     "Shape.width": ("sqrt(4) m", 2.0),
     "Shape.height": ("1 yd", 0.9144),
+    "Shape.length": ("1 ft", 0.3048),
     "Material.restitution": ("30 %", 0.3),
     "Material.friction": ("1/4", 0.25),
     "Drag.linear": ("2 g/s", 0.002),
@@ -65,7 +66,8 @@ WRITTEN: dict[str, tuple[str, float]] = {
 """What is written into each field, and the number in SI that it stands for."""
 OUT_OF_RANGE = {
     "Transform.position.x": "1e301", "Mass.mass": "-1", "Mass.inertia": "0", "Shape.radius": "0",
-    "Shape.width": "0 m", "Shape.height": "-3", "Material.restitution": "1.01", "Material.friction": "-0.1",
+    "Shape.width": "0 m", "Shape.height": "-3", "Shape.length": "0",
+    "Material.restitution": "1.01", "Material.friction": "-0.1",
     "Drag.linear": "-1 kg/s", "Drag.quadratic": "-1", "Spring.anchor_a.x": "1e151",
     "Spring.anchor_b.y": "-1e151", "Spring.rest_length": "-1 cm", "Spring.stiffness": "-5",
     "Spring.damping": "-1", "Trail.length": "0 s",
@@ -87,8 +89,11 @@ def all_fields() -> set[str]:
 def bench(key: str) -> tuple[Desk, int]:
     """Return a desk with a body selected that has the field, while time stands still."""
     world = empty_world(gravity_mode="none")
-    make = box if key in ("Shape.width", "Shape.height") else circle
-    body = make(world, (1.0, 0.5), mass=1.0)
+    if key == "Shape.length":
+        body = capsule(world, (1.0, 0.5), mass=1.0)
+    else:
+        make = box if key in ("Shape.width", "Shape.height") else circle
+        body = make(world, (1.0, 0.5), mass=1.0)
     for extra in (Drag(), Trail(), Spring(anchor_b=(1.0, 2.5))):
         world.add(body, extra)
     other = circle(world, (-2.0, -2.0), mass=3.0)

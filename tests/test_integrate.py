@@ -12,7 +12,7 @@ from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators import INTEGRATORS
-from physicslab.integrators.integrator import Flow, splitting
+from physicslab.integrators.integrator import Flow, Splitting
 from physicslab.kernels.ode.splitting import split
 from physicslab.state.masses import Diverged
 from physicslab.systems.gravity import GravitySystem
@@ -100,10 +100,10 @@ def triple_jump(drifts: tuple[float, ...], order: int) -> tuple[float, ...]:
     return tuple(scale * drift for scale in (outer, 1.0 - 2.0 * outer, outer) for drift in drifts)
 
 
-RUTH_3 = splitting(drifts=(2 / 3, -2 / 3, 1.0), kicks=(7 / 24, 3 / 4, -1 / 24, 0.0))
+RUTH_3 = Splitting(drifts=(2 / 3, -2 / 3, 1.0), kicks=(7 / 24, 3 / 4, -1 / 24, 0.0))
 _DRIFTS = triple_jump(triple_jump(triple_jump((1.0,), 2), 4), 6)
 _KICKS = tuple((before + after) / 2 for before, after in itertools.pairwise((0.0, *_DRIFTS, 0.0)))
-YOSHIDA_8 = splitting(drifts=_DRIFTS, kicks=_KICKS)
+YOSHIDA_8 = Splitting(drifts=_DRIFTS, kicks=_KICKS)
 
 
 @pytest.mark.parametrize(("order", "flow"), [(3, RUTH_3), (8, YOSHIDA_8)])

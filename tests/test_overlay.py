@@ -13,8 +13,7 @@ from physicslab.components import Mass, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
-from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.drawing import Drawing
+from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.view.overlay.contact_samples import SHOWN, resting_of

@@ -17,8 +17,8 @@ from physicslab.desktop import session_window
 from physicslab.desktop.app import open_window
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.sandbox import Sandbox
+from physicslab.desktop.session_window import Termination
 from physicslab.desktop.sessions import Session, session_folder
-from physicslab.desktop.termination import Termination
 from physicslab.files.scene import load_scene
 from physicslab.view.canvas.display import Display
 from physicslab.world import World

@@ -24,9 +24,11 @@ def regular(count: int) -> tuple[tuple[float, float], ...]:
     return tuple((math.cos(turn), math.sin(turn)) for turn in turns)
 
 
-def row_of(kind: Kind, radius: float = 0.0, width: float = 0.0, height: float = 0.0) -> Shapes:
+def row_of(
+    kind: Kind, radius: float = 0.0, width: float = 0.0, height: float = 0.0, length: float = 0.0
+) -> Shapes:
     """Return a table of one shape of a kind, which comes behind the others in the register."""
-    columns = np.array([radius]), np.array([width]), np.array([height])
+    columns = np.array([radius]), np.array([width]), np.array([height]), np.array([length])
     kinds, extents, pool = register((*KINDS.values(), kind))
     plain: ShapesTuple = np.zeros((2, 1), np.int64), np.zeros((4, 1)), pool
     table = with_names(plain)
@@ -62,7 +64,7 @@ def test_a_rounded_box_is_boxes_and_quarters_of_a_disc(width: float, height: flo
 
 @given(length=sizes, radius=sizes)
 def test_a_capsule_is_a_box_and_two_half_discs(length: float, radius: float) -> None:
-    table = row_of(Kind(((0.5, 0.0), (-0.5, 0.0)), x="width", radius="radius"), radius, length)
+    table = row_of(KINDS["capsule"], radius, length=length)
     area, moment = area_and_moment(table, 0)
     box, disc = 2.0 * radius * length, math.pi * radius * radius
     assert area == pytest.approx(box + disc, rel=1e-14)

@@ -21,9 +21,8 @@ from physicslab.integrators import INTEGRATORS
 from physicslab.prefabs import box, circle, stack
 from physicslab.scenes import SCENES
 from physicslab.systems.standard import standard_systems
-from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import TextStyle
-from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.overlay.banners import draw_advice
 from physicslab.world import World
@@ -501,13 +500,13 @@ def test_at_most_three_are_said_and_the_rest_counted() -> None:
     canvas = RecordingCanvas((800, 600))
     on = Drawing(canvas, Camera(canvas.size), THEMES[0], 12)
     many = [ModelWarning(f"body {n}", f"kind {n}", float(n), "", 1.0, "") for n in range(2, 8)]
-    rect = draw_advice(many, 400, 50, 600, 300, on)
+    rect = draw_advice(many, (250, 50, 300, 550), on)
     words = [text["words"] for text in canvas.called("text")]
     assert sum("body" in word for word in words) == 3 and "body 7" in words[1] and words[-1] == "and 3 more"
     assert rect is not None and rect[2] <= 300
     style = TextStyle(11, THEMES[0].warning, bold=True)
     assert all(canvas.text_size(word, style)[0] <= 300 for word in words)
-    assert draw_advice([], 400, 50, 600, 300, on) is None
+    assert draw_advice([], (250, 50, 300, 550), on) is None
     assert math.isinf(ModelWarning(None, "x", None, "", None, "").excess[0])
 
 

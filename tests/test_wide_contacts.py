@@ -9,9 +9,8 @@ from desk import bits
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.contacts import wide
-from physicslab.contacts.arguments import motion_of, near_in
+from physicslab.contacts.arguments import do_stage, motion_of, near_in
 from physicslab.contacts.memory import export_contacts, restore_contacts
-from physicslab.contacts.one_stage import do_stage
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.scene import read_scene, write_scene

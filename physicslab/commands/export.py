@@ -17,11 +17,9 @@ from physicslab.commands.assignments import add_assignments
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output, reason_of
 from physicslab.ecs.text import printable, shortened
-from physicslab.export.film import Film
-from physicslab.export.framing import Box, extent_of_run
-from physicslab.export.mp4 import NoEncoder
+from physicslab.export.film import Film, NoEncoder
 from physicslab.export.page import page
-from physicslab.export.recording import NotShown, RunRecorder
+from physicslab.export.recording import Box, NotShown, RunRecorder, extent_of_run
 from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small

@@ -33,6 +33,7 @@ class Kind(NamedTuple):
 KINDS = {
     "circle": Kind(((0.0, 0.0),), radius="radius"),
     "box": Kind(((0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)), x="width", y="height"),
+    "capsule": Kind(((0.5, 0.0), (-0.5, 0.0)), x="length", radius="radius"),
 }
 """Every kind of shape. A new one is a row; loops read the table :mod:`physicslab.kernels.geometry.shapes`."""
 CIRCLE, BOX = 1, 2
@@ -49,9 +50,10 @@ class Shape(Component):
     """The outline of a body, centred on its Transform. An entity without it cannot touch anything."""
 
     kind: str = field(choices=tuple(KINDS), fixed=True, meaning="what sort of outline")
-    radius: float = extent(0.0, "radius of a circle")
+    radius: float = extent(0.0, "radius of a circle, or of a capsule's round ends")
     width: float = extent(0.0, "extent of a box along its own x axis")
     height: float = extent(0.0, "extent of a box along its own y axis")
+    length: float = extent(0.0, "distance of the centres of a capsule's round ends, along its own x axis")
 
     SIZES = {name: kind.sizes for name, kind in KINDS.items()}  # noqa: RUF012
 
@@ -65,9 +67,14 @@ class Shape(Component):
         """Return a box of the given extents [m]."""
         return Shape("box", width=width, height=height)
 
+    @staticmethod
+    def capsule(length: float, radius: float) -> Shape:
+        """Return a capsule of the given radius [m], whose round ends have centres so far apart [m]."""
+        return Shape("capsule", radius=radius, length=length)
+
     def validate(self) -> None:
         """Check that the sizes are those of the kind, and greater than zero."""
-        for name in ("radius", "width", "height"):
+        for name in (spec.name for spec in self.FIELDS if spec.name != "kind"):
             size = getattr(self, name)
             if name in self.SIZES[self.kind]:
                 if size <= 0.0:

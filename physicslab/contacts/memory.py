@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from physicslab.contacts.report import ordered_records
 from physicslab.kernels.events.events import DEEP
-from physicslab.kernels.narrow.contact import AS_FOUND
+from physicslab.kernels.geometry.contact import AS_FOUND
 from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.kernels.wide.layout import WIDE
 from physicslab.kernels.wide.slots import COLOURS

@@ -21,7 +21,7 @@ from physicslab.systems.system import Stage
 from physicslab.view.controls.window_events import WindowEvents
 from physicslab.view.window.handles import Handles
 from physicslab.view.window.measuring import Measuring
-from physicslab.view.window.pins import Pins
+from physicslab.view.window.spring_tool import Pins
 from physicslab.view.window.window import Left, Window
 from physicslab.view.workbench.hud import Hud
 from physicslab.view.workbench.interface import Interface

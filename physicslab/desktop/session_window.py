@@ -1,7 +1,14 @@
-"""Runs the sandbox in a window: its scene, its session, its frames."""
+"""Runs the sandbox in a window: its scene, its session, its frames, and signals that end it."""
 
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from types import FrameType, TracebackType
+from typing import Any
 
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.compiling import Compiling, Left
@@ -9,7 +16,6 @@ from physicslab.desktop.garbage import loading
 from physicslab.desktop.preferences import load_preferences, save_preferences
 from physicslab.desktop.sandbox import Sandbox
 from physicslab.desktop.sessions import Session, session_folder
-from physicslab.desktop.termination import Termination
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.scene import load_scene
@@ -19,6 +25,64 @@ from physicslab.view.canvas.display import Display, ask_to_leave, forget_clicks
 from physicslab.view.window.recent import Recovery
 from physicslab.view.window.window import Window
 from physicslab.world import World
+
+# ---- signals: noted, so that the window closes between two frames with its state kept ----------------------
+
+
+_SIGNALS = ("SIGTERM", "SIGHUP", "SIGINT")
+"""At a logout or a shutdown, by ``kill``; when the terminal is closed, which Windows lacks; by Ctrl+C."""
+
+
+class Termination:
+    """Notes the signals that end the program, within a ``with`` block, and has the window closed.
+
+    A second Ctrl+C interrupts what the window waits for. SDL would make of SIGTERM what a click on the
+    window's cross is: the state would be removed as if the user had left.
+
+    Parameters
+    ----------
+    close : callable
+        Has the window closed; called between two instructions of Python, whatever is under way.
+
+    Attributes
+    ----------
+    signal : int
+        The number of the one that came; 0 if none did.
+    """
+
+    def __init__(self, close: Callable[[], None]) -> None:
+        self.signal = 0
+        self._close = close
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> Termination:
+        if threading.current_thread() is threading.main_thread():  # no other may set handlers
+            for name in _SIGNALS:
+                number = getattr(signal, name, None)
+                if number is not None:
+                    self._before[number] = signal.signal(number, self._note)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, signal.SIG_DFL if handler is None else handler)
+
+    @property
+    def status(self) -> int:
+        """The exit status: 0, or what a shell reports of a program that a signal ended."""
+        return 128 + self.signal if self.signal else 0
+
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        if number == self.signal == signal.SIGINT:
+            raise KeyboardInterrupt
+        self.signal = self.signal or number
+        self._close()
+
+
+# ---- the window --------------------------------------------------------------------------------------------
+
 
 _PREFERENCES = "preferences.json"
 _STILL = 0.5

@@ -7,9 +7,8 @@ from importlib.resources import files
 from typing import Any
 
 from physicslab.ecs.text import printable
-from physicslab.export.framing import extent_of_run
 from physicslab.export.packing import pack
-from physicslab.export.recording import RunRecorder
+from physicslab.export.recording import RunRecorder, extent_of_run
 from physicslab.world import World
 
 _SCRIPTS = ("run.js", "picture.js", "figures.js", "controls.js")

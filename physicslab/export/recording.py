@@ -1,5 +1,7 @@
-"""A run as a page plays it: what moves, one instant after the other, and what stays as it is."""
+"""A run as a page plays it: what moves, instant after instant, what stays, and the frame around it."""
 
+import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -136,3 +138,102 @@ class RunRecorder:
             }
             for own, row in zip(batch.entities.tolist(), batch.rows.tolist(), strict=True)
         ]
+
+
+type Boxes = NDArray[np.float64]
+"""A float64 array (n, 4): xmin, ymin, xmax, ymax [m]."""
+type Box = tuple[float, float, float, float]
+
+_SURROUNDINGS = 8.0
+"""How much is shown at least, in sizes of the largest thing that moves."""
+_STRAY_FROM_GROUND, _STRAY = 0.25, 4.0
+"""How far what leaves the place is followed, in sizes of it, where there is ground and where not."""
+_BESIDE = 0.1
+"""How far what does not move is shown, in sizes of what is shown."""
+_MARGIN = 0.04
+"""What is left free at the rim, in sizes of what is shown."""
+_EMPTY: Box = (-5.0, -3.0, 5.0, 3.0)
+"""What is shown of a world in which there is nothing [m]."""
+
+
+def extent_of_run(world: World, recorder: RunRecorder) -> Box:
+    """Return xmin, ymin, xmax, ymax [m] of what is to be seen of a run that was recorded."""
+    bounds, springs = world.physics.bounds, recorder.springs(world)
+    fixed = [[*spring["anchor_b"], *spring["anchor_b"]] for spring in springs if spring["b"] is None]
+    return frame_run(recorder.bodies(world), recorder.motion, [*fixed, *([bounds] if bounds else [])])
+
+
+def frame_run(
+    bodies: Sequence[dict[str, Any]], motion: NDArray[np.float32], fixed: Sequence[Sequence[float]]
+) -> Box:
+    """Return xmin, ymin, xmax, ymax [m] of what is to be seen of a run.
+
+    It holds all that moves, but for what flies or falls far from where things are at the start.
+
+    Parameters
+    ----------
+    bodies : sequence of dict
+        As :meth:`RunRecorder.bodies` has them.
+    motion : float32 array (instants, moving, 6)
+        As :attr:`RunRecorder.motion` has it.
+    fixed : sequence of four floats each
+        Boxes that belong to it: the bounds, and the fixed ends of springs.
+    """
+    drawn = [body for body in bodies if body["kind"] != "none"]
+    movers = [body for body in drawn if "moves" in body]
+    still = _boxes([_outline(body) for body in drawn if "moves" not in body])
+    reach = np.array([_reach(body) for body in movers]).reshape(-1, 1)
+    places = motion[:, [body["moves"] for body in movers], :2].astype(np.float64)
+    start = np.concatenate((places[0] - reach, places[0] + reach), axis=1)
+    start = np.concatenate((start, _boxes(fixed)))
+    if not len(start):
+        return _grown(_union(still) if len(still) else _EMPTY, _MARGIN)
+    widened = _widened(_union(start), 2.0 * _SURROUNDINGS * float(reach.max(initial=0.0)))
+    place = _union(np.concatenate(([widened], _clipped(still, _grown(widened, 1.0)))))
+    path = np.concatenate((places.min(axis=0) - reach, places.max(axis=0) + reach), axis=1)
+    stray = _STRAY_FROM_GROUND if len(still) or len(fixed) else _STRAY
+    seen = _union(np.concatenate((start, _clipped(path, _grown(place, stray)))))
+    seen = _widened(seen, 0.5 * _SURROUNDINGS * float(reach.max(initial=0.0)))
+    return _grown(_union(np.concatenate(([seen], _clipped(still, _grown(seen, _BESIDE))))), _MARGIN)
+
+
+def _reach(body: dict[str, Any]) -> float:
+    """Return the radius of the circle about a body's centre in which it turns [m]."""
+    return float(body.get("radius", 0.5 * math.hypot(*body.get("size", (0.0, 0.0)))))
+
+
+def _outline(body: dict[str, Any]) -> list[float]:
+    """Return the box around a body that does not move [m]."""
+    x, y, angle = body["pose"]
+    width, height = body.get("size", (0.0, 0.0))
+    c, s, radius = abs(math.cos(angle)), abs(math.sin(angle)), body.get("radius", 0.0)
+    across, up = radius + 0.5 * (c * width + s * height), radius + 0.5 * (s * width + c * height)
+    return [x - across, y - up, x + across, y + up]
+
+
+def _boxes(rows: Sequence[Sequence[float]]) -> Boxes:
+    return np.array(rows, np.float64).reshape(-1, 4)
+
+
+def _union(boxes: Boxes) -> Box:
+    low, high = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
+    return float(low[0]), float(low[1]), float(high[0]), float(high[1])
+
+
+def _clipped(boxes: Boxes, region: Box) -> Boxes:
+    """Return what of each box lies in a region."""
+    low, high = np.maximum(boxes[:, :2], region[:2]), np.minimum(boxes[:, 2:], region[2:])
+    there = (low <= high).all(axis=1)
+    return np.concatenate((low[there], high[there]), axis=1)
+
+
+def _grown(box: Box, share: float) -> Box:
+    """Return a box with a margin on each side, as a share of its larger extent."""
+    margin = share * max(box[2] - box[0], box[3] - box[1])
+    return box[0] - margin, box[1] - margin, box[2] + margin, box[3] + margin
+
+
+def _widened(box: Box, smallest: float) -> Box:
+    """Return a box of at least this width and height [m], about the same centre."""
+    across, up = (0.5 * max(smallest - (box[2 + k] - box[k]), 0.0) for k in (0, 1))
+    return box[0] - across, box[1] - up, box[2] + across, box[3] + up

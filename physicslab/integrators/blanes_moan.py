@@ -1,7 +1,6 @@
 """Blanes and Moan's method of order 6 for forces that depend on positions alone."""
 
-from physicslab.integrators.integrator import Integrator, splitting
-from physicslab.kernels.ode.splitting import split
+from physicslab.integrators.integrator import Integrator, Splitting
 
 _KICKS = (
     0.0414649985182624, 0.198128671918067, -0.0400061921041533, 0.0752539843015807, -0.0115113874206879,
@@ -19,11 +18,10 @@ BLANES_MOAN = Integrator(
     stability_limit=9.07,
     symplectic=True,
     source="Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3, order 6, 11 stages",
-    flow=splitting(
+    flow=Splitting(
         drifts=(*_DRIFTS, _DRIFT, *reversed(_DRIFTS)),
         kicks=(*_KICKS, _KICK, _KICK, *reversed(_KICKS)),
     ),
-    kernels=(split,),
     positions_only=True,
     phase_share=8.08e-8,
     phase_order=6,

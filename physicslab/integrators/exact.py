@@ -34,7 +34,6 @@ EXACT = Integrator(
     title="Closed form",
     order=float("inf"),
     evaluations=0,
-    stability_limit=float("inf"),
     symplectic=True,
     source="Landau & Lifshitz, Mechanics, 1976, sections 5, 21, 25",
     flow=_flow,

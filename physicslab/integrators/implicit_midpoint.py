@@ -85,8 +85,6 @@ IMPLICIT_MIDPOINT = Integrator(
     title="Implicit midpoint, spring energy kept, L-stable beside dampers (Newton)",
     order=2,
     evaluations=3,
-    stability_limit=float("inf"),
-    symplectic=False,
     source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, II.1.1 and VIII.6; "
     "LaBudde & Greenspan, J. Comput. Phys. 15 (1974) 134; "
     "Hairer & Wanner, Solving Ordinary Differential Equations II, 1996, IV.3",

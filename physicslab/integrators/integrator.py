@@ -1,5 +1,6 @@
 """The record of a method, and how one is split into drifts and kicks."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -44,11 +45,6 @@ class Splitting:
         )  # fmt: skip
 
 
-def splitting(*, drifts: tuple[float, ...], kicks: tuple[float, ...]) -> Splitting:
-    """Return the flow of the method kick, drift, kick, ..., drift, kick with these shares of the step."""
-    return Splitting(drifts, kicks)
-
-
 type Flow = Callable[[State, OdeSystem, float, int], int]
 """Advances the equations of a world by so many steps of so many seconds; returns the force evaluations."""
 
@@ -73,16 +69,16 @@ class Integrator:
         depend on positions alone, where ``positions_only``).
     evaluations : int
         Force evaluations a step.
-    stability_limit : float
-        Largest omega h at which an undamped oscillation stays bounded.
-    symplectic : bool
-        Whether phase-space area, and so energy over long times, is kept.
     source : str
         Where the method is described.
     flow : callable
         How it advances a world in which nothing but forces acts, compiled.
+    stability_limit : float
+        Largest omega h at which an undamped oscillation stays bounded.
+    symplectic : bool
+        Whether phase-space area, and so energy over long times, is kept.
     kernels : tuple of kernels
-        What ``flow`` calls.
+        What ``flow`` calls; that of a :class:`Splitting` by default.
     substep : tuple of (Stage, float)
         How it advances a world in which more than forces acts: the stages of one substep in order, each with
         its share of the substep's time. Empty for a method that cannot.
@@ -101,11 +97,11 @@ class Integrator:
     title: str
     order: float
     evaluations: int
-    stability_limit: float
-    symplectic: bool
     source: str
     flow: Flow
-    kernels: tuple[Any, ...]
+    stability_limit: float = math.inf
+    symplectic: bool = False
+    kernels: tuple[Any, ...] = (split,)
     substep: tuple[tuple[Stage, float], ...] = ()
     window: tuple[float, float] = (0.0, 1.0)
     positions_only: bool = False

@@ -2,8 +2,7 @@
 
 from dataclasses import replace
 
-from physicslab.integrators.integrator import Integrator, splitting
-from physicslab.kernels.ode.splitting import split
+from physicslab.integrators.integrator import Integrator, Splitting
 from physicslab.systems.system import Stage
 
 # Between the two half kicks, positions and velocities are both those of the middle of the substep. Impacts
@@ -17,8 +16,7 @@ LEAPFROG = Integrator(
     stability_limit=2.0,
     symplectic=True,
     source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, I.1.4",
-    flow=splitting(drifts=(0.5, 0.5), kicks=(0.0, 1.0, 0.0)),
-    kernels=(split,),
+    flow=Splitting(drifts=(0.5, 0.5), kicks=(0.0, 1.0, 0.0)),
     positions_only=True,
     substep=(
         (Stage.DRIFT, 0.5),

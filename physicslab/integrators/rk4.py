@@ -18,7 +18,6 @@ RK4 = Integrator(
     order=4,
     evaluations=4,
     stability_limit=8.0**0.5,
-    symplectic=False,
     source="Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, 1993, II.1",
     flow=_flow,
     kernels=(rk4,),

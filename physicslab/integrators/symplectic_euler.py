@@ -1,7 +1,6 @@
 """Semi-implicit Euler."""
 
-from physicslab.integrators.integrator import Integrator, splitting
-from physicslab.kernels.ode.splitting import split
+from physicslab.integrators.integrator import Integrator, Splitting
 from physicslab.systems.system import Stage
 
 SYMPLECTIC_EULER = Integrator(
@@ -12,8 +11,7 @@ SYMPLECTIC_EULER = Integrator(
     stability_limit=2.0,
     symplectic=True,
     source="Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, I.1.2",
-    flow=splitting(drifts=(1.0,), kicks=(1.0, 0.0)),
-    kernels=(split,),
+    flow=Splitting(drifts=(1.0,), kicks=(1.0, 0.0)),
     substep=(
         (Stage.FORCE, 1.0),
         (Stage.KICK, 1.0),

@@ -4,7 +4,7 @@ They give no more than components; what they make can be changed like anything e
 take a ``seed``, and give the same things for the same seed.
 """
 
-from physicslab.prefabs.body import BodyOptions, body, box, circle
+from physicslab.prefabs.body import BodyOptions, body, box, capsule, circle
 from physicslab.prefabs.chain import chain, pendulum
 from physicslab.prefabs.container import container
 from physicslab.prefabs.gas import gas
@@ -12,6 +12,6 @@ from physicslab.prefabs.pile import pile, pyramid, stack
 from physicslab.prefabs.planets import Planet, binary, planets
 
 __all__ = [
-    "BodyOptions", "Planet", "binary", "body", "box", "chain", "circle", "container", "gas", "pendulum",
-    "pile", "planets", "pyramid", "stack",
+    "BodyOptions", "Planet", "binary", "body", "box", "capsule", "chain", "circle", "container", "gas",
+    "pendulum", "pile", "planets", "pyramid", "stack",
 ]  # fmt: skip

@@ -84,6 +84,26 @@ def box(
     return body(world, Shape.box(width, height), position, **options)
 
 
+def capsule(
+    world: World, position: Pair, *, length: float = 0.5, radius: float = 0.2, **options: Unpack[BodyOptions]
+) -> int:
+    """Spawn a capsule, whose round ends have centres ``length`` [m] apart, at ``position`` [m].
+
+    Returns
+    -------
+    entity : int
+        Its middle is at ``position``, and without an angle it lies along x.
+
+    Examples
+    --------
+    >>> world = World()
+    >>> pill = capsule(world, (0, 2), length=1, radius=0.25)
+    >>> world.component(pill, Shape).length
+    1.0
+    """
+    return body(world, Shape.capsule(length, radius), position, **options)
+
+
 def circle(world: World, position: Pair, *, radius: float = 0.25, **options: Unpack[BodyOptions]) -> int:
     """Spawn a disc of a given radius [m] with its centre at ``position`` [m]; return its entity.
 

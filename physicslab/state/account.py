@@ -31,7 +31,7 @@ class Account:
     """Sums by cause since the first step, or since :meth:`restart`.
 
     Whatever is not booked here and has changed the energy all the same is the error of the numerical method
-    (:func:`physicslab.diagnostics.account.measure_account`).
+    (:func:`physicslab.diagnostics.energy.measure_account`).
 
     Attributes
     ----------

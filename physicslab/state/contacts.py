@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import compile_kernels, near_counts
 from physicslab.kernels.broad import near_pairs
-from physicslab.kernels.narrow.contact import AS_FOUND
+from physicslab.kernels.geometry.contact import AS_FOUND
 from physicslab.kernels.records import IMPACT, MANIFOLD, POINT
 from physicslab.kernels.solver import impulse
 from physicslab.kernels.wide import refresh, slots

@@ -43,5 +43,5 @@ def with_names(plain: ShapesTuple) -> Shapes:
 
 def sizes_in(table: Table) -> SizesTuple:
     """Return the columns of sizes of the ``Shape`` component."""
-    radius, width, height = (table[name] for name in _SIZES)
-    return radius, width, height
+    radius, width, height, length = (table[name] for name in _SIZES)
+    return radius, width, height, length

@@ -1,6 +1,6 @@
 """Contact points of near bodies."""
 
-from physicslab.contacts.one_stage import do_stage
+from physicslab.contacts.arguments import do_stage
 from physicslab.contacts.wide import add_constraints, refill
 from physicslab.kernels.solver import soft
 from physicslab.state.state import State

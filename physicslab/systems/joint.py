@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from physicslab.components import Name, Transform
 from physicslab.components.joint_ends import key_of, why_not_joined
+from physicslab.contacts.arguments import do_stage
 from physicslab.contacts.islands import wake_all
-from physicslab.contacts.one_stage import do_stage
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.vector import rotated
 from physicslab.kernels import accounts

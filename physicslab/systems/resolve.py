@@ -1,6 +1,6 @@
 """Impulses at contacts."""
 
-from physicslab.contacts.one_stage import do_stage
+from physicslab.contacts.arguments import do_stage
 from physicslab.kernels.arguments import SoftnessTuple
 from physicslab.kernels.solver import impulse, soft
 from physicslab.state.state import State

@@ -4,9 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Shape, Transform, Velocity
-from physicslab.contacts.arguments import near_in
+from physicslab.contacts.arguments import do_stage, near_in
 from physicslab.contacts.islands import check_edits, fall_asleep, keep_places, wake, wake_all
-from physicslab.contacts.one_stage import do_stage
 from physicslab.kernels import motion, near_counts
 from physicslab.kernels.accounts import GRAVITY
 from physicslab.kernels.arguments import InverseTuple

@@ -8,9 +8,9 @@ import math
 
 from physicslab.kernels import Numbers, Vectors, inlined, kernel
 from physicslab.kernels.arguments import Motion, MotionTuple
+from physicslab.kernels.geometry.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE, WIDE_TOLERANCE
+from physicslab.kernels.geometry.pair import CONTACT_MARGIN
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents, half_thickness, named_shapes
-from physicslab.kernels.narrow.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE, WIDE_TOLERANCE
-from physicslab.kernels.narrow.pair import CONTACT_MARGIN
 
 __all__ = [
     "CORNERWISE",

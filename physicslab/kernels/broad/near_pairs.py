@@ -11,8 +11,8 @@ import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.broad.fat_boxes import CORNERWISE
+from physicslab.kernels.geometry.contact import ACTIVATION_RATIO
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
-from physicslab.kernels.narrow.contact import ACTIVATION_RATIO
 from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Points
 
 __all__ = [

@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import inlined
+from physicslab.kernels import always_inlined, inlined
 from physicslab.kernels.geometry.shapes import BOX, Shapes, face, vertex
 
 
@@ -42,7 +42,7 @@ def area_and_moment(shapes: Shapes, i: int) -> tuple[float, float]:
     return area, moment
 
 
-@inlined
+@always_inlined
 def inertia_of(shapes: Shapes, i: int, mass: float) -> float:
     """Return the moment of inertia of row i about its centre [kg m^2]; 0 where it has no shape."""
     if shapes.vertices[i] == 0:

@@ -22,7 +22,7 @@ What turns without effect, a disc, has ``shapes.reach[i] - shapes.radius[i]`` eq
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, fused, inlined
 from physicslab.kernels.records import Pairs
 
 BOX = 1
@@ -59,7 +59,7 @@ class Shapes(NamedTuple):
 
 ShapesTuple = tuple[Pairs, Vectors, Vectors]
 """The same in three arrays (2, rows), (4, rows), (n, 2), which are passed faster."""
-SizesTuple = tuple[Numbers, Numbers, Numbers]
+SizesTuple = tuple[Numbers, Numbers, Numbers, Numbers]
 """The columns of sizes of the ``Shape`` component, in its order."""
 
 
@@ -103,7 +103,13 @@ def support(shapes: Shapes, i: int, x: float, y: float) -> tuple[int, float]:
     return best, farthest
 
 
-@inlined
+@fused
+def has_own_way(shapes: Shapes, i: int) -> bool:
+    """Whether row i is a disc or a box, for which loops have faster ways than for any rounded polygon."""
+    return bool(shapes.vertices[i] < 2 or shapes.first[i] == BOX)
+
+
+@always_inlined
 def half_thickness(shapes: Shapes, i: int) -> float:
     """Return half of the smaller extent of row i [m]."""
     half: float = min(shapes.half_x[i], shapes.half_y[i]) + shapes.radius[i]
@@ -126,7 +132,19 @@ def half_extents(shapes: Shapes, i: int, angle: float) -> tuple[float, float]:
     return half_x + radius, half_y + radius
 
 
-@inlined
+@always_inlined
+def _size(column: int, i: int, sizes: SizesTuple) -> float:
+    """Return the size of row i in a column; 1 where there is none, so that it is in order."""
+    # One by one: to index a tuple by a variable takes ten times as long.
+    radius, width, height, length = sizes
+    if column < 0:
+        return 1.0
+    if column < 2:
+        return float(radius[i]) if column == 0 else float(width[i])
+    return float(height[i]) if column == 2 else float(length[i])
+
+
+@always_inlined
 def derive_shape(
     i: int, kind: Rows, sizes: SizesTuple, kinds: Pairs, extents: Vectors, shapes: Shapes
 ) -> bool:
@@ -137,30 +155,18 @@ def derive_shape(
     of the core in units of these sizes.
     """
     row = kind[i]
-    count, first, x, y, rounded = kinds[row, 0], kinds[row, 1], kinds[row, 2], kinds[row, 3], kinds[row, 4]
-    size_x = sizes[x][i] if x >= 0 else 1.0
-    size_y = sizes[y][i] if y >= 0 else 1.0
-    rounding = sizes[rounded][i] if rounded >= 0 else 1.0
+    count, first, rounded = kinds[row, 0], kinds[row, 1], kinds[row, 4]
+    size_x, size_y = _size(kinds[row, 2], i, sizes), _size(kinds[row, 3], i, sizes)
+    rounding = _size(rounded, i, sizes)
     half_x, half_y = extents[row, 0] * size_x, extents[row, 1] * size_y
     radius = rounding if rounded >= 0 else 0.0
-    shapes.vertices[i], shapes.first[i] = count, first
-    shapes.half_x[i], shapes.half_y[i], shapes.radius[i] = half_x, half_y, radius
-    farthest = 0.0
-    if first == BOX:
-        farthest = half_x * half_x + half_y * half_y
-    elif count > 1:
+    same = shapes.half_x[i] == half_x and shapes.half_y[i] == half_y and shapes.radius[i] == radius
+    if not same or shapes.first[i] != first or shapes.vertices[i] != count:
+        shapes.vertices[i], shapes.first[i] = count, first
+        shapes.half_x[i], shapes.half_y[i], shapes.radius[i] = half_x, half_y, radius
+        farthest = 0.0
         for k in range(count):
-            vx, vy = vertex(shapes, i, k)
-            farthest = max(farthest, vx * vx + vy * vy)
-    shapes.reach[i] = math.sqrt(farthest) + radius
+            x, y = vertex(shapes, i, k)
+            farthest = max(farthest, x * x + y * y)
+        shapes.reach[i] = math.sqrt(farthest) + radius
     return 0.0 < size_x < math.inf and 0.0 < size_y < math.inf and 0.0 < rounding < math.inf
-
-
-@kernel
-def derive_shapes(
-    kind: Rows, sizes: SizesTuple, kinds: Pairs, extents: Vectors, plain_shapes: ShapesTuple
-) -> None:
-    """Fill the table, as :func:`derive_shape` does row by row."""
-    shapes = named_shapes(plain_shapes)
-    for i in range(len(kind)):
-        derive_shape(i, kind, sizes, kinds, extents, shapes)

@@ -27,6 +27,7 @@ from physicslab.kernels.constraint.pair import (
     put_velocity,
     velocity_of,
 )
+from physicslab.kernels.geometry.impact_pose import is_known, meeting_at
 from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.impact_log import (
@@ -36,7 +37,6 @@ from physicslab.kernels.solver.impact_log import (
     pair_of,
     write_impact,
 )
-from physicslab.kernels.solver.impact_pose import is_known, meeting_at
 from physicslab.kernels.solver.impulse import follow_drift
 
 _MAX_SWEEPS = 32
@@ -305,7 +305,7 @@ def _resolve_once(
         if window.start >= 0.0:  # in symplectic Euler the forces have acted already
             pull = 0.0
         if manifold.swept == 2:
-            one.ahead = 1
+            one.ahead = two.ahead = 1
             continue
         t1, t2 = _meeting_times(manifold, one, two, motion, Approach(v1, v2, pull, resting_speed), window)
         if abs(t1) < math.inf or abs(t2) < math.inf:

@@ -15,9 +15,9 @@ from physicslab.kernels.arguments import (
     named_near,
 )
 from physicslab.kernels.broad.near_pairs import sort_scalar
+from physicslab.kernels.geometry.contact import note_pose
+from physicslab.kernels.geometry.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
-from physicslab.kernels.narrow.contact import note_pose
-from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.near_counts import (
     ACTIVE,
     BOX_BLOCKS,
@@ -102,7 +102,7 @@ def _free_slot(home: int, blocks: int, c: int, slots: Slots) -> int:
 
 @inlined
 def _may_enter(
-    slots: Slots, near: Near, p: int, motion: Motion, shape: Rows, asleep: Flags, h: float
+    slots: Slots, near: Near, p: int, motion: Motion, shapes: Shapes, asleep: Flags, h: float
 ) -> bool:
     """Whether a contact is steady and of the kind of these blocks.
 
@@ -110,7 +110,7 @@ def _may_enter(
     """
     manifold = near.manifolds[p]
     i, j = manifold.a, manifold.b
-    if manifold.wall >= 0 or not is_of_kind(slots.kind, shape[i], shape[j]):
+    if manifold.wall >= 0 or not is_of_kind(slots.kind, shapes, i, j):
         return False
     if asleep[i] or asleep[j]:
         return False
@@ -145,7 +145,7 @@ def _assign_colours(
     for k in range(near.counts[ACTIVE]):
         p = near.touching[k]
         manifold = near.manifolds[p]
-        if not _may_enter(slots, near, p, motion, shapes.vertices, asleep, h):
+        if not _may_enter(slots, near, p, motion, shapes, asleep, h):
             continue
         c = _first_colour(slots.used, manifold.a, manifold.b, inverse.mass)
         if c == COLOURS:

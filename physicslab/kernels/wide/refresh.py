@@ -2,8 +2,7 @@
 
 from physicslab.kernels import Numbers, fused, inlined, kernel
 from physicslab.kernels.arguments import Bounds, Inverse, Motion, Near
-from physicslab.kernels.geometry.shapes import Shapes
-from physicslab.kernels.narrow.contact import (
+from physicslab.kernels.geometry.contact import (
     CACHE_TOLERANCE,
     CACHE_TURN_TOLERANCE,
     WIDE_TOLERANCE,
@@ -12,8 +11,9 @@ from physicslab.kernels.narrow.contact import (
     note_pose,
     touch,
 )
-from physicslab.kernels.narrow.outline import Way
-from physicslab.kernels.narrow.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
+from physicslab.kernels.geometry.outline import Way
+from physicslab.kernels.geometry.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
+from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.near_counts import DISC_BLOCKS, SCALAR
 from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.float64x8 import (

@@ -4,15 +4,15 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Vectors, inlined, kernel
 from physicslab.kernels.arguments import (
     Inverse,
     InverseTuple,
     Materials,
     MaterialsTuple,
 )
-from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
-from physicslab.kernels.narrow.contact import effective_masses
+from physicslab.kernels.geometry.contact import effective_masses
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, has_own_way, named_shapes
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.slots import clear_slot, store_slot
@@ -102,14 +102,17 @@ def fill_points(slots: L.Slots, slot: int, manifold: Manifold, one: Point, two: 
 
 
 @inlined
-def is_of_kind(kind: int, one: int, other: int) -> bool:
-    """Whether blocks of a kind are for pairs of such shapes."""
-    discs = one == 1 and other == 1
-    return discs if kind == L.DISC else not discs and one != 0 and other != 0
+def is_of_kind(kind: int, shapes: Shapes, i: int, j: int) -> bool:
+    """Whether blocks of a kind are for pairs of such shapes: discs, or boxes with either."""
+    one, other = shapes.vertices[i], shapes.vertices[j]
+    if one == 1 and other == 1:
+        return kind == L.DISC
+    shaped = one != 0 and other != 0
+    return kind != L.DISC and shaped and has_own_way(shapes, i) and has_own_way(shapes, j)
 
 
 @inlined
-def _may_hold(slots: L.Slots, slot: int, manifold: Manifold, shape: Rows, inverse_mass: Numbers) -> bool:
+def _may_hold(slots: L.Slots, slot: int, manifold: Manifold, shapes: Shapes, inverse_mass: Numbers) -> bool:
     """Whether a pair can be in the slot that its record names."""
     i, j = manifold.a, manifold.b
     bit = np.uint64(1) << np.uint64(slots.colour[slot // L.WIDE])
@@ -117,7 +120,7 @@ def _may_hold(slots: L.Slots, slot: int, manifold: Manifold, shape: Rows, invers
         slots.used[j] if inverse_mass[j] > 0.0 else np.uint64(0)
     )
     fits = slots.pair[slot] < 0 and taken & bit == np.uint64(0) and manifold.wall < 0
-    fits = fits and is_of_kind(slots.kind, shape[i], shape[j]) and manifold.count > 0
+    fits = fits and is_of_kind(slots.kind, shapes, i, j) and manifold.count > 0
     return bool(fits and inverse_mass[i] + inverse_mass[j] != 0.0)
 
 
@@ -142,7 +145,7 @@ def restore_slots(
         if manifold.slot < 0 or manifold.slot % 2 != slots.kind:
             continue
         slot = manifold.slot // 2
-        if _may_hold(slots, slot, manifold, shapes.vertices, inverse.mass):
+        if _may_hold(slots, slot, manifold, shapes, inverse.mass):
             fill_slot(
                 slots, slot, slots.colour[slot // L.WIDE], manifolds, points, p, shapes, materials, inverse
             )

@@ -7,7 +7,7 @@ import numpy as np
 from physicslab.kernels import Flags, Rows, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.arguments import Acting, Inverse, Motion, Near
 from physicslab.kernels.constraint.pair import point_state, velocity_of
-from physicslab.kernels.narrow.contact import AS_FOUND, follow_pose
+from physicslab.kernels.geometry.contact import AS_FOUND, follow_pose
 from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, SCALAR
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.wide import layout as L

@@ -1,11 +1,10 @@
 """A world's scene in pymunk, Box2D 2.3 and Box2D 3, by their Python bindings."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, override
 
 from physicslab.components import Material, Shape, Spring
-from physicslab.ecs.vector import Vector2
 from physicslab.lab.peers.peer import CannotBuild, Peer, PeerBody
 
 FAST = 20.0
@@ -32,10 +31,6 @@ class PymunkMirror(Peer):
             wall = engine.Segment(self.ground, *ends, 1.0)
             wall.elasticity, wall.friction = physics.bounds_restitution, physics.bounds_friction
             self.space.add(wall)
-
-    @override
-    def set_gravity(self, gravity: Vector2) -> None:
-        self.space.gravity = gravity.x, gravity.y
 
     @override
     def add_body(self, body: PeerBody) -> Any:
@@ -72,11 +67,6 @@ class PymunkMirror(Peer):
         numbers = spring.rest_length, spring.stiffness, spring.damping
         self.space.add(self.engine.DampedSpring(*ends, *anchors, *numbers))
 
-    @property
-    @override
-    def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
-        return self.space.step, ()
-
     @override
     def positions(self) -> list[tuple[float, float]]:
         return [body.position for body in self._bodies.values()]
@@ -101,6 +91,7 @@ class Box2DMirror(Peer):
     """A world in one of Box2D's, at its usual settings of 8 and 3 iterations."""
 
     title, module = "Box2D 2.3", "Box2D"
+    step_name, settings = "Step", (8, 3)
 
     @override
     def make_space(self) -> None:
@@ -115,10 +106,6 @@ class Box2DMirror(Peer):
                 shape=self.engine.b2ChainShape(vertices_chain=[*corners, corners[0]]),
                 friction=physics.bounds_friction, restitution=physics.bounds_restitution,
             )  # fmt: skip
-
-    @override
-    def set_gravity(self, gravity: Vector2) -> None:
-        self.space.gravity = gravity.x, gravity.y
 
     @override
     def add_body(self, body: PeerBody) -> Any:
@@ -158,11 +145,6 @@ class Box2DMirror(Peer):
             dampingRatio=damping, collideConnected=True,
         )  # fmt: skip
 
-    @property
-    @override
-    def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
-        return self.space.Step, (8, 3)
-
     @override
     def positions(self) -> list[tuple[float, float]]:
         return [body.position.tuple for body in self._bodies.values()]
@@ -181,6 +163,7 @@ class Box2D3Mirror(Peer):
     """
 
     title, module = "Box2D 3", "pyb2d3"
+    settings = (4,)
 
     @override
     def make_space(self) -> None:
@@ -197,10 +180,6 @@ class Box2D3Mirror(Peer):
     def _surface(self, friction: float, restitution: float) -> Any:
         material = self.engine.surface_material(friction=friction, restitution=restitution)
         return self.engine.shape_def(density=1.0, material=material)
-
-    @override
-    def set_gravity(self, gravity: Vector2) -> None:
-        self.space.gravity = gravity.x, gravity.y
 
     @override
     def add_body(self, body: PeerBody) -> Any:
@@ -236,11 +215,6 @@ class Box2D3Mirror(Peer):
             local_anchor_b=tuple(spring.anchor_b), length=spring.rest_length, enable_spring=True,
             hertz=hertz, damping_ratio=damping, collide_connected=True,
         )  # fmt: skip
-
-    @property
-    @override
-    def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
-        return self.space.step, (4,)
 
     @override
     def positions(self) -> list[tuple[float, float]]:

@@ -64,6 +64,8 @@ class Peer(ABC):
         The engine's own world.
     ground : Any
         What is fixed in it, for springs without a second body.
+    step_name, settings : str, tuple of int
+        What steps it, and the settings that follow the step.
 
     Raises
     ------
@@ -77,6 +79,8 @@ class Peer(ABC):
     module: ClassVar[str]
     space: Any
     ground: Any
+    step_name: ClassVar[str] = "step"
+    settings: ClassVar[tuple[int, ...]] = ()
 
     def __init__(self, world: World) -> None:
         with warnings.catch_warnings():
@@ -123,9 +127,9 @@ class Peer(ABC):
     def make_space(self) -> None:
         """Begin with the bounds of the world and nothing else."""
 
-    @abstractmethod
     def set_gravity(self, gravity: Vector2) -> None:
         """Replace uniform gravity [m/s^2]."""
+        self.space.gravity = gravity.x, gravity.y
 
     @abstractmethod
     def add_body(self, body: PeerBody) -> Any:
@@ -143,9 +147,9 @@ class Peer(ABC):
         """Add a spring between two bodies, which an entity carries."""
 
     @property
-    @abstractmethod
     def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
         """The function that a program calls with the step [s], and the settings that follow the step."""
+        return getattr(self.space, self.step_name), self.settings
 
     def step(self, dt: float) -> None:
         """Advance by one step [s]."""

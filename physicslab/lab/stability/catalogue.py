@@ -3,14 +3,12 @@
 from collections.abc import Hashable, Sequence
 
 from physicslab.lab.case import Catalogue
-from physicslab.lab.stability.attraction import ATTRACTION
 from physicslab.lab.stability.case import StabilityCase, run_case
-from physicslab.lab.stability.chains import CHAINS
+from physicslab.lab.stability.contacts import SQUEEZED, STANDING
 from physicslab.lab.stability.impacts import IMPACTS
+from physicslab.lab.stability.many_bodies import ATTRACTION, CHAINS
 from physicslab.lab.stability.ranges import RANGES
 from physicslab.lab.stability.springs import SPRINGS
-from physicslab.lab.stability.squeezed import SQUEEZED
-from physicslab.lab.stability.standing import STANDING
 from physicslab.lab.stability.steps import STEPS
 
 CASES = Catalogue((*SPRINGS, *CHAINS, *STANDING, *SQUEEZED, *IMPACTS, *STEPS, *ATTRACTION, *RANGES))

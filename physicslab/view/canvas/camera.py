@@ -1,10 +1,13 @@
-"""The camera: the one place where metres become pixels."""
+"""The camera, the one place where metres become pixels, and what else a picture is drawn with."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ecs.vector import Vector2
-from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.canvas import Canvas, Rect
+from physicslab.view.canvas.theme import Theme
 
 type Extent = tuple[float, float, float, float]
 """A part of the world: ``(xmin, ymin, xmax, ymax)`` [m]."""
@@ -110,3 +113,25 @@ class Camera:
             across * share / width if width > 0.0 else _MAX_SCALE,
             up * share / height if height > 0.0 else _MAX_SCALE,
         )
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A canvas, the camera that shows the world on it, and the look of what is drawn.
+
+    Attributes
+    ----------
+    canvas : Canvas
+        What is drawn on.
+    camera : Camera
+        Which part of the world is shown.
+    theme : Theme
+        The colours.
+    size : int
+        Height of words [px].
+    """
+
+    canvas: Canvas
+    camera: Camera
+    theme: Theme
+    size: int

@@ -2,8 +2,6 @@
 
 import importlib.util
 import re
-from collections import OrderedDict
-from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
 
@@ -22,69 +20,42 @@ _MAX_SIZES = 4096
 
 
 class SurfaceCache:
-    """Makes pictures of lines of text and of panels; the one that was unused for longest makes room."""
+    """Makes pictures of lines of text and of panels; the one that was unused for longest makes room.
+
+    Attributes
+    ----------
+    panel : callable
+        Returns a rectangle with round corners, by size [px], colour, outline and opacity, as :func:`rounded`.
+    text : callable
+        Returns the picture of one line, by its words and style; of letters without width one clear pixel.
+    text_size : callable
+        Returns the width and height of one line [px], by its words and style.
+    """
 
     def __init__(self) -> None:
-        self._surfaces: OrderedDict[tuple[object, ...], pygame.Surface] = OrderedDict()
-        self._fonts: dict[tuple[int, bool], pygame.font.Font] = {}
-        self._sizes: dict[tuple[str, TextStyle], tuple[int, int]] = {}
+        self._font = lru_cache(maxsize=None)(_load_font)  # fonts end with pygame: they are a canvas's
+        self.panel = lru_cache(_MAX_SURFACES)(rounded)
+        self.text = lru_cache(_MAX_SURFACES)(self._render)
+        self.text_size = lru_cache(_MAX_SIZES)(self._measure)
 
-    def __len__(self) -> int:
-        return len(self._surfaces)
-
-    def panel(self, size: tuple[int, int], colour: Colour, outline: Colour, opacity: float) -> pygame.Surface:
-        """Return a rectangle of a size [px] with round corners, its colours multiplied by its opacity."""
-        key = ("panel", *size, colour, outline, opacity)
-        return self._kept(key, lambda: rounded(size, colour, outline, opacity))
-
-    def text(self, words: str, style: TextStyle) -> pygame.Surface:
-        """Return the picture of one line; of letters without width it is one clear pixel."""
-        return self._kept(("text", words, style), lambda: self._render(words, style))
-
-    def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
-        """Return the width and height of one line [px]."""
-        key = words, style
-        size = self._sizes.get(key)
-        if size is None:
-            if len(self._sizes) >= _MAX_SIZES:
-                self._sizes.clear()
-            pieces = [self._font(style_of).size(piece) for piece, style_of in _pieces(drawable(words), style)]
-            size = sum(width for width, _ in pieces), max((height for _, height in pieces), default=0)
-            self._sizes[key] = size
-        return size
+    def _measure(self, words: str, style: TextStyle) -> tuple[int, int]:
+        sizes = [self._font(one.size, one.bold).size(piece) for piece, one in _pieces(drawable(words), style)]
+        return sum(width for width, _ in sizes), max((height for _, height in sizes), default=0)
 
     def _render(self, words: str, style: TextStyle) -> pygame.Surface:
-        if not self.text_size(words, style)[0]:  # SDL refuses to draw what has no width
-            clear = pygame.Surface((1, 1), pygame.SRCALPHA, 32)
-            clear.fill(NOTHING)
-            return clear
-        pieces = _pieces(drawable(words), style)
-        if len(pieces) == 1 and pieces[0][1] is style:
-            return self._font(style).render(pieces[0][0], True, style.colour)
-        line = pygame.Surface(self.text_size(words, style), pygame.SRCALPHA, 32)
-        left = 0
-        for piece, style_of in pieces:
-            part = self._font(style_of).render(piece, True, style.colour)
+        size = self.text_size(words, style)
+        line = pygame.Surface(size if size[0] else (1, 1), pygame.SRCALPHA, 32)
+        if not size[0]:  # SDL refuses to draw what has no width
+            line.fill(NOTHING)
+            return line
+        pieces, left = _pieces(drawable(words), style), 0
+        for piece, one in pieces:
+            part = self._font(one.size, one.bold).render(piece, True, style.colour)
+            if len(pieces) == 1 and one is style:
+                return part
             line.blit(part, (left, 0))
             left += part.get_width()
         return line
-
-    def _kept(self, key: tuple[object, ...], make: Callable[[], pygame.Surface]) -> pygame.Surface:
-        surface = self._surfaces.get(key)
-        if surface is None:
-            surface = self._surfaces[key] = make()
-            if len(self._surfaces) > _MAX_SURFACES:
-                self._surfaces.popitem(last=False)
-        else:
-            self._surfaces.move_to_end(key)
-        return surface
-
-    def _font(self, style: TextStyle) -> pygame.font.Font:
-        key = (style.size, style.bold)
-        if key not in self._fonts:
-            pygame.font.init()  # without a window nothing else has done so
-            self._fonts[key] = _load_font(*key)
-        return self._fonts[key]
 
 
 def _pieces(words: str, style: TextStyle) -> list[tuple[str, TextStyle]]:
@@ -98,6 +69,7 @@ def _pieces(words: str, style: TextStyle) -> list[tuple[str, TextStyle]]:
 
 def _load_font(size: int, bold: bool) -> pygame.font.Font:
     """Return a font by its nominal size [px]: Roboto, which panels have too, or pygame's own."""
+    pygame.font.init()  # without a window nothing else has done so
     package = importlib.util.find_spec("imgui_bundle")
     if package is not None and package.submodule_search_locations:
         name = "Roboto-Bold.ttf" if bold else "Roboto-Regular.ttf"

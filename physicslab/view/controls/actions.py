@@ -3,14 +3,18 @@
 import copy
 import math
 from collections.abc import Sequence
+from pathlib import Path
 
 from physicslab.components import Held, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
-from physicslab.history import Command, Group, Remove, SetField, SetPhysics, Spawn
+from physicslab.files.scene import SceneError, file_stem
+from physicslab.history import Branch, Command, Remove, SetField, SetPhysics, Spawn
 from physicslab.systems.gravity import GravitySystem
 from physicslab.view.canvas.theme import THEMES
+from physicslab.view.controls.file_actions import new_paths
 from physicslab.view.controls.measuring import nudged
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import HAND
@@ -22,7 +26,6 @@ _ZOOM_STEP = 3.0
 """How many notches of the wheel a key or a button zooms by."""
 _TEXT_SCALES = (0.8, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0)
 """The sizes of text there are, as shares of the usual."""
-_NO_GRAVITY = "This world was made without GravitySystem: no law of gravity acts in it"
 
 
 def choose_tool(world: World, window: Window, tool: Tool) -> None:
@@ -41,21 +44,6 @@ def toggle_pause(world: World, window: Window) -> None:
         window.error = ""
 
 
-def slower(world: World, window: Window) -> None:
-    """Let time run at half the speed."""
-    window.pace.choose(0.5)
-
-
-def faster(world: World, window: Window) -> None:
-    """Let time run at twice the speed."""
-    window.pace.choose(2.0)
-
-
-def step(world: World, window: Window) -> None:
-    """Pause, and make one step."""
-    window.pace.queue_step()
-
-
 def clear(world: World, window: Window) -> None:
     """Remove everything."""
     window.hand.drop(world)
@@ -63,7 +51,7 @@ def clear(world: World, window: Window) -> None:
     window.measuring.cancel()
     removed = [Remove(entity) for entity in world.entities()]
     if removed:
-        window.edits.do(Group("cleared everything", removed))
+        window.edits.do_all(removed, "cleared everything")
         window.notify("Cleared: Ctrl+Z undoes it")
     window.overlays.forget()
     window.sparks.clear()
@@ -72,36 +60,25 @@ def clear(world: World, window: Window) -> None:
 
 def toggle_gravity(world: World, window: Window) -> None:
     """Turn the uniform pull on or off; where the scene has none to turn on, it is that of the Earth."""
-    if not has_gravity(world):
-        window.notify(_NO_GRAVITY, failed=True)
-        return
     if world.physics.gravity_mode == "linear" and world.physics.gravity:
-        window.edits.do(SetPhysics({"gravity_mode": "none"}))
+        _set_gravity(world, window, gravity_mode="none")
     else:
         gravity = world.physics.gravity or PhysicsConfig().gravity
-        window.edits.do(SetPhysics({"gravity_mode": "linear", "gravity": gravity}))
+        _set_gravity(world, window, gravity_mode="linear", gravity=gravity)
 
 
 def toggle_planets(world: World, window: Window) -> None:
     """Let bodies attract each other, or go back to the gravity there was before."""
-    if not has_gravity(world):
-        window.notify(_NO_GRAVITY, failed=True)
-        return
-    if world.physics.gravity_mode == "planet":
-        window.edits.do(SetPhysics({"gravity_mode": window.gravity_before}))
+    now = world.physics.gravity_mode
+    _set_gravity(world, window, gravity_mode=window.gravity_before if now == "planet" else "planet")
+    window.gravity_before = window.gravity_before if now == "planet" else now
+
+
+def _set_gravity(world: World, window: Window, **physics: object) -> None:
+    if has_gravity(world):
+        window.edits.do(SetPhysics(physics))
     else:
-        window.gravity_before = world.physics.gravity_mode
-        window.edits.do(SetPhysics({"gravity_mode": "planet"}))
-
-
-def toggle_arrows(world: World, window: Window) -> None:
-    """Show or hide the arrows of velocities, forces and contact normals."""
-    window.overlays.toggle_arrows(world, window.camera)
-
-
-def toggle_impulses(world: World, window: Window) -> None:
-    """Show or hide what contacts do: impulses, friction cones and their numbers."""
-    window.overlays.toggle_impulses(world, window.camera)
+        window.notify("This world was made without GravitySystem: no law of gravity acts in it", failed=True)
 
 
 def toggle_scales(world: World, window: Window) -> None:
@@ -111,44 +88,19 @@ def toggle_scales(world: World, window: Window) -> None:
     window.notify("Arrows keep their scale" if kept else "The scale of arrows follows what is shown")
 
 
-def toggle_trails(world: World, window: Window) -> None:
-    """Show where moving bodies have been, or no longer."""
-    window.trails.toggle(world)
+def zoom(window: Window, notches: float, at: tuple[float, float] | None = None) -> None:
+    """Enlarge the picture by some notches of the wheel, around a place [px] or the cursor."""
+    window.camera.zoom(1.15**notches, window.pointer if at is None else at)
 
 
-def zoom(window: Window, notches: float) -> None:
-    """Enlarge the picture around the cursor."""
-    window.camera.zoom(1.15**notches, window.pointer)
+def zoom_by_key(sign: int) -> Action:
+    """Return what enlarges the picture around the cursor, or reduces it."""
+    return lambda _, window: zoom(window, sign * _ZOOM_STEP)
 
 
-def zoom_in(world: World, window: Window) -> None:
-    """Enlarge the picture around the cursor."""
-    zoom(window, _ZOOM_STEP)
-
-
-def zoom_out(world: World, window: Window) -> None:
-    """Reduce the picture around the cursor."""
-    zoom(window, -_ZOOM_STEP)
-
-
-def enlarge(world: World, window: Window) -> None:
-    """Enlarge the picture around its middle: the cursor is on a button."""
-    window.camera.zoom(1.15**_ZOOM_STEP, window.middle)
-
-
-def reduce(world: World, window: Window) -> None:
-    """Reduce the picture around its middle: the cursor is on a button."""
-    window.camera.zoom(1.15**-_ZOOM_STEP, window.middle)
-
-
-def larger_text(world: World, window: Window) -> None:
-    """Make all text larger."""
-    scale_text(window, 1)
-
-
-def smaller_text(world: World, window: Window) -> None:
-    """Make all text smaller."""
-    scale_text(window, -1)
+def zoom_by_button(sign: int) -> Action:
+    """Return what enlarges the picture around its middle, or reduces it: the cursor is on a button."""
+    return lambda _, window: zoom(window, sign * _ZOOM_STEP, window.middle)
 
 
 def scale_text(window: Window, steps: int) -> None:
@@ -162,16 +114,6 @@ def next_theme(world: World, window: Window) -> None:
     """Show everything in the colours of the next theme."""
     window.theme = THEMES[(THEMES.index(window.theme) + 1) % len(THEMES)]
     window.notify(f"Colours: {window.theme.name}")
-
-
-def fit(world: World, window: Window) -> None:
-    """Show all of the world."""
-    window.fit(world)
-
-
-def go_home(world: World, window: Window) -> None:
-    """Show the world as at the start."""
-    window.go_home(world)
 
 
 def toggle_snapping(world: World, window: Window) -> None:
@@ -209,21 +151,16 @@ def _close_panel(window: Window) -> bool:
     return panel is not None
 
 
-def close(world: World, window: Window) -> None:
-    """Close the window."""
-    window.closing = True
-
-
 def duplicate_selected(world: World, window: Window) -> None:
     """Put a copy of each body that is selected beside it, and select the copies."""
-    bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+    bodies = _bodies(world, window)
     width = max((_width(world, entity) for entity in bodies), default=0.0)
     _spawn_copies(window, [_parts(world, entity) for entity in bodies], Vector2(width, 0.0))
 
 
 def copy_selected(world: World, window: Window) -> None:
     """Keep copies of the selection, to be pasted."""
-    bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+    bodies = _bodies(world, window)
     window.copied = [_parts(world, entity) for entity in bodies]
     window.notify(f"Copied: {len(bodies)}" if bodies else "Nothing is selected to be copied")
 
@@ -247,9 +184,8 @@ def _spawn_copies(window: Window, bodies: Sequence[Sequence[Component]], by: Vec
             if isinstance(part, Transform):
                 part.position = part.position + by
         copies.append(Spawn(moved))
-    if copies:
-        made = window.edits.do(Group(f"copied {len(copies)}", copies))
-        window.selection.entities = made or window.selection.entities
+    made = window.edits.do_all(copies, f"copied {len(copies)}")
+    window.selection.entities = made or window.selection.entities
 
 
 def _parts(world: World, entity: int) -> list[Component]:
@@ -280,19 +216,27 @@ def select_next(world: World, window: Window) -> None:
         window.selection.take(next((entity for entity in bodies if entity > now), bodies[0]))
 
 
+def _bodies(world: World, window: Window) -> list[int]:
+    """Return what of the selection has a place."""
+    return [entity for entity in window.selection.entities if world.has(entity, Transform)]
+
+
+def _changed(world: World, window: Window, name: str, by: Vector2 | float) -> list[Command]:
+    """Return what adds to a field of the Transform of all that is selected."""
+    return [
+        SetField(entity, "Transform", name, getattr(world.component(entity, Transform), name) + by)
+        for entity in _bodies(world, window)
+    ]
+
+
 def nudger(across: int, up: int) -> Action:
     """Return what moves all that is selected by so many pixels."""
 
     def nudge(world: World, window: Window) -> None:
         by = Vector2(across, up) / window.camera.scale
-        bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
-        moves: list[Command] = [
-            SetField(entity, "Transform", "position", world.component(entity, Transform).position + by)
-            for entity in bodies
-        ]
+        moves = _changed(world, window, "position", by)
         moves += filter(None, (nudged(world, entity, by) for entity in window.selection.entities))
-        if moves:
-            window.edits.do(Group(f"moved {len(moves)}", moves))
+        window.edits.do_all(moves, f"moved {len(moves)}")
 
     return nudge
 
@@ -302,13 +246,8 @@ def turner(sign: int) -> Action:
 
     def turn(world: World, window: Window) -> None:
         by = sign * math.radians(15.0 if window.snapping.active else 1.0)
-        bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
-        turns = [
-            SetField(entity, "Transform", "angle", world.component(entity, Transform).angle + by)
-            for entity in bodies
-        ]
-        if turns:
-            window.edits.do(Group(f"turned {len(turns)}", turns))
+        turns = _changed(world, window, "angle", by)
+        window.edits.do_all(turns, f"turned {len(turns)}")
 
     return turn
 
@@ -371,3 +310,54 @@ def gravity_in_words(world: World) -> str:
     if physics.gravity.x == 0.0:
         return f"{abs(physics.gravity.y):.4g} m/s² {'down' if physics.gravity.y < 0.0 else 'up'}"
     return f"({physics.gravity.x:.3g}, {physics.gravity.y:.3g}) m/s²"
+
+
+# ---- the history: switch branches, save all of it in a file ------------------------------------------------
+
+
+RECORDING_ENDING = ".replay"
+"""The suffix of recordings: they are not offered as scenes."""
+_WORDS_LIMIT = 2
+"""How much of what was done in a branch is written out."""
+
+
+def branch_words(branch: Branch, start: float) -> str:
+    """Return what was done in a branch, and when it leaves the line that is shown; ``start`` [s] is its."""
+    words = branch.words
+    more = len(words) - _WORDS_LIMIT
+    shown = ", then ".join(words[:_WORDS_LIMIT]) + (f", and {more} more" if more > 0 else "")
+    return f"At {start + branch.seconds:.2f} s: {shown}"
+
+
+def switch(world: World, window: Window, branch: Branch) -> None:
+    """Go on along a branch, where it leaves the line that was gone along: that is a branch from now on."""
+    history = window.edits.history
+    if branch not in history.branches:  # clicked before the line changed
+        return
+    window.pause_for_history(world)
+    history.switch(branch)
+    window.notify("Another branch: Space plays it, Ctrl+B goes back", 5.0)
+
+
+def next_branch(world: World, window: Window) -> None:
+    """Go on along the branch that was left first; one after the other, all come round."""
+    branches = window.edits.history.branches
+    if branches:
+        switch(world, window, branches[0])
+    else:
+        window.notify("There is no other branch: a change in the past begins one")
+
+
+def save_recording(world: World, window: Window) -> None:
+    """Keep what was done as a file that ``physicslab replay`` plays, where the program was started."""
+    window.hand.drop(world)
+    window.edits.take_back_shown()
+    paths = new_paths(Path.cwd(), file_stem(world.name), RECORDING_ENDING)
+    try:
+        path = next(path for path in paths if not path.exists())
+        window.edits.history.save(path)
+    except (SceneError, OSError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or error
+        window.notify(f"The recording could not be saved: {reason}", 6.0, failed=True)
+    else:
+        window.notify(f"Saved {printable(path.name)}: physicslab replay plays it", 5.0)

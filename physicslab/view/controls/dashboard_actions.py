@@ -180,12 +180,12 @@ def go_to(world: World, window: Window, time: float) -> None:
 
 def save_table(world: World, window: Window, graph: GraphShown) -> None:
     """Write a graph to a new file where the program was started, as a table."""
-    save_new(window, world, "graph", ".csv", table_of(graph, window.dashboard).encode("utf-8"))
+    save_new(world, window, "graph", ".csv", table_of(graph, window.dashboard).encode("utf-8"))
 
 
 def save_picture(world: World, window: Window, graph: GraphShown, content: bytes) -> None:
     """Write a picture of a graph to a new file where the program was started."""
-    save_new(window, world, "graph", ".png", content)
+    save_new(world, window, "graph", ".png", content)
 
 
 def _selected(world: World, window: Window) -> list[int]:

@@ -2,7 +2,7 @@
 
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from physicslab.ecs.fields import InvalidValue
@@ -210,7 +210,7 @@ def restart(world: World, window: Window) -> None:
         window.notify("Started again")
 
 
-def save_new(window: Window, world: World, what: str, ending: str, content: bytes) -> None:
+def save_new(world: World, window: Window, what: str, ending: str, content: bytes) -> None:
     """Write something that belongs to a scene to a new file where the program was started; show its name."""
     for path in new_paths(Path.cwd(), file_stem(f"{world.name or 'scene'}-{what}"), ending):
         try:
@@ -222,6 +222,11 @@ def save_new(window: Window, world: World, what: str, ending: str, content: byte
             return
         window.notify(f"Saved {printable(str(path))}")
         return
+
+
+def save_table(world: World, window: Window, what: str, table: Callable[[], str]) -> None:
+    """Write a table that belongs to a scene to a new file where the program was started."""
+    save_new(world, window, what, ".csv", table().encode("utf-8"))
 
 
 def request_screenshot(world: World, window: Window) -> None:

@@ -3,9 +3,7 @@
 from typing import Any
 
 from physicslab.components import Velocity
-from physicslab.diagnostics.ledger import ledger_csv
 from physicslab.view.controls import actions
-from physicslab.view.controls.file_actions import save_new
 from physicslab.view.controls.picking import body_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -65,11 +63,6 @@ def run_slowly(world: World, window: Window) -> None:
     actions.seek(world, window, history.step_at(start))
     window.pace.paused = was_paused
     microscope.run_slowly(window.pace, _SLOWLY, end)
-
-
-def save_table(world: World, window: Window) -> None:
-    """Write all impacts that are listed to a new file, as ``run --ledger`` does."""
-    save_new(window, world, "impacts", ".csv", ledger_csv(world, window.impacts.records).encode("utf-8"))
 
 
 def clicked_impact(world: World, window: Window, pixel: tuple[float, float]) -> Any | None:

@@ -12,8 +12,8 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Spawn
 from physicslab.prefabs import binary, box, chain, circle, container, pendulum, pile, pyramid, stack
+from physicslab.view.window.edits import Recipe
 from physicslab.view.window.placing import outlines_of, refused_place
-from physicslab.view.window.recipe import Recipe
 from physicslab.view.window.spring_tool import rod_stiffness
 from physicslab.view.window.window import Window
 from physicslab.world import World

@@ -1,15 +1,19 @@
-"""Tools, the actions of the left mouse button in the world: one at a time, named in the window."""
+"""Tools, the actions of the left mouse button in the world, and springs made from a list."""
 
 from collections.abc import Sequence
+from functools import partial
 
 from physicslab.components import Spring, Transform, Velocity
-from physicslab.history import Command, Group, Remove, RemoveComponent, Spawn
+from physicslab.diagnostics.period import gives_way
+from physicslab.ecs.vector import Vector2
+from physicslab.history import Command, Remove, RemoveComponent, Spawn
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument
 from physicslab.view.controls.picking import body_at, instrument_at, spring_at
 from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawnable
 from physicslab.view.controls.tool import Tool
-from physicslab.view.window.pins import pin_at
-from physicslab.view.window.window import Window
+from physicslab.view.window.spring_tool import pin_at, spring_between
+from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
 
@@ -99,8 +103,8 @@ def remove_entities(world: World, window: Window, entities: Sequence[int]) -> No
         if window.hand.entity == entity:
             window.hand.drop(world)
     removed: list[Command] = [*detached(world, set(entities)), *(Remove(entity) for entity in entities)]
-    words = f"removed {len(entities)}" if len(entities) > 1 else removed[-1].words(world)
-    window.edits.do(removed[0] if len(removed) == 1 else Group(words, removed))
+    many = f"removed {len(entities)}" if len(entities) > 1 else ""
+    window.edits.do_all(removed, many or ("" if len(removed) == 1 else removed[-1].words(world)))
     window.selection.follow(world)
 
 
@@ -158,3 +162,47 @@ MORE_TOOLS = tuple(tool for tool in SPAWN_TOOLS if tool.name not in _IN_PALETTE)
 """Those behind one more button."""
 TOOLS = {tool.name: tool for tool in (*PALETTE, *MORE_TOOLS)}
 """Every tool, by the name that ``Window.tool`` holds."""
+
+
+# ---- springs made from a list ------------------------------------------------------------------------------
+
+
+_ABOVE = 1.5
+"""How far above a body the point is that it is hung from [m]."""
+_WAYS = {"spring": False, "rod": True}
+"""Ways to join two ends, and whether each is stiff."""
+
+
+def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, Action]]:
+    """Return how the selection can be attached: the words on a button, its tip, and what it does."""
+    if not entities or len(entities) > 2 or not all(world.has(entity, Transform) for entity in entities):
+        return {}
+    if len(entities) == 2:
+        words, tip = "Join by a {}", "A {} between these two, its rest length their present distance"
+    else:
+        words, tip = "Hang on a {}", "A {} to a point above it, which can be dragged"
+    return {
+        words.format(way): (tip.format(way), partial(_attach, bodies=tuple(entities), stiff=stiff))
+        for way, stiff in _WAYS.items()
+    }
+
+
+def _within(world: World, place: Vector2) -> Vector2:
+    """Return the point above a place that a body is hung from: not beyond the walls."""
+    top, bounds = place.y + _ABOVE, world.physics.bounds
+    return Vector2(place.x, top if bounds is None else max(min(top, bounds[3]), place.y))
+
+
+def _attach(world: World, window: Window, bodies: Sequence[int], stiff: bool) -> None:
+    """Put a spring between two bodies, or between one and a point above it."""
+    one, other = bodies[0], bodies[1] if len(bodies) > 1 else None
+    place = world.component(one, Transform).position
+    end = _within(world, place) if other is None else world.component(other, Transform).position
+    made = spring_between(world, one, other, (place, end), stiff=stiff)
+    if isinstance(made, str):
+        window.notify(made)
+        return
+    (spring,) = window.edits.do(Spawn([made]))
+    give = gives_way(world, spring) if stiff else None
+    if give is not None:
+        window.notify(f"This rod is a stiff spring: weight makes it give way {quantity(1e3 * give, 'mm')}")

@@ -51,18 +51,20 @@ class WindowEvents:
         self._panning = 0  # the button that drags the picture
         self._alt_alone = False  # whether Alt went down, and nothing else since
         self._tool: Tool | None = None  # what the left button was pressed with
-        self._handlers: dict[int, Callable[[World, pygame.Event], None]] = {
+        self._handlers: dict[int, Callable[[World, pygame.Event], object]] = {
             pygame.KEYDOWN: self._key,
             pygame.KEYUP: self._key_up,
             pygame.MOUSEBUTTONDOWN: self._press,
             pygame.MOUSEBUTTONUP: self._release,
             pygame.MOUSEMOTION: self._motion,
-            pygame.MOUSEWHEEL: self._wheel,
-            pygame.DROPFILE: self._drop,
+            pygame.MOUSEWHEEL: lambda world, event: actions.zoom(
+                window, getattr(event, "precise_y", event.y)
+            ),
+            pygame.DROPFILE: lambda world, event: open_scene(window, Path(event.file)),
             pygame.WINDOWFOCUSLOST: self._leave,
             pygame.WINDOWMINIMIZED: self._leave,
             pygame.WINDOWHIDDEN: self._leave,
-            pygame.QUIT: lambda world, event: actions.close(world, window),
+            pygame.QUIT: lambda world, event: window.put("closing", True),
         }
 
     def begin(self, world: World, events: Sequence[pygame.Event], elapsed: float) -> None:
@@ -129,10 +131,6 @@ class WindowEvents:
             open_menu(world, self._window)
         if event.type in (*_PRESSES, pygame.KEYUP, pygame.WINDOWFOCUSLOST):
             self._alt_alone = is_alt and event.type == pygame.KEYDOWN
-
-    def _drop(self, world: World, event: pygame.Event) -> None:
-        """Open a scene file that was dropped on the window."""
-        open_scene(self._window, Path(event.file))
 
     def _key_up(self, world: World, event: pygame.Event) -> None:
         action = RELEASES.get(pygame.key.name(event.key).lower())
@@ -209,10 +207,6 @@ class WindowEvents:
             window.handles.drag(window.edits, window.handled, window.camera, window.target, snaps=snaps)
         window.pins.drag(window.edits, window.target, paused=window.pace.paused)
         follow_pointer(world, window)
-
-    def _wheel(self, world: World, event: pygame.Event) -> None:
-        notches = getattr(event, "precise_y", event.y)
-        actions.zoom(self._window, notches)
 
     def _leave(self, world: World, event: pygame.Event) -> None:
         """Let go of everything while another window has the focus."""

@@ -6,8 +6,8 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
-from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.theme import Colour, Theme
 
 MIN_LENGTH = 3.0
@@ -84,19 +84,17 @@ NORMAL_IMPULSE = ArrowKind("Normal impulse", "normal_impulse", Head.DIAMOND)
 FRICTION_IMPULSE = ArrowKind("Friction impulse", "friction_impulse", Head.OPEN, dashed=True)
 
 
+IMPACT_WIDTH, REST_WIDTH = 3.0, 1.6
+"""How thick arrows are drawn [px]: an impact's, and those of resting contact."""
+
+
 def max_length(canvas: Canvas) -> float:
     """Return the length at which arrows are cut [px]."""
     return _MAX_LENGTH * min(canvas.size)
 
 
 def draw_arrows(
-    start: Points,
-    span: Points,
-    kind: ArrowKind,
-    on: Drawing,
-    *,
-    opacity: float | Numbers = 1.0,
-    width: float | None = None,
+    start: Points, span: Points, kind: ArrowKind, on: Drawing, opacity: float | Numbers = 1.0
 ) -> None:
     """Draw arrows of one kind from ``start``, each ``span`` long.
 
@@ -118,7 +116,7 @@ def draw_arrows(
     cut = length > limit
     length = np.minimum(length, limit)
     end = start + length[:, None] * unit
-    colour, width = kind.colour(on.theme), kind.width if width is None else width
+    colour, width = kind.colour(on.theme), kind.width
     head = _HEAD + width
     if len(length) > _BOLD_LIMIT:
         width, head, share = max(0.5 * width, 1.0), 0.6 * _HEAD, 0.6 * share

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from physicslab.diagnostics.warnings import ModelWarning
+from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
-from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.theme import Colour
 
 
@@ -100,17 +100,17 @@ class DroppedTime:
         return self._sum if now < self._until and self._sum >= _MIN_DROPPED else 0.0
 
 
-def draw_banners(
-    banners: Iterable[tuple[str, Colour]], middle: int, top: int, bottom: int, room: int, on: Drawing
-) -> list[Rect]:
-    """Draw banners in their colours below each other, from ``top`` on, and return where they are [px].
+def draw_banners(banners: Iterable[tuple[str, Colour]], room: Rect, on: Drawing) -> list[Rect]:
+    """Draw banners in their colours below each other, from the top of a room on; return where they are [px].
 
-    Those wider than ``room`` are broken into lines; those that would reach below ``bottom`` are left out.
+    Those wider than it are broken into lines; those that would reach below it are left out.
     """
+    left, top, width, height = room
+    middle, bottom = left + width // 2, top + height
     taken: list[Rect] = []
     for words, colour in banners:
         style = TextStyle(on.size + 2, colour, bold=True)
-        lines = broken(words, max(room - pill_margin(on.size + 2), 1), on.canvas, style)
+        lines = broken(words, max(width - pill_margin(on.size + 2), 1), on.canvas, style)
         if top + pill_height(len(lines), style, on.canvas) <= bottom:
             taken.append(draw_pill(lines, middle, top, on.size + 2, colour, on))
             top += on.size // 2 + taken[-1][3]
@@ -164,25 +164,19 @@ stands alone where they would take more."""
 
 
 def draw_advice(
-    advice: Sequence[ModelWarning],
-    middle: int,
-    top: int,
-    bottom: int,
-    room: int,
-    on: Drawing,
-    *,
-    plainly: bool = False,
+    advice: Sequence[ModelWarning], room: Rect, on: Drawing, *, plainly: bool = False
 ) -> Rect | None:
-    """Write what is not to be trusted, around ``middle`` and no wider than ``room`` px; return where [px].
+    """Write what is not to be trusted, in the middle at the top of a room [px]; return where [px].
 
     The worst comes first, and ``plainly`` alone; what is beyond a limit comes before what has none. Without a
-    warning, or room for it above ``bottom``, nothing is drawn.
+    warning, or room for it, nothing is drawn.
     """
     if not advice:
         return None
     ordered = sorted(advice, key=lambda one: (bool(one.limit), one.excess), reverse=True)
     small = max(on.size - 1, 10)
-    width = min(room, _MAX_WIDTH * on.size) - 3 * on.size
+    left, top, width, height = room
+    width = min(width, _MAX_WIDTH * on.size) - 3 * on.size
     style, inner = TextStyle(small, on.theme.warning, bold=True), max(width, 4 * on.size)
     told = ordered[0].told if ordered[0].entity else ordered[0].told.capitalize()
     rest = f" And {len(ordered) - 1} more." if len(ordered) > 1 else ""
@@ -193,8 +187,8 @@ def draw_advice(
         lines += [f"- {pieces[0]}", *pieces[1:]]
     if len(ordered) > _MAX_SHOWN:
         lines.append(f"and {len(ordered) - _MAX_SHOWN} more")
-    if plainly or pill_height(len(lines), style, on.canvas) > _MAX_HEIGHT * (bottom - top):
+    if plainly or pill_height(len(lines), style, on.canvas) > _MAX_HEIGHT * height:
         lines = brief
-    if top + pill_height(len(lines), style, on.canvas) > bottom:
+    if pill_height(len(lines), style, on.canvas) > height:
         return None
-    return draw_pill(lines, middle, top, small, on.theme.warning, on)
+    return draw_pill(lines, left + room[2] // 2, top, small, on.theme.warning, on)

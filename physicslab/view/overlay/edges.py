@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.ecs.vector import Vector2
-from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
-from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.quantities import round_quantity
 from physicslab.view.picture.backdrop import grid_spacing
 from physicslab.world import World

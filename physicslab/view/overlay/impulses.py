@@ -1,16 +1,23 @@
 """The educational overlay: the impulses of every contact, as the solver found them."""
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Numbers, Points, Rect
-from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.overlay.arrows import FRICTION_IMPULSE, NORMAL_IMPULSE, dashes, draw_arrows, max_length
+from physicslab.view.overlay.arrows import (
+    FRICTION_IMPULSE,
+    IMPACT_WIDTH,
+    NORMAL_IMPULSE,
+    REST_WIDTH,
+    dashes,
+    draw_arrows,
+    max_length,
+)
 from physicslab.view.overlay.contact_samples import (
     ContactSamples,
     RecentImpacts,
@@ -19,15 +26,13 @@ from physicslab.view.overlay.contact_samples import (
     sliding,
 )
 from physicslab.view.overlay.labels import Key, Label
-from physicslab.view.overlay.overlays import Gauge, Overlays
+from physicslab.view.overlay.legend import Gauge, Overlays
 from physicslab.world import World
 
 LABELLED = 12
 """How many contacts have their numbers written beside them: the strongest."""
 CROWD, LABELLED_IN_CROWD = 30, 4
 """The largest number of impacts drawn at a time: more would hide the bodies."""
-IMPACT_WIDTH, REST_WIDTH = 3.0, 1.6
-"""How thick arrows are drawn [px]: an impact's, and those of resting contact."""
 _KEEP_RATIO = 1.5
 """A contact must be that many times as strong as one whose numbers are shown to take its place."""
 
@@ -56,10 +61,9 @@ def draw_impulses(world: World, overlays: Overlays, written: Collection[int], on
     def rank(one: _Candidate) -> float:
         return -one.weight * (_KEEP_RATIO if overlays.labels.known(one.key) else 1.0)
 
-    met = _strongest(impacts, fresh, overlays.impact, True, on.camera, overlays.covered)
+    met = _strongest(impacts, fresh, overlays, True, on)
     met = sorted(met, key=rank)[: LABELLED if len(impacts) <= CROWD else LABELLED_IN_CROWD]
-    still = np.ones(len(of_written))
-    held = _strongest(of_written, still, overlays.rest, False, on.camera, overlays.covered)
+    held = _strongest(of_written, np.ones(len(of_written)), overlays, False, on)
     chosen = sorted([*met, *held], key=rank)[:LABELLED]
     labels = [Label(one.key, one.at, _words_of(one, world.contacts.impulse_dt)) for one in chosen]
     overlays.labels.draw(labels, overlays.covered, on)
@@ -107,23 +111,19 @@ def _draw_impulses_of(
     normal = samples["direction"] * (1.0, -1.0)  # the screen's y points down
     tangent = np.stack((normal[:, 1], -normal[:, 0]), axis=1)  # counter-clockwise, as seen
     scale = on.camera.scale / gauge.per_metre
-    _draw_cones(start, normal, tangent, samples, scale, opacity, on)
+    _draw_cones((start, normal, tangent), samples, scale, opacity, on)
     friction_impulse = tangent * (samples["tangent"] * scale)[:, None]
-    draw_arrows(start, friction_impulse, FRICTION_IMPULSE, on, opacity=opacity, width=width)
+    draw_arrows(start, friction_impulse, replace(FRICTION_IMPULSE, width=width), on, opacity)
     push = normal * (samples["normal"] * scale)[:, None]
-    draw_arrows(start, push, NORMAL_IMPULSE, on, opacity=opacity, width=width)
+    draw_arrows(start, push, replace(NORMAL_IMPULSE, width=width), on, opacity)
 
 
 def _draw_cones(
-    start: Points,
-    normal: Points,
-    tangent: Points,
-    samples: ContactSamples,
-    scale: float,
-    opacity: float | Numbers,
+    axes: tuple[Points, Points, Points], samples: ContactSamples, scale: float, opacity: float | Numbers,
     on: Drawing,
-) -> None:
+) -> None:  # fmt: skip
     """Draw both sides of friction cones, as high as the normal impulse; broken where the contact slips."""
+    start, normal, tangent = axes
     height = np.minimum(samples["normal"] * scale, max_length(on.canvas))
     shown = (samples["friction"] > 0.0) & (height >= 8.0)
     slips = sliding(samples)
@@ -156,19 +156,14 @@ class _Candidate:
 
 
 def _strongest(
-    samples: ContactSamples,
-    fresh: NDArray[np.float64],
-    gauge: Gauge,
-    is_impact: bool,
-    camera: Camera,
-    covered: Sequence[Rect],
+    samples: ContactSamples, fresh: Numbers, overlays: Overlays, is_impact: bool, on: Drawing
 ) -> list[_Candidate]:
     """Return the samples that stand out most of those that can be seen."""
     if not len(samples):
         return []
-    at = camera.project(samples["place"])
+    at, gauge = on.camera.project(samples["place"]), overlays.impact if is_impact else overlays.rest
     strength = samples["normal"] * fresh / (gauge.per_metre or 1.0)
-    weight = np.where(_seen(at, camera.size, covered), strength, 0.0)
+    weight = np.where(_seen(at, on.camera.size, overlays.covered), strength, 0.0)
     chosen = np.argsort(-weight, kind="stable")[: 2 * LABELLED]
     chosen = chosen[weight[chosen] > 0.0]
     samples, slips = samples[chosen], sliding(samples[chosen]).tolist()

@@ -13,10 +13,9 @@ from physicslab.components import Gate, Note, Protractor, Ruler, Shape, Transfor
 from physicslab.ecs.vector import Vector2
 from physicslab.state.attached import INSTRUMENTS, place_of
 from physicslab.systems.gate import GateSystem
-from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import Look, Rect, TextStyle
 from physicslab.view.canvas.drawable_text import drawable
-from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.quantities import quantity, rounded_up
 from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.overlay.arrows import even_dashes
@@ -129,6 +128,10 @@ _FLASH = 0.12
 """How long a gate that was crossed is drawn brighter [s]."""
 
 type _Pixels = NDArray[np.float64]
+type _Places = dict[str, _Pixels]
+"""Where the points of an instrument are, by their names: float64 arrays (2,) [px]."""
+type _Drawn = tuple[_Pixels, list[str]]
+"""The place that belongs to the label of an instrument (2,) [px], and the lines of that."""
 
 
 def draw_instruments(
@@ -145,13 +148,12 @@ def draw_instruments(
     """
     if not instruments:
         return {}
-    shown: list[tuple[Instrument, dict[str, _Pixels]]] = []
+    shown: list[tuple[Instrument, _Places]] = []
     for one in instruments:
         pixels = {name: np.array(on.camera.to_screen(place)) for name, place in one.points.items()}
         if all((np.abs(pixel) < _FAR).all() for pixel in pixels.values()):
             shown.append((one, pixels))
     taken, written = list(covered), list[Label]()
-    last = _last_crossings(world)
     for one, pixels in shown:
         taken += _room_of(pixels, on.camera.size)
         if one.kind is not Note:
@@ -163,7 +165,7 @@ def draw_instruments(
             rects[one.entity] = _draw_note(world, one, pixels["place"], chosen, on)
             taken.append(rects[one.entity])
             continue
-        at, lines = _DRAW[one.kind](world, one, pixels, chosen, last, on)
+        at, lines = _DRAW[one.kind](world, one, pixels, chosen, on)
         if 0 <= at[0] < on.camera.size[0] and 0 <= at[1] < on.camera.size[1]:
             written.append(Label((one.entity,), (float(at[0]), float(at[1])), lines))
     placed = labels.draw(written, taken, on, always=True)
@@ -182,14 +184,7 @@ def _draw_handles(pixels: Sequence[_Pixels], on: Drawing) -> None:
     on.canvas.discs(np.array(pixels), np.full(len(pixels), _POST + 1.5), np.zeros(len(pixels)), look)
 
 
-def _draw_ruler(
-    world: World,
-    one: Instrument,
-    pixels: Mapping[str, _Pixels],
-    chosen: bool,
-    last: Mapping[int, float],
-    on: Drawing,
-) -> tuple[_Pixels, list[str]]:
+def _draw_ruler(world: World, one: Instrument, pixels: _Places, chosen: bool, on: Drawing) -> _Drawn:
     """Draw a line with strokes at round lengths."""
     colour, width = _line_colour(chosen, on.theme)
     start, end = pixels["start"], pixels["end"]
@@ -211,14 +206,7 @@ def _draw_ruler(
     return 0.5 * (start + end), lines
 
 
-def _draw_protractor(
-    world: World,
-    one: Instrument,
-    pixels: Mapping[str, _Pixels],
-    chosen: bool,
-    last: Mapping[int, float],
-    on: Drawing,
-) -> tuple[_Pixels, list[str]]:
+def _draw_protractor(world: World, one: Instrument, pixels: _Places, chosen: bool, on: Drawing) -> _Drawn:
     """Draw two arms and the arc between them."""
     colour, width = _line_colour(chosen, on.theme)
     vertex = pixels["vertex"]
@@ -237,16 +225,9 @@ def _draw_protractor(
     return vertex + radius * np.array((math.cos(middle), -math.sin(middle))), words
 
 
-def _draw_gate(
-    world: World,
-    one: Instrument,
-    pixels: Mapping[str, _Pixels],
-    chosen: bool,
-    last: Mapping[int, float],
-    on: Drawing,
-) -> tuple[_Pixels, list[str]]:
+def _draw_gate(world: World, one: Instrument, pixels: _Places, chosen: bool, on: Drawing) -> _Drawn:
     """Draw a dashed beam between two posts."""
-    start, end = pixels["start"], pixels["end"]
+    start, end, last = pixels["start"], pixels["end"], _last_crossings(world)
     crossed = world.time - last.get(one.entity, -math.inf) < _FLASH
     colour = on.theme.accent if chosen else on.theme.force if crossed else on.theme.notice
     beam = even_dashes(start, end, _BEAM_DASH)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Rect, TextStyle
-from physicslab.view.canvas.drawing import Drawing
 
 type Key = tuple[int, ...]
 

@@ -14,8 +14,7 @@ from physicslab.view.picture.backdrop import draw_bounds, draw_grid
 from physicslab.view.picture.bodies import draw_bodies
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.springs import draw_springs
-from physicslab.view.picture.strobe import draw_strobes
-from physicslab.view.picture.trails import draw_trails
+from physicslab.view.picture.trails import draw_strobes, draw_trails
 from physicslab.world import World
 
 _WINDOW = WindowConfig()

@@ -1,16 +1,18 @@
-"""Trails: where bodies have been, fading with age, and the switch that turns them on."""
+"""Where bodies have been: trails that fade with age, and strobe pictures."""
 
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Trail, Transform, Velocity
+from physicslab.components import Shape, Trail, Transform, Velocity
+from physicslab.components.shape import BOX, CIRCLE
+from physicslab.systems.strobe import StrobeSystem
 from physicslab.systems.trail import SAMPLES, TrailSystem
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Canvas, Points
+from physicslab.view.canvas.canvas import Canvas, Look, Points
 from physicslab.view.canvas.theme import Theme, mixed
-from physicslab.view.picture.bodies import own_colour
+from physicslab.view.picture.bodies import POINT_RADIUS, own_colour
 from physicslab.world import World
 
 _SHADES = 16
@@ -140,3 +142,47 @@ def _on_screen(start: Points, end: Points, size: tuple[int, int]) -> NDArray[np.
     for a, b, side in zip(start.T, end.T, size, strict=True):
         seen &= (np.maximum(a, b) > -_MAX_WIDTH) & (np.minimum(a, b) < side + _MAX_WIDTH)
     return seen
+
+
+# ---- strobe pictures: bodies once more where they were at regular moments, faintly -------------------------
+
+
+_FILL, _RIM = 0.16, 0.55
+"""Shares of a body's colour in the copies of it, the rest being background."""
+_MAX = 6_000
+"""How many copies are drawn; the newest of all bodies."""
+
+
+def draw_strobes(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> None:
+    """Draw the outline of each body that has a Strobe at every moment that is on record."""
+    system = world.schedule.find(StrobeSystem)
+    if not isinstance(system, StrobeSystem):
+        return
+    rows, seen = system.pictures(world)
+    rows, seen = rows[-_MAX:], seen[-_MAX:]
+    centre, angle = camera.project(seen[:, :2]), seen[:, 2]
+    shape = world.table(Shape)
+    kind = shape["kind"][rows]
+    extent = camera.scale * np.stack((shape["width"][rows], shape["height"][rows]), axis=1)
+    radius = np.where(kind == CIRCLE, camera.scale * shape["radius"][rows], POINT_RADIUS)
+    reach = np.where(kind == BOX, np.hypot(extent[:, 0], extent[:, 1]), radius)[:, None]
+    with np.errstate(invalid="ignore"):
+        inside = ((centre > -reach) & (centre < np.array(camera.size) + reach)).all(axis=1)
+    fills, rims = _strobe_tints(theme)
+    own = own_colour(world, theme, rows)
+    for which, draw in ((inside & (kind == BOX), True), (inside & (kind != BOX), False)):
+        if not which.any():
+            continue
+        look = Look(fills[own[which]], rims[own[which]], np.zeros(int(which.sum()), np.bool_))
+        if draw:
+            canvas.boxes(centre[which], extent[which], angle[which], look)
+        else:
+            canvas.discs(centre[which], radius[which], angle[which], look)
+
+
+@lru_cache(maxsize=8)
+def _strobe_tints(theme: Theme) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """Return what is inside the copies of each colour of bodies, and their rims."""
+    fills = [mixed(theme.background, body, _FILL) for body in theme.bodies]
+    rims = [mixed(theme.background, body, _RIM) for body in theme.bodies]
+    return np.array(fills, np.uint8), np.array(rims, np.uint8)

@@ -20,10 +20,10 @@ from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
 from physicslab.ecs.text import in_words
 from physicslab.ecs.vector import Vector2
-from physicslab.history import AddComponent, Command, Group, RemoveComponent, SetField
+from physicslab.history import AddComponent, RemoveComponent, SetField
 from physicslab.state.attached import local_point as in_frame
 from physicslab.view.window.placing import refused_change
-from physicslab.view.window.points import local_point, point_of
+from physicslab.view.window.spring_tool import local_point, point_of
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -42,19 +42,13 @@ def change_fields(world: World, window: Window, changes: Sequence[SetField]) -> 
         if refused:
             window.notify(f"{change.words(world)}: {refused}", 6.0, failed=True)
             return
-    _do(window, changes)
+    window.edits.do_all(changes)
 
 
 def _refused_place(world: World, change: SetField) -> str:
     """Return why a place or a size cannot be given to a body; of other fields nothing."""
     kind = next((kind for kind in (Transform, Shape) if kind.__name__ == change.component), None)
     return "" if kind is None else refused_change(world, change.entity, kind, change.field, change.value)
-
-
-def _do(window: Window, commands: Sequence[Command]) -> None:
-    if commands:
-        one = commands[0]
-        window.edits.do(one if len(commands) == 1 else Group(one.words(window.edits.world), commands))
 
 
 # ---- components ----------------------------------------------------------------------------------------
@@ -91,7 +85,9 @@ def removable(world: World, entities: Sequence[int]) -> dict[str, tuple[str, typ
 def give(world: World, window: Window, entities: Sequence[int], make: Callable[[int], Component]) -> None:
     """Add a component to each of some entities that has none of its kind."""
     made = [(entity, make(entity)) for entity in entities]
-    _do(window, [AddComponent(entity, part) for entity, part in made if not world.has(entity, type(part))])
+    window.edits.do_all(
+        [AddComponent(entity, part) for entity, part in made if not world.has(entity, type(part))]
+    )
 
 
 def take(world: World, window: Window, entities: Sequence[int], kind: type[Component]) -> None:
@@ -99,7 +95,9 @@ def take(world: World, window: Window, entities: Sequence[int], kind: type[Compo
     if kind is Transform:
         window.notify("Every body has a position: delete the body instead", 6.0, failed=True)
         return
-    _do(window, [RemoveComponent(entity, kind.__name__) for entity in entities if world.has(entity, kind)])
+    window.edits.do_all(
+        [RemoveComponent(entity, kind.__name__) for entity in entities if world.has(entity, kind)]
+    )
 
 
 def plain_kind(kind: type[Component]) -> str:

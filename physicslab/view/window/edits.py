@@ -1,10 +1,11 @@
-"""What is selected, and how the window changes the world: by commands of one history."""
+"""What is selected, what the next body is like, and how the world is changed: by commands of one history."""
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
 
 from physicslab.ecs.component import Component
-from physicslab.ecs.fields import InvalidValue
+from physicslab.ecs.fields import LENGTH_LIMIT, Field, InvalidValue
 from physicslab.history import Command, Group, History, SetField
 from physicslab.world import World
 
@@ -74,6 +75,14 @@ class Edits:
             self._refused(str(error).strip("'\""))
             return ()
 
+    def do_all(self, commands: Sequence[Command], words: str = "") -> tuple[int, ...]:
+        """Carry out commands as one edit, named by its words or those of the first; return as :meth:`do`."""
+        if not commands:
+            return ()
+        one = commands[0]
+        named = words or one.words(self.world)
+        return self.do(one if len(commands) == 1 and not words else Group(named, commands))
+
     def write(self, command: Command) -> None:
         """Carry out what a hand does while time runs."""
         self.take_back_shown()
@@ -104,10 +113,8 @@ class Edits:
             for entity, kind, name in self._shown
             if self.world.has(entity, kind)
         ]
-        if changes:
-            self.take_back_shown()
-            one = changes[0]
-            self.do(one if len(changes) == 1 else Group(one.words(self.world), changes))
+        self.take_back_shown()
+        self.do_all(changes)
 
     def take_back_shown(self) -> None:
         """Give all fields the values that they had before they were shown with others."""
@@ -115,3 +122,31 @@ class Edits:
             if self.world.has(entity, kind):
                 setattr(self.world.component(entity, kind), name, before)
         self._shown.clear()
+
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """The properties of the next circle or box.
+
+    Attributes
+    ----------
+    size : float
+        Radius of a circle, half the width of a box [m]; 0 for one of several sizes in turn.
+    density : float
+        Mass per area [kg/m^2].
+    restitution, friction : float
+        Of its surface.
+    """
+
+    size: float = 0.0
+    density: float = 5.0
+    restitution: float = 0.4
+    friction: float = 0.5
+
+    FIELDS: ClassVar[tuple[Field, ...]] = (
+        Field("size", "number", unit="m", minimum=0.0, limit=LENGTH_LIMIT,
+              meaning="radius, or half the width; 0 for one of several sizes in turn"),
+        Field("density", "number", unit="kg/m^2", above=0.0, limit=1e12, meaning="mass per area"),
+        Field("restitution", "number", minimum=0.0, maximum=1.0, meaning="share of the speed given back"),
+        Field("friction", "number", minimum=0.0, limit=1e6, meaning="Coulomb friction coefficient"),
+    )  # fmt: skip

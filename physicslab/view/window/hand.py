@@ -156,19 +156,9 @@ def _force(world: World, entity: int, other: Any) -> float:
     return sum(point.normal_force for point in contact.points) if contact is not None else 0.0
 
 
-def _weight(world: World, entity: int) -> float:
-    """Return what a body weighs on the Earth [N]."""
-    return _EARTH * world.component(entity, Mass).mass if world.has(entity, Mass) else math.inf
-
-
 def _strength(world: World, entity: int) -> float:
     """Return how hard the hand can press with a body [N]."""
-    return _WEIGHTS * _weight(world, entity)
-
-
-def _carry_out(world: World, command: Command) -> None:
-    """Carry out a command that no history records."""
-    command.carry_out(world)
+    return _WEIGHTS * _EARTH * world.component(entity, Mass).mass if world.has(entity, Mass) else math.inf
 
 
 class Hand:
@@ -193,7 +183,7 @@ class Hand:
 
     def __init__(self, config: WindowConfig) -> None:
         self._config = config
-        self.write: Callable[[World, Command], None] = _carry_out
+        self.write: Callable[[World, Command], object] = lambda world, command: command.carry_out(world)
         self.entity: int | None = None
         self._before = (Vector2(), 0.0)
         self._was_moved_by_time = False

@@ -1,16 +1,49 @@
-"""Springs drawn with the mouse, from a body to another or to a point of the world."""
+"""Springs by hand: drawn from a body to another or to a point of the world, and dragged by their pins."""
 
 import math
 
 import numpy as np
 
-from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.components import Mass, Shape, Spring, Transform, Velocity
+from physicslab.diagnostics.period import spring_state
+from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
+from physicslab.history import SetField
+from physicslab.state.attached import local_point as in_frame
+from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import Look
-from physicslab.view.canvas.drawing import Drawing
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.overlay.arrows import even_dashes
-from physicslab.view.window.points import local_point, point_of
+from physicslab.view.window.edits import Edits
 from physicslab.world import World
+
+# ---- points of bodies: in a frame of their own, and in the world -------------------------------------------
+
+
+def point_of(world: World, body: int | None, anchor: Vector2) -> Vector2:
+    """Return where a point in a body's frame is in the world [m]; without a body it is one of the world."""
+    if body is None or not world.has(body, Transform):
+        return anchor
+    transform = world.component(body, Transform)
+    return transform.position + anchor.rotated(transform.angle)
+
+
+def local_point(world: World, body: int | None, place: Vector2) -> Vector2:
+    """Return a point of the world in a body's frame [m]: if it is not on the body, the body's middle."""
+    if body is None or not world.has(body, Transform):
+        return place
+    local = in_frame(world, body, place)
+    if not world.has(body, Shape):
+        return Vector2()
+    shape = world.component(body, Shape)
+    if shape.kind == "circle":
+        return local if local.magnitude <= shape.radius else Vector2()
+    inside = abs(local.x) <= 0.5 * shape.width and abs(local.y) <= 0.5 * shape.height
+    return local if inside else Vector2()
+
+
+# ---- drawing -----------------------------------------------------------------------------------------------
+
 
 _FREQUENCY = 2.0
 """How fast two bodies swing on a new spring [Hz]: soft enough to be seen, stiff enough to carry them."""
@@ -123,3 +156,69 @@ def _inverse_mass(world: World, entity: int) -> float:
     if not (world.has(entity, Mass) and world.has(entity, Velocity)):
         return 0.0
     return 1.0 / world.component(entity, Mass).mass
+
+
+# ---- pins: the fixed ends, which can be dragged ------------------------------------------------------------
+
+
+_CATCH = 8.0
+"""How near to a pin a press need be [px]."""
+
+
+def pin_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
+    """Return the entity of the spring whose fixed end is under the cursor [px], or ``None``."""
+    springs = world.batch(Spring)
+    table = world.table(Spring)
+    fixed = table["b"][springs.rows] == 0
+    if not fixed.any():
+        return None
+    pins = camera.project(table["anchor_b"][springs.rows[fixed]])
+    with np.errstate(all="ignore"):
+        distance = np.hypot(pins[:, 0] - pixel[0], pins[:, 1] - pixel[1])
+    nearest = int(np.argmin(distance))
+    return int(springs.entities[fixed][nearest]) if distance[nearest] <= _CATCH else None
+
+
+class Pins:
+    """The pin in the hand.
+
+    Attributes
+    ----------
+    dragged : int, optional
+        The entity of its spring.
+    words : str
+        How long the spring is, to stand beside the cursor.
+    """
+
+    def __init__(self) -> None:
+        self.dragged: int | None = None
+        self.words = ""
+
+    def drag(self, edits: Edits, place: Vector2, *, paused: bool) -> None:
+        """Let the pin follow the cursor, which is at a point of the world [m]."""
+        world, entity = edits.world, self.dragged
+        if entity is None:
+            return
+        if not world.has(entity, Spring) or world.component(entity, Spring).b is not None:
+            self.dragged = None
+            return
+        if not all(map(math.isfinite, (place.x, place.y))):
+            return
+        try:
+            if paused:
+                edits.show(entity, Spring, "anchor_b", place)
+            elif world.component(entity, Spring).anchor_b != place:
+                edits.write(SetField(entity, Spring.__name__, "anchor_b", place))
+        except InvalidValue as error:
+            self.words = f"must be {error.allowed}"
+            return
+        state = spring_state(world, entity)
+        self.words = (
+            "" if state is None else f"{quantity(state.length, 'm')}, {quantity(abs(state.force), 'N')}"
+        )
+
+    def release(self, edits: Edits) -> None:
+        """Let go of the pin: where it was dragged while time stood still, that becomes one edit."""
+        if self.dragged is not None:
+            edits.keep()
+        self.dragged, self.words = None, ""

@@ -12,17 +12,16 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import History
-from physicslab.view.canvas.camera import Camera, Extent
+from physicslab.view.canvas.camera import Camera, Drawing, Extent
 from physicslab.view.canvas.canvas import Canvas, Rect
-from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.canvas.theme import DARK, Theme
-from physicslab.view.overlay.free_body import Measured
-from physicslab.view.overlay.overlays import Overlays
+from physicslab.view.overlay.forces import Measured
+from physicslab.view.overlay.legend import Overlays
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.sparks import Sparks
 from physicslab.view.picture.trails import TrailSwitch
 from physicslab.view.window.dashboard import Dashboard
-from physicslab.view.window.edits import Edits, Selection
+from physicslab.view.window.edits import Edits, Recipe, Selection
 from physicslab.view.window.filming import Filming
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
@@ -30,11 +29,9 @@ from physicslab.view.window.impacts import ImpactList, Microscope
 from physicslab.view.window.lab_process import ErrorStudy
 from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.pace import Pace
-from physicslab.view.window.pins import Pins
+from physicslab.view.window.placing import Snapping
 from physicslab.view.window.recent import RecentFiles, Recovery
-from physicslab.view.window.recipe import Recipe
-from physicslab.view.window.snapping import Snapping
-from physicslab.view.window.spring_tool import SpringTool
+from physicslab.view.window.spring_tool import Pins, SpringTool
 from physicslab.view.window.trust_watch import TrustWatch
 from physicslab.world import World
 

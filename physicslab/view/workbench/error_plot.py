@@ -75,7 +75,14 @@ def _build_result(ui: Ui, window: Window) -> None:
         if ui.button("Close"):
             study.shown = False
         imgui.same_line()
-        ui.button("CSV of all runs", "Write the table to a file", _save, shown="CSV")
+        ui.button(
+            "CSV of all runs",
+            "Write the table to a file",
+            file_actions.save_table,
+            "errors",
+            study.csv,
+            shown="CSV",
+        )
 
 
 def _chaos(study: ErrorStudy) -> str:
@@ -166,12 +173,6 @@ def _build_table(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, f
             imgui.table_next_column()
             ui.text(words)
     imgui.end_table()
-
-
-def _save(world: World, window: Window) -> None:
-    """Write the table of all runs to a new file."""
-    content = window.error_study.csv().encode("utf-8")
-    file_actions.save_new(window, world, "errors", ".csv", content)
 
 
 def _use(world: World, window: Window, run: Sample) -> None:

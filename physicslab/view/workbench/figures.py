@@ -1,14 +1,11 @@
 """The figures of a world, measured a few times a second, and the lines in which panels show them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal
 
 from physicslab.components import Held, Mass, Transform, Velocity
-from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
-from physicslab.diagnostics.energy import Audit, Energy, Momentum, summation
+from physicslab.diagnostics.energy import ACCOUNT_WORDS, Audit, Momentum, flows, summation
 from physicslab.diagnostics.reference_solution import ReferenceSolution, reference_solution
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.vector import Vector2
@@ -18,72 +15,6 @@ from physicslab.world import World
 
 _SMOOTHING = 0.5
 """Time [s] over which frame rate and costs are averaged."""
-
-
-@dataclass(frozen=True, slots=True)
-class WorldFigures:
-    """The figures of a world at one moment.
-
-    Attributes
-    ----------
-    bodies, asleep, candidate_pairs, contacts : int
-        How many bodies there are and sleep, pairs that are near each other, and pairs that touch.
-    energy : Energy
-        Kinetic and potential [J].
-    audit : Audit
-        What gave energy and took it since the accounts of the world began, and the error.
-    held, driven : bool
-        Whether a hand holds a body, which then has that body's energy, and whether bodies are driven.
-    since : float
-        Time of the world [s] at the last edit.
-    momentum : Momentum
-        Linear [kg m/s], and angular about the origin [kg m^2/s].
-    known : ReferenceSolution, optional
-        The exact solution since the last edit, where there is one.
-    error : float
-        How far the body that is furthest off is from that [m].
-    scales : dict of str to float
-        How large quantities are here, by unit.
-    frame_rate : float
-        Frames per second of late.
-    """
-
-    bodies: int
-    asleep: int
-    candidate_pairs: int
-    contacts: int
-    energy: Energy
-    audit: Audit
-    held: bool
-    driven: bool
-    since: float
-    momentum: Momentum
-    known: ReferenceSolution | None
-    error: float
-    scales: dict[str, float]
-    frame_rate: float = 0.0
-
-    def joules(self, energy: float) -> str:
-        """Return an energy in words; what is rounding beside the energies exchanged is 0."""
-        return quantity(without_rounding(energy, max(self.scales["J"], self.audit.exchanged)), "J")
-
-
-def measure_world(world: World, watch: EnergyWatch, frame_rate: float = 0.0) -> WorldFigures:
-    """Measure a world as it is now."""
-    audit = watch.sample(world)
-    contacts, known, now = world.contacts, watch.known, audit.account.now
-    return WorldFigures(
-        len(body_rows(world)), world.sleep.count, contacts.candidate_pairs, contacts.count,
-        audit.latest, audit, len(world.batch(Held)) > 0,
-        _are_driven(world), watch.since, Momentum(Vector2(now.px, now.py), now.spin),
-        known, known.error(world) if known is not None else 0.0, scales_of(world),
-        frame_rate,
-    )  # fmt: skip
-
-
-def _are_driven(world: World) -> bool:
-    moving = world.batch(Transform, Velocity).rows
-    return not world.table(Mass).present[moving].all()
 
 
 class EnergyWatch:
@@ -127,6 +58,51 @@ class EnergyWatch:
             self._audit.sample(world)
         self._time = world.time
         return self._audit
+
+
+class WorldFigures:
+    """The figures of a world as it is now.
+
+    Attributes
+    ----------
+    bodies, asleep, candidate_pairs, contacts : int
+        How many bodies there are and sleep, pairs that are near each other, and pairs that touch.
+    energy : Energy
+        Kinetic and potential [J].
+    audit : Audit
+        What gave energy and took it since the accounts of the world began, and the error.
+    held, driven : bool
+        Whether a hand holds a body, which then has that body's energy, and whether bodies are driven.
+    since : float
+        Time of the world [s] at the last edit.
+    momentum : Momentum
+        Linear [kg m/s], and angular about the origin [kg m^2/s].
+    known : ReferenceSolution, optional
+        The exact solution since the last edit, where there is one.
+    error : float
+        How far the body that is furthest off is from that [m].
+    scales : dict of str to float
+        How large quantities are here, by unit.
+    frame_rate : float
+        Frames per second of late.
+    """
+
+    def __init__(self, world: World, watch: EnergyWatch, frame_rate: float = 0.0) -> None:
+        contacts, moving = world.contacts, world.batch(Transform, Velocity).rows
+        self.bodies, self.asleep = len(body_rows(world)), world.sleep.count
+        self.candidate_pairs, self.contacts = contacts.candidate_pairs, contacts.count
+        self.audit = watch.sample(world)
+        self.energy, now = self.audit.latest, self.audit.account.now
+        self.momentum = Momentum(Vector2(now.px, now.py), now.spin)
+        self.held = len(world.batch(Held)) > 0
+        self.driven = not world.table(Mass).present[moving].all()
+        self.known, self.since = watch.known, watch.since
+        self.error = 0.0 if self.known is None else self.known.error(world)
+        self.scales, self.frame_rate = scales_of(world), frame_rate
+
+    def joules(self, energy: float) -> str:
+        """Return an energy in words; what is rounding beside the energies exchanged is 0."""
+        return quantity(without_rounding(energy, max(self.scales["J"], self.audit.exchanged)), "J")
 
 
 class FrameMeter:
@@ -196,7 +172,7 @@ def measure_lines(world: World, figures: WorldFigures) -> list[Line]:
     angular = without_rounding(momentum.angular, scales["kg m^2/s"])
     return [
         *_energy_lines(figures),
-        *_error_lines(figures),
+        *([] if figures.known is None else _error_lines(figures, figures.known)),
         Line("Total momentum", quantity(linear.magnitude, "kg m/s")),
         Line("as a vector", vector_quantity(linear, "kg m/s"), "detail"),
         Line("Angular momentum", quantity(angular, "kg m²/s")),
@@ -227,12 +203,10 @@ def _energy_lines(figures: WorldFigures) -> list[Line]:
     ]  # fmt: skip
 
 
-def _error_lines(figures: WorldFigures) -> list[Line]:
-    if figures.known is None:
-        return []
+def _error_lines(figures: WorldFigures, known: ReferenceSolution) -> list[Line]:
     return [
         Line("Position error", quantity(figures.error, "m")),
-        Line(f"against {figures.known.what}", kind="detail"),
+        Line(f"against {known.what}", kind="detail"),
         Line("since the last edit", f"at {figures.since:.2f} s", "detail"),
     ]
 
@@ -259,11 +233,12 @@ def method_lines(world: World) -> list[Line]:
     """Return how the world is stepped, and why so."""
     simulation = world.simulation
     parts = "substep" if simulation.substeps == 1 else "substeps"
+    divided = f"the last step was divided into {world.step_divisions}"
     return [
         Line(kind="gap"),
         Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
         *(_island_lines(world) or _plan_lines(world)),
-        *_division_lines(world),
+        *([Line(divided, kind="remark")] if world.step_divisions > 1 else []),
         *(Line(f"{_plain(name)} is computed by Python: slower", kind="remark") for name in world.interpreted),
         *([] if world.islands.members else _stepper_lines(world)),
     ]
@@ -284,12 +259,6 @@ def _island_lines(world: World) -> list[Line]:
         title = part.steppers.main(part).title
         lines.append(Line(f"{count} {'body' if count == 1 else 'bodies'}: {title}", kind="remark"))
     return lines
-
-
-def _division_lines(world: World) -> list[Line]:
-    if world.step_divisions <= 1:
-        return []
-    return [Line(f"the last step was divided into {world.step_divisions}", kind="remark")]
 
 
 def _stepper_lines(world: World) -> list[Line]:

@@ -18,8 +18,7 @@ from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.record import Key, Record, line_to_show, path_to_show, range_to_show, unbroken
 from physicslab.view.window.window import Window
-from physicslab.view.workbench.graph_readings import colours_of, line_name
-from physicslab.view.workbench.quantity_menu import scale_of
+from physicslab.view.workbench.graph_readings import colours_of, line_name, scale_of
 from physicslab.world import World
 
 type _Numbers = NDArray[np.float64]

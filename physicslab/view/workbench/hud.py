@@ -26,7 +26,6 @@ from physicslab.view.workbench.figures import (
     impulse_lines,
     left_out_lines,
     measure_lines,
-    measure_world,
     method_lines,
 )
 from physicslab.view.workbench.interface import Interface
@@ -81,7 +80,8 @@ class Hud:
             self._announce(window.error_study.failure)
         window.trust.follow(world, window.now)
         taken = self._draw_over_world(world)
-        interface.build(world, self._figures, self._details, self._measures, elapsed)
+        details = self._details if window.level == "Engineer" else []
+        interface.build(world, self._figures, [*self._measures, *details], elapsed)
         interface.draw(window.canvas)
         window.overlays.covered = [*taken, *interface.covered]
 
@@ -92,7 +92,7 @@ class Hud:
         self._watch.follow(world)
 
     def _read_figures(self, world: World, elapsed: float) -> None:
-        self._figures = measure_world(world, self._watch, self._meter.frame_rate)
+        self._figures = WorldFigures(world, self._watch, self._meter.frame_rate)
         self._measures = measure_lines(world, self._figures) if self._window.level != "Explore" else []
 
     def _read_costs(self, world: World, elapsed: float) -> None:
@@ -125,13 +125,12 @@ class Hud:
             banners.append((f"The computer is too slow: {dropped:.1f} s were skipped", theme.slow))
         return banners
 
-    def _draw_advice(self, world: World, middle: int, top: int, bottom: int, width: int) -> Rect | None:
+    def _draw_advice(self, world: World, room: Rect) -> Rect | None:
         """Write what is not to be trusted, and put a ring around each body that is spoken of."""
         on = self._window.drawing
         bodies = [one.number for one in self._advice if one.number is not None]
         draw_selection(world, bodies, on, colour=on.theme.warning)
-        plainly = self._window.level == "Explore"
-        return draw_advice(self._advice, middle, top, bottom, width, on, plainly=plainly)
+        return draw_advice(self._advice, room, on, plainly=self._window.level == "Explore")
 
     # ---- drawing -------------------------------------------------------------------------------------------
 
@@ -144,17 +143,14 @@ class Hud:
         (left, top, width, height), size = room, on.size
         margin = round(0.6 * size)
         bar = draw_scale_bar(on, left + width, top + height - margin)
-        numbers = 0
-        if window.grid:
-            numbers = draw_axis_numbers(on, room, bar[0])
+        numbers = draw_axis_numbers(on, room, bar[0]) if window.grid else 0
         taken = [bar, *self._draw_messages(bar, numbers)]
         bottom = min(rect[1] for rect in taken) - margin
-        banners = self._banners(world)
         begin, wide = self._free_span(top, top + _STRIP * size)
-        middle, across = begin + wide // 2, wide - 2 * margin
-        shown = draw_banners(banners, middle, top + margin, bottom, across, on)
+        begin, across = begin + margin, wide - 2 * margin
+        shown = draw_banners(self._banners(world), (begin, top + margin, across, bottom - top - margin), on)
         below = shown[-1][1] + shown[-1][3] + margin if shown else top + margin
-        advice = self._draw_advice(world, middle, below, bottom, across)
+        advice = self._draw_advice(world, (begin, below, across, bottom - below))
         taken += [*shown, *([] if advice is None else [advice])]
         legend = legend_of(window.overlays, (width - 2 * margin, height), on)
         if legend is not None:
@@ -187,10 +183,8 @@ class Hud:
         window, on, theme, size = self._window, self._window.drawing, self._window.theme, self._interface.text
         _, top, _, height = self._interface.visible
         left, width = self._free_span(top + height - _STRIP * size, top + height)
-        words = (
-            (window.error, theme.error),
-            (window.notice, theme.error if window.notice_failed else theme.notice),
-        )
+        colour = theme.error if window.notice_failed else theme.notice
+        words = (window.error, theme.error), (window.notice, colour)
         middle, bottom = left + width // 2, top + height - numbers
         messages = lay_out_messages(words, on, round(_MESSAGE_WIDTH * width))
         if any(middle + message.width // 2 > bar[0] - size // 2 for message in messages):

@@ -1,12 +1,15 @@
 """The table of impacts: sorted by a click on a heading; a click on a row opens the microscope there."""
 
 import math
+from functools import partial
 from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
+from physicslab.diagnostics.ledger import ledger_csv
 from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.controls import impact_actions
+from physicslab.view.controls.file_actions import save_table
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.impacts import COLUMNS
@@ -66,13 +69,8 @@ def _build_head(ui: Ui, world: World, window: Window) -> None:
     tip = "Run until the next impact of the selection, or of any body, and pause there (Shift+Z)"
     ui.button("Pause at the next", tip, impact_actions.pause_at_next, on=waits)
     ui.same_line_if_room("CSV")
-    ui.button(
-        "CSV of impacts",
-        "Write all of them to a file",
-        impact_actions.save_table,
-        shown="CSV",
-        enabled=count > 0,
-    )
+    table, tip = partial(ledger_csv, world, window.impacts.records), "Write all of them to a file"
+    ui.button("CSV of impacts", tip, save_table, "impacts", table, shown="CSV", enabled=count > 0)
     ui.same_line_if_room(f"{count} impacts")
     ui.faint(f"{count} impacts", wrapped=False)
 

@@ -16,10 +16,9 @@ from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, vector_quantity, without_rounding
 from physicslab.view.controls.actions import duplicate_selected
-from physicslab.view.controls.attaching import attachments
 from physicslab.view.controls.dashboard_actions import plot_selected
-from physicslab.view.controls.tools import remove_selected
-from physicslab.view.overlay.free_body import Measured
+from physicslab.view.controls.tools import attachments, remove_selected
+from physicslab.view.overlay.forces import Measured
 from physicslab.view.overlay.instruments import readings_of
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window import changing
@@ -84,11 +83,8 @@ def _build_spring(ui: Ui, state: SpringState | None) -> None:
         return
     ui.rule(0.2)
     ui.row("Length", quantity(state.length, "m"))
-    ui.row(
-        "Longer by",
-        quantity(without_rounding(state.extension, state.length), "m"),
-        "than at rest; negative if it is shorter",
-    )
+    longer = quantity(without_rounding(state.extension, state.length), "m")
+    ui.row("Longer by", longer, "than at rest; negative if it is shorter")
     pulls = "pulls its ends together" if state.force >= 0.0 else "pushes its ends apart"
     ui.row("Spring force", quantity(abs(state.force), "N"), pulls)
     ui.row("Energy stored", quantity(state.energy, "J"))

@@ -4,6 +4,7 @@ import csv
 import io
 import math
 from collections.abc import Sequence
+from functools import partial
 
 from imgui_bundle import ImVec2, imgui
 
@@ -15,7 +16,7 @@ from physicslab.state.attached import place_of
 from physicslab.systems.gate import GateSystem
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.controls.file_actions import save_new
+from physicslab.view.controls.file_actions import save_table
 from physicslab.view.controls.measuring import keep_note
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.measuring import Writing
@@ -50,7 +51,8 @@ def build_stopwatch(ui: Ui, world: World, window: Window) -> None:
     with ui.floating("Stopwatch", place, window.closing_of("shows_stopwatch")):
         _build_times(ui, world, every, gates)
         _build_table(ui, world, every[-(_ROWS if columns is _COLUMNS else _FEWER_ROWS) :], columns)
-        ui.button("CSV of crossings", "Write all of them to a file", _save, shown="CSV", enabled=bool(every))
+        table, tip = partial(crossings_csv, world), "Write all of them to a file"
+        ui.button("CSV of crossings", tip, save_table, "crossings", table, shown="CSV", enabled=bool(every))
 
 
 def _build_times(ui: Ui, world: World, every: Sequence[Lap], gates: int) -> None:
@@ -128,11 +130,6 @@ def crossings_csv(world: World) -> str:
         names = table_cell(world.label(one.gate)), table_cell(world.label(one.body))
         writer.writerow([repr(one.time), *names, one.direction, repr(one.speed), since])
     return text.getvalue()
-
-
-def _save(world: World, window: Window) -> None:
-    """Write the crossings to a new file."""
-    save_new(window, world, "crossings", ".csv", crossings_csv(world).encode("utf-8"))
 
 
 # ---- notes -------------------------------------------------------------------------------------------------

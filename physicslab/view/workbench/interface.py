@@ -1,11 +1,15 @@
 """The panels around the world: menus, tools, transport, and the selection or the world in figures."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from operator import attrgetter
 
 import pygame
 
 from physicslab.view.canvas.canvas import Canvas, Rect
+from physicslab.view.toolkit.style import bar_height
 from physicslab.view.toolkit.toolkit import Toolkit, Walk
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
@@ -15,16 +19,77 @@ from physicslab.view.workbench.file_panels import Gallery, build_film, build_ope
 from physicslab.view.workbench.impact_panel import build_impacts
 from physicslab.view.workbench.inspector import build_inspector
 from physicslab.view.workbench.instrument_panels import NotePanel, build_stopwatch
-from physicslab.view.workbench.layout import Layout
-from physicslab.view.workbench.menus import build_help, build_menu_bar
+from physicslab.view.workbench.menus import build_help, build_menu_bar, build_palette
 from physicslab.view.workbench.microscope_panel import build_microscope
 from physicslab.view.workbench.number_field import NumberFields
-from physicslab.view.workbench.palette import build_palette
 from physicslab.view.workbench.scene_panels import ScenePanels
-from physicslab.view.workbench.settings_panel import build_recipe, build_settings
 from physicslab.view.workbench.transport import build_history, build_transport
-from physicslab.view.workbench.world_panel import build_figures, build_levels, build_world
+from physicslab.view.workbench.world_panel import (
+    build_figures,
+    build_levels,
+    build_recipe,
+    build_settings,
+    build_world,
+)
 from physicslab.world import World
+
+# ---- the layout: the world first, panels around it ---------------------------------------------------------
+
+
+_PALETTE, _SIDE, _TRANSPORT = 6.9, 16.8, 3.0
+"""Widths of the palette and the side panel, height of the transport, in heights of the text."""
+_MIN_WORLD = 0.34
+"""Share of the window's width that is always left to the world: the side panel lies over it if it must."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """The rectangles of a window [px].
+
+    Attributes
+    ----------
+    menu, palette, transport, side, room : Rect
+        The menu bar, the tools, the transport, the panel at the right, and what is left for the world.
+    """
+
+    menu: Rect
+    palette: Rect
+    transport: Rect
+    side: Rect
+    room: Rect
+
+    @property
+    def panels(self) -> tuple[Rect, ...]:
+        """All that is not left for the world [px]."""
+        return self.menu, self.palette, self.transport, self.side
+
+    @property
+    def visible(self) -> Rect:
+        """The part of the world's room that the panel at the right does not lie over [px]."""
+        left, top, width, height = self.room
+        return left, top, max(min(width, self.side[0] - left), 1), height
+
+    @classmethod
+    def of(cls, size: tuple[int, int], text: int, *, side: bool) -> Layout:
+        """Lay a window out for text of a height [px], with or without the panel at the right."""
+        width, height = size
+        top, foot, left = bar_height(text), round(_TRANSPORT * text), round(_PALETTE * text)
+        right = round(_SIDE * text) if side else 0
+        middle = max(height - top - foot, 1)
+        room_width = width - left - right
+        if room_width < _MIN_WORLD * width:
+            room_width = width - left
+        return cls(
+            (0, 0, width, top),
+            (0, top, left, middle),
+            (0, height - foot, width, foot),
+            (width - right, top, right, middle),
+            (left, top, max(room_width, 1), middle),
+        )
+
+
+# ---- the panels --------------------------------------------------------------------------------------------
+
 
 _PERIOD = 0.2
 """Time [s] after which panels are built again where nothing was done: faster digits cannot be read."""
@@ -134,22 +199,15 @@ class Interface:
     def _begin_numbers(self) -> None:
         self._numbers.begin((self._window.edits.world, self._window.selection.entities))
 
-    def build(
-        self,
-        world: World,
-        figures: WorldFigures,
-        details: Sequence[Line],
-        measures: Sequence[Line],
-        elapsed: float,
-    ) -> None:
+    def build(self, world: World, figures: WorldFigures, lines: Sequence[Line], elapsed: float) -> None:
         """Build panels where something may have changed since they were built last.
 
         Parameters
         ----------
         figures : WorldFigures
             What was measured of the world.
-        details, measures : sequence of Line
-            What engineers see beside, and those who measure.
+        lines : sequence of Line
+            What those see beside who measure, and engineers.
         elapsed : float
             Time [s] since the last frame.
         """
@@ -170,7 +228,7 @@ class Interface:
         def build() -> None:
             self.ui.begin(window.theme, self.layout.visible, rearranged=rearranged and not window.arrangement)
             self._walk.mark()
-            self._build(world, figures, details, measures)
+            self._build(world, figures, lines)
 
         if self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build):
             self._walk.end()
@@ -195,9 +253,7 @@ class Interface:
             *_WATCHED(window),
         )  # fmt: skip
 
-    def _build(
-        self, world: World, figures: WorldFigures, details: Sequence[Line], measures: Sequence[Line]
-    ) -> None:
+    def _build(self, world: World, figures: WorldFigures, lines: Sequence[Line]) -> None:
         ui, window, layout = self.ui, self._window, self.layout
         free = ui.dock(layout.visible)
         self._free = free if free != layout.visible else None
@@ -219,7 +275,7 @@ class Interface:
                         build_settings(ui, self._numbers, world, window)
                 if window.level != "Explore":
                     ui.rule(0.3)
-                    build_figures(ui, measures if window.level == "Measure" else [*measures, *details])
+                    build_figures(ui, lines)
                 if window.level != "Explore" or not window.selection.entities:
                     ui.rule(0.3)
                     self._build_counts(ui, figures)
@@ -242,9 +298,7 @@ class Interface:
 
     def _build_counts(self, ui: Ui, figures: WorldFigures) -> None:
         """Write the numbers that say how much there is to do."""
-        ui.row(
-            "Bodies", f"{figures.bodies}, {figures.asleep} asleep" if figures.asleep else f"{figures.bodies}"
-        )
+        ui.row("Bodies", f"{figures.bodies}" + (f", {figures.asleep} asleep" if figures.asleep else ""))
         ui.row("Contacts", f"{figures.contacts}", "Pairs that touch", lesser=False)
         ui.row("Candidate pairs", f"{figures.candidate_pairs}", "Pairs that are near each other")
         ui.row("Frame rate", f"{figures.frame_rate:.0f} FPS")

@@ -66,7 +66,7 @@ def _room(ui: Ui, window: Window) -> tuple[float, float, bool]:
 def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
     """Build when and what it was, what can be done from there, and the observers."""
     microscope, collision = window.microscope, window.microscope.collision
-    a, b = (body_name(world, body.entity, collision.wall) for body in (collision.a, collision.b))
+    a, b = _names(world, collision)
     pair = f"mu = {collision.friction:.4g}, e = {collision.restitution:.4g}"
     with ui.wrapping(wide):
         ui.text(f"At {collision.time:.6f} s   ·   A: {a}   ·   B: {b}   ·   {pair}")
@@ -97,6 +97,10 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
     ui.faint("observer", wrapped=False)
 
 
+def _names(world: World, seen: Collision) -> tuple[str, str]:
+    return body_name(world, seen.a.entity, seen.wall), body_name(world, seen.b.entity, seen.wall)
+
+
 def _build_drawings(ui: Ui, world: World, window: Window, wide: float) -> None:
     seen = window.microscope.seen
     draw_bodies(ui, world, seen, (wide, min(_LOW * ui.size, _FLAT * wide)))
@@ -105,7 +109,8 @@ def _build_drawings(ui: Ui, world: World, window: Window, wide: float) -> None:
     high = min(_SMALL * ui.size, half)
     ui.faint("B against A at the contact", wrapped=False)
     imgui.same_line(half + gap)
-    ui.faint(_of_momenta(seen), wrapped=False)
+    both = seen.a.is_free and seen.b.is_free
+    ui.faint("Momenta, tip to tail" if both else "Momentum and impulse", wrapped=False)
     draw_contact(ui, seen, (half, high))
     imgui.same_line(0.0, gap)
     draw_momenta(ui, seen, (half, high))
@@ -113,19 +118,11 @@ def _build_drawings(ui: Ui, world: World, window: Window, wide: float) -> None:
     draw_energies(ui, seen, wide)
 
 
-def _of_momenta(seen: Collision) -> str:
-    return "Momenta, tip to tail" if seen.a.is_free and seen.b.is_free else "Momentum and impulse"
-
-
 def _build_words(ui: Ui, world: World, window: Window) -> None:
     """Build what happened in words, the velocities, and the law with its numbers."""
     microscope = window.microscope
     collision, result = microscope.collision, microscope.result
-    names = (
-        body_name(world, collision.a.entity, collision.wall),
-        body_name(world, collision.b.entity, collision.wall),
-    )
-    for sentence in story(collision, result, names):
+    for sentence in story(collision, result, _names(world, collision)):
         ui.text(sentence, wrapped=True)
     ui.gap(0.3)
     _build_velocities(ui, microscope.seen)
@@ -171,11 +168,8 @@ def _build_momentum(ui: Ui, seen: Collision) -> None:
     ui.row("Momentum before", _vector(before, scale), "The sum over the bodies that impulses move")
     ui.row("Momentum after", _vector(after, scale))
     if not (seen.a.is_free and seen.b.is_free):
-        ui.row(
-            "Impulse on it",
-            quantity(seen.impulse.magnitude, "N s"),
-            "Given by the other one, which no impulse moves",
-        )
+        tip = "Given by the other one, which no impulse moves"
+        ui.row("Impulse on it", quantity(seen.impulse.magnitude, "N s"), tip)
 
 
 def _vector(value: Vector2, scale: float) -> str:
@@ -185,28 +179,16 @@ def _vector(value: Vector2, scale: float) -> str:
 
 def _build_verdict(ui: Ui, steps: list[Step], *, is_alone: bool, is_slow: bool) -> None:
     """Write whether the solver did what the law says."""
-    worst = max(step.difference for step in steps)
-    slow = "An approach as slow as this may be treated as rest, and does not bounce."
-    if worst <= AGREES:
-        ui.text(
-            f"The solver agrees with the law: they differ by {worst:.1e} at most.",
-            ui.theme.heading,
-            wrapped=True,
-        )
-    elif not is_alone:
-        ui.text(
-            "The solver resolved several impacts together here; this pair by itself would differ.",
-            ui.theme.paused,
-            wrapped=True,
-        )
-    else:
-        ui.text(
-            f"The solver differs from the law by {worst:.1e} of the largest figure.",
-            ui.theme.error,
-            wrapped=True,
-        )
-        if is_slow:
-            ui.faint(slow)
+    worst, theme = max(step.difference for step in steps), ui.theme
+    words, colour = f"The solver agrees with the law: they differ by {worst:.1e} at most.", theme.heading
+    if worst > AGREES and is_alone:
+        words, colour = f"The solver differs from the law by {worst:.1e} of the largest figure.", theme.error
+    elif worst > AGREES:
+        words = "The solver resolved several impacts together here; this pair by itself would differ."
+        colour = theme.paused
+    ui.text(words, colour, wrapped=True)
+    if colour == theme.error and is_slow:
+        ui.faint("An approach as slow as this may be treated as rest, and does not bounce.")
 
 
 def _build_step(ui: Ui, step: Step) -> None:

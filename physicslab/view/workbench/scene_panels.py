@@ -17,10 +17,15 @@ from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.graph_plot import GraphPlot
-from physicslab.view.workbench.graph_readings import build_cursors, build_moment, build_readings
+from physicslab.view.workbench.graph_readings import (
+    build_cursors,
+    build_moment,
+    build_quantities,
+    build_readings,
+    named_key,
+)
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.view.workbench.panel_places import bar_at_top, has_room, is_bar, places
-from physicslab.view.workbench.quantity_menu import build_quantities, named_key
 from physicslab.view.workbench.small_panels import MeterPanels, SliderPanels
 from physicslab.world import World
 

@@ -21,9 +21,9 @@ from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import MeterShown, SliderShown
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
+from physicslab.view.workbench.graph_readings import build_quantities, named_key, scale_of, unit_of
 from physicslab.view.workbench.number_field import NumberFields, shown_number
 from physicslab.view.workbench.panel_places import Small
-from physicslab.view.workbench.quantity_menu import build_quantities, named_key, scale_of, unit_of
 from physicslab.world import World
 
 _MENU = "..."

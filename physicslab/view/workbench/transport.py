@@ -1,13 +1,11 @@
 """Time: the transport at the bottom with the time line, and the history, a list to click."""
 
-from collections.abc import Sequence
-
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import actions, file_actions
-from physicslab.view.controls.history_actions import branch_words, switch
+from physicslab.view.controls.actions import branch_words, switch
 from physicslab.view.controls.tool import ICONS
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
@@ -36,7 +34,13 @@ def build_transport(ui: Ui, rect: Rect, world: World, window: Window) -> None:
             ("Restart", "Restart this scene (Ctrl+R)", file_actions.restart, icons["restart"], _NARROW),
             ("Step back", "Pause, and go back by one step (B)", actions.step_back, icons["back"], _NARROW),
             (play[0], f"{play[0]} (Space)", actions.toggle_pause, f"{icons[play[1]]}  {play[0]}", _WIDE),
-            ("Step", "Pause, and make one step (.)", actions.step, icons["step"], _NARROW),
+            (
+                "Step",
+                "Pause, and make one step (.)",
+                lambda _, window: window.pace.queue_step(),
+                icons["step"],
+                _NARROW,
+            ),
         ):
             ui.button(label, tip, action, shown=shown, on=width == _WIDE, size=(width * size, height))
             imgui.same_line()
@@ -52,25 +56,33 @@ def _build_speed(ui: Ui, pace: Pace, window: Window) -> None:
     tip = "How fast time runs (Tab: a quarter; [ and ]: half and twice)"
     chosen = ui.choice("Speed", now, list(_SPEEDS), tip, width=4.6 * ui.size)
     if chosen != now:
-        window.do_next(_choose_speed, _SPEEDS[chosen])
+        window.do_next(lambda _, window: window.pace.choose(_SPEEDS[chosen] / window.pace.speed))
 
 
-def _choose_speed(world: World, window: Window, speed: float) -> None:
-    window.pace.choose(speed / window.pace.speed)
+def _mark(ui: Ui, window: Window, first: int, last: int) -> None:
+    """Draw marks over the time line, which was built last: where branches leave, and the moments of graphs.
 
-
-def _mark_branches(ui: Ui, steps: Sequence[int], first: int, last: int) -> None:
-    """Draw a mark over the time line, which was built last, for each branch: where it leaves."""
-    low, high, style = imgui.get_item_rect_min(), imgui.get_item_rect_max(), imgui.get_style()
-    rim = _GRAB_PADDING + 0.5 * style.grab_min_size
+    The moments are that under the cursor in a graph, and its cursors A and B.
+    """
+    low, high, dashboard = imgui.get_item_rect_min(), imgui.get_item_rect_max(), window.dashboard
+    rim = _GRAB_PADDING + 0.5 * imgui.get_style().grab_min_size
     paper, half = imgui.get_window_draw_list(), 0.28 * ui.size
-    for n, step in enumerate(steps, start=1):
-        if not first <= step <= last:
-            continue
-        x = low.x + rim + (high.x - low.x - 2.0 * rim) * (step - first) / (last - first)
-        corners = (ImVec2(x - half, low.y), ImVec2(x + half, low.y), ImVec2(x, low.y + 1.6 * half))
-        paper.add_triangle_filled(*corners, packed(ui.theme.accent))
-        ui.places[f"Branch {n}"] = round(x - half), round(low.y), round(2 * half), round(1.6 * half)
+
+    def place_of(step: int | None) -> float | None:
+        if step is None or not first <= step <= last:
+            return None
+        return low.x + rim + (high.x - low.x - 2.0 * rim) * (step - first) / (last - first)
+
+    for n, branch in enumerate(window.edits.history.branches, start=1):
+        if (x := place_of(branch.step)) is not None:
+            corners = (ImVec2(x - half, low.y), ImVec2(x + half, low.y), ImVec2(x, low.y + 1.6 * half))
+            paper.add_triangle_filled(*corners, packed(ui.theme.accent))
+            ui.places[f"Branch {n}"] = round(x - half), round(low.y), round(2 * half), round(1.6 * half)
+    for time in (dashboard.pointed, *dashboard.marks):
+        x = None if time is None else place_of(dashboard.step_at(time))
+        if x is not None:
+            paper.add_line(ImVec2(x, low.y), ImVec2(x, high.y), packed(ui.theme.heading), 2.0)
+            ui.words.append(f"mark at {time:.3f} s")
 
 
 def _build_line(ui: Ui, world: World, window: Window) -> None:
@@ -88,28 +100,12 @@ def _build_line(ui: Ui, world: World, window: Window) -> None:
         "Drag to go back in time, and forward again; a change there begins another branch. "
         "A mark shows where one begins (Ctrl+B goes there)"
     )
-    _mark_branches(ui, [branch.step for branch in history.branches], first, max(last, first + 1))
-    _mark_moments(ui, window, first, max(last, first + 1))
+    _mark(ui, window, first, max(last, first + 1))
     if place is not None:
         window.do_next(actions.seek, round(place))
     if is_hinted:
         imgui.same_line()
         ui.faint(_HINT, wrapped=False)
-
-
-def _mark_moments(ui: Ui, window: Window, first: int, last: int) -> None:
-    """Mark the moment under the cursor in a graph, and the cursors A and B, over the time line."""
-    dashboard = window.dashboard
-    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    half = 0.5 * imgui.get_style().grab_min_size
-    for time in (dashboard.pointed, *dashboard.marks):
-        step = None if time is None else dashboard.step_at(time)
-        if step is None or not first <= step <= last:
-            continue
-        x = low.x + half + (high.x - low.x - 2.0 * half) * (step - first) / (last - first)
-        paper = imgui.get_window_draw_list()
-        paper.add_line(ImVec2(x, low.y), ImVec2(x, high.y), packed(ui.theme.heading), 2.0)
-        ui.words.append(f"mark at {time:.3f} s")
 
 
 # ---- the history -------------------------------------------------------------------------------------------

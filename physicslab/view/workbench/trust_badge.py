@@ -126,7 +126,8 @@ def _sentence(trust: TrustWatch, world: World, now: float) -> str:
             f"One rounding has grown to another future since t = {trust.horizon:.3g} s, by whatever method. "
             f"Still true: {_still_true(found)}"
         )
-    return f"{_worst(trust, world, now)}: {_span(trust, found)}"
+    span = f"from t = {trust.since:.4g} s (the last edit) until t = {found.until:.4g} s"
+    return f"{_worst(trust, world, now)}: {span}"
 
 
 def _worst(trust: TrustWatch, world: World, now: float) -> str:
@@ -135,11 +136,6 @@ def _worst(trust: TrustWatch, world: World, now: float) -> str:
     assert found is not None and worst is not None
     others = ", and no other to fewer" if len(found.bodies) > 1 else ""
     return f"The position of {world.label(worst)} is good to {_counted(found.digits)}{others}"
-
-
-def _span(trust: TrustWatch, found: Finding) -> str:
-    """Return from when to when digits count."""
-    return f"from t = {trust.since:.4g} s (the last edit) until t = {found.until:.4g} s"
 
 
 def _still_true(found: Finding) -> str:
@@ -180,9 +176,5 @@ def _build_details(ui: Ui, world: World, window: Window) -> None:
     elif not trust.wanted:
         ui.faint(f"It computes the scene about {RUNS} times over, beside the window: frames have priority.")
     ui.rule()
-    ui.item(
-        "Check digits",
-        lambda _, window: window.trust.toggle(),
-        on=trust.wanted,
-        tip="In a separate process, again as time goes on",
-    )
+    tip = "In a separate process, again as time goes on"
+    ui.item("Check digits", lambda _, window: window.trust.toggle(), on=trust.wanted, tip=tip)

@@ -6,12 +6,12 @@ from typing import Any
 from numpy.typing import NDArray
 
 from physicslab.components import Transform
+from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import is_within
-from physicslab.view.canvas.drawing import Drawing
 from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.tools import TOOLS
-from physicslab.view.overlay.free_body import draw_free_body
+from physicslab.view.overlay.forces import draw_free_body, draw_vectors
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.instruments import draw_instruments, instruments_of
 from physicslab.view.overlay.marks import (
@@ -23,7 +23,6 @@ from physicslab.view.overlay.marks import (
     draw_selection,
     draw_snap_marks,
 )
-from physicslab.view.overlay.vectors import draw_vectors
 from physicslab.view.picture.picture import draw_world
 from physicslab.view.window.placing import refused_place
 from physicslab.view.window.window import Window

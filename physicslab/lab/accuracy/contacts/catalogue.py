@@ -1,9 +1,7 @@
 """Every contact case, in one explicit list."""
 
-from physicslab.lab.accuracy.contacts.alike import ALIKE
-from physicslab.lab.accuracy.contacts.rolling import ROLLING
-from physicslab.lab.accuracy.contacts.sliding import SLIDING
-from physicslab.lab.accuracy.contacts.striking import STRIKING
+from physicslab.lab.accuracy.contacts.sliding import ROLLING, SLIDING
+from physicslab.lab.accuracy.contacts.striking import ALIKE, STRIKING
 from physicslab.lab.case import Catalogue
 
 CONTACTS = Catalogue((*SLIDING, *ROLLING, *STRIKING, *ALIKE))

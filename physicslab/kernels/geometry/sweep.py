@@ -8,16 +8,9 @@ circle.
 import math
 
 from physicslab.kernels import inlined
-from physicslab.kernels.narrow.manifold import circle_box
-from physicslab.kernels.narrow.outline import Outline, Way, turned
-
-__all__ = ["MISS", "sweep_box_box", "sweep_circle_box", "sweep_circle_circle", "sweep_turning_box"]
-
-MISS = 2.0
-_APPROACHES, _REFINEMENTS = 40, 8
-"""Largest numbers of steps towards a meeting, none of which can pass it, and of Newton's steps at its end."""
-_NEAR = 0.02
-"""Share of the farthest motion from which on the gap is nearly linear."""
+from physicslab.kernels.geometry.cores import APPROACHES, MISS, NEAR, REFINEMENTS
+from physicslab.kernels.geometry.manifold import circle_box
+from physicslab.kernels.geometry.outline import Outline, Way, swing_of, turned
 
 
 @inlined
@@ -73,12 +66,11 @@ def sweep_turning_box(way: Way, start: float, box: Outline, turn: float, radius:
     displacement later.
     """
     x, y, ux, uy = way
-    swing = abs(turn) * math.sqrt(box.half_x * box.half_x + box.half_y * box.half_y)
-    farthest, t = math.sqrt(ux * ux + uy * uy) + swing, 0.0
-    for step in range(_APPROACHES + _REFINEMENTS):
+    farthest, t = math.sqrt(ux * ux + uy * uy) + swing_of(box, turn), 0.0
+    for step in range(APPROACHES + REFINEMENTS):
         at_x, at_y = x + t * ux, y + t * uy
         nx, ny, _px, _py, gap = circle_box(at_x, at_y, turned(box, (start + t) * turn), radius)
-        if step < _APPROACHES and gap > _NEAR * farthest:
+        if step < APPROACHES and gap > NEAR * farthest:
             t += gap / farthest
         else:
             rate = nx * ux + ny * uy - turn * (ny * at_x - nx * at_y)

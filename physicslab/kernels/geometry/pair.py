@@ -3,21 +3,17 @@
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, inlined
-from physicslab.kernels.narrow.manifold import LEVEL, box_box, circle_box, circle_circle, wall_corner
-from physicslab.kernels.narrow.outline import Outline, Way, turned
-from physicslab.kernels.narrow.sweep import (
-    MISS,
+from physicslab.kernels import Numbers, Vectors, inlined
+from physicslab.kernels.geometry.cores import MISS, opening, pose_at, sweep_cores, touch_cores
+from physicslab.kernels.geometry.manifold import LEVEL, box_box, circle_box, circle_circle
+from physicslab.kernels.geometry.outline import Outline, Way, corner, half_size, swing_of, turned
+from physicslab.kernels.geometry.sweep import (
     sweep_box_box,
     sweep_circle_box,
     sweep_circle_circle,
     sweep_turning_box,
 )
 from physicslab.kernels.records import Manifold, Point
-
-__all__ = [
-    "CONTACT_MARGIN", "SWEEP_THRESHOLD", "WIDE_SHARE", "touch_boxes", "touch_wall", "touch_with_circle",
-]  # fmt: skip
 
 CONTACT_MARGIN = 0.02
 """Share of the smaller body's size within which a pair counts as near: its points are kept though they do
@@ -141,8 +137,7 @@ def touch_with_circle(
     # How far a corner of the box comes.
     swing = 0.0
     if turn != 0.0:
-        half_x, half_y = max(a.half_x, b.half_x), max(a.half_y, b.half_y)
-        swing = abs(turn) * math.sqrt(half_x * half_x + half_y * half_y)
+        swing = swing_of(a if a.box else b, turn)
     level = swing <= _TURNING * reach
     if swing <= _ROUNDING * size:
         swing = turn = 0.0
@@ -231,12 +226,58 @@ def touch_boxes(
 
 
 @inlined
-def _lowest_corners(height: float, nx: float, ny: float, box: Outline) -> tuple[int, int, float, float]:
-    """Return the two corners of a box that are nearest to a wall, and their distances from it [m]."""
+def touch_rounded(
+    manifold: Manifold, one: Point, two: Point, way: Way, turn_a: float, turn_b: float, start: float,
+    speculative_margin: float, a: Outline, b: Outline, pool: Vectors,
+) -> None:  # fmt: skip
+    """Find the points of any two shapes, of which at most one is a disc: as they are now, or where they meet.
+
+    Both turn, by ``turn_a`` and ``turn_b`` [rad] in the substep.
+    """
+    size = 2.0 * min(half_size(a), half_size(b))
+    travel = math.sqrt(way.ux * way.ux + way.uy * way.uy)
+    travel += swing_of(a, turn_a) + swing_of(b, turn_b)
+    near = CONTACT_MARGIN * size + speculative_margin
+    loaded = manifold.count > 0 and one.normal_impulse + two.normal_impulse > 0.0
+    old = one.feature if loaded else 0  # of others a file keeps none
+    before_1, before_2 = _impulses_of(one), _impulses_of(two)
+    found = touch_cores(way, a, b, pool, near + travel, old)
+    manifold.count, manifold.swept, manifold.size, manifold.gap = 0, 0, size, found.gap
+    fast = travel > SWEEP_THRESHOLD * size and not loaded
+    if found.gap > near and not (fast and found.gap <= travel + speculative_margin):
+        return
+    place, share = way, 0.0
+    if fast:
+        t = sweep_cores(way, turn_a, turn_b, start, a, b, pool)
+        if t <= 1.0:
+            meeting, met_a, met_b = pose_at(way, turn_a, turn_b, a, b, start + t)
+            met = touch_cores(meeting, met_a, met_b, pool, near + travel, 0)
+            if met.gap > -_ROUNDING * size:  # else they overlapped before the substep began
+                found, place, share = met, meeting, start + t
+                manifold.swept = 1
+        elif found.gap > near:
+            return
+        else:
+            manifold.swept = 2
+    manifold.normal_x, manifold.normal_y, manifold.count = found.nx, found.ny, found.points
+    for j in range(found.points):
+        point = found.one if j == 0 else found.two
+        opens = share * opening(point, place, found.nx, found.ny, turn_a, turn_b) if share != 0.0 else 0.0
+        _put(
+            one if j == 0 else two, point.feature, point.x, point.y, point.x - place.dx, point.y - place.dy,
+            point.separation - opens, before_1, before_2,
+        )  # fmt: skip
+
+
+@inlined
+def _lowest_corners(
+    height: float, nx: float, ny: float, body: Outline, pool: Vectors
+) -> tuple[int, int, float, float]:
+    """Return the two corners of a core that are nearest to a wall, and their distances from it [m]."""
     best, second = -1, -1
     low, next_low = math.inf, math.inf
-    for k in range(4):
-        corner_x, corner_y = wall_corner(k, box)
+    for k in range(body.vertices):
+        corner_x, corner_y = corner(k, body, pool)
         separation = height + corner_x * nx + corner_y * ny
         if separation < low:
             best, second, low, next_low = k, best, separation, low
@@ -248,9 +289,9 @@ def _lowest_corners(height: float, nx: float, ny: float, box: Outline) -> tuple[
 @inlined
 def touch_wall(
     manifold: Manifold, one: Point, two: Point, way: Way, spin: float, speculative_margin: float,
-    body: Outline, bounds: Numbers,
+    body: Outline, bounds: Numbers, pool: Vectors,
 ) -> None:  # fmt: skip
-    """Find the points of a body and one of the bounds: of a box, the two corners nearest to the wall.
+    """Find the points of a body and one of the bounds: the two corners nearest to the wall, or a disc's one.
 
     The body is where ``way`` begins, seen from the world's origin; ``spin`` is how far it turns a corner.
     """
@@ -263,22 +304,14 @@ def touch_wall(
     manifold.normal_x, manifold.normal_y = nx, ny
     before_1, before_2 = _impulses_of(one), _impulses_of(two)
     manifold.count, manifold.swept = 0, 0
-    smaller = min(body.half_x, body.half_y) if body.box else radius
-    manifold.size = 2.0 * smaller
-    margin = CONTACT_MARGIN * smaller + travel
-    if not body.box:
-        separation = height - radius
+    manifold.size = 2.0 * half_size(body)
+    margin = CONTACT_MARGIN * half_size(body) + travel
+    best, second, low, next_low = _lowest_corners(height, nx, ny, body, pool)
+    for j in range(2):
+        nearest, separation = (best, low - radius) if j == 0 else (second, next_low - radius)
         if separation <= margin:
-            manifold.count = 1
-            arm_x, arm_y = -radius * nx, -radius * ny
-            _put(one, 1, x + arm_x, y + arm_y, arm_x, arm_y, separation, before_1, before_2)
-        return
-    best, second, low, next_low = _lowest_corners(height, nx, ny, body)
-    if low <= margin:
-        manifold.count = 1
-        arm_x, arm_y = wall_corner(best, body)
-        _put(one, best + 1, x + arm_x, y + arm_y, arm_x, arm_y, low, before_1, before_2)
-    if next_low <= margin:
-        manifold.count = 2
-        arm_x, arm_y = wall_corner(second, body)
-        _put(two, second + 1, x + arm_x, y + arm_y, arm_x, arm_y, next_low, before_1, before_2)
+            manifold.count = j + 1
+            corner_x, corner_y = corner(nearest, body, pool)
+            arm_x, arm_y = corner_x - radius * nx, corner_y - radius * ny
+            point = one if j == 0 else two
+            _put(point, nearest + 1, x + arm_x, y + arm_y, arm_x, arm_y, separation, before_1, before_2)

@@ -5,16 +5,16 @@ import math
 from physicslab.kernels import Rows, Vectors, always_inlined, fused, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment_arms, response
-from physicslab.kernels.geometry.shapes import BOX, Shapes
-from physicslab.kernels.narrow.outline import Way, kept_outline
-from physicslab.kernels.narrow.pair import CONTACT_MARGIN, touch_boxes, touch_wall, touch_with_circle
+from physicslab.kernels.geometry.outline import Way, kept_outline, swing_of
+from physicslab.kernels.geometry.pair import (
+    CONTACT_MARGIN,
+    touch_boxes,
+    touch_rounded,
+    touch_wall,
+    touch_with_circle,
+)
+from physicslab.kernels.geometry.shapes import Shapes, half_thickness, has_own_way
 from physicslab.kernels.records import Manifold, Point, Points
-
-__all__ = [
-    "ACTIVATION_RATIO", "AS_FOUND", "CACHE_TOLERANCE", "CACHE_TURN_TOLERANCE", "TOLERANCE_WITHIN_STEP",
-    "WIDE_TOLERANCE",
-    "effective_masses", "find_contacts", "follow_pose", "forget_points", "mix", "note_pose", "touch",
-]  # fmt: skip
 
 ACTIVATION_RATIO = 1.02
 """Distance within which two bodies may have contact points, as a multiple of their bounding radii's sum."""
@@ -106,27 +106,29 @@ def forget_points(one: Point, two: Point) -> None:
 @fused
 def _look_up(
     manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, shapes: Shapes,
-    h: float, speculative_margin: float, tolerance: float, circular: bool,
+    h: float, speculative_margin: float, tolerance: float, turns: bool, sharp: bool,
 ) -> int:  # fmt: skip
-    """Use what was found of a pair with a box, if they have hardly moved against each other.
+    """Use what was found of a pair with corners, if they have hardly moved against each other.
 
-    Points are kept of two boxes, or of one and a wall; that there are none, of any pair with a box.
+    Points are kept of two ``sharp`` polygons, or of one and a wall; that there are none, of any pair with
+    corners. Where the pair ``turns``, its points may be those of a later moment in the substep.
     ``tolerance`` is a share of :data:`CACHE_TOLERANCE` and :data:`CACHE_TURN_TOLERANCE`. Returns what is
     known of them now. Where that is nothing, their present pose is recorded, for which their points are to be
     found.
     """
     a, b, half_x, half_y, angle = manifold.a, manifold.b, shapes.half_x, shapes.half_y, motion.angle
     radius = shapes.radius
-    size, of_both = 2.0 * min(half_x[b], half_y[b]), 2.0 * half_x[b] + 4.0 * half_y[b]
+    size, of_both = 2.0 * half_thickness(shapes, b), 2.0 * half_x[b] + 4.0 * half_y[b]
     if manifold.wall < 0:
-        size = min(size, 2.0 * min(half_x[a], half_y[a]))
+        size = min(size, 2.0 * half_thickness(shapes, a))
         of_both += 6.0 * half_x[a] + 10.0 * half_y[a]
     travel = abs(way.ux) + abs(way.uy)
-    if circular:
+    if turns:
         spin = abs(motion.angular[a]) * (half_x[a] + half_y[a])
         spin += abs(motion.angular[b]) * (half_x[b] + half_y[b])
         travel += h * spin  # how far a corner comes
-        size = min(max(half_x[a], radius[a]), max(half_x[b], radius[b]))
+        if has_own_way(shapes, a) and has_own_way(shapes, b):
+            size = min(max(half_x[a], radius[a]), max(half_x[b], radius[b]))
         of_both += 7.0 * radius[a] + 11.0 * radius[b]
     moved_x, moved_y = way.dx - manifold.base_x, way.dy - manifold.base_y
     turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
@@ -138,7 +140,7 @@ def _look_up(
             nearest = manifold.gap - abs(moved_x) - abs(moved_y) - turned - 0.0025 * size
             if nearest > CONTACT_MARGIN * size + travel + speculative_margin:
                 return _APART
-        elif not circular and (
+        elif sharp and (
             abs(moved_x) + abs(moved_y) <= tolerance * CACHE_TOLERANCE * size
             and abs(turn_a) <= tolerance * CACHE_TURN_TOLERANCE
             and abs(turn_b) <= tolerance * CACHE_TURN_TOLERANCE
@@ -160,13 +162,13 @@ def _in_place(
 
     To find it again would give the same.
     """
-    a, b, angle, first = manifold.a, manifold.b, motion.angle, shapes.first
+    a, b, angle, vertices = manifold.a, manifold.b, motion.angle, shapes.vertices
     return bool(
         manifold.found == AS_FOUND
         and way.dx == manifold.base_x
         and way.dy == manifold.base_y
-        and (first[a] != BOX or angle[a] == manifold.base_angle_a)
-        and (first[b] != BOX or angle[b] == manifold.base_angle_b)
+        and (vertices[a] < 2 or angle[a] == manifold.base_angle_a)
+        and (vertices[b] < 2 or angle[b] == manifold.base_angle_b)
         and point.normal_impulse > 0.0
         and point.found_separation < CONTACT_MARGIN * 0.5 * manifold.size + speculative_margin
     )
@@ -177,21 +179,26 @@ def touch(
     manifold: Manifold, one: Point, two: Point, way: Way, motion: Motion, shapes: Shapes, bounds: Bounds,
     rotations: Vectors, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
-    """Find the points of a pair, of whatever shapes."""
+    """Find the points of a pair, of whatever shapes: what is fast for discs and boxes is chosen here."""
     b = manifold.b
     body = kept_outline(b, motion.angle, shapes, rotations)
     if manifold.wall >= 0:
-        farthest = math.sqrt(body.half_x * body.half_x + body.half_y * body.half_y)
-        spin = abs(motion.angular[b]) * h * farthest
+        spin = swing_of(body, motion.angular[b] * h)
         place = Way(motion.position[b, 0], motion.position[b, 1], way.ux, way.uy)
-        touch_wall(manifold, one, two, place, spin, speculative_margin, body, bounds.walls)
+        touch_wall(manifold, one, two, place, spin, speculative_margin, body, bounds.walls, shapes.pool)
         return
     other = kept_outline(manifold.a, motion.angle, shapes, rotations)
-    if other.box and body.box:
+    turn_a = h * motion.angular[manifold.a] if other.vertices > 1 else 0.0
+    turn_b = h * motion.angular[b] if body.vertices > 1 else 0.0
+    if not (has_own_way(shapes, manifold.a) and has_own_way(shapes, b)):
+        touch_rounded(
+            manifold, one, two, way, turn_a, turn_b, start, speculative_margin, other, body, shapes.pool
+        )
+    elif other.box and body.box:
         touch_boxes(manifold, one, two, way, start, speculative_margin, other, body)
     else:
-        turn = motion.angular[manifold.a] if other.box else (motion.angular[b] if body.box else 0.0)
-        touch_with_circle(manifold, one, way, turn * h, start, speculative_margin, other, body)
+        turn = turn_a if other.box else turn_b
+        touch_with_circle(manifold, one, way, turn, start, speculative_margin, other, body)
 
 
 @inlined
@@ -255,22 +262,24 @@ def find_contacts(
             position[b, 0] - position[a, 0], position[b, 1] - position[a, 1],
             (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h,
         )  # fmt: skip
-        boxes = int(shapes.first[a] == BOX) + int(shapes.first[b] == BOX)
-        walled = manifold.wall >= 0
-        circular = not walled and boxes == 1
-        round_pair = not had_points and (shapes.first[b] != BOX if walled else boxes == 0)
+        vertices, walled = shapes.vertices, manifold.wall >= 0
+        polygons = int(vertices[a] > 1) + int(vertices[b] > 1)
+        rounded = not (has_own_way(shapes, a) and has_own_way(shapes, b))
+        circular = not walled and polygons == 1
+        round_pair = not had_points and polygons == 0
         if round_pair and _too_far(manifold, way, motion, shapes, bounds, speculative_margin):
             continue
         manifold.offset_x, manifold.offset_y = way.dx, way.dy
         known = _OUTDATED
-        with_disc = not walled and boxes < 2
+        with_disc = not walled and polygons < 2
         if with_disc and not first and _in_place(manifold, one, way, motion, shapes, speculative_margin):
             one.separation = one.found_separation
             known = _KEPT
-        elif shapes.first[b] == BOX if walled else boxes > 0:
+        elif polygons > 0 and not (walled and rounded):
             known = _look_up(
-                manifold, near.points, p, way, motion, shapes, h, speculative_margin, tolerance, circular
-            )
+                manifold, near.points, p, way, motion, shapes, h, speculative_margin, tolerance,
+                circular or rounded, not (circular or rounded),
+            )  # fmt: skip
             if known == _APART:
                 continue
         if known == _OUTDATED:

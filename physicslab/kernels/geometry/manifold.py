@@ -4,13 +4,11 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import inlined
-from physicslab.kernels.narrow.outline import Outline
-
-__all__ = ["LEVEL", "Corner", "box_box", "circle_box", "circle_circle", "wall_corner"]
+from physicslab.kernels.geometry.outline import Outline
 
 _PARALLEL = 0.9998
 """Cosine of the angle between axes of boxes from which on these count as parallel: 0.02 rad."""
-_FAVOUR, _ALIKE = 0.005, 1e-9
+FAVOUR, ALIKE = 0.005, 1e-9
 """Share of the smallest half extent by which an axis must be better than that of old points, and up to which
 two axes are as good."""
 LEVEL = 0.01
@@ -118,7 +116,7 @@ def _best_axis(
     gap_bx = abs(dbx) - b.half_x - (c * a.half_x + s * a.half_y)
     gap_by = abs(dby) - b.half_y - (s * a.half_x + c * a.half_y)
     smallest = min(min(a.half_x, a.half_y), min(b.half_x, b.half_y))
-    rounding, gap, face = _ALIKE * smallest, gap_ax, 0
+    rounding, gap, face = ALIKE * smallest, gap_ax, 0
     if gap_ay > gap + rounding:
         gap, face = gap_ay, 1
     if gap_bx > gap + rounding:
@@ -128,7 +126,7 @@ def _best_axis(
     if feature > 0:
         held = _face_of(feature)
         held_gap = (gap_ax if held == 0 else gap_ay) if held < 2 else (gap_bx if held == 2 else gap_by)
-        if gap <= held_gap + _FAVOUR * smallest:
+        if gap <= held_gap + FAVOUR * smallest:
             gap, face = held_gap, held
     if (c < _PARALLEL and s < _PARALLEL) or gap > margin or (ux == 0.0 and uy == 0.0):
         return gap, face

@@ -1,18 +1,73 @@
-"""The free-body diagram of the selection: every force by name, measured now and then."""
+"""Velocities, forces and contact normals as arrows, and the free-body diagram of the selection."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from physicslab.components import Transform
-from physicslab.diagnostics.free_body import LastStep, NamedForce, forces_on, last_step, net_force
+from physicslab.components import Transform, Velocity
+from physicslab.diagnostics.free_body import (
+    LastStep,
+    NamedForce,
+    applied_forces,
+    contact_forces,
+    forces_on,
+    last_step,
+    net_force,
+)
 from physicslab.ecs.vector import Vector2
-from physicslab.view.canvas.drawing import Drawing
+from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.overlay.arrows import ArrowKind, Head, draw_arrows
+from physicslab.view.overlay.arrows import (
+    CONTACT_NORMAL,
+    FORCE,
+    MIN_LENGTH,
+    VELOCITY,
+    ArrowKind,
+    Head,
+    draw_arrows,
+)
+from physicslab.view.overlay.contact_samples import resting_of
 from physicslab.view.overlay.labels import Label
-from physicslab.view.overlay.overlays import Gauge, Overlays
+from physicslab.view.overlay.legend import Gauge, Overlays
 from physicslab.world import World
+
+NORMAL_LENGTH = 26.0
+"""Length of the arrows of contact normals, which are directions only [px]; shorter in a crowd."""
+
+
+def draw_vectors(world: World, overlays: Overlays, on: Drawing) -> None:
+    """Draw the velocity of each body that moves, the sum of the forces on it, and the normals of contacts."""
+    applied = applied_forces(world)
+    force = applied + contact_forces(world)
+    rows = world.batch(Transform, Velocity).rows
+    position = world.table(Transform)["position"][rows]
+    linear = world.table(Velocity)["linear"][rows]
+    pulled = rows[world.bodies.inverse_mass[rows] > 0.0]
+    force, applied = force[pulled], applied[pulled]
+    # The velocity that contacts remove is the scale of the rest: a rounding of it is no force, and no motion.
+    strength = np.hypot(applied[:, 0], applied[:, 1])
+    sizes = np.concatenate((np.hypot(force[:, 0], force[:, 1]), strength))
+    overlays.force.follow(sizes, overlays.reach, world.time)
+    pull = strength * world.bodies.inverse_mass[pulled] * world.simulation.dt
+    speed = np.concatenate((np.hypot(linear[:, 0], linear[:, 1]), pull))
+    overlays.velocity.follow(speed, overlays.reach, world.time)
+    flip = np.array((1.0, -1.0))  # the screen's y points down
+    if overlays.force.per_metre:
+        start = on.camera.project(world.table(Transform)["position"][pulled])
+        span = force * flip * (on.camera.scale / overlays.force.per_metre)
+        draw_arrows(start, span, FORCE, on)
+    if overlays.velocity.per_metre:
+        span = linear * flip * (on.camera.scale / overlays.velocity.per_metre)
+        draw_arrows(on.camera.project(position), span, VELOCITY, on)
+    contacts = resting_of(world)
+    contacts = contacts[contacts["normal"] > 0.0]
+    start = on.camera.project(contacts["place"])
+    length = min(NORMAL_LENGTH, max(0.5 * overlays.reach * on.camera.scale, MIN_LENGTH))
+    draw_arrows(start, contacts["direction"] * flip * length, CONTACT_NORMAL, on)
+
+
+# ---- the free-body diagram ---------------------------------------------------------------------------------
+
 
 _PERIOD = 0.2
 """Time [s] after which forces are measured again while time runs: faster digits cannot be read."""
@@ -78,10 +133,12 @@ class Measured:
 # ---- drawing -----------------------------------------------------------------------------------------------
 
 
-_NORMAL = ArrowKind("Normal force", "normal_impulse", Head.DIAMOND)
-_FRICTION = ArrowKind("Friction", "friction_impulse", Head.OPEN, dashed=True)
-_KINDS = {"field": ArrowKind("Force", "force", Head.DOUBLE), "normal": _NORMAL, "friction": _FRICTION}
 _WIDTH = 2.6
+_KINDS = {
+    "field": ArrowKind("Force", "force", Head.DOUBLE, _WIDTH),
+    "normal": ArrowKind("Normal force", "normal_impulse", Head.DIAMOND, _WIDTH),
+    "friction": ArrowKind("Friction", "friction_impulse", Head.OPEN, _WIDTH, dashed=True),
+}
 _REACH = 0.16
 """Length of the longest arrow, as a share of the smaller side of the picture."""
 
@@ -113,6 +170,6 @@ def _draw(one: NamedForce, moved: Vector2, number: int, gauge: Gauge, on: Drawin
     """Draw one arrow, and return its label."""
     start = on.camera.project(np.array([(one.place.x + moved.x, one.place.y + moved.y)]))
     span = np.array([(one.force.x, -one.force.y)]) * (on.camera.scale / gauge.per_metre)
-    draw_arrows(start, span, _KINDS[one.kind], on, width=_WIDTH)
+    draw_arrows(start, span, _KINDS[one.kind], on)
     x, y = (start + span)[0].tolist()
     return Label((number, hash(one.name)), (x, y), [f"{one.name}: {quantity(one.force.magnitude, 'N')}"])

@@ -1,0 +1,269 @@
+"""Where two rounded polygons touch, whatever their numbers of vertices: a box, a capsule, a disc beside one.
+
+Separating axes find the face from which all of the other core is farthest; its nearest edge is clipped to
+that face (Ericson, Real-Time Collision Detection, 2005, 5.1.9 and 5.2). Of rounded ones whose vertices are
+nearest, these are the discs that touch. Coordinates are relative to A's centre.
+"""
+
+import math
+from typing import NamedTuple
+
+from physicslab.kernels import Vectors, inlined
+from physicslab.kernels.geometry.manifold import ALIKE, FAVOUR, LEVEL, Corner
+from physicslab.kernels.geometry.outline import Outline, Way, corner, half_size, swing_of, turned
+
+_FACE, FLIPPED, VERTICES = 65, 129, 200
+"""From these numbers on features are vertices on faces of A (65 + vertex + 8 face), vertices on faces of B,
+and pairs of vertices. Those of two boxes end before."""
+MISS = 2.0
+"""What a sweep returns where two outlines miss each other."""
+APPROACHES, REFINEMENTS = 40, 8
+"""Largest numbers of steps towards a meeting, none of which can pass it, and of Newton's steps at its end."""
+NEAR = 0.02
+"""Share of the farthest motion from which on the gap is nearly linear."""
+_ENDS = 1e-6
+"""Share of the radius by which vertices must be farther than faces to be what is nearest."""
+_SLACK = 2e-3
+"""Share of the radius by which the nearest edge may pass the ends of a face: more than that hides."""
+
+
+class Touch(NamedTuple):
+    """The gap of two outlines [m], no more than their distance; the normal from A to B; up to two points."""
+
+    gap: float
+    nx: float
+    ny: float
+    points: int
+    one: Corner
+    two: Corner
+
+
+@inlined
+def _normal(k: int, outline: Outline, pool: Vectors) -> tuple[float, float, float, float, float]:
+    """Return the outward normal of face k of a core, its distance [m], and the vertex at which it begins."""
+    x, y = corner(k, outline, pool)
+    end_x, end_y = corner((k + 1) % outline.vertices, outline, pool)
+    along_x, along_y = end_x - x, end_y - y
+    length = math.sqrt(along_x * along_x + along_y * along_y)
+    nx, ny = along_y / length, -along_x / length
+    return nx, ny, nx * x + ny * y, x, y
+
+
+@inlined
+def _clear_of(k: int, x: float, y: float, a: Outline, b: Outline, pool: Vectors) -> float:
+    """Return how far all of the core of B, which is at (x, y), is beyond face k of that of A [m]."""
+    nx, ny, distance, _, _ = _normal(k, a, pool)
+    nearest = math.inf
+    for j in range(b.vertices):
+        bx, by = corner(j, b, pool)
+        nearest = min(nearest, nx * (x + bx) + ny * (y + by))
+    return nearest - distance
+
+
+@inlined
+def _farthest_face(x: float, y: float, a: Outline, b: Outline, pool: Vectors) -> tuple[float, int]:
+    """Return the face of A from which all of the core of B is farthest, and before that how far [m]."""
+    gap, face = -math.inf, 0
+    if a.vertices > 1:
+        for k in range(a.vertices):
+            clear = _clear_of(k, x, y, a, b, pool)
+            if clear > gap:
+                gap, face = clear, k
+    return gap, face
+
+
+@inlined
+def _best_face(
+    dx: float, dy: float, a: Outline, b: Outline, pool: Vectors, old: int
+) -> tuple[float, int, bool]:
+    """Return the largest gap of two cores along a face's normal, that face, and whether it is one of B's.
+
+    The face of an old point stays unless another one is better by a little.
+    """
+    gap, face = _farthest_face(dx, dy, a, b, pool)
+    gap_b, face_b = _farthest_face(-dx, -dy, b, a, pool)
+    smallest, flip = min(half_size(a), half_size(b)), False
+    if gap_b > gap + ALIKE * smallest:
+        gap, face, flip = gap_b, face_b, True
+    if _FACE <= old < VERTICES:
+        held, held_flip = (old - _FACE) // 8 % 8, old >= FLIPPED
+        held_a, held_b, sign = (b, a, -1.0) if held_flip else (a, b, 1.0)
+        held_gap = _clear_of(held, sign * dx, sign * dy, held_a, held_b, pool)
+        if gap <= held_gap + FAVOUR * smallest:
+            gap, face, flip = held_gap, held, held_flip
+    return gap, face, flip
+
+
+@inlined
+def _nearest_edge(nx: float, ny: float, outline: Outline, pool: Vectors) -> int:
+    """Return the edge of a core whose outward normal is most opposed to a normal."""
+    best, least = 0, math.inf
+    if outline.vertices > 1:
+        for k in range(outline.vertices):
+            ox, oy, _, _, _ = _normal(k, outline, pool)
+            if ox * nx + oy * ny < least:
+                best, least = k, ox * nx + oy * ny
+    return best
+
+
+@inlined
+def _shares(rx: float, ry: float, ux: float, uy: float, wx: float, wy: float) -> tuple[float, float]:
+    """Return the shares of two edges u and w at which they are nearest; u begins r from w, maybe a point."""
+    a, e, f, c = ux * ux + uy * uy, wx * wx + wy * wy, wx * rx + wy * ry, ux * rx + uy * ry
+    if e <= 0.0:
+        return min(max(-c / a, 0.0), 1.0), 0.0
+    b = ux * wx + uy * wy
+    across = a * e - b * b
+    s = min(max((b * f - c * e) / across, 0.0), 1.0) if across > 1e-12 * a * e else 0.0
+    t = (b * s + f) / e
+    if t < 0.0:
+        return min(max(-c / a, 0.0), 1.0), 0.0
+    if t > 1.0:
+        return min(max((b - c) / a, 0.0), 1.0), 1.0
+    return s, t
+
+
+@inlined
+def _slides_over(
+    gap: float, radius: float, nx: float, ny: float, ex: float, ey: float, ux: float, uy: float
+) -> bool:
+    """Whether rounded ends meet a vertex that is hardly higher than the face with normal n beside it.
+
+    The next tile of a floor is no step. (ex, ey) leads from the vertex to what comes on, by (ux, uy).
+    """
+    down = ux * nx + uy * ny
+    along_x, along_y = ux - down * nx, uy - down * ny
+    along = math.sqrt(along_x * along_x + along_y * along_y)
+    return gap > (1.0 - LEVEL) * radius and along > abs(down) and along_x * ex + along_y * ey < 0.0
+
+
+@inlined
+def touch_cores(way: Way, a: Outline, b: Outline, pool: Vectors, margin: float, old: int) -> Touch:
+    """Return where two rounded polygons touch, of which at most one is a disc.
+
+    ``way`` leads from A's centre to B's; ``old`` is the feature of a point that they have had, or 0. Points
+    are half-way between the surfaces, and there are none where the gap exceeds ``margin``.
+    """
+    dx, dy, ux, uy = way
+    none, both = Corner(0.0, 0.0, 0.0, 0), a.radius + b.radius
+    gap, face, flip = _best_face(dx, dy, a, b, pool, old)
+    # Seen from where the face is: at (0, 0), the other one at (x, y).
+    one, other, x, y = (b, a, -dx, -dy) if flip else (a, b, dx, dy)
+    sign, from_x, from_y = (-1.0, dx, dy) if flip else (1.0, 0.0, 0.0)
+    nx, ny, distance, px, py = _normal(face, one, pool)
+    if gap - both > margin:
+        return Touch(gap - both, sign * nx, sign * ny, 0, none, none)
+    next_face, edge = (face + 1) % one.vertices, _nearest_edge(nx, ny, other, pool)
+    next_edge = (edge + 1) % other.vertices
+    ex, ey = corner(next_face, one, pool)
+    qx, qy = corner(edge, other, pool)
+    rx, ry = corner(next_edge, other, pool)
+    qx, qy, rx, ry = x + qx, y + qy, x + rx, y + ry
+    fx, fy, wx, wy = ex - px, ey - py, rx - qx, ry - qy
+    slender = one.vertices == 2 and other.vertices < 3
+    if both > 0.0 and (gap > 0.0 or slender):
+        s, t = _shares(px - qx, py - qy, fx, fy, wx, wy)
+        kx, ky = qx + t * wx - px - s * fx, qy + t * wy - py - s * fy
+        apart = math.sqrt(kx * kx + ky * ky)
+        at_ends = (s == 0.0 or s == 1.0) and (t == 0.0 or t == 1.0)
+        if at_ends and apart > max(gap, 0.0) + _ENDS * both:
+            separation, mx, my = apart - both, kx / apart, ky / apart
+            if _slides_over(gap, both, nx, ny, kx, ky, sign * ux, sign * uy) or separation > margin:
+                return Touch(separation, sign * mx, sign * my, 0, none, none)
+            vertex, end = (next_face if s > 0.0 else face), (next_edge if t > 0.0 else edge)
+            feature = VERTICES + (end + 8 * vertex if flip else vertex + 8 * end)
+            reach = one.radius + 0.5 * separation
+            first = Corner(
+                from_x + px + s * fx + reach * mx, from_y + py + s * fy + reach * my, separation, feature
+            )
+            return Touch(separation, sign * mx, sign * my, 1, first, none)
+    # The edge of the other one is cut off at the ends of the face.
+    length = math.sqrt(fx * fx + fy * fy)
+    tx, ty, slack = fx / length, fy / length, _SLACK * both
+    along1, along2 = (qx - px) * tx + (qy - py) * ty, (rx - px) * tx + (ry - py) * ty
+    start, end_share, run = 0.0, 1.0, along2 - along1
+    if abs(run) > 0.0:
+        low, high = (-slack - along1) / run, (length + slack - along1) / run
+        start, end_share = max(start, min(low, high)), min(end_share, max(low, high))
+    elif along1 < -slack or along1 > length + slack:
+        end_share = -1.0
+    if start > end_share:
+        return Touch(gap - both, sign * nx, sign * ny, 0, none, none)
+    feature = (FLIPPED if flip else _FACE) + 8 * face
+    first = _on_face(start, qx, qy, wx, wy, nx, ny, distance, one.radius, other.radius)
+    second = _on_face(end_share, qx, qy, wx, wy, nx, ny, distance, one.radius, other.radius)
+    first = Corner(first.x + from_x, first.y + from_y, first.separation, feature + edge)
+    second = Corner(second.x + from_x, second.y + from_y, second.separation, feature + next_edge)
+    if other.vertices == 1 or second.separation > margin:
+        return Touch(gap - both, sign * nx, sign * ny, 1 if first.separation <= margin else 0, first, none)
+    if first.separation > margin:
+        return Touch(gap - both, sign * nx, sign * ny, 1, second, none)
+    return Touch(gap - both, sign * nx, sign * ny, 2, first, second)
+
+
+@inlined
+def _on_face(
+    share: float, qx: float, qy: float, wx: float, wy: float, nx: float, ny: float, distance: float,
+    radius: float, rounding: float,
+) -> Corner:  # fmt: skip
+    """Return the point of an edge at a share of it, half-way to the surface of a face with a radius."""
+    x, y = qx + share * wx, qy + share * wy
+    clear = nx * x + ny * y - distance
+    back = 0.5 * (clear - radius + rounding)
+    return Corner(x - back * nx, y - back * ny, clear - radius - rounding, 0)
+
+
+@inlined
+def pose_at(
+    way: Way, turn_a: float, turn_b: float, a: Outline, b: Outline, share: float
+) -> tuple[Way, Outline, Outline]:
+    """Return how two outlines lie a share of a substep from now."""
+    dx, dy, ux, uy = way
+    moved = Way(dx + share * ux, dy + share * uy, ux, uy)
+    return moved, turned(a, share * turn_a), turned(b, share * turn_b)
+
+
+@inlined
+def opening(point: Corner, way: Way, nx: float, ny: float, turn_a: float, turn_b: float) -> float:
+    """Return by how much a point of two outlines opens in a substep, with the normal of now [m]."""
+    bx, by = point.x - way.dx, point.y - way.dy
+    ux = way.ux - turn_b * by + turn_a * point.y
+    uy = way.uy + turn_b * bx - turn_a * point.x
+    return ux * nx + uy * ny
+
+
+@inlined
+def sweep_cores(
+    way: Way, turn_a: float, turn_b: float, start: float, a: Outline, b: Outline, pool: Vectors
+) -> float:
+    """Return the share of a substep, 0 to 1 from ``start`` on, after which two outlines touch, or ``MISS``.
+
+    They turn by ``turn_a`` and ``turn_b`` [rad] in it. The first steps are conservative advancement: the gap
+    along its normal closes no faster than the way and the turning corners make it (Mirtich, 1996).
+    """
+    swing, t = swing_of(a, turn_a) + swing_of(b, turn_b), 0.0
+    farthest = math.sqrt(way.ux * way.ux + way.uy * way.uy) + swing
+    for step in range(APPROACHES + REFINEMENTS):
+        moved, at_a, at_b = pose_at(way, turn_a, turn_b, a, b, start + t)
+        found = touch_cores(Way(moved.dx, moved.dy, 0.0, 0.0), at_a, at_b, pool, math.inf, 0)
+        gap, nx, ny = found.gap, found.nx, found.ny
+        if step == 0 and gap < 0.0:
+            return 0.0
+        if step < APPROACHES and (gap > NEAR * farthest or found.points == 0):
+            closing = swing - (nx * way.ux + ny * way.uy)
+            if closing <= 0.0:
+                return MISS
+            t += gap / closing
+        else:
+            point = (
+                found.two if found.points == 2 and found.two.separation < found.one.separation else found.one
+            )
+            rate = opening(point, moved, nx, ny, turn_a, turn_b)
+            if rate >= 0.0:
+                return MISS
+            t -= point.separation / rate
+            if abs(point.separation) <= 1e-14 * farthest:
+                break
+        if t > 1.0 or t < 0.0:
+            return MISS
+    return t

@@ -1,0 +1,91 @@
+"""The outline of a body and its way against another one, as the narrow phase takes them."""
+
+import math
+from typing import NamedTuple
+
+from physicslab.kernels import Numbers, Vectors, fused, inlined
+from physicslab.kernels.geometry.shapes import BOX, Shapes
+
+
+class Outline(NamedTuple):
+    """A row of the table of shapes, and how it lies.
+
+    Whether it is a box; cosine and sine of its angle; half extents of its core and its radius [m]; the number
+    of its vertices, and where they begin in the pool.
+    """
+
+    box: bool
+    c: float
+    s: float
+    half_x: float
+    half_y: float
+    radius: float
+    vertices: int
+    first: int
+
+
+class Way(NamedTuple):
+    """From A's centre to B's (dx, dy) [m], and how far B moves against A in a substep (ux, uy) [m]."""
+
+    dx: float
+    dy: float
+    ux: float
+    uy: float
+
+
+@fused
+def lying(i: int, shapes: Shapes, c: float, s: float) -> Outline:
+    """Return the outline of row i, turned by the angle of which these are cosine and sine."""
+    return Outline(
+        shapes.first[i] == BOX, c, s, shapes.half_x[i], shapes.half_y[i], shapes.radius[i],
+        shapes.vertices[i], shapes.first[i],
+    )  # fmt: skip
+
+
+@fused
+def outline_of(i: int, angle: Numbers, shapes: Shapes) -> Outline:
+    """Return the outline of row i."""
+    c, s = (math.cos(angle[i]), math.sin(angle[i])) if shapes.vertices[i] > 1 else (1.0, 0.0)
+    return lying(i, shapes, c, s)
+
+
+@fused
+def kept_outline(i: int, angle: Numbers, shapes: Shapes, rotations: Vectors) -> Outline:
+    """Return the same; ``rotations`` (rows, 3) keeps angles, and their cosines and sines."""
+    turns = shapes.vertices[i] > 1
+    if turns and rotations[i, 0] != angle[i]:
+        rotations[i, 0] = angle[i]
+        rotations[i, 1], rotations[i, 2] = math.cos(angle[i]), math.sin(angle[i])
+    c, s = (rotations[i, 1], rotations[i, 2]) if turns else (1.0, 0.0)
+    return lying(i, shapes, c, s)
+
+
+@inlined
+def turned(outline: Outline, angle: float) -> Outline:
+    """Return an outline turned by an angle [rad]."""
+    box, c, s, half_x, half_y, radius, vertices, first = outline
+    if angle == 0.0 or vertices < 2:
+        return outline
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return Outline(
+        box, c * cosine - s * sine, s * cosine + c * sine, half_x, half_y, radius, vertices, first
+    )  # fmt: skip
+
+
+@inlined
+def corner(k: int, outline: Outline, pool: Vectors) -> tuple[float, float]:
+    """Return vertex k of a core, counted counter-clockwise, from its centre in the world's directions [m]."""
+    x, y = outline.half_x * pool[outline.first + k, 0], outline.half_y * pool[outline.first + k, 1]
+    return outline.c * x - outline.s * y, outline.s * x + outline.c * y
+
+
+@inlined
+def half_size(outline: Outline) -> float:
+    """Return half of the smaller extent of an outline [m]."""
+    return min(outline.half_x, outline.half_y) + outline.radius
+
+
+@inlined
+def swing_of(outline: Outline, turn: float) -> float:
+    """Return how far a corner comes, at most, while an outline turns so far [m]."""
+    return abs(turn) * math.sqrt(outline.half_x * outline.half_x + outline.half_y * outline.half_y)

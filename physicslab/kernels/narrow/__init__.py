@@ -1,1 +1,0 @@
-"""Where near bodies touch."""

@@ -1,0 +1,163 @@
+"""Where rounded polygons touch: the general way against those of discs and boxes, and against distances."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from physicslab.components.shape import KINDS, Kind
+from physicslab.kernels.geometry import cores, manifold
+from physicslab.kernels.geometry.cores import Touch
+from physicslab.kernels.geometry.outline import Outline, Way
+from physicslab.kernels.geometry.shapes import BOX
+from physicslab.kernels.interpreter import twin_of
+from physicslab.state.shapes import register
+
+touch_cores, sweep_cores = twin_of(cores.touch_cores), twin_of(cores.sweep_cores)
+box_box, circle_box, pose_at = twin_of(manifold.box_box), twin_of(manifold.circle_box), twin_of(cores.pose_at)
+
+_TURNS = [2.0 * math.pi * k / 5 for k in range(5)]
+FIVE = Kind(tuple((math.cos(turn), math.sin(turn)) for turn in _TURNS), x="radius", y="radius")
+_, EXTENTS, POOL = register((*KINDS.values(), FIVE))
+FIRST = {"disc": 0, "box": BOX, "capsule": 5, "five": 7}
+COUNT = {"disc": 1, "box": 4, "capsule": 2, "five": 5}
+angles, extents = st.floats(-math.pi, math.pi), st.floats(0.2, 2.0)
+kinds = st.sampled_from(("box", "capsule", "five"))
+far = Way(0.0, 0.0, 0.0, 0.0)
+
+
+def outline(kind: str, angle: float, a: float, b: float) -> Outline:
+    half_x, half_y, radius = {
+        "disc": (0.0, 0.0, a), "box": (a, b, 0.0), "capsule": (a, 0.0, b), "five": (a, a, 0.3 * b),
+    }[kind]  # fmt: skip
+    c, s = (math.cos(angle), math.sin(angle)) if kind != "disc" else (1.0, 0.0)
+    return Outline(kind == "box", c, s, half_x, half_y, radius, COUNT[kind], FIRST[kind])
+
+
+def touch(dx: float, dy: float, one: Outline, other: Outline, margin: float = math.inf) -> Touch:
+    found: Touch = touch_cores(Way(dx, dy, 0.0, 0.0), one, other, POOL, margin, 0)
+    return found
+
+
+def corners(one: Outline, x: float = 0.0, y: float = 0.0) -> list[complex]:
+    pool = POOL[one.first : one.first + one.vertices] * (one.half_x, one.half_y)
+    return [complex(x, y) + complex(*place) * complex(one.c, one.s) for place in pool.tolist()]
+
+
+def to_edge(place: complex, a: complex, b: complex) -> float:
+    share = min(max(((place - a) * (b - a).conjugate()).real / abs(b - a) ** 2, 0.0), 1.0)
+    return abs(place - a - share * (b - a))
+
+
+def distance(one: list[complex], other: list[complex]) -> float:
+    """Return the distance of two cores that are apart [m]: a corner of one is nearest to an edge."""
+    gap = math.inf
+    for some, others in ((one, other), (other, one)):
+        edges = list(zip(others, others[1:] + others[:1], strict=True))
+        gap = min(gap, *(to_edge(place, a, b) for place in some for a, b in edges if a != b), math.inf)
+    return gap
+
+
+@given(st.floats(0.5, 4.0), angles, angles, angles, extents, extents, extents, extents)
+def test_of_boxes_it_gives_what_their_own_way_gives(
+    d: float, way: float, turn_a: float, turn_b: float, ax: float, ay: float, bx: float, by: float
+) -> None:
+    dx, dy = d * math.cos(way), d * math.sin(way)
+    one, other = outline("box", turn_a, ax, ay), outline("box", turn_b, bx, by)
+    gap, nx, ny, count, first, second = box_box(dx, dy, 0.0, 0.0, one, other, 10.0, 0)
+    found = touch(dx, dy, one, other, 10.0)
+    assert found.gap == pytest.approx(gap, abs=1e-12)
+    if count == found.points and abs(found.nx * nx + found.ny * ny - 1.0) < 1e-9:
+        theirs = sorted(point.separation for point in (first, second)[:count])
+        assert sorted(p.separation for p in (found.one, found.two)[:count]) == pytest.approx(
+            theirs, abs=1e-11
+        )
+
+
+@given(st.floats(0.5, 4.0), angles, angles, extents, extents, extents)
+def test_of_a_disc_and_a_box_it_gives_what_their_own_way_gives(
+    d: float, way: float, turn: float, half_x: float, half_y: float, radius: float
+) -> None:
+    dx, dy = d * math.cos(way), d * math.sin(way)
+    box, disc = outline("box", turn, half_x, half_y), outline("disc", 0.0, radius, 0.0)
+    nx, ny, _px, _py, separation = circle_box(dx, dy, box, radius)
+    found = touch(dx, dy, box, disc)
+    assert found.gap == pytest.approx(separation, abs=1e-11)
+    if separation > 1e-6 - radius:  # nearer to the middle of a side either side may be the nearest
+        assert (found.nx, found.ny) == pytest.approx((nx, ny), abs=1e-5)
+    assert found.points == 1
+
+
+@given(kinds, kinds, st.floats(0.5, 6.0), angles, angles, angles, extents, extents, extents, extents)
+def test_the_gap_of_what_is_apart_is_the_distance(
+    kind: str, other_kind: str, d: float, way: float, turn_a: float, turn_b: float, ax: float, ay: float,
+    bx: float, by: float,
+) -> None:  # fmt: skip
+    dx, dy = d * math.cos(way), d * math.sin(way)
+    one, other = outline(kind, turn_a, ax, ay), outline(other_kind, turn_b, bx, by)
+    found = touch(dx, dy, one, other)
+    apart = distance(corners(one), corners(other, dx, dy)) - one.radius - other.radius
+    if found.gap + one.radius + other.radius > 1e-9:
+        assert found.gap <= apart + 1e-6
+        if one.radius + other.radius > 0.0:
+            assert found.gap == pytest.approx(apart, abs=1e-5)
+            assert found.points > 0
+    assert math.hypot(found.nx, found.ny) == pytest.approx(1.0)
+
+
+@given(kinds, kinds, st.floats(0.1, 4.0), angles, angles, angles, angles, extents, extents, extents, extents)
+def test_it_does_not_depend_on_who_is_first_nor_on_directions(
+    kind: str, other_kind: str, d: float, way: float, turn_a: float, turn_b: float, whole: float, ax: float,
+    ay: float, bx: float, by: float,
+) -> None:  # fmt: skip
+    dx, dy = d * math.cos(way), d * math.sin(way)
+    one, other = outline(kind, turn_a, ax, ay), outline(other_kind, turn_b, bx, by)
+    found, back = touch(dx, dy, one, other), touch(-dx, -dy, other, one)
+    assert back.gap == pytest.approx(found.gap, abs=1e-9)
+    place = complex(dx, dy) * complex(math.cos(whole), math.sin(whole))
+    turned = touch(
+        place.real, place.imag, outline(kind, turn_a + whole, ax, ay),
+        outline(other_kind, turn_b + whole, bx, by),
+    )  # fmt: skip
+    assert turned.gap == pytest.approx(found.gap, abs=1e-9)
+    for same in (back, turned):
+        if same.points == found.points == 1:
+            assert same.one.separation == pytest.approx(found.one.separation, abs=1e-5)
+
+
+@settings(max_examples=50)
+@given(kinds, kinds, angles, angles, angles, st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), extents, extents)
+def test_a_sweep_ends_where_they_touch(
+    kind: str, other_kind: str, way: float, turn_a: float, turn_b: float, spin_a: float, spin_b: float,
+    a: float, b: float,
+) -> None:  # fmt: skip
+    one, other = outline(kind, turn_a, a, b), outline(other_kind, turn_b, b, a)
+    dx, dy = 7.0 * math.cos(way), 7.0 * math.sin(way)
+    path = Way(dx, dy, -2.0 * dx, -2.0 * dy)  # through each other
+    t = sweep_cores(path, spin_a, spin_b, 0.0, one, other, POOL)
+    assert 0.0 < t < 1.0
+    moved, at_a, at_b = pose_at(path, spin_a, spin_b, one, other, t)
+    assert touch(moved.dx, moved.dy, at_a, at_b).gap == pytest.approx(0.0, abs=1e-9)
+    for earlier in np.linspace(0.0, t - 1e-6, 20).tolist():
+        moved, at_a, at_b = pose_at(path, spin_a, spin_b, one, other, earlier)
+        assert touch(moved.dx, moved.dy, at_a, at_b).gap > 0.0
+
+
+def test_two_capsules_on_each_other_have_two_points_and_end_to_end_one() -> None:
+    one = outline("capsule", 0.0, 1.0, 0.25)
+    above, beside = touch(0.0, 0.6, one, one), touch(2.7, 0.0, one, one)
+    assert (above.points, above.nx, above.ny) == (2, 0.0, 1.0)
+    assert above.gap == above.one.separation == pytest.approx(0.1)
+    assert {above.one.x, above.two.x} == {1.0, -1.0}
+    assert (beside.points, beside.nx, beside.ny) == (1, 1.0, 0.0)
+    assert beside.gap == pytest.approx(0.2)
+
+
+@given(angles)
+def test_what_is_within_another_leaves_by_a_face(turn: float) -> None:
+    assume(abs(math.sin(turn)) > 0.01)
+    found = touch(0.0, 0.0, outline("box", 0.0, 2.0, 1.0), outline("capsule", turn, 0.5, 0.1))
+    assert found.gap < 0.0
+    assert found.points > 0
