@@ -10,18 +10,7 @@ from physicslab.components import Shape, Velocity
 from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import Align, Rect, TextStyle
 from physicslab.view.canvas.quantities import round_quantity, rounded_up
-from physicslab.view.overlay.arrows import (
-    CONTACT_NORMAL,
-    FORCE,
-    FRICTION_IMPULSE,
-    IMPACT_WIDTH,
-    NORMAL_IMPULSE,
-    REST_WIDTH,
-    VELOCITY,
-    ArrowKind,
-    dashes,
-    draw_arrows,
-)
+from physicslab.view.overlay import arrows
 from physicslab.view.overlay.banners import broken
 from physicslab.view.overlay.contact_samples import RecentImpacts
 from physicslab.view.overlay.labels import Labels
@@ -179,7 +168,7 @@ _MAX_SHARE = 0.3
 class Sample:
     """A piece of what is explained: an arrow, or a line of the friction cone where ``kind`` is ``None``."""
 
-    kind: ArrowKind | None
+    kind: arrows.ArrowKind | None
     width: float = 2.0
     dashed: bool = False
 
@@ -211,9 +200,9 @@ class Legend:
         for sample, (across, down), length in self.samples:
             start, span = np.array([(left + across, top + down)]), np.array([(length, 0.0)])
             if sample.kind is not None:
-                draw_arrows(start, span, replace(sample.kind, width=sample.width), on)
+                arrows.draw_arrows(start, span, replace(sample.kind, width=sample.width), on)
             else:
-                line = dashes(start, start + span)[:2] if sample.dashed else (start, start + span)
+                line = arrows.dashes(start, start + span)[:2] if sample.dashed else (start, start + span)
                 on.canvas.lines(line[0], line[1], on.theme.friction_cone, 1.2)
         return rect
 
@@ -226,17 +215,21 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
     remarks = []
     if overlays.arrows:
         rows += [
-            (Sample(VELOCITY), VELOCITY.name, overlays.velocity.words),
-            (Sample(FORCE), FORCE.name, overlays.force.words),
-            (Sample(CONTACT_NORMAL, CONTACT_NORMAL.width), CONTACT_NORMAL.name, "direction only"),
+            (Sample(arrows.VELOCITY), arrows.VELOCITY.name, overlays.velocity.words),
+            (Sample(arrows.FORCE), arrows.FORCE.name, overlays.force.words),
+            (
+                Sample(arrows.CONTACT_NORMAL, arrows.CONTACT_NORMAL.width),
+                arrows.CONTACT_NORMAL.name,
+                "direction only",
+            ),
         ]
         remarks.append("Select a body to see each of the forces on it.")
     if overlays.impulses:
         rows += [
-            (Sample(NORMAL_IMPULSE, IMPACT_WIDTH), "Normal, impact", overlays.impact.words),
-            (Sample(FRICTION_IMPULSE, IMPACT_WIDTH), "Friction, impact", overlays.impact.words),
-            (Sample(NORMAL_IMPULSE, REST_WIDTH), "Normal, resting", overlays.rest.words),
-            (Sample(FRICTION_IMPULSE, REST_WIDTH), "Friction, resting", overlays.rest.words),
+            (Sample(arrows.NORMAL_IMPULSE, arrows.IMPACT_WIDTH), "Normal, impact", overlays.impact.words),
+            (Sample(arrows.FRICTION_IMPULSE, arrows.IMPACT_WIDTH), "Friction, impact", overlays.impact.words),
+            (Sample(arrows.NORMAL_IMPULSE, arrows.REST_WIDTH), "Normal, resting", overlays.rest.words),
+            (Sample(arrows.FRICTION_IMPULSE, arrows.REST_WIDTH), "Friction, resting", overlays.rest.words),
             (Sample(None), "Friction cone μ", "sticks"),
             (Sample(None, dashed=True), "Friction cone μ", "slips"),
         ]

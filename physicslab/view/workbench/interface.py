@@ -13,6 +13,7 @@ from physicslab.view.toolkit.style import bar_height
 from physicslab.view.toolkit.toolkit import Toolkit, Walk
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
+from physicslab.view.workbench import world_panel
 from physicslab.view.workbench.error_plot import build_error_plot
 from physicslab.view.workbench.figures import Line, WorldFigures
 from physicslab.view.workbench.file_panels import Gallery, build_film, build_open, build_recovery, build_save
@@ -24,13 +25,6 @@ from physicslab.view.workbench.microscope_panel import build_microscope
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.transport import build_history, build_transport
-from physicslab.view.workbench.world_panel import (
-    build_figures,
-    build_levels,
-    build_recipe,
-    build_settings,
-    build_world,
-)
 from physicslab.world import World
 
 # ---- the layout: the world first, panels around it ---------------------------------------------------------
@@ -264,18 +258,18 @@ class Interface:
         build_transport(ui, layout.transport, world, window)
         if window.figures:
             with ui.panel("side", layout.side):
-                build_levels(ui, window)
+                world_panel.build_levels(ui, window)
                 if window.selection.entities:
                     build_inspector(ui, self._numbers, world, window)
                 else:
-                    build_world(ui, world, figures, window)
+                    world_panel.build_world(ui, world, figures, window)
                     if window.tool in _RECIPES:
-                        build_recipe(ui, self._numbers, _RECIPES[window.tool], window)
+                        world_panel.build_recipe(ui, self._numbers, _RECIPES[window.tool], window)
                     if window.level == "Engineer":
-                        build_settings(ui, self._numbers, world, window)
+                        world_panel.build_settings(ui, self._numbers, world, window)
                 if window.level != "Explore":
                     ui.rule(0.3)
-                    build_figures(ui, lines)
+                    world_panel.build_figures(ui, lines)
                 if window.level != "Explore" or not window.selection.entities:
                     ui.rule(0.3)
                     self._build_counts(ui, figures)
