@@ -56,7 +56,7 @@ class Gauge:
         self._time = 0.0
 
     def follow(self, values: NDArray[np.float64], reach: float, time: float) -> None:
-        """Take in the magnitudes of a frame; the strongest should be about ``reach`` [m] long."""
+        """Take in the magnitudes (n,) of a frame; the strongest should be about ``reach`` [m] long."""
         if self.kept and self.per_metre:
             return
         strongest = float(np.max(values, initial=0.0, where=np.isfinite(values)))

@@ -104,7 +104,7 @@ _AFTER: dict[str, _Build] = {
     "naming": build_save, "filming.choosing": build_film, "opening": build_open,
     "lists_history": build_history, "help": build_help,
 }  # fmt: skip
-"""What builds the panels that are open, those below and those above others at first."""
+"""The builders of the panels that are open: those below others at first, and those above them."""
 _BUTTONS = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 
 
