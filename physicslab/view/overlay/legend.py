@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +81,10 @@ _MIN_LENGTH = 16.0
 """Its length is at least that [px]."""
 
 
+_GAUGES = {"arrows": ("velocity", "force"), "impulses": ("impact", "rest")}
+"""The scales of each overlay."""
+
+
 class Overlays:
     """The state of the overlays; all of it is the window's, none the world's.
 
@@ -115,20 +120,16 @@ class Overlays:
         self.labels = Labels()
         self.covered: list[Rect] = []
 
-    def toggle_arrows(self, world: World, camera: Camera) -> None:
-        """Show or hide velocities, forces and contact normals."""
-        self.arrows = not self.arrows
-        if self.arrows and not self.keeps_scales:
-            self.velocity, self.force = Gauge("m/s"), Gauge("N")
+    def toggle(self, overlay: Literal["arrows", "impulses"], world: World, camera: Camera) -> None:
+        """Show or hide velocities, forces and contact normals, or the impulses at contacts."""
+        is_on = not getattr(self, overlay)
+        setattr(self, overlay, is_on)
+        if is_on and not self.keeps_scales:
+            for name in _GAUGES[overlay]:
+                setattr(self, name, Gauge(getattr(self, name).unit))
             self._measure(world, camera)
-
-    def toggle_impulses(self, world: World, camera: Camera) -> None:
-        """Show or hide the impulses at contacts."""
-        self.impulses = not self.impulses
-        if self.impulses and not self.keeps_scales:
-            self.impact, self.rest = Gauge("N s"), Gauge("N s")
-            self._measure(world, camera)
-        self.forget()
+        if overlay == "impulses":
+            self.forget()
 
     def toggle_scales(self) -> None:
         """Let the scales of all arrows stay as they are, or follow what is shown again."""

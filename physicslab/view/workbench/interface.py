@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from operator import attrgetter
 
 import pygame
@@ -36,7 +35,6 @@ _MIN_WORLD = 0.34
 """Share of the window's width that is always left to the world: the side panel lies over it if it must."""
 
 
-@dataclass(frozen=True, slots=True)
 class Layout:
     """The rectangles of a window [px].
 
@@ -46,11 +44,19 @@ class Layout:
         The menu bar, the tools, the transport, the panel at the right, and what is left for the world.
     """
 
-    menu: Rect
-    palette: Rect
-    transport: Rect
-    side: Rect
-    room: Rect
+    def __init__(self, size: tuple[int, int], text: int, *, side: bool) -> None:
+        """Lay a window out for text of a height [px], with or without the panel at the right."""
+        width, height = size
+        top, foot, left = bar_height(text), round(_TRANSPORT * text), round(_PALETTE * text)
+        right = round(_SIDE * text) if side else 0
+        middle, across = max(height - top - foot, 1), width - left - right
+        if across < _MIN_WORLD * width:
+            across = width - left
+        self.menu: Rect = (0, 0, width, top)
+        self.palette: Rect = (0, top, left, middle)
+        self.transport: Rect = (0, height - foot, width, foot)
+        self.side: Rect = (width - right, top, right, middle)
+        self.room: Rect = (left, top, max(across, 1), middle)
 
     @property
     def panels(self) -> tuple[Rect, ...]:
@@ -62,24 +68,6 @@ class Layout:
         """The part of the world's room that the panel at the right does not lie over [px]."""
         left, top, width, height = self.room
         return left, top, max(min(width, self.side[0] - left), 1), height
-
-    @classmethod
-    def of(cls, size: tuple[int, int], text: int, *, side: bool) -> Layout:
-        """Lay a window out for text of a height [px], with or without the panel at the right."""
-        width, height = size
-        top, foot, left = bar_height(text), round(_TRANSPORT * text), round(_PALETTE * text)
-        right = round(_SIDE * text) if side else 0
-        middle = max(height - top - foot, 1)
-        room_width = width - left - right
-        if room_width < _MIN_WORLD * width:
-            room_width = width - left
-        return cls(
-            (0, 0, width, top),
-            (0, top, left, middle),
-            (0, height - foot, width, foot),
-            (width - right, top, right, middle),
-            (left, top, max(room_width, 1), middle),
-        )
 
 
 # ---- the panels --------------------------------------------------------------------------------------------
@@ -154,7 +142,7 @@ class Interface:
     @property
     def layout(self) -> Layout:
         """The layout."""
-        return Layout.of(self._window.canvas.size, self.text, side=self._window.figures)
+        return Layout(self._window.canvas.size, self.text, side=self._window.figures)
 
     def room(self) -> Rect:
         """Return what is left for the world [px]."""
