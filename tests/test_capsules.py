@@ -152,11 +152,3 @@ def test_a_file_keeps_it_and_goes_on_with_the_same_bits(tmp_path: Path) -> None:
 def test_bad_sizes_are_refused_by_name(name: str, value: float) -> None:
     with pytest.raises(InvalidValue, match=rf"^Shape\.{name} = {value}: must be"):
         Shape("capsule", **{"length": 1.0, "radius": 0.5, name: value})
-
-
-def test_rigid_and_located_collisions_leave_it_to_soft_contacts_with_the_reason() -> None:
-    world = ground()
-    capsule(world, (0.0, 2.0), restitution=0.5, name="pill")
-    world.step()
-    assert world.plan.contacts == "soft"
-    assert "pill is a capsule" in world.plan.contact_reason

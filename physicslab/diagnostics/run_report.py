@@ -9,8 +9,7 @@ from typing import Any
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import MOMENTUM_CAUSES
 from physicslab.contacts.report import list_contacts
-from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
-from physicslab.diagnostics.energy import Audit, measure_momentum, summation
+from physicslab.diagnostics.energy import ACCOUNT_WORDS, Audit, flows, measure_momentum, summation
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
 from physicslab.ecs.text import printable, unique_name
 from physicslab.ecs.vector import Vector2

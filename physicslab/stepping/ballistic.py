@@ -4,8 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Material, Shape, Transform, Velocity
-from physicslab.components.shape import BOX, CIRCLE, KINDS
-from physicslab.kernels.geometry.shapes import BOX as FIRST_OF_BOX
+from physicslab.components.shape import KINDS
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
@@ -30,7 +29,7 @@ _CONTACT_DISTANCE = 0.01
 def why_not_exact(state: State, schedule: Schedule) -> str | None:
     """Return why the times of impacts cannot be located, or ``None``.
 
-    Between impacts a body must move under a constant acceleration, and no box may turn.
+    Between impacts a body must move under a constant acceleration, and nothing but a disc may turn.
     """
     if state.simulation.integrator not in ("auto", "exact"):
         return f"{state.simulation.integrator} was asked for, and between impacts bodies move in closed form"
@@ -43,13 +42,11 @@ def why_not_exact(state: State, schedule: Schedule) -> str | None:
         return "a body is held"
     if (state.table(Velocity).present & ~state.table(Transform).present).any():
         return "something moves that is nowhere"
-    reason = why_not_located(state)
-    if reason is not None:
-        return reason
-    rows = turning_boxes(state)
+    rows = turning_rows(state)
     if len(rows):
-        label = state.label_of_row(int(rows[0]))
-        return f"{label} is a box that may turn (Mass.fixed_rotation would keep it as it is)"
+        label, kind = state.label_of_row(int(rows[0])), state.table(Shape)["kind"][rows[0]]
+        name = list(KINDS)[kind - 1]
+        return f"{label} is a {name} that may turn (Mass.fixed_rotation would keep it as it is)"
     if count_pairs(state) > MAX_PAIRS:
         return f"more than {MAX_PAIRS} pairs may meet"
     return None
@@ -76,22 +73,12 @@ def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:
     return None
 
 
-def why_not_located(state: State) -> str | None:
-    """Return which shape has impacts that cannot be located yet, or ``None``: discs' and boxes' can."""
-    shapes = state.bodies.shapes
-    rows = np.flatnonzero((shapes.vertices > 1) & (shapes.first != FIRST_OF_BOX))
-    if not len(rows):
-        return None
-    label, code = state.label_of_row(int(rows[0])), int(state.table(Shape)["kind"][rows[0]])
-    return f"{label} is a {list(KINDS)[code - 1]}, whose impacts are found within steps"
-
-
-def turning_boxes(state: State) -> NDArray[np.int64]:
-    """Return the rows of boxes that turn, or would after an impact off their centre."""
+def turning_rows(state: State) -> NDArray[np.int64]:
+    """Return the rows (n,) that turn, or would after an impact off their centre, and are no discs."""
     moving = state.batch(Shape, Transform, Velocity).rows
-    boxes = moving[state.table(Shape)["kind"][moving] == BOX]
-    turns = (state.bodies.inverse_inertia[boxes] > 0.0) | (state.table(Velocity)["angular"][boxes] != 0.0)
-    turning: NDArray[np.int64] = boxes[turns]
+    cores = moving[state.bodies.shapes.vertices[moving] > 1]
+    turns = (state.bodies.inverse_inertia[cores] > 0.0) | (state.table(Velocity)["angular"][cores] != 0.0)
+    turning: NDArray[np.int64] = cores[turns]
     return turning
 
 
@@ -162,10 +149,13 @@ def _why_at_rest(
 
 def _boxes(state: State) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return the lowest and highest coordinates of every row (rows, 2), and its size [m]."""
-    shape, transform = state.table(Shape), state.table(Transform)
-    c, s = np.abs(np.cos(transform["angle"])), np.abs(np.sin(transform["angle"]))
-    width, height, radius = shape["width"], shape["height"], shape["radius"]
-    box = 0.5 * np.stack((c * width + s * height, s * width + c * height), axis=1)
-    half = np.where((shape["kind"] == CIRCLE)[:, None], radius[:, None], box)
-    size = np.where(shape["kind"] == CIRCLE, 2.0 * radius, np.minimum(width, height))
+    transform, of = state.table(Transform), state.bodies.shapes
+    c, s = np.cos(transform["angle"]), np.sin(transform["angle"])
+    half = np.zeros_like(transform["position"])
+    for k in range(int(of.vertices.max(initial=0))):
+        at = of.first + np.minimum(k, np.maximum(of.vertices - 1, 0))
+        x, y = of.half_x * of.pool[at, 0], of.half_y * of.pool[at, 1]
+        half = np.maximum(half, np.abs(np.stack((c * x - s * y, s * x + c * y), axis=1)))
+    half += of.radius[:, None]
+    size = 2.0 * (np.minimum(of.half_x, of.half_y) + of.radius)
     return transform["position"] - half, transform["position"] + half, size

@@ -2,7 +2,7 @@
 
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.state.state import State
-from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs, why_not_located
+from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
 from physicslab.stepping.forces import fastest_rate
 from physicslab.systems.joint import JointSystem
 from physicslab.systems.schedule import Schedule
@@ -78,4 +78,4 @@ def why_not_rigid(state: State, schedule: Schedule) -> str | None:
         return "something moves that is nowhere"
     if count_pairs(state) > _MAX_PAIRS:
         return f"more than {_MAX_PAIRS} pairs may meet"
-    return why_not_located(state)
+    return None

@@ -15,7 +15,7 @@ from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.remainders import Remainders, coordinate_keys
 from physicslab.state.state import State
-from physicslab.stepping.ballistic import pairs_that_may_meet, turning_boxes
+from physicslab.stepping.ballistic import pairs_that_may_meet, turning_rows
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.stepper import Advance, divisions
@@ -86,7 +86,7 @@ class EventDriven:
 
     def holds(self, state: State) -> bool:
         """Whether the world may still be stepped so; values that may change at any time can forbid it."""
-        return not len(turning_boxes(state))
+        return not len(turning_rows(state))
 
     def ready(self, state: State, h: float) -> bool:
         """Whether the coming step is not one that it has just left to others."""

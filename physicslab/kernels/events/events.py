@@ -155,12 +155,12 @@ def _first_step(
 @inlined
 def _bounce(flight: Flight, p: int, log: Impacts, number: int, time: float, approach: float) -> None:
     """Resolve an impact of a pair whose paths begin now, and book it; write it, if they do ``approach``."""
-    manifold, one, two = flight.manifolds[p], flight.points[2 * p], flight.points[2 * p + 1]
+    manifold, point = flight.manifolds[p], flight.points[2 * p]
     paths, angle, angular = flight.paths, flight.motion.angle, flight.motion.angular
     a, b = manifold.a, manifold.b
     mass, before = inverse_mass_of(flight.inverse, a, b), path_velocity(paths, angular, a, b)
-    impulses, law = resolve_ballistic_impacts(manifold, one, two, paths, angular, mass)
-    points = ImpactPoints(frame_of(manifold, one), frame_of(manifold, two), impulses)
+    impulses, law = resolve_ballistic_impacts(manifold, point, paths, angular, mass)
+    points = ImpactPoints(frame_of(manifold, point), frame_of(manifold, point), impulses)
     after = path_velocity(paths, angular, a, b)
     pose = Pose(paths[a, 0], paths[a, 2], angle[a], paths[b, 0], paths[b, 2], angle[b])
     book_impact(flight.account, points, pose, before, after, mass, IMPACTS)
@@ -193,19 +193,19 @@ def _meet(
 
     A bounce that a pressing force ends soon is left, and one at the same time as another of the same body.
     """
-    manifold, one, two = flight.manifolds[p], flight.points[2 * p], flight.points[2 * p + 1]
+    manifold, point = flight.manifolds[p], flight.points[2 * p]
     paths, mode, due, angle, angular = (
         flight.paths, flight.mode, flight.due, flight.motion.angle, flight.motion.angular,
     )  # fmt: skip
     a, b = manifold.a, manifold.b
     mix(manifold, materials, flight.bounds)
-    dx, dy, ux, uy, wx, wy = seen_from(paths, a, b, now, low)
+    seen = seen_from(paths, a, b, now, low)
     x, _, y, _ = place(paths, b, now, low)
-    touch_pair(manifold, one, two, flight.face[p], x, y, dx, dy, angle, flight.shapes, flight.bounds.walls)
+    touch_pair(manifold, point, flight.face[p], x, y, seen, angle, flight.shapes, flight.bounds.walls)
     effective_masses(manifold, flight.points, p, flight.inverse)
     nx, ny = manifold.normal_x, manifold.normal_y
-    approach = -(ux * nx + uy * ny)
-    pull = wx * nx + wy * ny
+    approach = -(seen.ux * nx + seen.uy * ny)
+    pull = seen.wx * nx + seen.wy * ny
     if pull < 0.0 and manifold.restitution * approach <= -pull * REST * span:
         manifold.count = 0
         return CAME_TO_REST, 0

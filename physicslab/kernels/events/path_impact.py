@@ -2,13 +2,10 @@
 
 from physicslab.kernels import Numbers, Vectors, inlined
 from physicslab.kernels.constraint.impact_law import (
-    LOWERED,
     NEWTON,
     ImpactImpulses,
-    pair_response,
     point_response,
     solve_impact,
-    solve_impact_of_two,
 )
 from physicslab.kernels.constraint.pair import (
     ContactFrame,
@@ -66,33 +63,24 @@ def _push_pair(
 
 @inlined
 def resolve_ballistic_impacts(
-    manifold: Manifold, one: Point, two: Point, paths: Vectors, angular: Numbers,
-    mass: PairInverseMass[float],
-) -> tuple[ImpactImpulses, int]:  # fmt: skip
-    """Bounce a pair whose paths begin now and whose points are filled; return the impulses, and their law."""
-    a, b, e, mu = manifold.a, manifold.b, manifold.restitution, manifold.friction
-    at1, at2 = frame_of(manifold, one), frame_of(manifold, two)
-    state1, low = _state(paths, angular, a, b, at1)
+    manifold: Manifold, point: Point, paths: Vectors, angular: Numbers, mass: PairInverseMass[float]
+) -> tuple[ImpactImpulses, int]:
+    """Bounce a pair whose paths begin now and whose point is filled; return the impulses, and their law."""
+    a, b, e = manifold.a, manifold.b, manifold.restitution
+    at = frame_of(manifold, point)
+    state, low = _state(paths, angular, a, b, at)
     manifold.impact_count += 1
-    if manifold.count == 2:
-        state2, _ = _state(paths, angular, a, b, at2)
-        if state1.v >= 0.0 and state2.v >= 0.0:
-            return ImpactImpulses(0.0, 0.0, 0.0, 0.0), NEWTON
-        found, used = solve_impact_of_two(pair_response(state1, state2, mass), e, mu)
-        _push_pair(paths, angular, a, b, mass, two, at2, state2.v, found.normal2, found.tangent2)
-        _push_pair(paths, angular, a, b, mass, one, at1, state1.v, found.normal1, found.tangent1)
-        return found, LOWERED if used < e else NEWTON
-    if state1.v >= 0.0:
+    if state.v >= 0.0:
         return ImpactImpulses(0.0, 0.0, 0.0, 0.0), NEWTON
-    response, left = point_response(state1, mass), 0.0
-    normal, tangent, law = solve_impact(response, e, mu)
-    _push_pair(paths, angular, a, b, mass, one, at1, state1.v, normal, tangent)
+    response, left = point_response(state, mass), 0.0
+    normal, tangent, law = solve_impact(response, e, manifold.friction)
+    _push_pair(paths, angular, a, b, mass, point, at, state.v, normal, tangent)
     if law == NEWTON:
         # The rounding of the impulse is the same at every impact of a pair and would add up: it is corrected.
-        after, after_low = _state(paths, angular, a, b, at1)
-        target, target_low = multiply(e, state1.v)
+        after, after_low = _state(paths, angular, a, b, at)
+        target, target_low = multiply(e, state.v)
         missed, missed_low = add_pair(after.v, after_low, target, target_low + e * low)
         left = -(missed + missed_low) / response.kn
-        push(paths, a, -mass.a, left * at1.nx, left * at1.ny)
-        push(paths, b, mass.b, left * at1.nx, left * at1.ny)
+        push(paths, a, -mass.a, left * at.nx, left * at.ny)
+        push(paths, b, mass.b, left * at.nx, left * at.ny)
     return ImpactImpulses(normal + left, tangent, 0.0, 0.0), law

@@ -4,6 +4,7 @@ import math
 
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.geometry.shapes import Shapes, face, vertex
+from physicslab.kernels.geometry.vertex_cone import beside_vertex
 from physicslab.kernels.rigid.features import (
     CORNER,
     FEATURE,
@@ -14,7 +15,6 @@ from physicslab.kernels.rigid.features import (
     WALL,
     Points,
     Scene,
-    beside_vertex,
 )
 
 __all__ = ["TIE", "find_points", "seen_from"]

@@ -19,12 +19,13 @@ from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
 from physicslab.kernels.constraint.pair import ContactFrame, PairVelocity, along_and_across, point_velocity
 from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.geometry.shapes import MOST_VERTICES, Shapes, ShapesTuple, face, named_shapes, vertex
+from physicslab.kernels.geometry.vertex_cone import beside_vertex
 from physicslab.kernels.records import Pairs
 
 __all__ = [
     "BIAS_N", "BIAS_T", "CONTACTS", "CORNER", "DRIVEN", "FEATURE", "GAP", "GIVEN", "MARGIN", "MEASURES", "MU",
     "NA", "NB", "NX", "NY", "ONE", "OTHER", "PAIR", "POINT_FIELDS", "PX", "PY", "RESTITUTION", "RUBBING",
-    "STATUS", "TA", "TB", "VERTEX", "VN", "VT", "WALL", "Points", "Scene", "SceneTuple", "beside_vertex",
+    "STATUS", "TA", "TB", "VERTEX", "VN", "VT", "WALL", "Points", "Scene", "SceneTuple",
     "measure", "named_scene", "turned_by",
 ]  # fmt: skip
 
@@ -71,19 +72,6 @@ def named_scene(plain: SceneTuple) -> Scene:
     return Scene(
         plain[0], plain[1], plain[2], plain[3], named_shapes(plain[4]), plain[5], plain[6], plain[7], plain[8]
     )  # fmt: skip
-
-
-@inlined
-def beside_vertex(shapes: Shapes, row: int, k: int, x: float, y: float) -> tuple[float, float]:
-    """Return how far a place is beyond both faces that meet at vertex k of a row, along each [m].
-
-    The place is seen from the vertex, in the body's own directions [m]. Where both are positive, the vertex
-    is what is nearest to it.
-    """
-    count = shapes.vertices[row]
-    before_x, before_y, _, _ = face(shapes, row, (k + count - 1) % count)
-    after_x, after_y, _, _ = face(shapes, row, k)
-    return before_x * y - before_y * x, after_y * x - after_x * y
 
 
 @inlined
