@@ -1,7 +1,5 @@
 """The panels around the world: menus, tools, transport, and the selection or the world in figures."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from operator import attrgetter
 
