@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.contacts.impact_reader import ImpactReader
+from physicslab.contacts.report import ImpactReader
 from physicslab.diagnostics.collision import Collision, Result, read_collision, resolve
 from physicslab.diagnostics.ledger import NO_IMPACTS, read_impacts
 from physicslab.ecs.vector import Vector2
