@@ -277,7 +277,7 @@ class Microscope:
     # ---- marks that can be clicked -------------------------------------------------------------------------
 
     def note(self, impacts: NDArray[Any], time: float) -> None:
-        """Take in the impacts of a frame, an array of IMPACT; their marks can be clicked for a while."""
+        """Take in the impacts of a frame, an array of IMPACT (n,); their marks can be clicked for a while."""
         if self._recent and time - self._recent[0]["time"][-1] > _SEEN:
             del self._recent[0]
         if len(impacts):
