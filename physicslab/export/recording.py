@@ -13,6 +13,7 @@ from physicslab.diagnostics.run_report import body_names
 from physicslab.world import World
 
 type Columns = NDArray[np.float32]
+"""A float32 array (instants, columns)."""
 
 BODY_COLUMNS = 6
 """Numbers of a moving body at an instant: x, y, angle and their rates."""
