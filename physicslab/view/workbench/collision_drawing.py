@@ -392,26 +392,19 @@ def draw_energies(ui: Ui, seen: Collision, width: float) -> None:
                     continue
                 end = x + energy * across
                 paper.bar((x, top), (end - 1.0, top + high), colour, hatched=hatched)
-                _label_bar(
-                    paper,
-                    name,
-                    (x, end),
-                    top + 0.5 * high,
-                    theme,
-                    plain=hatched or colour not in (a_colour, b_colour),
-                )
+                own = colour in (a_colour, b_colour) and not hatched
+                shade = theme.background if own else theme.text
+                _label_bar(paper, name, (x, end), top + 0.5 * high, shade)
                 x = end
     _write_losses(ui, seen, full)
 
 
-def _label_bar(
-    paper: Sketch, name: str, span: tuple[float, float], middle: float, theme: Theme, *, plain: bool
-) -> None:
+def _label_bar(paper: Sketch, name: str, span: Place, middle: float, colour: Colour) -> None:
     """Write what a part of a bar is, in the longest of its names for which there is room."""
     per_letter = 0.56 * paper.ui.size
     for words in name.split("|"):
         if len(words) * per_letter < span[1] - span[0]:
-            paper.words((0.5 * sum(span), middle), words, theme.text if plain else theme.background)
+            paper.words((0.5 * sum(span), middle), words, colour)
             return
 
 
