@@ -13,7 +13,9 @@ from physicslab.ecs.vector import Vector2
 from physicslab.state.state import State
 
 type Numbers = NDArray[np.float64]
+"""A float64 array, of bodies (n,) or of vectors (n, 2), or a vector (2,)."""
 type Rows = NDArray[np.int64]
+"""Row numbers (n,)."""
 
 
 @dataclass(frozen=True, slots=True)
