@@ -14,7 +14,9 @@ from physicslab.state.shapes import cores_of, lengths_of
 from physicslab.state.state import State
 
 type Numbers = NDArray[np.float64]
+"""A float64 array, of bodies (n,) or of vectors (n, 2), or a vector (2,)."""
 type Rows = NDArray[np.int64]
+"""Row numbers (n,)."""
 
 _PARALLEL = 1e-9
 """Sine of the angle of two normals up to which they are one axis."""

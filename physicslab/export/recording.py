@@ -15,6 +15,7 @@ from physicslab.state.shapes import cores_of
 from physicslab.world import World
 
 type Columns = NDArray[np.float32]
+"""A float32 array (instants, columns)."""
 
 BODY_COLUMNS = 6
 """Numbers of a moving body at an instant: x, y, angle and their rates."""

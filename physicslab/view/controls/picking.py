@@ -17,7 +17,9 @@ from physicslab.view.picture.springs import ends_of
 from physicslab.world import World
 
 type Rows = NDArray[np.int64]
+"""Row numbers (n,)."""
 type Numbers = NDArray[np.float64]
+"""A float64 array, of rows (n,)."""
 
 _MAX_FROM_SPRING = 6.0
 """How near to the line between its ends a click on a spring need be [px]."""

@@ -15,6 +15,7 @@ from physicslab.view.canvas.theme import Theme
 from physicslab.world import World
 
 type Rows = NDArray[np.int64]
+"""Row numbers (n,)."""
 
 POINT_RADIUS = 5.0
 """How large a body without a Shape appears [px]."""
@@ -67,7 +68,7 @@ _STATIC, _KINEMATIC, _HELD, _OWN = range(4)
 
 
 def own_colour(world: World, theme: Theme, rows: Rows) -> Rows:
-    """Return which of ``theme.bodies`` each body has."""
+    """Return which of ``theme.bodies`` (n,) the bodies of ``rows`` (n,) have."""
     return world.entity_index.entities[rows] % len(theme.bodies)
 
 

@@ -34,6 +34,7 @@ _MIN_THROW_TIME = 0.03
 """Time [s] over which a speed can be measured at all; a shorter pull is no throw."""
 
 type Numbers = NDArray[np.float64]
+"""A float64 array, of bodies (n,), or places (n, 2) [m]."""
 
 
 @dataclass(frozen=True, slots=True)
