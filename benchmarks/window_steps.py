@@ -18,7 +18,7 @@ from typing import Any
 from physicslab.desktop.timed_window import InWindow
 from physicslab.files.json_text import json_text
 from physicslab.lab.bench.catalogue import SCENES
-from physicslab.lab.bench.engine import OurEngine
+from physicslab.lab.bench.engine import Engine
 from physicslab.lab.bench.result import take_turns
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.document import lab_document, machine_text
@@ -34,7 +34,7 @@ FORMS = {
 """The columns of the table, and how their figures are written."""
 
 
-class SingleSteps(OurEngine):
+class SingleSteps(Engine):
     """A world that is stepped by one call a step."""
 
     def run(self, steps: int) -> None:
@@ -45,7 +45,7 @@ class SingleSteps(OurEngine):
 
 def measure(scene: BenchScene, rounds: int, *, falling: bool) -> dict[str, Any]:
     """Return medians of a step of each kind [ms], and of their ratios."""
-    engines = (InWindow(scene.build()), SingleSteps(scene.build()), OurEngine(scene.build()))
+    engines = (InWindow(scene.build()), SingleSteps(scene.build()), Engine(scene.build()))
     settling = 1 if falling else round(scene.seconds / engines[0].dt)
     for engine in engines:
         engine.run(settling)

@@ -357,7 +357,7 @@ class World(State):
         The stages of a step leave them there; a compiled flow does not, and they are added up at the present
         state. The state of motion is not changed.
         """
-        if not all(stepper.leaves_forces for stepper in self.steppers.usable):
+        if self.islands.members or not all(stepper.leaves_forces for stepper in self.steppers.usable):
             with self.active():
                 add_up_forces(self, self.schedule)
 

@@ -12,7 +12,7 @@ import pytest
 from physicslab import cli
 from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
 from physicslab.lab.bench.costs import UNUSED, measure_memory, measure_unused
-from physicslab.lab.bench.engine import OurEngine, missing_peers
+from physicslab.lab.bench.engine import Engine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
 from physicslab.lab.bench.result import TURN, SceneResult, exponent, growths, take_turns
 from physicslab.lab.bench.scene import BenchScene, Quality
@@ -83,7 +83,7 @@ def test_fast_and_wrong_does_not_count() -> None:
 def test_every_engine_takes_every_place_in_the_order_and_as_many_steps() -> None:
     calls: list[str] = []
 
-    class Noted(OurEngine):
+    class Noted(Engine):
         def __init__(self, name: str) -> None:
             super().__init__(World())
             self.name = name
@@ -165,10 +165,10 @@ def test_the_plot_is_a_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str
 def test_a_run_that_diverges_is_reported_at_the_end(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def diverge(engine: OurEngine) -> None:
+    def diverge(engine: Engine) -> None:
         raise Diverged("entity 5: Transform is no longer finite")
 
-    monkeypatch.setattr(OurEngine, "step", diverge)
+    monkeypatch.setattr(Engine, "step", diverge)
     assert cli.main(["bench", "pyramid_30", "--json", "-"]) == 1
     out, err = capsys.readouterr()
     assert err == "physicslab: pyramid_30: entity 5: Transform is no longer finite\n"

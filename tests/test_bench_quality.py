@@ -16,7 +16,7 @@ from physicslab.components import Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
-from physicslab.lab.bench.engine import OurEngine
+from physicslab.lab.bench.engine import Engine
 from physicslab.lab.bench.measure import Judge, measure_scene
 from physicslab.lab.bench.moving import _in_funnel, funnel
 from physicslab.lab.bench.result import EngineResult, SceneResult, Spread
@@ -34,10 +34,10 @@ SMALL = BenchScene(
 )  # fmt: skip
 
 
-def judged(scene: BenchScene) -> tuple[Judge, OurEngine, dict[str, float | None]]:
+def judged(scene: BenchScene) -> tuple[Judge, Engine, dict[str, float | None]]:
     result = SceneResult(scene)
     result.engines["PhysicsLab"] = EngineResult("PhysicsLab")
-    return Judge(result), OurEngine(scene.build()), result.ours.quality
+    return Judge(result), Engine(scene.build()), result.ours.quality
 
 
 def test_looking_at_an_engine_changes_no_bit_of_it() -> None:

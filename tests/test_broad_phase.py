@@ -237,7 +237,7 @@ def test_a_fat_box_reaches_as_far_as_its_body_would_come_and_not_back(
     monkeypatch.setattr(broad_phase, "_sparse", lambda state: False)  # as where many pairs have records
     world = World(*standard_systems(), simulation=SimulationConfig(contacts="soft", collisions="step"))
     for x, vx in ((0.0, 40.0), (50.0, -30.0)):
-        world.spawn(Transform((x, 3.0 * x)), Velocity((vx, 0.0)), Mass(1.0), Shape.circle(0.5))
+        world.spawn(Transform((x, 0.5 * x)), Velocity((vx, 0.0)), Mass(1.0), Shape.circle(0.5))
     world.step()
     system = world.schedule.find(BroadPhaseSystem)
     assert system is not None

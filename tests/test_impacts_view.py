@@ -10,7 +10,7 @@ import pytest
 from desk import FRAME, Desk, empty_world
 from recording import RecordingCanvas
 
-from physicslab.contacts.impact_reader import ImpactReader
+from physicslab.contacts.report import ImpactReader
 from physicslab.prefabs import circle
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.overlay.contact_samples import RecentImpacts

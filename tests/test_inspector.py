@@ -25,7 +25,7 @@ from desk import (
     write,
 )  # fmt: skip
 
-from physicslab.components import Drag, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import Drag, Mass, Material, Pin, Shape, Spring, Trail, Transform, Velocity
 from physicslab.diagnostics.collision import Body, Motion
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
@@ -61,6 +61,10 @@ WRITTEN: dict[str, tuple[str, float]] = {
     "Spring.rest_length": ("2*pi/4 m", math.pi / 2),
     "Spring.stiffness": ("2 kN/m", 2000.0),
     "Spring.damping": ("5 N s/m", 5.0),
+    "Pin.anchor_a.x": ("1 mm", 0.001),
+    "Pin.anchor_a.y": ("-3 mm", -0.003),
+    "Pin.anchor_b.x": ("1.5 m", 1.5),
+    "Pin.anchor_b.y": ("50 cm", 0.5),
     "Trail.length": ("2 min", 120.0),
 }
 """What is written into each field, and the number in SI that it stands for."""
@@ -70,9 +74,9 @@ OUT_OF_RANGE = {
     "Material.restitution": "1.01", "Material.friction": "-0.1",
     "Drag.linear": "-1 kg/s", "Drag.quadratic": "-1", "Spring.anchor_a.x": "1e151",
     "Spring.anchor_b.y": "-1e151", "Spring.rest_length": "-1 cm", "Spring.stiffness": "-5",
-    "Spring.damping": "-1", "Trail.length": "0 s",
+    "Spring.damping": "-1", "Trail.length": "0 s", "Pin.anchor_a.y": "1e151",
 }  # fmt: skip
-KINDS: tuple[type[Component], ...] = (Transform, Velocity, Mass, Shape, Material, Drag, Spring, Trail)
+KINDS: tuple[type[Component], ...] = (Transform, Velocity, Mass, Shape, Material, Drag, Spring, Pin, Trail)
 
 
 def all_fields() -> set[str]:
@@ -94,7 +98,7 @@ def bench(key: str) -> tuple[Desk, int]:
     else:
         make = box if key in ("Shape.width", "Shape.height") else circle
         body = make(world, (1.0, 0.5), mass=1.0)
-    for extra in (Drag(), Trail(), Spring(anchor_b=(1.0, 2.5))):
+    for extra in (Drag(), Trail(), Spring(anchor_b=(1.0, 2.5)), Pin(anchor_b=(1.0, 0.5))):
         world.add(body, extra)
     other = circle(world, (-2.0, -2.0), mass=3.0)
     world.synchronise()

@@ -14,7 +14,7 @@ from physicslab.components import Mass, Name, Transform, Velocity
 from physicslab.desktop.timed_window import InWindow
 from physicslab.lab.accuracy.catalogue import PROBLEMS
 from physicslab.lab.bench.catalogue import SCENES, by_default, discs
-from physicslab.lab.bench.engine import OurEngine, prepared
+from physicslab.lab.bench.engine import Engine, prepared
 from physicslab.lab.bench.measure import measure_scene
 from physicslab.lab.bench.moving import FUNNELS, MOVING, chains, funnel, heap, tumbler
 from physicslab.lab.bench.scene import BenchScene
@@ -180,7 +180,7 @@ def test_a_scene_is_stepped_in_a_window() -> None:
 
 
 def test_gravity_turns_with_the_time_of_the_steps() -> None:
-    engine = prepared(OurEngine(SCENES["circles_10"].build()), SCENES["tumbler"])
+    engine = prepared(Engine(SCENES["circles_10"].build()), SCENES["tumbler"])
     for _ in range(31):
         engine.advance()
     gravity = engine.look().physics.gravity

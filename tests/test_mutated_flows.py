@@ -107,7 +107,7 @@ def stepped(world: World, steps: int, stepper: str = "flow") -> Accounts:
     """Return the accounts after some steps, each made by itself."""
     for _ in range(steps):
         world.step()
-    assert world.stepper is not None and world.stepper.name == stepper
+    assert {part.stepper.name for part in world.parts if part.stepper is not None} == {stepper}
     wished = world.simulation.integrator
     assert wished in ("auto", world.plan.integrator.name)
     return measure_account(world)

@@ -8,7 +8,7 @@ from desk import FRAME, Desk, empty_world
 from recording import RecordingCanvas
 
 from physicslab.components import Velocity
-from physicslab.contacts.impact_reader import ImpactReader
+from physicslab.contacts.report import ImpactReader
 from physicslab.prefabs import box, circle, stack
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.picture.sparks import Sparks

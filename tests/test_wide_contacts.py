@@ -8,7 +8,7 @@ import pytest
 from desk import bits
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
-from physicslab.contacts import wide
+from physicslab.contacts import near_pairs
 from physicslab.contacts.arguments import do_stage, motion_of, near_in
 from physicslab.contacts.memory import export_contacts, restore_contacts
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
@@ -335,7 +335,7 @@ def test_an_edited_body_fills_its_own_slots_again_and_gives_the_bits_of_filling_
         world.component(body, Material).friction *= 0.9
     with pytest.MonkeyPatch.context() as patch:
         filled: list[World] = []
-        patch.setattr(wide, "fill_again", filled.append)
+        patch.setattr(near_pairs, "fill_again", filled.append)
         ours.run(steps=5)
         assert not filled
     with pytest.MonkeyPatch.context() as patch:

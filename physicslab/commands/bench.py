@@ -15,13 +15,12 @@ from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, lis
 from physicslab.ecs.text import printable
 from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT, SCENES, by_default, opened
 from physicslab.lab.bench.costs import UNUSED, Unused, measure_memory, measure_unused
-from physicslab.lab.bench.engine import PEERS, OurEngine, missing_peers
+from physicslab.lab.bench.engine import PEERS, Engine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
 from physicslab.lab.bench.plot import bench_picture
-from physicslab.lab.bench.report import BenchReport
 from physicslab.lab.bench.result import SceneResult
 from physicslab.lab.bench.scene import BenchScene
-from physicslab.lab.bench.tables import report_text, scene_text
+from physicslab.lab.bench.tables import BenchReport, report_text, scene_text
 from physicslab.lab.jobs import Job
 from physicslab.lab.peers.box2d3_built import BuildError, built_box2d
 from physicslab.lab.peers.mirrors import Box2DMirror
@@ -142,14 +141,14 @@ def _jobs(
             if scene.size <= min(PEER_SIZE_LIMIT, _SIZE_LIMITS.get(peer.title, PEER_SIZE_LIMIT))
             or scene.name in named
         ]  # fmt: skip
-        make = _in_window if scene.in_window else OurEngine
+        make = _in_window if scene.in_window else Engine
         jobs.append((float(scene.size), measure_scene(scene, beside, make)))
     if _UNUSED in extras:
         jobs += [(float(_UNUSED_SIZE), measure_unused(name, *given)) for name, given in UNUSED.items()]
     return jobs
 
 
-def _in_window(world: World) -> OurEngine:
+def _in_window(world: World) -> Engine:
     """Return a world in a window that no screen shows."""
     os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # its greeting goes to stdout
     from physicslab.desktop.timed_window import InWindow

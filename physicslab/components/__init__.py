@@ -2,8 +2,7 @@
 
 from physicslab.components.drag import Drag
 from physicslab.components.gate import Gate
-from physicslab.components.graph import Graph
-from physicslab.components.graph_line import GraphLine
+from physicslab.components.graph import Graph, GraphLine
 from physicslab.components.held import Held
 from physicslab.components.mass import Mass
 from physicslab.components.material import Material

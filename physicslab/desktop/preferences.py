@@ -1,4 +1,4 @@
-"""What the user chose of the window, from one start to the next: colours, text, level, where panels are."""
+"""The preferences of the user, from one start to the next: colours, text, level, where panels are."""
 
 import json
 import os

@@ -6,7 +6,7 @@ from typing import override
 import pygame
 
 from physicslab.desktop.sandbox import Sandbox
-from physicslab.lab.bench.engine import OurEngine
+from physicslab.lab.bench.engine import Engine
 from physicslab.systems.system import Stage
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.window.window import Window
@@ -16,7 +16,7 @@ _SIZE = (1280, 720)
 _FRAME = 1.0 / 60.0
 
 
-class InWindow(OurEngine):
+class InWindow(Engine):
     """PhysicsLab in a window that no screen shows, stepped one step a call.
 
     Parameters

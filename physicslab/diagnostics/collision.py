@@ -18,20 +18,12 @@ import numpy as np
 
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.constraint import impact_law, pair
-from physicslab.kernels.constraint.impact_law import (
-    ENERGETIC,
-    LOWERED,
-    NEWTON,
-    PairResponse,
-    PointResponse,
-)
 from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity, PointState
 from physicslab.kernels.interpreter import twin_of
 from physicslab.kernels.solver.impact_log import shares_of
 
-__all__ = ["ENERGETIC", "LOWERED", "NEWTON", "Body", "Collision", "Motion", "Result", "Spot",
-           "read_collision", "resolve"]  # fmt: skip
-
+ENERGETIC, LOWERED, NEWTON = impact_law.ENERGETIC, impact_law.LOWERED, impact_law.NEWTON
+"""The laws of impacts: Stronge's, Newton's with a lowered restitution, Newton's."""
 _STUCK = 1e-9
 """Share of the speeds before up to which the sliding that is left counts as zero."""
 
@@ -177,15 +169,15 @@ class Collision:
         return tuple(map(self._state, self.spots))
 
     @cached_property
-    def responses(self) -> tuple[PointResponse, ...]:
+    def responses(self) -> tuple[impact_law.PointResponse, ...]:
         """How each point answers impulses."""
         return tuple(twin_of(impact_law.point_response)(state, self.inverse_mass) for state in self.states)
 
     @property
-    def pair_response(self) -> PairResponse:
+    def pair_response(self) -> impact_law.PairResponse:
         """How both points answer impulses, one and the same twice where there is one."""
         states, make = self.states, twin_of(impact_law.pair_response)
-        response: PairResponse = make(states[0], states[-1], self.inverse_mass)
+        response: impact_law.PairResponse = make(states[0], states[-1], self.inverse_mass)
         return response
 
     def approach(self, spot: Spot, *, after: bool = False) -> tuple[float, float]:

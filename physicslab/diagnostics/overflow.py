@@ -1,9 +1,6 @@
 """Which entity it is by which an energy or a momentum is no longer finite, while its state still is."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +8,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import Energy, measure_momentum
 from physicslab.state.packed import spring_ends
-
-if TYPE_CHECKING:
-    from physicslab.world import World
+from physicslab.world import World
 
 
 @np.errstate(all="ignore")

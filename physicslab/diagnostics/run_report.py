@@ -9,8 +9,8 @@ from typing import Any
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import MOMENTUM_CAUSES
 from physicslab.contacts.report import list_contacts
-from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
-from physicslab.diagnostics.energy import Audit, measure_momentum, summation
+from physicslab.diagnostics.energy import ACCOUNT_WORDS, Audit, flows, measure_momentum, summation
+from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
 from physicslab.ecs.text import printable, unique_name
 from physicslab.ecs.vector import Vector2
@@ -127,6 +127,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "max_penetration": record.max_penetration,
         "divided": record.divided,
         "advice": advice_of(record.warnings.all),
+        **_joints(world),
         "entities": _bodies(world),
     }
 
@@ -193,6 +194,18 @@ def _contact_forces(world: World) -> list[dict[str, Any]]:
                 }
             )
     return forces
+
+
+def _joints(world: World) -> dict[str, Any]:
+    """Return of each joint its force on B [N] and how far it is apart [m]; nothing without joints."""
+    joints = joint_states(world)
+    if not joints:
+        return {}
+    found = {}
+    for joint in joints:
+        name, (x, y) = world.label(joint.entity), joint.force
+        found[name] = {"kind": joint.kind.__name__, "force": [x, y], "stretch": joint.stretch}
+    return {"joints": found}
 
 
 def _energy_words(report: Mapping[str, Any]) -> list[str]:

@@ -12,8 +12,13 @@ import numpy as np
 
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import BOX
-from physicslab.diagnostics.contact_graph import ContactGraph, contact_graph
-from physicslab.diagnostics.contact_warnings import RIGID_LIMIT, contact_warnings, rigid_setting
+from physicslab.diagnostics.contact_warnings import (
+    RIGID_LIMIT,
+    ContactGraph,
+    contact_graph,
+    contact_warnings,
+    rigid_setting,
+)
 from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, ModelWarning, WorstWarnings, step_warnings
 from physicslab.state.masses import quiet
 from physicslab.stepping.rigid import Rigid

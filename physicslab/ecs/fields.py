@@ -3,8 +3,9 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from numbers import Integral, Real
-from typing import Any, Literal
+from typing import Any, Concatenate, Literal
 
 import numpy as np
 
@@ -160,30 +161,16 @@ class Field:
         return stored
 
 
-def field(
-    *,
-    default: Any = REQUIRED,
-    unit: str = "1",
-    meaning: str = "",
-    minimum: float = -math.inf,
-    maximum: float = math.inf,
-    above: float = -math.inf,
-    choices: tuple[str, ...] = (),
-    derived: str = "",
-    fixed: bool = False,
-    limit: float = math.inf,
-    lines: int = 1,
-) -> Any:
-    """Describe one field of a component; :class:`Field` describes the values.
+def _unnamed[**P](make: Callable[Concatenate[str, Kind, P], Field]) -> Callable[P, Any]:
+    return partial(make, "", "number")
 
-    Name, kind and owner are filled in by :func:`physicslab.ecs.component.component`. Without ``default``
-    the field is required. A ``derived`` field that is given as ``None`` is kept up to date by the world.
-    """
-    return Field(
-        "", "number", default, unit, meaning, minimum, maximum, above, choices, derived, fixed,
-        limit=limit, lines=lines,
-    )  # fmt: skip
 
+field = _unnamed(Field)
+"""Describe one field of a component, by the values of :class:`Field` from ``default`` on.
+
+Name, kind and owner are filled in by :func:`physicslab.ecs.component.component`. A field without ``default``
+is required. A ``derived`` field that is given as ``None`` is kept up to date by the world.
+"""
 
 _FINITE_LIMIT = float(np.finfo(np.float64).max)
 

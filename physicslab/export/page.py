@@ -58,6 +58,7 @@ def _document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> dict
         "energies": recorder.energies,
         "bodies": bodies,
         "springs": springs,
+        "joints": recorder.joints(world),
         "gravity": list(physics.gravity) if uniform else None,
         "bounds": bounds,
         "view": world.view or extent_of_run(world, recorder),

@@ -125,6 +125,18 @@ class RunRecorder:
             found.append(body)
         return found
 
+    def joints(self, world: World) -> list[dict[str, Any]]:
+        """Return every joint: the body that its mark turns with, by place among the bodies, and where."""
+        place = {entity: number for number, entity in enumerate(world.batch(Transform).entities.tolist())}
+        joints, entities, found = world.joints, world.entity_index.entities, []
+        for joint in joints.joints:
+            n = joint.first
+            a, b = int(joints.a[n]), int(joints.b[n])
+            anchor = joints.anchor_b[n] if b else joints.anchor_a[n]
+            body = place[int(entities[b or a])]
+            found.append({"body": body, "anchor": anchor.tolist(), "fixed": not (a and b)})
+        return found
+
     def springs(self, world: World) -> list[dict[str, Any]]:
         """Return every spring: its ends by place among the bodies, and its anchors; no B is a fixed point."""
         place = {entity: number for number, entity in enumerate(world.batch(Transform).entities.tolist())}

@@ -25,22 +25,8 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import compiler, loading
 from physicslab.kernels.stand_ins import Records
-from physicslab.kernels.twins import Overdue, patience, twin_of
-
-__all__ = [
-    "compile_all_the_same",
-    "entry_of",
-    "interpreted",
-    "is_forced",
-    "limit",
-    "prepare",
-    "spent",
-    "spent_on",
-    "stand_back",
-    "stand_in",
-    "twin_of",
-    "unlimited",
-]
+from physicslab.kernels.twins import Overdue, patience
+from physicslab.kernels.twins import twin_of as twin_of
 
 _forced = os.environ.get("PHYSICSLAB_INTERPRET", "0") not in ("", "0")
 

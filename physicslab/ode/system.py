@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.kernels.accounts import DAMPING, ENERGY, SPIN
-from physicslab.kernels.constraint.joint_rows import RANK, constrain, forces_of, project
+from physicslab.kernels.constraint.joint_rows import FIRST, RANK, constrain, forces_of, project
 from physicslab.kernels.forces.bookings import ACCOUNTS, END
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import PLAIN_LIMIT
 from physicslab.ode.bookings import BookKeeper, book_in_python
-from physicslab.state.packed import PackedForce, StateLayout
+from physicslab.state.packed import StateLayout
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem, Stage
@@ -95,6 +95,7 @@ class OdeSystem:
         kicked: bool = False,
     ) -> None:
         self.forces, self._also, self._kicked = tuple(forces), also, kicked
+        self._every_row = every_row
         self.interpreted = any(not type(system).packs() for system in self.forces)
         self.layout = (
             StateLayout.of_rows(len(state.entity_index))
@@ -184,8 +185,9 @@ class OdeSystem:
         """Put the state back into the tables; what no force turns has turned steadily for ``span`` s."""
         self._raise()
         layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
-        if self._joints is not None:
-            self._hold_together(state, self._joints)
+        if not self._every_row:
+            self.hold_together()
+            self.find_joint_forces(state)
         self._write(state, self.q, self.v)
         self._book(state)
         n = layout.moving_count
@@ -205,14 +207,25 @@ class OdeSystem:
             velocity["angular"][steady] = np.where(free, spin * np.exp(-c * span), spin)
             self._book_steady(state, spin, c * span)
 
-    def _hold_together(self, state: State, rows: PackedForce) -> None:
-        """Put together again what joints hold together, and find their forces there."""
-        n = self.layout.moving_count
-        low = self._low or (np.zeros(n), np.zeros(n))
-        project(self.q, self.v, *low, rows.parameters, rows.indices)
-        add_forces(self.q, self.v, np.zeros(len(self.q)), self.calls)
-        state.joints.force[:] = forces_of(rows.parameters, rows.indices)
-        state.joints.rank = int(rows.indices[RANK])
+    def hold_together(self) -> None:
+        """Put together again what joints hold together, where there are any."""
+        if self._joints is not None:
+            n = self.layout.moving_count
+            low = self._low or (np.zeros(n), np.zeros(n))
+            project(self.q, self.v, *low, *self.joints)
+
+    def find_joint_forces(self, state: State) -> None:
+        """Find the forces of joints in the present state of motion, where nothing touches."""
+        if self._joints is not None:
+            add_forces(self.q, self.v, np.zeros(len(self.q)), self.calls)
+            state.joints.force[:] = forces_of(*self.joints)
+            state.joints.rank = int(self._joints.indices[RANK])
+
+    @property
+    def joints(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """The rows of joints, their numbers and whole numbers, as they are packed; none without joints."""
+        rows = self._joints
+        return (np.zeros(0), np.zeros(FIRST, np.int64)) if rows is None else (rows.parameters, rows.indices)
 
     def _book(self, state: State) -> None:
         """Book what causes have given since the state was gathered."""

@@ -26,7 +26,9 @@ def _pin(table: Table, row: int) -> Sequence[Row]:
     return Row((1.0, 0.0), 2), Row((0.0, 1.0), 0)
 
 
-KINDS: dict[type[Any], Callable[[Table, int], Sequence[Row]]] = {Pin: _pin}
+KINDS: dict[type[Any], Callable[[Table, int], Sequence[Row]]] = {
+    Pin: _pin,
+}
 """The kinds of joints: of each the function that returns its rows, of the component's table and a row of it.
 
 The component has the fields of :mod:`physicslab.components.joint_ends`.

@@ -4,7 +4,6 @@ from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
 from physicslab.stepping.forces import fastest_rate
-from physicslab.systems.joint import JointSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
 
@@ -68,8 +67,6 @@ def why_not_rigid(state: State, schedule: Schedule) -> str | None:
         if schedule.find(needed) is None:
             return f"{needed.__name__} is not among the systems"
     for system in schedule.running:
-        if isinstance(system, JointSystem):
-            return "joints hold bodies together"
         if isinstance(system, ForceSystem) or system.is_engine:
             continue
         if not type(system).marked().keys() <= _OBSERVING:

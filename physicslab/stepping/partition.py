@@ -14,8 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape, Transform, Velocity
+from physicslab.components import Drag, Mass, Shape, Transform, Velocity
 from physicslab.state.state import State
+from physicslab.stepping.ballistic import CONTACT_STEP
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.standard import PHYSICS_SYSTEMS
@@ -60,9 +61,28 @@ def why_whole(state: State, schedule: Schedule) -> str | None:
             return f"{system.name} acts within the step"
     if (state.table(Velocity).present & ~state.table(Transform).present).any():
         return "something moves that is nowhere"
+    found = [schedule.find(needed) is not None for needed in CONTACT_STEP]
+    if not found[0]:
+        return "nothing moves the bodies"
+    if any(found[1:]) and not all(found):
+        return "the systems for contacts are not all there"
+    return _why_coupled(state, schedule)
+
+
+def _why_coupled(state: State, schedule: Schedule) -> str | None:
+    """Return which force acts on what no island has for its own, or between all bodies, or ``None``."""
+    given = state.table(Transform).present & ~movable_in(state)
+    driven = given & state.table(Velocity).present
     for force in schedule.forces:
-        if force.couples(state) is None:
+        pairs = force.couples(state)
+        if pairs is None:
             return f"{force.name} acts between all bodies"
+        a, b = pairs.T
+        # Row 0, the world, is fixed.
+        if ((driven[a] & (given[b] | (b == 0))) | (driven[b] & (given[a] | (a == 0)))).any():
+            return f"{force.name} acts between bodies that move at given speeds"
+    if (driven & state.table(Drag).present & state.table(Mass).present).any():
+        return "drag acts on a body that is held"
     return None
 
 

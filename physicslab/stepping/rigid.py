@@ -10,7 +10,8 @@ from physicslab.components import Material, Velocity
 from physicslab.contacts.arguments import shapes_of
 from physicslab.kernels.accounts import CONTACT, FRICTION, HAND
 from physicslab.kernels.broad import near_pairs
-from physicslab.kernels.rigid import motion, time_stepping
+from physicslab.kernels.constraint.joint_rows import forces_of
+from physicslab.kernels.rigid import joined, motion, time_stepping
 from physicslab.kernels.wide import slots
 from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import check_finite
@@ -104,6 +105,7 @@ class Rigid:
         if last is not None:
             self._ode.scatter(state, 0.0)
             self._records.write(state, last, h / parts)
+            self._find_joint_forces(scene, state, last)
             self._note(began, made)
             check_finite(state, state.time + h * made)
             state.substeps = state.simulation.substeps
@@ -119,6 +121,7 @@ class Rigid:
             moment = at + part * h / parts
             q[clock], v[clock] = moment, 1.0  # the clock goes by one second a second
             step = self._motion.step(scene, state, moment, h / parts)
+            self._ode.hold_together()
             state.force_evaluations += step.evaluations
             self.energetic_impacts += step.energetic
             self.restitutions_lowered += step.lowered
@@ -155,8 +158,17 @@ class Rigid:
         accounts = np.array([ode.slots.get(cause, -1) for cause in (FRICTION, CONTACT, HAND)])
         return (
             len(size), ode.inverse_mass, ode.damping, ode.damped_calls, shapes_of(state), walls, self._pairs,
-            coefficients, accounts,
+            coefficients, accounts, *ode.joints,
         )  # fmt: skip
+
+    def _find_joint_forces(self, scene: tuple[Any, ...], state: State, made: MadeStep) -> None:
+        """Find the forces of joints at the end of a step, their answer to those of contacts among them."""
+        joints, ode = state.joints, self._ode
+        if len(joints):
+            ode.find_joint_forces(state)
+            joined.find_answer(scene, made.points, made.measures, made.forces, made.closed, ode.q, ode.v)
+            joints.force += forces_of(*ode.joints)
+            joints.impulse[:] = joints.force * state.contacts.impulse_dt  # should soft contacts have to go on
 
     def _note(self, began: int, steps: int) -> None:
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - began)

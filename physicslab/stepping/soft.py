@@ -3,7 +3,7 @@
 from typing import Any
 
 from physicslab.contacts.islands import keep_places
-from physicslab.contacts.wide import refill
+from physicslab.contacts.near_pairs import refill
 from physicslab.kernels.loading import working_ns
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State

@@ -1,7 +1,7 @@
 """Contact points of near bodies."""
 
 from physicslab.contacts.arguments import do_stage
-from physicslab.contacts.wide import add_constraints, refill
+from physicslab.contacts.near_pairs import add_constraints, refill
 from physicslab.kernels.solver import soft
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch

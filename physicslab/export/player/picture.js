@@ -163,6 +163,17 @@ function drawSpring(spring, now) {
   if (spring.b === null) { pen.beginPath(); pen.arc(...b, 4, 0, 2 * Math.PI); pen.fill(); }
 }
 
+function drawJoint(joint, now) {  // the head of a screw, whose slot turns; on a bracket where it is fixed
+  const [x, y, angle] = now(run.bodies[joint.body]), [u, v] = joint.anchor;
+  const c = Math.cos(angle), s = Math.sin(angle), at = [toX(x + c * u - s * v), toY(y + s * u + c * v)];
+  pen.strokeStyle = colours.spring;
+  pen.lineWidth = 2;
+  pen.fillStyle = colours.background;
+  if (joint.fixed) { pen.beginPath(); pen.rect(at[0] - 9, at[1] - 9, 18, 18); pen.fill(); pen.stroke(); }
+  pen.beginPath(); pen.arc(...at, 5, 0, 2 * Math.PI); pen.fill(); pen.stroke();
+  path([at[0] - 3.4 * c, at[1] + 3.4 * s], [at[0] + 3.4 * c, at[1] - 3.4 * s]); pen.stroke();
+}
+
 function drawTrail(body, frame, at) {
   const first = frameAt(time - (body.trail ?? Math.min(2 * natural, end / 3))), [xs, ys] = body.columns;
   pen.strokeStyle = body.colour;
@@ -234,6 +245,7 @@ function drawWorld(frame, share) {
   for (const body of movers) if (trailed(body)) drawTrail(body, frame, now(body));
   for (const spring of run.springs) drawSpring(spring, now);
   for (const body of drawn) if (body.columns) drawBody(body, now(body));
+  for (const joint of run.joints) drawJoint(joint, now);
   if (show.arrows) for (const body of movers) drawArrow(now(body));
   if (selected) {
     outline(selected, now(selected), 4);

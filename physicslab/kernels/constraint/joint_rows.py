@@ -50,7 +50,7 @@ def forces_of(numbers: Numbers, whole: Rows) -> Numbers:
 
 
 @always_inlined
-def _states(whole: Any) -> Any:
+def first_state(whole: Any) -> Any:
     """Return where the states of the rows begin."""
     return GIVEN * whole[ROWS] + 2 * whole[COORDINATES]
 
@@ -84,7 +84,7 @@ def measure_row(
 def measure_rows(q: Any, v: Any, numbers: Any, whole: Any) -> None:
     """Find gradient, error and Jdot v of every row in a state."""
     for i in range(whole[ROWS]):
-        r, w, s = GIVEN * i, FIRST + ENDS * i, _states(whole) + STATE * i
+        r, w, s = GIVEN * i, FIRST + ENDS * i, first_state(whole) + STATE * i
         a, turn_a, b, turn_b = whole[w], whole[w + 1], whole[w + 2], whole[w + 3]
         angle_a, spin_a = (q[turn_a], v[turn_a]) if turn_a >= 0 else (0.0, 0.0)
         angle_b, spin_b = (q[turn_b], v[turn_b]) if turn_b >= 0 else (0.0, 0.0)
@@ -102,7 +102,7 @@ def measure_rows(q: Any, v: Any, numbers: Any, whole: Any) -> None:
 @always_inlined
 def _along(values: Any, numbers: Any, whole: Any, i: int) -> float:
     """Return the product of the gradient of row i with packed values."""
-    w, s = FIRST + ENDS * i, _states(whole) + STATE * i
+    w, s = FIRST + ENDS * i, first_state(whole) + STATE * i
     total = 0.0
     for end in range(2):
         x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + JA + (JB - JA) * end
@@ -115,7 +115,7 @@ def _along(values: Any, numbers: Any, whole: Any, i: int) -> float:
 @always_inlined
 def _response(numbers: Any, whole: Any, i: int, j: int) -> float:
     """Return how a unit force of row j accelerates row i [1/kg]: an element of A."""
-    total, states = 0.0, _states(whole)
+    total, states = 0.0, first_state(whole)
     for one in range(2):
         x, turn = whole[FIRST + ENDS * i + 2 * one], whole[FIRST + ENDS * i + 2 * one + 1]
         mass, inertia = _inverse(numbers, whole, x), _inverse(numbers, whole, turn)
@@ -133,7 +133,7 @@ def _response(numbers: Any, whole: Any, i: int, j: int) -> float:
 @always_inlined
 def factorise(numbers: Any, whole: Any) -> None:
     """Write A above the diagonal, and its factor L, A = L L^T, from the diagonal down."""
-    n, states, rank = whole[ROWS], _states(whole), 0
+    n, states, rank = whole[ROWS], first_state(whole), 0
     matrix, begin = states + STATE * n, FIRST + ENDS * n
     for i in range(n):
         first = i
@@ -164,7 +164,7 @@ def factorise(numbers: Any, whole: Any) -> None:
 @always_inlined
 def _substitute(numbers: Any, whole: Any) -> None:
     """Find how the forces change from the right side, which is used up; none for a dependent row."""
-    n, states = whole[ROWS], _states(whole)
+    n, states = whole[ROWS], first_state(whole)
     matrix, begin = states + STATE * n, FIRST + ENDS * n
     for i in range(n):
         left, pivot = numbers[states + STATE * i + RIGHT], numbers[matrix + n * i + i]
@@ -186,7 +186,7 @@ def solve(numbers: Any, whole: Any) -> None:
 
     What is light between heavy bodies gets the difference of large forces.
     """
-    n, states = whole[ROWS], _states(whole)
+    n, states = whole[ROWS], first_state(whole)
     matrix, begin = states + STATE * n, FIRST + ENDS * n
     for i in range(n):
         numbers[states + STATE * i + LAMBDA] = numbers[states + STATE * i + RIGHT]
@@ -206,6 +206,60 @@ def solve(numbers: Any, whole: Any) -> None:
         numbers[states + STATE * i + LAMBDA] += numbers[states + STATE * i + CHANGE]
 
 
+@always_inlined
+def given_by_rows(q: Any, v: Any, numbers: Any, whole: Any) -> tuple[float, float, float, float]:
+    """Return momentum and angular momentum that the forces of rows give in a second to what they move.
+
+    Last, the power with which they act on what they do not move.
+    """
+    px, py, spin, driven, states = 0.0, 0.0, 0.0, 0.0, first_state(whole)
+    for i in range(whole[ROWS]):
+        s, w = states + STATE * i, FIRST + ENDS * i
+        pull = numbers[s + LAMBDA]
+        for end in range(2):
+            x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + JA + (JB - JA) * end
+            fx, fy, torque = pull * numbers[j], pull * numbers[j + 1], pull * numbers[j + 2]
+            if _inverse(numbers, whole, x) > 0.0:
+                px += fx
+                py += fy
+                spin += q[x] * fy - q[x + 1] * fx
+            else:
+                driven += fx * v[x] + fy * v[x + 1]
+            if _inverse(numbers, whole, turn) > 0.0:
+                spin += torque
+            elif turn >= 0:
+                driven += torque * v[turn]
+    return px, py, spin, driven
+
+
+@always_inlined
+def book_rows(q: Any, v: Any, given: Any, numbers: Any, whole: Any) -> None:
+    """Add what the forces of rows give in a second to the accounts behind the clock."""
+    px, py, spin, driven = given_by_rows(q, v, numbers, whole)
+    account, hand = whole[BOOKED], whole[DRIVEN]
+    if account >= 0:
+        given[account + PX] += px
+        given[account + PY] += py
+        given[account + SPIN] += spin
+    if hand >= 0:
+        given[hand + ENERGY] -= driven
+
+
+@always_inlined
+def push_by_rows(target: Any, numbers: Any, whole: Any) -> None:
+    """Add to velocities what the impulses of rows cause, or to accelerations what their forces do."""
+    states = first_state(whole)
+    for i in range(whole[ROWS]):
+        s, w = states + STATE * i, FIRST + ENDS * i
+        for end in range(2):
+            x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + JA + (JB - JA) * end
+            pull = numbers[s + LAMBDA]
+            target[x] += _inverse(numbers, whole, x) * numbers[j] * pull
+            target[x + 1] += _inverse(numbers, whole, x) * numbers[j + 1] * pull
+            if turn >= 0:
+                target[turn] += _inverse(numbers, whole, turn) * numbers[j + 2] * pull
+
+
 @force_kernel
 def constrain(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
     """Add the forces of joints: those with which all rows stay as they are under the forces there by now.
@@ -213,7 +267,7 @@ def constrain(q, v, span, force, parameters, indices):  # type: ignore[no-untype
     So it is the last of all forces. ``parameters`` and ``indices`` are the rows, as the module has them.
     """
     n, m = indices[ROWS], indices[COORDINATES]
-    inverse, states = GIVEN * n, _states(indices)
+    inverse, states = GIVEN * n, first_state(indices)
     damping = inverse + m
     measure_rows(q, v, parameters, indices)
     factorise(parameters, indices)
@@ -228,34 +282,16 @@ def constrain(q, v, span, force, parameters, indices):  # type: ignore[no-untype
                     change += parameters[j + k] * (gained - parameters[damping + place] * v[place])
         parameters[s + RIGHT] = -(change + parameters[s + RATE])
     solve(parameters, indices)
-    px, py, spin, driven = 0.0, 0.0, 0.0, 0.0
     for i in range(n):
         s, w = states + STATE * i, FIRST + ENDS * i
         pull = parameters[s + LAMBDA]
         for end in range(2):
             x, turn, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + JA + (JB - JA) * end
-            fx, fy, torque = pull * parameters[j], pull * parameters[j + 1], pull * parameters[j + 2]
-            force[x] += fx
-            force[x + 1] += fy
-            if _inverse(parameters, indices, x) > 0.0:
-                px += fx
-                py += fy
-                spin += q[x] * fy - q[x + 1] * fx
-            else:
-                driven += fx * v[x] + fy * v[x + 1]
+            force[x] += pull * parameters[j]
+            force[x + 1] += pull * parameters[j + 1]
             if turn >= 0:
-                force[turn] += torque
-                if _inverse(parameters, indices, turn) > 0.0:
-                    spin += torque
-                else:
-                    driven += torque * v[turn]
-    account, hand = indices[BOOKED], indices[DRIVEN]
-    if account >= 0:
-        force[account + PX] += px
-        force[account + PY] += py
-        force[account + SPIN] += spin
-    if hand >= 0:
-        force[hand + ENERGY] -= driven
+                force[turn] += pull * parameters[j + 2]
+    book_rows(q, v, force, parameters, indices)
 
 
 @kernel
@@ -265,7 +301,7 @@ def project(q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, numbers: Num
     ``q_low`` and ``v_low`` (n,) are the remainders of what moves. Returns the largest error left [m]. What
     this changes of energy and momentum is an error of the method.
     """
-    n, m, states, largest = whole[ROWS], whole[COORDINATES], _states(whole), 0.0
+    n, m, states, largest = whole[ROWS], whole[COORDINATES], first_state(whole), 0.0
     size, speed = 0.0, 0.0
     for i in range(m):
         size, speed = max(size, abs(q[i])), max(speed, abs(v[i]))

@@ -3,6 +3,7 @@
 import math
 
 from physicslab.kernels import Numbers, fused, inlined
+from physicslab.kernels.constraint.joint_rows import ROWS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
 from physicslab.kernels.rigid.equations import CHANGE, FREE, UNKNOWN, Equations
@@ -23,6 +24,7 @@ from physicslab.kernels.rigid.features import (
     Scene,
     measure,
 )
+from physicslab.kernels.rigid.joined import book_answer, lessen, measure_joints, pass_on
 from physicslab.kernels.rigid.least_norm import (
     REFINEMENTS,
     begin_equations,
@@ -38,7 +40,9 @@ __all__ = [
 
 @inlined
 def measure_all(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
-    """Measure the first ``count`` points in a state."""
+    """Measure the first ``count`` points in a state, and what joints hold together."""
+    if scene.joints[ROWS] > 0:
+        measure_joints(scene, q, v)
     for i in range(count):
         measure(scene, equations.points, i, q, v, equations.measures)
 
@@ -89,6 +93,8 @@ def assemble(scene: Scene, equations: Equations, count: int) -> None:
                 tn,
                 tt,
             )
+    if scene.joints[ROWS] > 0:
+        lessen(scene, equations.points, equations.measures, count, a)
 
 
 @inlined
@@ -109,6 +115,8 @@ def apply(scene: Scene, equations: Equations, count: int, target: Numbers, which
             target[2 * body] += sign * scene.inverse_mass[2 * body] * fx
             target[2 * body + 1] += sign * scene.inverse_mass[2 * body + 1] * fy
             target[2 * rows + body] += sign * scene.inverse_mass[2 * rows + body] * turn
+    if scene.joints[ROWS] > 0:
+        pass_on(scene, points, measures, equations.vectors[which], count, target)
 
 
 @inlined
@@ -174,6 +182,9 @@ def constrained_acceleration(
                 break
             apply(scene, equations, count, acceleration, CHANGE)
         book_contacts(scene, equations, count, q, v, acceleration)
+        if scene.joints[ROWS] > 0:
+            forces = equations.vectors[UNKNOWN]
+            book_answer(scene, equations.points, equations.measures, forces, count, q, v, acceleration)
 
 
 @fused

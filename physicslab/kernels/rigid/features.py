@@ -49,7 +49,8 @@ class Scene(NamedTuple):
     """What moves, and what may touch.
 
     The number of rows; inverse masses (3 rows,), damping, forces; shapes, walls of the bounds (4,) [m];
-    pairs (n, 3), and of each the friction, restitution and smaller size [m] (n, 3); where accounts are (3,).
+    pairs (n, 3), and of each the friction, restitution and smaller size [m] (n, 3); where accounts are (3,);
+    the rows of joints, their numbers and whole numbers (:mod:`physicslab.kernels.constraint.joint_rows`).
     """
 
     rows: int
@@ -61,16 +62,19 @@ class Scene(NamedTuple):
     pairs: Pairs
     coefficients: Vectors
     accounts: Rows
+    joint_numbers: Numbers
+    joints: Rows
 
 
-SceneTuple = tuple[int, Numbers, Numbers, Calls, ShapesTuple, Numbers, Pairs, Vectors, Rows]
+SceneTuple = tuple[int, Numbers, Numbers, Calls, ShapesTuple, Numbers, Pairs, Vectors, Rows, Numbers, Rows]
 
 
 @fused
 def named_scene(plain: SceneTuple) -> Scene:
     """Give names to a tuple."""
     return Scene(
-        plain[0], plain[1], plain[2], plain[3], named_shapes(plain[4]), plain[5], plain[6], plain[7], plain[8]
+        plain[0], plain[1], plain[2], plain[3], named_shapes(plain[4]), plain[5], plain[6], plain[7],
+        plain[8], plain[9], plain[10],
     )  # fmt: skip
 
 

@@ -22,6 +22,7 @@ from physicslab.kernels.constraint.impact_law import (
     narrow_search,
     solve_impact,
 )
+from physicslab.kernels.constraint.joint_rows import ROWS
 from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
@@ -45,6 +46,7 @@ from physicslab.kernels.rigid.features import (
     VT,
     Scene,
 )
+from physicslab.kernels.rigid.joined import book_impulses
 from physicslab.kernels.solver.impact_log import (
     ImpactPoints,
     Pair,
@@ -326,6 +328,8 @@ def resolve_simultaneous_impacts(
         for i in range(len(v)):
             old[i] = v[i]
         apply(scene, impact, n, v)
+        if scene.joints[ROWS] > 0:
+            book_impulses(scene, impact.points, impact.measures, impact.vectors[UNKNOWN], n, q, v, account)
         impacts += _note_round(
             scene, impact, n, q, old, v, rest, rate, acceleration, law, entities, log, logged + impacts, time,
             account,

@@ -7,11 +7,13 @@ Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653). In that limit no body moves, s
 """
 
 from physicslab.kernels import Numbers, fused
+from physicslab.kernels.constraint.joint_rows import ROWS
 from physicslab.kernels.rigid.bookings import book_contacts
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, measure_all
-from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, Equations
+from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import GIVEN, MU, PAIR, STATUS, VN, VT, Points, Scene
+from physicslab.kernels.rigid.joined import book_answer
 from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.touching import SLOW
 
@@ -56,4 +58,6 @@ def stop_sliding(
         # Impulses act along the mean of the speeds before and after.
         points[i, STATUS], measures[i, VT] = SLIDES_ON, 0.5 * (before + after)
     book_contacts(scene, equations, count, q, v, v)
+    if scene.joints[ROWS] > 0:
+        book_answer(scene, points, measures, vectors[UNKNOWN], count, q, v, v)
     return stopped

@@ -10,6 +10,7 @@ steps.
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels.constraint.joint_rows import ROWS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.records import Impacts
@@ -40,6 +41,7 @@ from physicslab.kernels.rigid.features import (
 )
 from physicslab.kernels.rigid.impacts import approaches, resolve_simultaneous_impacts
 from physicslab.kernels.rigid.jammed import stop_sliding
+from physicslab.kernels.rigid.joined import book_answer
 from physicslab.kernels.rigid.passing import longest_piece, share_of_ways
 from physicslab.kernels.rigid.piece_end import ALLOWED, HOLDS, PRESSES, cut_at_first_event, note_start
 from physicslab.kernels.rigid.pieces import (
@@ -277,7 +279,7 @@ def begin_motion(
     rest, least = rest_limits(of, at.acceleration, v)
     count = take_closed(of, points, count, changed, q, v, rest)
     slow, held = steady and _is_slow(of, v, rest), False
-    if slow:
+    if slow and of.joints[ROWS] == 0:  # joints hold bodies of the masses that they have
         found = hold_evenly(of, points, count, changed, at.acceleration, rest, least, at.v, at.q)
         share = _BALANCED if found == SETTLED else _FITTED
         held = found != NOT_FOUND and _is_balanced(of, points, count, share, at.acceleration, least, at.q)
@@ -294,6 +296,9 @@ def begin_motion(
         for i in range(3 * of.rows):
             v[i] = 0.0
         book_contacts(of, points, closed, q, v, at.acceleration)
+        if of.joints[ROWS] > 0:
+            forces = points.vectors[UNKNOWN]
+            book_answer(of, points.points, points.measures, forces, closed, q, v, at.acceleration)
         return DONE, closed, rest, True
     if closed > 0:
         project(of, points, closed, q, v)

@@ -10,6 +10,7 @@ of order one.
 import math
 
 from physicslab.kernels import Numbers, inlined, kernel
+from physicslab.kernels.constraint.joint_rows import ENDS, FIRST, ROWS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
@@ -80,12 +81,18 @@ def separate(scene: SceneTuple, equations: EquationsTuple, count: int, q: Number
 
 @inlined
 def _find_islands(scene: Scene, equations: Equations, count: int, island: Numbers) -> None:
-    """Give all bodies that hang together by points one number: the lowest row of them."""
+    """Give all bodies that hang together by points or joints one number: the lowest row of them."""
     for row in range(scene.rows):
         island[row] = row
-    changed = True
+    changed, n = True, scene.joints[ROWS]
     while changed:
         changed = False
+        for r in range(n):
+            one, other = scene.joints[FIRST + ENDS * r] // 2, scene.joints[FIRST + ENDS * r + 2] // 2
+            moving = scene.inverse_mass[2 * one] > 0.0 and scene.inverse_mass[2 * other] > 0.0
+            if moving and island[one] != island[other]:
+                island[one] = island[other] = min(island[one], island[other])
+                changed = True
         for i in range(count):
             one, other = equations.points[i, ONE], equations.points[i, OTHER]
             moving = scene.inverse_mass[2 * one] > 0.0 and scene.inverse_mass[2 * other] > 0.0

@@ -3,6 +3,7 @@
 import math
 
 from physicslab.kernels import Numbers, fused, inlined
+from physicslab.kernels.constraint.joint_rows import ROWS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.rigid.bookings import book_speeds
 from physicslab.kernels.rigid.complementarity import (
@@ -35,6 +36,7 @@ from physicslab.kernels.rigid.features import (
     Scene,
     measure,
 )
+from physicslab.kernels.rigid.joined import strongest_joint
 from physicslab.kernels.rigid.least_norm import solve_equations
 
 __all__ = [
@@ -216,6 +218,8 @@ def rest_limits(scene: Scene, acceleration: Numbers, v: Numbers) -> tuple[float,
             strongest = max(strongest, length_of(acceleration[2 * row], acceleration[2 * row + 1]))
         turning = abs(v[2 * scene.rows + row]) * scene.shapes.reach[row]
         fastest = max(fastest, length_of(v[2 * row], v[2 * row + 1]) + turning)
+    if scene.joints[ROWS] > 0:  # what hangs at rest is pulled all the same
+        strongest = max(strongest, strongest_joint(scene))
     for p in range(len(scene.pairs)):
         smallest = min(smallest, scene.coefficients[p, 2])
     if smallest == math.inf:
@@ -343,7 +347,7 @@ def hold_evenly(
         inverse_mass[i], pulled[i] = share * scene.inverse_mass[i], share * acceleration[i]
     even = Scene(
         scene.rows, inverse_mass, scene.damping, scene.calls, scene.shapes, scene.walls, scene.pairs,
-        scene.coefficients, scene.accounts,
+        scene.coefficients, scene.accounts, scene.joint_numbers, scene.joints,
     )  # fmt: skip
     _note_given(equations, count, changed, rest)
     assemble(even, equations, count)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Shape, Transform, Velocity
-from physicslab.diagnostics.contact_graph import contact_graph
+from physicslab.diagnostics.contact_warnings import contact_graph
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.files.reader import read_scene
 from physicslab.lab.accuracy.twins import ROUNDING, Document

@@ -10,7 +10,7 @@ import numpy as np
 
 from physicslab.components import Transform
 from physicslab.lab.bench.catalogue import discs, ten_discs
-from physicslab.lab.bench.engine import OurEngine
+from physicslab.lab.bench.engine import Engine
 from physicslab.lab.bench.result import Spread, take_turns
 from physicslab.lab.jobs import Job
 from physicslab.systems.broad_phase import BroadPhaseSystem
@@ -118,7 +118,7 @@ def _needed() -> tuple[System, ...]:
 
 def measure_unused(name: str, build: Callable[[tuple[System, ...]], World], steps: int) -> Job[Unused]:
     """Time a scene with the systems that it needs and with all; yield the share that is done."""
-    bare, whole = (OurEngine(build(systems)) for systems in (_needed(), standard_systems()))
+    bare, whole = (Engine(build(systems)) for systems in (_needed(), standard_systems()))
     settling = round(_SECONDS / bare.dt)
     for times in take_turns((bare, whole), settling):
         yield len(times[0].step) / (settling + steps)

@@ -1,7 +1,6 @@
 """The engines that are timed, behind one interface: step, run, read the state back."""
 
 import importlib.util
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import replace
 from typing import override
@@ -23,8 +22,8 @@ def missing_peers() -> list[str]:
     return [peer.title for peer in PEERS if importlib.util.find_spec(peer.module) is None]
 
 
-class Engine(ABC):
-    """An engine that holds a scene of its own.
+class Engine:
+    """PhysicsLab with a scene of its own; others override how it is stepped and read.
 
     Attributes
     ----------
@@ -38,7 +37,7 @@ class Engine(ABC):
         What is done before every step, as part of what is timed; takes its number, from 0 on.
     """
 
-    title: str
+    title = OURS
 
     def __init__(self, world: World) -> None:
         self.world = world
@@ -53,21 +52,21 @@ class Engine(ABC):
             self._prepared += 1
         self.step()
 
-    @abstractmethod
     def set_gravity(self, gravity: Vector2) -> None:
         """Replace uniform gravity [m/s^2]."""
+        self.world.physics = replace(self.world.physics, gravity=gravity)
 
-    @abstractmethod
     def step(self) -> None:
         """Advance by one step of ``dt``."""
+        self.world.step()
 
-    @abstractmethod
     def run(self, steps: int) -> None:
         """Advance by so many steps, in the way that is fastest."""
+        self.world.run(steps=steps)
 
-    @abstractmethod
     def read(self) -> object:
         """Return where every body is, as a program would read it after each step."""
+        return self.world.table(Transform)["position"].copy()
 
     def look(self) -> World:
         """Return the world with the state of now.
@@ -79,30 +78,8 @@ class Engine(ABC):
         """
         return self.world
 
-    def pause(self) -> None:  # noqa: B027 (most engines have nothing to do)
+    def pause(self) -> None:
         """Do what a program does between some steps and the next; it is not timed."""
-
-
-class OurEngine(Engine):
-    """PhysicsLab."""
-
-    title = OURS
-
-    @override
-    def set_gravity(self, gravity: Vector2) -> None:
-        self.world.physics = replace(self.world.physics, gravity=gravity)
-
-    @override
-    def step(self) -> None:
-        self.world.step()
-
-    @override
-    def run(self, steps: int) -> None:
-        self.world.run(steps=steps)
-
-    @override
-    def read(self) -> object:
-        return self.world.table(Transform)["position"].copy()
 
 
 class OtherEngine(Engine):

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from physicslab.components import Transform, Velocity
 from physicslab.kernels import compile_kernels
-from physicslab.lab.bench.engine import Engine, OtherEngine, OurEngine, prepared
+from physicslab.lab.bench.engine import Engine, OtherEngine, prepared
 from physicslab.lab.bench.result import EngineResult, SceneResult, Spread, Times, take_turns
 from physicslab.lab.bench.scene import BenchScene, Moment, When
 from physicslab.lab.jobs import Job
@@ -24,7 +24,7 @@ _BLOCK = 200
 
 
 def measure_scene(
-    scene: BenchScene, peers: Sequence[type[Peer]] = (), make: Callable[[World], OurEngine] = OurEngine
+    scene: BenchScene, peers: Sequence[type[Peer]] = (), make: Callable[[World], Engine] = Engine
 ) -> Job[SceneResult]:
     """Time a scene; yield the share that is done now and then.
 

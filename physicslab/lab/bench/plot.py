@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from physicslab.lab.bench.engine import OURS
-from physicslab.lab.bench.report import BenchReport
 from physicslab.lab.bench.result import EngineResult
+from physicslab.lab.bench.tables import BenchReport
 from physicslab.lab.plot import COLOURS, new_figure, png, prepare_axes
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from physicslab.contacts.impact_reader import ImpactReader
+from physicslab.contacts.report import ImpactReader
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
 

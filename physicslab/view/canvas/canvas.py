@@ -81,15 +81,15 @@ class Canvas(Protocol):
         """Fill the whole picture."""
 
     def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
-        """Draw discs, each with a rim and a line that shows its angle, or hatched."""
+        """Draw discs: centres (n, 2) and radii (n,) [px], angles (n,) [rad]; with a line, or hatched."""
 
     def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
-        """Draw boxes of the given widths and heights, each with a rim and a notch, or hatched."""
+        """Draw boxes: centres and sides (n, 2) [px], angles (n,) [rad]; with a notch, or hatched."""
 
     def lines(
         self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0
     ) -> None:
-        """Draw straight lines of one kind, with round ends; each may have an opacity of its own."""
+        """Draw straight lines between ends (n, 2) [px], with round ends; one opacity or one for each (n,)."""
 
     def strokes(self, start: Points, end: Points, colour: NDArray[np.uint8], width: Numbers) -> None:
         """Draw straight lines with round ends, each of its own colour (n, 3) and width."""

@@ -5,7 +5,7 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from physicslab.components import Held, Shape, Spring, Transform, Velocity
+from physicslab.components import Held, Pin, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.text import printable
@@ -193,7 +193,7 @@ def _parts(world: World, entity: int) -> list[Component]:
     return [
         type(part)(**part.given())
         for part in world.components(entity)
-        if isinstance(part, Component) and not isinstance(part, Held | Spring)
+        if isinstance(part, Component) and not isinstance(part, Held | Pin | Spring)
     ]
 
 

@@ -9,29 +9,18 @@ import pygame
 
 from physicslab.components import Strobe, Trail
 from physicslab.view.canvas.canvas import is_within
-from physicslab.view.controls import actions, controls, dashboard_actions, file_actions, impact_actions
-from physicslab.view.controls.actions import has_gravity, nudger, turner
-from physicslab.view.controls.measuring import (
-    GATE,
-    NOTE,
-    PROTRACTOR,
-    RULER,
+from physicslab.view.controls import (
+    actions,
+    controls,
+    dashboard_actions,
+    file_actions,
+    impact_actions,
     measuring,
-    toggle_stopwatch,
-    toggle_strobes,
+    tools,
 )
+from physicslab.view.controls.actions import has_gravity, nudger, turner
 from physicslab.view.controls.spawning import spawn_pendulum
 from physicslab.view.controls.tool import Tool
-from physicslab.view.controls.tools import (
-    HAND,
-    PAN,
-    SPAWN_TOOLS,
-    SPRING,
-    TOOLS,
-    begin_spring,
-    end_spring,
-    remove_selected,
-)
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
@@ -60,7 +49,7 @@ def enter(world: World, window: Window) -> None:
     if window.selection.entities and not window.presses_by_key:
         window.keys_go_to = "fields"
         return
-    place, tool = _cursor(window), TOOLS[window.tool]
+    place, tool = _cursor(window), tools.TOOLS[window.tool]
     if not window.presses_by_key:
         _post(pygame.MOUSEBUTTONDOWN, place, button=pygame.BUTTON_LEFT)
     if window.presses_by_key or not tool.drags:
@@ -114,7 +103,7 @@ ARROWS = {
 type State = Callable[[World, Window], bool]
 
 _BOX, _PENDULUM = (
-    next(tool for tool in SPAWN_TOOLS if tool.name == name) for name in ("box", "pendulum")
+    next(tool for tool in tools.SPAWN_TOOLS if tool.name == name) for name in ("box", "pendulum")
 )  # fmt: skip
 
 
@@ -181,18 +170,24 @@ def _switch(label: str, does: str, key: str, flag: str, group: str, tip: str) ->
     )  # fmt: skip
 
 
+def _instrument(label: str, does: str, tool: Tool, tip: str) -> Control:
+    """Return what takes the tool of an instrument in hand, or measures with it."""
+    action = measuring.key_action(tool, actions.choose_tool)
+    return Control(label, does, label.lower(), action, group="measure", tip=tip, tool=tool)
+
+
 def _gravity_is(world: World, mode: str) -> bool:
     return has_gravity(world) and world.physics.gravity_mode == mode
 
 
 CONTROLS: tuple[Control, ...] = (
-    Control("Left", "drag, throw, new circle", tool=HAND,
+    Control("Left", "drag, throw, new circle", tool=tools.HAND,
             tip="Drag and throw bodies, click for a new circle"),
     Control("Right", "new box", tool=_BOX, tip="New boxes where you click"),
     Control("P", "pendulum", "p", spawn_pendulum, tool=_PENDULUM, tip="New pendulums where you click"),
-    Control("S", "spring: hold, drag", "s", begin_spring, end_spring, tool=SPRING,
+    Control("S", "spring: hold, drag", "s", tools.begin_spring, tools.end_spring, tool=tools.SPRING,
             tip="Springs: drag from a body"),
-    Control("Del", "remove", "delete", remove_selected, also=("backspace",), group="edit",
+    Control("Del", "remove", "delete", tools.remove_selected, also=("backspace",), group="edit",
             tip="Remove the selection, or the body under the cursor"),
     Control("Ctrl+D", "duplicate", "ctrl+d", actions.duplicate_selected, group="edit",
             tip="A copy beside each selected body"),
@@ -237,25 +232,22 @@ CONTROLS: tuple[Control, ...] = (
     Control("O", "planets", "o", actions.toggle_planets, group="laws",
             state=lambda world, _: _gravity_is(world, "planet"),
             tip="Planet mode: all bodies attract each other"),
-    Control("V", "arrows", "v", lambda world, window: window.overlays.toggle_arrows(world, window.camera),
+    Control("V", "arrows", "v", lambda world, window: window.overlays.toggle("arrows", world, window.camera),
             group="show", state=lambda _, window: window.overlays.arrows,
             tip="Velocities, net forces, contact normals"),
     Control("T", "trails", "t", lambda world, window: window.trails.toggle(world), group="show",
             state=lambda world, _: bool(world.table(Trail).handles), tip="Trails behind moving bodies"),
-    Control("E", "impulses", "e", lambda world, window: window.overlays.toggle_impulses(world, window.camera),
-            group="show", state=lambda _, window: window.overlays.impulses,
-            tip="Impulses at contacts, with numbers"),
-    Control("D", "ruler", "d", measuring(RULER, actions.choose_tool), group="measure", tool=RULER,
-            tip="A length: drag; or between two selected bodies"),
-    Control("Y", "angle", "y", measuring(PROTRACTOR, actions.choose_tool), group="measure", tool=PROTRACTOR,
-            tip="An angle: drag one arm from the vertex, then click the end of the other"),
-    Control("J", "gate", "j", measuring(GATE, actions.choose_tool), group="measure", tool=GATE,
-            tip="A light gate: notes when bodies cross it"),
-    Control("W", "note", "w", measuring(NOTE, actions.choose_tool), group="measure", tool=NOTE,
-            tip="A text at a point of the world"),
-    Control("C", "stopwatch", "c", toggle_stopwatch, group="measure",
+    Control("E", "impulses", "e",
+            lambda world, window: window.overlays.toggle("impulses", world, window.camera), group="show",
+            state=lambda _, window: window.overlays.impulses, tip="Impulses at contacts, with numbers"),
+    _instrument("D", "ruler", measuring.RULER, "A length: drag; or between two selected bodies"),
+    _instrument("Y", "angle", measuring.PROTRACTOR,
+                "An angle: drag one arm from the vertex, then click the end of the other"),
+    _instrument("J", "gate", measuring.GATE, "A light gate: notes when bodies cross it"),
+    _instrument("W", "note", measuring.NOTE, "A text at a point of the world"),
+    Control("C", "stopwatch", "c", measuring.toggle_stopwatch, group="measure",
             state=lambda _, window: window.shows_stopwatch, tip="The times between crossings of gates"),
-    Control("X", "strobe of all that moves", "x", toggle_strobes, group="measure",
+    Control("X", "strobe of all that moves", "x", measuring.toggle_strobes, group="measure",
             state=lambda world, _: bool(world.table(Strobe).handles),
             tip="Pictures of all moving bodies, ten a second"),
     _switch("Z", "impacts", "z", "impacts.shown", "measure",
@@ -279,7 +271,7 @@ CONTROLS: tuple[Control, ...] = (
             tip="Change a number by sliding: of the selection, or gravity"),
     _switch("I", "panel at the right", "i", "figures", "show", "The selection, or the world, in figures"),
     _switch("H", "grid", "h", "grid", "show", "The grid"),
-    Control("Middle", "pan", tool=PAN, tip="Move the view by dragging"),
+    Control("Middle", "pan", tool=tools.PAN, tip="Move the view by dragging"),
     Control("Wheel", "zoom"),
     Control("+", "zoom in", "=", actions.zoom_by_key(1), also=("+", "[+]"), group="view",
             click=actions.zoom_by_button(1), tip="Zoom in"),

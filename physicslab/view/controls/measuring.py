@@ -164,7 +164,7 @@ MEASURING_TOOLS = (RULER, PROTRACTOR, GATE, NOTE)
 _KINDS: dict[str, Any] = {RULER.name: Ruler, PROTRACTOR.name: Protractor, GATE.name: Gate, NOTE.name: Note}
 
 
-def measuring(tool: Tool, choose: Callable[[World, Window, Tool], None]) -> Action:
+def key_action(tool: Tool, choose: Callable[[World, Window, Tool], None]) -> Action:
     """Return what the key of a tool does.
 
     If as many bodies are selected as it has points, it measures between them; else it is taken in hand.

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from physicslab.components import Spring, Transform
+from physicslab.components import Pin, Spring, Transform
 from physicslab.contacts.outlines import Outlines
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
@@ -136,16 +136,16 @@ def _spawn_commands(make: Make, window: Window, first: int) -> list[Command]:
     for entity in entities:
         parts = [copy.copy(part) for part in scratch.components(entity) if isinstance(part, Component)]
         for part in parts:
-            if isinstance(part, Spring):
+            if isinstance(part, Spring | Pin):
                 parts[parts.index(part)] = _renumbered(part, number)
         commands.append(Spawn(parts))
     return commands
 
 
-def _renumbered(spring: Spring, number: dict[int, int]) -> Spring:
-    """Return a spring between the same bodies under other numbers."""
-    ends = {end: None if getattr(spring, end) is None else number[getattr(spring, end)] for end in ("a", "b")}
-    return Spring(**{**spring.values(), **ends})
+def _renumbered(part: Spring | Pin, number: dict[int, int]) -> Spring | Pin:
+    """Return a spring or a pin between the same bodies under other numbers."""
+    ends = {end: None if getattr(part, end) is None else number[getattr(part, end)] for end in ("a", "b")}
+    return type(part)(**{**part.values(), **ends})
 
 
 @functools.lru_cache(maxsize=32)

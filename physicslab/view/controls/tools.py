@@ -3,16 +3,19 @@
 from collections.abc import Sequence
 from functools import partial
 
-from physicslab.components import Spring, Transform, Velocity
+from physicslab.components import Pin, Spring, Transform, Velocity
 from physicslab.diagnostics.period import gives_way
+from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
-from physicslab.history import Command, Remove, RemoveComponent, Spawn
+from physicslab.history import Command, Group, Remove, RemoveComponent, Spawn
+from physicslab.state.joints import KINDS
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument
 from physicslab.view.controls.picking import body_at, instrument_at, spring_at
 from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawnable
 from physicslab.view.controls.tool import Tool
-from physicslab.view.window.spring_tool import pin_at, spring_between
+from physicslab.view.picture.joints import joint_at
+from physicslab.view.window.spring_tool import local_point, pin_at, spring_between
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
@@ -30,8 +33,13 @@ def let_go(world: World, window: Window) -> None:
 def take_hold(world: World, window: Window) -> bool:
     """Take hold of the body under the cursor, of an instrument, or of the end of a spring, and select it.
 
-    Return whether there is one; a spring that is not held at its end is selected alone.
+    A joint, which lies over bodies, is selected alone, and so is a spring that is not held at its end. Return
+    whether there is one.
     """
+    joint = joint_at(world, window.camera, window.pointer)
+    if joint is not None:
+        window.selection.take(joint, add=window.adding)
+        return True
     pin = pin_at(world, window.camera, window.pointer)
     entity = body_at(world, window.camera, window.pointer) if pin is None else None
     fixed = entity is None or not world.has(entity, Velocity)
@@ -75,7 +83,11 @@ def end_select(world: World, window: Window) -> None:
 
 
 def remove(world: World, window: Window) -> None:
-    """Remove the instrument, the body or the spring under the cursor; a body's springs go with it."""
+    """Remove the joint, the instrument, the body or the spring under the cursor; what ends at a body too."""
+    joint = joint_at(world, window.camera, window.pointer)
+    if joint is not None:
+        remove_joints(world, window, joint)
+        return
     entity = instrument_at(world, window.camera, window.pointer, window.measuring.rects)
     entity = body_at(world, window.camera, window.pointer) if entity is None else entity
     spring = spring_at(world, window.camera, window.pointer) if entity is None else None
@@ -87,6 +99,15 @@ def remove(world: World, window: Window) -> None:
         window.notify("Nothing to remove: put the cursor on a body or a spring, or select one")
         return
     remove_entities(world, window, (entity,))
+
+
+def remove_joints(world: World, window: Window, entity: int) -> None:
+    """Remove the joints that an entity carries; a body that carries them stays."""
+    if not world.has(entity, Transform):
+        remove_entities(world, window, (entity,))
+        return
+    kinds = [kind.__name__ for kind in KINDS if world.has(entity, kind)]
+    window.edits.do(Group("removed a joint", [RemoveComponent(entity, kind) for kind in kinds]))
 
 
 def remove_selected(world: World, window: Window) -> None:
@@ -181,10 +202,30 @@ def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, A
         words, tip = "Join by a {}", "A {} between these two, its rest length their present distance"
     else:
         words, tip = "Hang on a {}", "A {} to a point above it, which can be dragged"
-    return {
+    found: dict[str, tuple[str, Action]] = {
         words.format(way): (tip.format(way), partial(_attach, bodies=tuple(entities), stiff=stiff))
         for way, stiff in _WAYS.items()
     }
+    pin = partial(_pin, bodies=tuple(entities))
+    if len(entities) == 2:
+        found["Join by a pin"] = "A pin half way between the middles of these two, about which they turn", pin
+    else:
+        found["Pin in place"] = "A pin through its middle, about which it turns", pin
+    return found
+
+
+def _pin(world: World, window: Window, bodies: Sequence[int]) -> None:
+    places = [world.component(body, Transform).position for body in bodies]
+    one, other = (*bodies, None)[:2]
+    if not any(world.has(body, Velocity) for body in bodies):
+        window.notify("No pin: neither of its ends could move")
+        return
+    middle = 0.5 * (places[0] + places[-1])
+    anchors = [local_point(world, body, middle) for body in (one, other)]
+    try:
+        window.edits.do(Spawn([Pin(a=one, b=other, anchor_a=anchors[0], anchor_b=anchors[1])]))
+    except InvalidValue as error:
+        window.notify(f"No pin: {error.field} must be {error.allowed}", 6.0, failed=True)
 
 
 def _within(world: World, place: Vector2) -> Vector2:

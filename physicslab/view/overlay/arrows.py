@@ -96,11 +96,11 @@ def max_length(canvas: Canvas) -> float:
 def draw_arrows(
     start: Points, span: Points, kind: ArrowKind, on: Drawing, opacity: float | Numbers = 1.0
 ) -> None:
-    """Draw arrows of one kind from ``start``, each ``span`` long.
+    """Draw arrows of one kind from ``start`` (n, 2) on, each ``span`` (n, 2) long [px].
 
     Shafts are one call of :meth:`Canvas.lines`, heads a second one; arrows that are cut have two strokes
     across the middle. Arrows shorter than ``MIN_LENGTH``, not finite, or out of the picture are left out.
-    Each arrow may have an opacity of its own.
+    Each arrow may have an opacity of its own (n,).
     """
     limit = max_length(on.canvas)
     with np.errstate(invalid="ignore", over="ignore"):
@@ -147,7 +147,10 @@ def _placed(strokes: Strokes, tip: Points, unit: Points, size: NDArray[np.float6
 
 
 def dashes(start: Points, end: Points) -> tuple[Points, Points, NDArray[np.int64]]:
-    """Return the strokes of broken lines, and of which line each is; the last of each ends where it does."""
+    """Return the strokes of broken lines between ends (n, 2) [px], and of which line each is.
+
+    The last stroke of each line ends where that does.
+    """
     span = end - start
     length = np.hypot(span[:, 0], span[:, 1])
     count = np.maximum(np.ceil(length / (_DASH + _GAP)), 1.0).astype(np.int64)

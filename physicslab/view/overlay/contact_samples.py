@@ -78,7 +78,7 @@ def _slip_of(
 
 
 def samples_of(world: World, impacts: NDArray[Any]) -> ContactSamples:
-    """Return impacts, an array of IMPACT, of bodies that still exist."""
+    """Return impacts, an array of IMPACT (n,), of bodies that still exist."""
     row_a = world.entity_index.rows_of(impacts["entity_a"])
     row_b = world.entity_index.rows_of(impacts["entity_b"])
     exists = (row_a >= 0) & (row_b >= 0)
@@ -110,7 +110,7 @@ def _show_on_what_moves(
 
 
 def sliding(samples: ContactSamples) -> NDArray[np.bool_]:
-    """Whether friction is at its limit mu times the normal impulse (Coulomb), and the bodies move along it.
+    """Return of samples (n,) whether friction is at its limit mu J_n (Coulomb), and bodies move along it.
 
     At the limit a body can still rest: of the two points under a block one may carry all that friction can.
     """
@@ -152,7 +152,7 @@ class RecentImpacts:
         self.kept: ContactSamples = np.zeros(0, SAMPLE)
 
     def note(self, world: World, impacts: NDArray[Any], reach: float) -> None:
-        """Take in new impacts of a world, an array of IMPACT; the longest arrow is ``reach`` [m] long."""
+        """Take in new impacts of a world, of IMPACT (n,); the longest arrow is ``reach`` [m] long."""
         self.same_place = _SAME_PLACE * reach
         if not len(impacts):
             return
@@ -172,7 +172,7 @@ class RecentImpacts:
 
     @staticmethod
     def freshness(impacts: ContactSamples, time: float) -> NDArray[np.float64]:
-        """Return how far each has faded at a time [s]: 1 is new, 0 is gone."""
+        """Return how far each of some impacts (n,) has faded at a time [s]: 1 is new, 0 is gone."""
         fresh: NDArray[np.float64] = np.clip(1.0 - (time - impacts["time"]) / SHOWN, 0.0, 1.0)
         return fresh
 

@@ -5,27 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from physicslab.components import Transform, Velocity
-from physicslab.diagnostics.free_body import (
-    LastStep,
-    NamedForce,
-    applied_forces,
-    contact_forces,
-    forces_on,
-    last_step,
-    net_force,
-)
+from physicslab.diagnostics import free_body
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.overlay.arrows import (
-    CONTACT_NORMAL,
-    FORCE,
-    MIN_LENGTH,
-    VELOCITY,
-    ArrowKind,
-    Head,
-    draw_arrows,
-)
+from physicslab.view.overlay import arrows
 from physicslab.view.overlay.contact_samples import resting_of
 from physicslab.view.overlay.labels import Label
 from physicslab.view.overlay.legend import Gauge, Overlays
@@ -37,8 +21,8 @@ NORMAL_LENGTH = 26.0
 
 def draw_vectors(world: World, overlays: Overlays, on: Drawing) -> None:
     """Draw the velocity of each body that moves, the sum of the forces on it, and the normals of contacts."""
-    applied = applied_forces(world)
-    force = applied + contact_forces(world)
+    applied = free_body.applied_forces(world)
+    force = applied + free_body.contact_forces(world)
     rows = world.batch(Transform, Velocity).rows
     position = world.table(Transform)["position"][rows]
     linear = world.table(Velocity)["linear"][rows]
@@ -55,15 +39,15 @@ def draw_vectors(world: World, overlays: Overlays, on: Drawing) -> None:
     if overlays.force.per_metre:
         start = on.camera.project(world.table(Transform)["position"][pulled])
         span = force * flip * (on.camera.scale / overlays.force.per_metre)
-        draw_arrows(start, span, FORCE, on)
+        arrows.draw_arrows(start, span, arrows.FORCE, on)
     if overlays.velocity.per_metre:
         span = linear * flip * (on.camera.scale / overlays.velocity.per_metre)
-        draw_arrows(on.camera.project(position), span, VELOCITY, on)
+        arrows.draw_arrows(on.camera.project(position), span, arrows.VELOCITY, on)
     contacts = resting_of(world)
     contacts = contacts[contacts["normal"] > 0.0]
     start = on.camera.project(contacts["place"])
-    length = min(NORMAL_LENGTH, max(0.5 * overlays.reach * on.camera.scale, MIN_LENGTH))
-    draw_arrows(start, contacts["direction"] * flip * length, CONTACT_NORMAL, on)
+    length = min(NORMAL_LENGTH, max(0.5 * overlays.reach * on.camera.scale, arrows.MIN_LENGTH))
+    arrows.draw_arrows(start, contacts["direction"] * flip * length, arrows.CONTACT_NORMAL, on)
 
 
 # ---- the free-body diagram ---------------------------------------------------------------------------------
@@ -87,8 +71,8 @@ class Measured:
     """
 
     def __init__(self) -> None:
-        self.forces: tuple[NamedForce, ...] = ()
-        self.step: LastStep | None = None
+        self.forces: tuple[free_body.NamedForce, ...] = ()
+        self.step: free_body.LastStep | None = None
         self.number = 0
         self._stepped = -1, -1  # how many steps and edits there were when a step was seen first
         self._of: tuple[object, ...] = ()
@@ -97,7 +81,7 @@ class Measured:
     @property
     def net(self) -> Vector2:
         """The sum of the forces [N]."""
-        return net_force(self.forces)
+        return free_body.net_force(self.forces)
 
     def follow(self, world: World, entity: int | None, now: float, *, paused: bool) -> None:
         """Measure again where it is time for that, or where time stands still and something has changed.
@@ -119,9 +103,9 @@ class Measured:
         if not changed and (now < self._until or world.steps == self._steps):
             return
         self._of, self._steps, self._until = of, world.steps, now + _PERIOD
-        self.forces = forces_on(world, entity)
+        self.forces = free_body.forces_on(world, entity)
         is_edited = self._stepped != (world.steps, world.motion_edits)
-        self.step = None if is_edited else last_step(world, entity)
+        self.step = None if is_edited else free_body.last_step(world, entity)
         self._place = world.component(entity, Transform).position
         self.number += 1
 
@@ -135,16 +119,16 @@ class Measured:
 
 _WIDTH = 2.6
 _KINDS = {
-    "field": ArrowKind("Force", "force", Head.DOUBLE, _WIDTH),
-    "normal": ArrowKind("Normal force", "normal_impulse", Head.DIAMOND, _WIDTH),
-    "friction": ArrowKind("Friction", "friction_impulse", Head.OPEN, _WIDTH, dashed=True),
+    "field": arrows.ArrowKind("Force", "force", arrows.Head.DOUBLE, _WIDTH),
+    "normal": arrows.ArrowKind("Normal force", "normal_impulse", arrows.Head.DIAMOND, _WIDTH),
+    "friction": arrows.ArrowKind("Friction", "friction_impulse", arrows.Head.OPEN, _WIDTH, dashed=True),
 }
 _REACH = 0.16
 """Length of the longest arrow, as a share of the smaller side of the picture."""
 
 
 def draw_free_body(
-    forces: Sequence[NamedForce], moved: Vector2, time: float, overlays: Overlays, on: Drawing
+    forces: Sequence[free_body.NamedForce], moved: Vector2, time: float, overlays: Overlays, on: Drawing
 ) -> None:
     """Draw the forces on a body as arrows that end with their names and sizes; one scale for all of them.
 
@@ -166,10 +150,10 @@ def draw_free_body(
     overlays.force_labels.draw(labels, overlays.covered, on)
 
 
-def _draw(one: NamedForce, moved: Vector2, number: int, gauge: Gauge, on: Drawing) -> Label:
+def _draw(one: free_body.NamedForce, moved: Vector2, number: int, gauge: Gauge, on: Drawing) -> Label:
     """Draw one arrow, and return its label."""
     start = on.camera.project(np.array([(one.place.x + moved.x, one.place.y + moved.y)]))
     span = np.array([(one.force.x, -one.force.y)]) * (on.camera.scale / gauge.per_metre)
-    draw_arrows(start, span, _KINDS[one.kind], on)
+    arrows.draw_arrows(start, span, _KINDS[one.kind], on)
     x, y = (start + span)[0].tolist()
     return Label((number, hash(one.name)), (x, y), [f"{one.name}: {quantity(one.force.magnitude, 'N')}"])

@@ -9,22 +9,8 @@ from numpy.typing import NDArray
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Numbers, Points, Rect
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.overlay.arrows import (
-    FRICTION_IMPULSE,
-    IMPACT_WIDTH,
-    NORMAL_IMPULSE,
-    REST_WIDTH,
-    dashes,
-    draw_arrows,
-    max_length,
-)
-from physicslab.view.overlay.contact_samples import (
-    ContactSamples,
-    RecentImpacts,
-    resting_of,
-    same_place,
-    sliding,
-)
+from physicslab.view.overlay import arrows, contact_samples
+from physicslab.view.overlay.contact_samples import ContactSamples
 from physicslab.view.overlay.labels import Key, Label
 from physicslab.view.overlay.legend import Gauge, Overlays
 from physicslab.world import World
@@ -48,13 +34,13 @@ def draw_impulses(world: World, overlays: Overlays, written: Collection[int], on
     """
     impacts = overlays.impacts.recent(world.time)
     impacts = impacts[np.argsort(impacts["time"], kind="stable")]  # the newest on top
-    resting = _without(resting_of(world), impacts, overlays.impacts.same_place)
+    resting = _without(contact_samples.resting_of(world), impacts, overlays.impacts.same_place)
     resting = resting[resting["normal"] > 0.0]
-    fresh = RecentImpacts.freshness(impacts, world.time)
+    fresh = contact_samples.RecentImpacts.freshness(impacts, world.time)
     overlays.impact.follow(impacts["normal"], overlays.reach, world.time)
     overlays.rest.follow(resting["normal"], overlays.reach, world.time)
-    _draw_impulses_of(resting, overlays.rest, REST_WIDTH, 0.9, on)
-    _draw_impulses_of(impacts, overlays.impact, IMPACT_WIDTH, fresh, on)
+    _draw_impulses_of(resting, overlays.rest, arrows.REST_WIDTH, 0.9, on)
+    _draw_impulses_of(impacts, overlays.impact, arrows.IMPACT_WIDTH, fresh, on)
     ends = np.array(sorted(written), np.int64)
     of_written = _by_pair(resting[np.isin(resting["a"], ends) | np.isin(resting["b"], ends)])
 
@@ -84,7 +70,7 @@ def _without(resting: ContactSamples, impacts: ContactSamples, distance: float) 
     if not len(impacts):
         return resting
     candidates = np.flatnonzero(np.isin(resting[["a", "b"]], impacts[["a", "b"]]))
-    hidden = same_place(resting[candidates], impacts, distance).any(axis=1)
+    hidden = contact_samples.same_place(resting[candidates], impacts, distance).any(axis=1)
     return np.delete(resting, candidates[hidden])
 
 
@@ -113,9 +99,9 @@ def _draw_impulses_of(
     scale = on.camera.scale / gauge.per_metre
     _draw_cones((start, normal, tangent), samples, scale, opacity, on)
     friction_impulse = tangent * (samples["tangent"] * scale)[:, None]
-    draw_arrows(start, friction_impulse, replace(FRICTION_IMPULSE, width=width), on, opacity)
+    arrows.draw_arrows(start, friction_impulse, replace(arrows.FRICTION_IMPULSE, width=width), on, opacity)
     push = normal * (samples["normal"] * scale)[:, None]
-    draw_arrows(start, push, replace(NORMAL_IMPULSE, width=width), on, opacity)
+    arrows.draw_arrows(start, push, replace(arrows.NORMAL_IMPULSE, width=width), on, opacity)
 
 
 def _draw_cones(
@@ -124,9 +110,9 @@ def _draw_cones(
 ) -> None:  # fmt: skip
     """Draw both sides of friction cones, as high as the normal impulse; broken where the contact slips."""
     start, normal, tangent = axes
-    height = np.minimum(samples["normal"] * scale, max_length(on.canvas))
+    height = np.minimum(samples["normal"] * scale, arrows.max_length(on.canvas))
     shown = (samples["friction"] > 0.0) & (height >= 8.0)
-    slips = sliding(samples)
+    slips = contact_samples.sliding(samples)
     share = np.full(len(samples), 0.75) * opacity
     for chosen, broken in ((shown & ~slips, False), (shown & slips, True)):
         if not chosen.any():
@@ -138,7 +124,7 @@ def _draw_cones(
         tos = froms + np.concatenate([side * reach for side in sides])
         shares = np.tile(share[chosen], 2)
         if broken:
-            froms, tos, line = dashes(froms, tos)
+            froms, tos, line = arrows.dashes(froms, tos)
             shares = shares[line]
         on.canvas.lines(froms, tos, on.theme.friction_cone, 1.2, shares)
 
@@ -166,7 +152,7 @@ def _strongest(
     weight = np.where(_seen(at, on.camera.size, overlays.covered), strength, 0.0)
     chosen = np.argsort(-weight, kind="stable")[: 2 * LABELLED]
     chosen = chosen[weight[chosen] > 0.0]
-    samples, slips = samples[chosen], sliding(samples[chosen]).tolist()
+    samples, slips = samples[chosen], contact_samples.sliding(samples[chosen]).tolist()
     keys = zip(samples["a"].tolist(), samples["b"].tolist(), samples["point"].tolist(), strict=True)
     places = ((x, y) for x, y in at[chosen].tolist())
     every = zip(weight[chosen].tolist(), keys, places, samples, slips, strict=True)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,18 +11,7 @@ from physicslab.components import Shape, Velocity
 from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import Align, Rect, TextStyle
 from physicslab.view.canvas.quantities import round_quantity, rounded_up
-from physicslab.view.overlay.arrows import (
-    CONTACT_NORMAL,
-    FORCE,
-    FRICTION_IMPULSE,
-    IMPACT_WIDTH,
-    NORMAL_IMPULSE,
-    REST_WIDTH,
-    VELOCITY,
-    ArrowKind,
-    dashes,
-    draw_arrows,
-)
+from physicslab.view.overlay import arrows
 from physicslab.view.overlay.banners import broken
 from physicslab.view.overlay.contact_samples import RecentImpacts
 from physicslab.view.overlay.labels import Labels
@@ -67,7 +57,7 @@ class Gauge:
         self._time = 0.0
 
     def follow(self, values: NDArray[np.float64], reach: float, time: float) -> None:
-        """Take in the magnitudes of a frame; the strongest should be about ``reach`` [m] long."""
+        """Take in the magnitudes (n,) of a frame; the strongest should be about ``reach`` [m] long."""
         if self.kept and self.per_metre:
             return
         strongest = float(np.max(values, initial=0.0, where=np.isfinite(values)))
@@ -89,6 +79,10 @@ _MAX_IN_CROWD = 2.0
 """Its greatest length among several bodies, in sizes of a body: no arrow is lost among the others."""
 _MIN_LENGTH = 16.0
 """Its length is at least that [px]."""
+
+
+_GAUGES = {"arrows": ("velocity", "force"), "impulses": ("impact", "rest")}
+"""The scales of each overlay."""
 
 
 class Overlays:
@@ -126,20 +120,16 @@ class Overlays:
         self.labels = Labels()
         self.covered: list[Rect] = []
 
-    def toggle_arrows(self, world: World, camera: Camera) -> None:
-        """Show or hide velocities, forces and contact normals."""
-        self.arrows = not self.arrows
-        if self.arrows and not self.keeps_scales:
-            self.velocity, self.force = Gauge("m/s"), Gauge("N")
+    def toggle(self, overlay: Literal["arrows", "impulses"], world: World, camera: Camera) -> None:
+        """Show or hide velocities, forces and contact normals, or the impulses at contacts."""
+        is_on = not getattr(self, overlay)
+        setattr(self, overlay, is_on)
+        if is_on and not self.keeps_scales:
+            for name in _GAUGES[overlay]:
+                setattr(self, name, Gauge(getattr(self, name).unit))
             self._measure(world, camera)
-
-    def toggle_impulses(self, world: World, camera: Camera) -> None:
-        """Show or hide the impulses at contacts."""
-        self.impulses = not self.impulses
-        if self.impulses and not self.keeps_scales:
-            self.impact, self.rest = Gauge("N s"), Gauge("N s")
-            self._measure(world, camera)
-        self.forget()
+        if overlay == "impulses":
+            self.forget()
 
     def toggle_scales(self) -> None:
         """Let the scales of all arrows stay as they are, or follow what is shown again."""
@@ -179,7 +169,7 @@ _MAX_SHARE = 0.3
 class Sample:
     """A piece of what is explained: an arrow, or a line of the friction cone where ``kind`` is ``None``."""
 
-    kind: ArrowKind | None
+    kind: arrows.ArrowKind | None
     width: float = 2.0
     dashed: bool = False
 
@@ -211,9 +201,9 @@ class Legend:
         for sample, (across, down), length in self.samples:
             start, span = np.array([(left + across, top + down)]), np.array([(length, 0.0)])
             if sample.kind is not None:
-                draw_arrows(start, span, replace(sample.kind, width=sample.width), on)
+                arrows.draw_arrows(start, span, replace(sample.kind, width=sample.width), on)
             else:
-                line = dashes(start, start + span)[:2] if sample.dashed else (start, start + span)
+                line = arrows.dashes(start, start + span)[:2] if sample.dashed else (start, start + span)
                 on.canvas.lines(line[0], line[1], on.theme.friction_cone, 1.2)
         return rect
 
@@ -226,17 +216,21 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
     remarks = []
     if overlays.arrows:
         rows += [
-            (Sample(VELOCITY), VELOCITY.name, overlays.velocity.words),
-            (Sample(FORCE), FORCE.name, overlays.force.words),
-            (Sample(CONTACT_NORMAL, CONTACT_NORMAL.width), CONTACT_NORMAL.name, "direction only"),
+            (Sample(arrows.VELOCITY), arrows.VELOCITY.name, overlays.velocity.words),
+            (Sample(arrows.FORCE), arrows.FORCE.name, overlays.force.words),
+            (
+                Sample(arrows.CONTACT_NORMAL, arrows.CONTACT_NORMAL.width),
+                arrows.CONTACT_NORMAL.name,
+                "direction only",
+            ),
         ]
         remarks.append("Select a body to see each of the forces on it.")
     if overlays.impulses:
         rows += [
-            (Sample(NORMAL_IMPULSE, IMPACT_WIDTH), "Normal, impact", overlays.impact.words),
-            (Sample(FRICTION_IMPULSE, IMPACT_WIDTH), "Friction, impact", overlays.impact.words),
-            (Sample(NORMAL_IMPULSE, REST_WIDTH), "Normal, resting", overlays.rest.words),
-            (Sample(FRICTION_IMPULSE, REST_WIDTH), "Friction, resting", overlays.rest.words),
+            (Sample(arrows.NORMAL_IMPULSE, arrows.IMPACT_WIDTH), "Normal, impact", overlays.impact.words),
+            (Sample(arrows.FRICTION_IMPULSE, arrows.IMPACT_WIDTH), "Friction, impact", overlays.impact.words),
+            (Sample(arrows.NORMAL_IMPULSE, arrows.REST_WIDTH), "Normal, resting", overlays.rest.words),
+            (Sample(arrows.FRICTION_IMPULSE, arrows.REST_WIDTH), "Friction, resting", overlays.rest.words),
             (Sample(None), "Friction cone μ", "sticks"),
             (Sample(None, dashed=True), "Friction cone μ", "slips"),
         ]

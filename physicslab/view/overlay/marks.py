@@ -121,7 +121,10 @@ def draw_cursor(pixel: tuple[float, float], colour: Colour, canvas: Canvas) -> N
 def draw_ghost(
     place: Points, half: Points, radius: Numbers, angle: Numbers, colour: Colour, on: Drawing
 ) -> None:
-    """Draw the outlines of discs (with a radius) and boxes (with half extents), a row each [m]."""
+    """Draw the outlines of shapes at places (n, 2) [m], turned by angles (n,) [rad].
+
+    Discs have a radius (n,) [m], boxes half extents (n, 2) [m].
+    """
     ring = _ring(_GHOST_CORNERS)
     for n in range(len(place)):
         own = radius[n] * ring if radius[n] > 0.0 else half[n] * _SQUARE

@@ -9,6 +9,7 @@ from physicslab.components import (
     Mass,
     Material,
     Name,
+    Pin,
     Shape,
     Spring,
     Strobe,
@@ -124,6 +125,9 @@ def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable
     if kind is Spring:
         yield plain_kind(kind), lambda entity: _spring_above(world, entity)
         return
+    if kind is Pin:
+        yield plain_kind(kind), lambda entity: Pin(anchor_b=world.component(entity, Transform).position)
+        return
     given = {spec.name: _first(spec) for spec in kind.FIELDS if spec.default is REQUIRED}
     with contextlib.suppress(InvalidValue, TypeError):
         kind(**given)
@@ -157,6 +161,7 @@ _MEANINGS: dict[type[Component], str] = {
     Material: "its restitution and friction",
     Drag: "a medium slows it, as air does",
     Spring: "it hangs from a point that can be dragged",
+    Pin: "it turns about its middle, which stays in place",
     Strobe: "it leaves pictures of its past positions",
     Trail: "its past path is shown",
 }
@@ -183,10 +188,11 @@ def set_end(
         return
     held = world.component(entity, kind)
     values = held.given() | {field: end}
-    if isinstance(held, Spring):
+    if isinstance(held, Spring | Pin):
         own = entity if world.has(entity, Transform) else None
-        if (values["a"] or own) in (None, values["b"]):
-            words = "a spring has two ends: two bodies, or a body and a fixed point"
+        first = values["a"] or own
+        if first == values["b"] or (first is None and isinstance(held, Spring)):
+            words = f"a {plain_kind(kind).lower()} has two ends: two bodies, or a body and a fixed point"
             window.notify(words, 6.0, failed=True)
             return
         anchor = f"anchor_{field}"

@@ -1,4 +1,4 @@
-"""What is selected, what the next body is like, and how the world is changed: by commands of one history."""
+"""The selection, the properties of the next body, and edits of the world: commands of one history."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

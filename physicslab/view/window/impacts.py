@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.contacts.impact_reader import ImpactReader
+from physicslab.contacts.report import ImpactReader
 from physicslab.diagnostics.collision import Collision, Result, read_collision, resolve
 from physicslab.diagnostics.ledger import NO_IMPACTS, read_impacts
 from physicslab.ecs.vector import Vector2
@@ -277,7 +277,7 @@ class Microscope:
     # ---- marks that can be clicked -------------------------------------------------------------------------
 
     def note(self, impacts: NDArray[Any], time: float) -> None:
-        """Take in the impacts of a frame, an array of IMPACT; their marks can be clicked for a while."""
+        """Take in the impacts of a frame, an array of IMPACT (n,); their marks can be clicked for a while."""
         if self._recent and time - self._recent[0]["time"][-1] > _SEEN:
             del self._recent[0]
         if len(impacts):

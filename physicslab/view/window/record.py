@@ -210,7 +210,7 @@ def range_to_show(values: Sequence[Numbers], room: float = 0.06, none: float = 0
 
     Parameters
     ----------
-    values : sequence of float64 arrays
+    values : sequence of float64 arrays (n,)
         NaN among them does not count.
     room : float
         What is left at each side, as a share of their range.
@@ -227,7 +227,7 @@ def range_to_show(values: Sequence[Numbers], room: float = 0.06, none: float = 0
 
 
 def unbroken(y: Numbers) -> list[slice]:
-    """Return the parts of a line in which no value is NaN.
+    """Return the parts of a line (n,) in which no value is NaN.
 
     >>> unbroken(np.array([np.nan, 1.0, 2.0, np.nan, 3.0]))
     [slice(1, 3, None), slice(4, 5, None)]
@@ -238,13 +238,13 @@ def unbroken(y: Numbers) -> list[slice]:
 
 
 def slope_between(x: Numbers, y: Numbers, a: int, b: int) -> float:
-    """Return the slope of the straight line between two points of a line; NaN where it has none."""
+    """Return the slope between the points a and b of a line ``x``, ``y`` (n,); NaN where it has none."""
     run = float(x[b] - x[a])
     return float(y[b] - y[a]) / run if run != 0.0 else float("nan")
 
 
 def area_between(x: Numbers, y: Numbers, a: int, b: int) -> float:
-    """Return the area under a line from one of its points to another; NaN where a value is missing.
+    """Return the area under a line ``x``, ``y`` (n,) from point a to b; NaN where a value is missing.
 
     It is the sum of trapezia between the points, negative below zero; from right to left the sign is changed.
     """

@@ -277,7 +277,7 @@ class Window:
 
     @property
     def drawing(self) -> Drawing:
-        """What the world is drawn with; text is larger in a larger window, times the chosen scale."""
+        """The canvas, camera and colours; text is larger in a larger window, times the chosen scale."""
         width, height = self.canvas.size
         size = round(min(max(min(height / 48, width / 80), 12), 20) * self.text_scale)
         return Drawing(self.canvas, self.camera, self.theme, size)

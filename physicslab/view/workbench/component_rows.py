@@ -7,7 +7,7 @@ from typing import Any
 
 from imgui_bundle import imgui
 
-from physicslab.components import Drag, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import Drag, Mass, Material, Pin, Shape, Spring, Trail, Transform, Velocity
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field
@@ -150,15 +150,17 @@ def _label(spec: Field) -> str:
 
 
 ORDER: dict[Kind, int] = {
-    kind: n for n, kind in enumerate((Transform, Velocity, Mass, Shape, Material, Drag, Spring, Trail))
+    kind: n for n, kind in enumerate((Transform, Velocity, Mass, Shape, Material, Drag, Spring, Pin, Trail))
 }
 """In which order components are shown; others come after these."""
 _NAMES = {
     ("Velocity", "linear"): "Velocity", ("Velocity", "angular"): "Turning",
     ("Mass", "fixed_rotation"): "Keeps its angle", ("Spring", "a"): "From", ("Spring", "b"): "To",
     ("Spring", "anchor_a"): "Holds at", ("Spring", "anchor_b"): "Other end",
+    ("Pin", "a"): "From", ("Pin", "b"): "To",
+    ("Pin", "anchor_a"): "Holds at", ("Pin", "anchor_b"): "Other end",
     ("Drag", "linear"): "Drag of v", ("Drag", "quadratic"): "Drag of v²", ("Trail", "length"): "Trail of",
 }  # fmt: skip
 """Plainer names for the labels, by component and field."""
-_ABSENT = {"Spring.a": "itself", "Spring.b": "a fixed point"}
+_ABSENT = {"Spring.a": "itself", "Spring.b": "a fixed point", "Pin.a": "itself", "Pin.b": "a fixed point"}
 """The meaning of an absent entity, by component and field."""

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from physicslab.components import Held, Mass, Transform, Velocity
-from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
-from physicslab.diagnostics.energy import Audit, Momentum, summation
+from physicslab.diagnostics.energy import ACCOUNT_WORDS, Audit, Momentum, flows, summation
 from physicslab.diagnostics.reference_solution import ReferenceSolution, reference_solution
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.vector import Vector2

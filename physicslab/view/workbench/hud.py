@@ -6,28 +6,12 @@ from physicslab.diagnostics.warnings import ModelWarning, find_warnings
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.controls.actions import has_gravity
-from physicslab.view.overlay.banners import (
-    DroppedTime,
-    draw_advice,
-    draw_banners,
-    draw_messages,
-    lay_out_messages,
-)
+from physicslab.view.overlay import banners
 from physicslab.view.overlay.edges import draw_axis_numbers, draw_edge_arrows, draw_scale_bar
 from physicslab.view.overlay.legend import legend_of
 from physicslab.view.overlay.marks import draw_selection
 from physicslab.view.window.window import Window
-from physicslab.view.workbench.figures import (
-    EnergyWatch,
-    FrameMeter,
-    Line,
-    WorldFigures,
-    cost_lines,
-    impulse_lines,
-    left_out_lines,
-    measure_lines,
-    method_lines,
-)
+from physicslab.view.workbench import figures
 from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
 
@@ -57,13 +41,13 @@ class Hud:
     def __init__(self, window: Window, interface: Interface) -> None:
         self._window = window
         self._interface = interface
-        self._meter = FrameMeter()
-        self._watch = EnergyWatch()
-        self._dropped = DroppedTime()
+        self._meter = figures.FrameMeter()
+        self._watch = figures.EnergyWatch()
+        self._dropped = banners.DroppedTime()
         self._advice: tuple[ModelWarning, ...] = ()
-        self._figures: WorldFigures
-        self._measures: list[Line] = []
-        self._details: list[Line] = []
+        self._figures: figures.WorldFigures
+        self._measures: list[figures.Line] = []
+        self._details: list[figures.Line] = []
         self._windows: list[Rect] = []
         self.readings: dict[Callable[[World, float], None], float] = {
             self._follow: 0.0, self._read_figures: 0.2, self._read_costs: 0.2, self._read_advice: 0.25,
@@ -92,13 +76,15 @@ class Hud:
         self._watch.follow(world)
 
     def _read_figures(self, world: World, elapsed: float) -> None:
-        self._figures = WorldFigures(world, self._watch, self._meter.frame_rate)
-        self._measures = measure_lines(world, self._figures) if self._window.level != "Explore" else []
+        self._figures = figures.WorldFigures(world, self._watch, self._meter.frame_rate)
+        self._measures = (
+            figures.measure_lines(world, self._figures) if self._window.level != "Explore" else []
+        )
 
     def _read_costs(self, world: World, elapsed: float) -> None:
         if self._window.level == "Engineer":
-            costs = [*cost_lines(world, self._meter), *left_out_lines(world)]
-            self._details = [*impulse_lines(self._figures), *method_lines(world), *costs]
+            costs = [*figures.cost_lines(world, self._meter), *figures.left_out_lines(world)]
+            self._details = [*figures.impulse_lines(self._figures), *figures.method_lines(world), *costs]
 
     def _read_advice(self, world: World, elapsed: float) -> None:
         self._advice = find_warnings(world)
@@ -111,26 +97,26 @@ class Hud:
     def _banners(self, world: World) -> list[tuple[str, Colour]]:
         """Return what is not as usual, each in its colour."""
         window, theme = self._window, self._window.theme
-        banners: list[tuple[str, Colour]] = []
+        found: list[tuple[str, Colour]] = []
         if window.filming.running:
-            banners.append((window.filming.words, theme.accent))
+            found.append((window.filming.words, theme.accent))
         if window.pace.paused:
-            banners.append(("PAUSED", theme.paused))
+            found.append(("PAUSED", theme.paused))
         if window.pace.speed != 1.0:
             name = "SLOW MOTION" if window.pace.speed < 1.0 else "FAST MOTION"
-            banners.append((f"{name} {window.pace.speed:g}x", theme.slow))
+            found.append((f"{name} {window.pace.speed:g}x", theme.slow))
         if world.physics.gravity_mode == "planet" and has_gravity(world):
-            banners.append(("PLANET MODE", theme.planet))
+            found.append(("PLANET MODE", theme.planet))
         if dropped := self._dropped.recent(window.pace.dropped, window.now):
-            banners.append((f"The computer is too slow: {dropped:.1f} s were skipped", theme.slow))
-        return banners
+            found.append((f"The computer is too slow: {dropped:.1f} s were skipped", theme.slow))
+        return found
 
     def _draw_advice(self, world: World, room: Rect) -> Rect | None:
         """Write what is not to be trusted, and put a ring around each body that is spoken of."""
         on = self._window.drawing
         bodies = [one.number for one in self._advice if one.number is not None]
         draw_selection(world, bodies, on, colour=on.theme.warning)
-        return draw_advice(self._advice, room, on, plainly=self._window.level == "Explore")
+        return banners.draw_advice(self._advice, room, on, plainly=self._window.level == "Explore")
 
     # ---- drawing -------------------------------------------------------------------------------------------
 
@@ -148,7 +134,9 @@ class Hud:
         bottom = min(rect[1] for rect in taken) - margin
         begin, wide = self._free_span(top, top + _STRIP * size)
         begin, across = begin + margin, wide - 2 * margin
-        shown = draw_banners(self._banners(world), (begin, top + margin, across, bottom - top - margin), on)
+        shown = banners.draw_banners(
+            self._banners(world), (begin, top + margin, across, bottom - top - margin), on
+        )
         below = shown[-1][1] + shown[-1][3] + margin if shown else top + margin
         advice = self._draw_advice(world, (begin, below, across, bottom - below))
         taken += [*shown, *([] if advice is None else [advice])]
@@ -186,8 +174,8 @@ class Hud:
         colour = theme.error if window.notice_failed else theme.notice
         words = (window.error, theme.error), (window.notice, colour)
         middle, bottom = left + width // 2, top + height - numbers
-        messages = lay_out_messages(words, on, round(_MESSAGE_WIDTH * width))
+        messages = banners.lay_out_messages(words, on, round(_MESSAGE_WIDTH * width))
         if any(middle + message.width // 2 > bar[0] - size // 2 for message in messages):
-            messages = lay_out_messages(words, on, width - size)
+            messages = banners.lay_out_messages(words, on, width - size)
             bottom = min(bottom, bar[1])
-        return draw_messages(messages, middle, top + size // 2, bottom, on)
+        return banners.draw_messages(messages, middle, top + size // 2, bottom, on)

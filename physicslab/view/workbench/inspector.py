@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 from physicslab.components import Drag, Held, Mass, Name, Shape, Spring, Strobe, Trail, Transform, Velocity
 from physicslab.components.name import why_no_id
 from physicslab.diagnostics.free_body import LastStep
+from physicslab.diagnostics.joints import JointState, joint_states
 from physicslab.diagnostics.period import SpringState, gives_way, period_of, spring_state
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.component import Component
@@ -46,6 +47,9 @@ def build_derived(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
         if give is not None:
             tip = "This rod is a stiff spring: weight lengthens it by this much, a wide swing by more"
             ui.row("Gives way", quantity(1e3 * give, "mm"), tip)
+    for joint in joint_states(world):
+        if joint.entity == entity:
+            _build_joint(ui, joint)
     if world.has(entity, Velocity):
         _build_motion(ui, world, entity, is_brief=is_brief)
     period = period_of(world, entity)
@@ -88,6 +92,14 @@ def _build_spring(ui: Ui, state: SpringState | None) -> None:
     pulls = "pulls its ends together" if state.force >= 0.0 else "pushes its ends apart"
     ui.row("Spring force", quantity(abs(state.force), "N"), pulls)
     ui.row("Energy stored", quantity(state.energy, "J"))
+
+
+def _build_joint(ui: Ui, joint: JointState) -> None:
+    ui.rule(0.2)
+    name = joint.kind.__name__
+    ui.row(f"{name} force", quantity(joint.force.magnitude, "N"), vector_quantity(joint.force, "N"))
+    tip = "How far the points are apart that it holds together: the error of the method"
+    ui.row("Stretch left", quantity(without_rounding(joint.stretch, 1.0), "m"), tip)
 
 
 def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:

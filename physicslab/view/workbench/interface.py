@@ -1,9 +1,6 @@
 """The panels around the world: menus, tools, transport, and the selection or the world in figures."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from operator import attrgetter
 
 import pygame
@@ -13,6 +10,7 @@ from physicslab.view.toolkit.style import bar_height
 from physicslab.view.toolkit.toolkit import Toolkit, Walk
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.window import Window
+from physicslab.view.workbench import world_panel
 from physicslab.view.workbench.error_plot import build_error_plot
 from physicslab.view.workbench.figures import Line, WorldFigures
 from physicslab.view.workbench.file_panels import Gallery, build_film, build_open, build_recovery, build_save
@@ -24,13 +22,6 @@ from physicslab.view.workbench.microscope_panel import build_microscope
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.transport import build_history, build_transport
-from physicslab.view.workbench.world_panel import (
-    build_figures,
-    build_levels,
-    build_recipe,
-    build_settings,
-    build_world,
-)
 from physicslab.world import World
 
 # ---- the layout: the world first, panels around it ---------------------------------------------------------
@@ -42,7 +33,6 @@ _MIN_WORLD = 0.34
 """Share of the window's width that is always left to the world: the side panel lies over it if it must."""
 
 
-@dataclass(frozen=True, slots=True)
 class Layout:
     """The rectangles of a window [px].
 
@@ -52,11 +42,19 @@ class Layout:
         The menu bar, the tools, the transport, the panel at the right, and what is left for the world.
     """
 
-    menu: Rect
-    palette: Rect
-    transport: Rect
-    side: Rect
-    room: Rect
+    def __init__(self, size: tuple[int, int], text: int, *, side: bool) -> None:
+        """Lay a window out for text of a height [px], with or without the panel at the right."""
+        width, height = size
+        top, foot, left = bar_height(text), round(_TRANSPORT * text), round(_PALETTE * text)
+        right = round(_SIDE * text) if side else 0
+        middle, across = max(height - top - foot, 1), width - left - right
+        if across < _MIN_WORLD * width:
+            across = width - left
+        self.menu: Rect = (0, 0, width, top)
+        self.palette: Rect = (0, top, left, middle)
+        self.transport: Rect = (0, height - foot, width, foot)
+        self.side: Rect = (width - right, top, right, middle)
+        self.room: Rect = (left, top, max(across, 1), middle)
 
     @property
     def panels(self) -> tuple[Rect, ...]:
@@ -68,24 +66,6 @@ class Layout:
         """The part of the world's room that the panel at the right does not lie over [px]."""
         left, top, width, height = self.room
         return left, top, max(min(width, self.side[0] - left), 1), height
-
-    @classmethod
-    def of(cls, size: tuple[int, int], text: int, *, side: bool) -> Layout:
-        """Lay a window out for text of a height [px], with or without the panel at the right."""
-        width, height = size
-        top, foot, left = bar_height(text), round(_TRANSPORT * text), round(_PALETTE * text)
-        right = round(_SIDE * text) if side else 0
-        middle = max(height - top - foot, 1)
-        room_width = width - left - right
-        if room_width < _MIN_WORLD * width:
-            room_width = width - left
-        return cls(
-            (0, 0, width, top),
-            (0, top, left, middle),
-            (0, height - foot, width, foot),
-            (width - right, top, right, middle),
-            (left, top, max(room_width, 1), middle),
-        )
 
 
 # ---- the panels --------------------------------------------------------------------------------------------
@@ -110,7 +90,7 @@ _AFTER: dict[str, _Build] = {
     "naming": build_save, "filming.choosing": build_film, "opening": build_open,
     "lists_history": build_history, "help": build_help,
 }  # fmt: skip
-"""What builds the panels that are open, those below and those above others at first."""
+"""The builders of the panels that are open: those below others at first, and those above them."""
 _BUTTONS = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)
 
 
@@ -160,7 +140,7 @@ class Interface:
     @property
     def layout(self) -> Layout:
         """The layout."""
-        return Layout.of(self._window.canvas.size, self.text, side=self._window.figures)
+        return Layout(self._window.canvas.size, self.text, side=self._window.figures)
 
     def room(self) -> Rect:
         """Return what is left for the world [px]."""
@@ -264,18 +244,18 @@ class Interface:
         build_transport(ui, layout.transport, world, window)
         if window.figures:
             with ui.panel("side", layout.side):
-                build_levels(ui, window)
+                world_panel.build_levels(ui, window)
                 if window.selection.entities:
                     build_inspector(ui, self._numbers, world, window)
                 else:
-                    build_world(ui, world, figures, window)
+                    world_panel.build_world(ui, world, figures, window)
                     if window.tool in _RECIPES:
-                        build_recipe(ui, self._numbers, _RECIPES[window.tool], window)
+                        world_panel.build_recipe(ui, self._numbers, _RECIPES[window.tool], window)
                     if window.level == "Engineer":
-                        build_settings(ui, self._numbers, world, window)
+                        world_panel.build_settings(ui, self._numbers, world, window)
                 if window.level != "Explore":
                     ui.rule(0.3)
-                    build_figures(ui, lines)
+                    world_panel.build_figures(ui, lines)
                 if window.level != "Explore" or not window.selection.entities:
                     ui.rule(0.3)
                     self._build_counts(ui, figures)

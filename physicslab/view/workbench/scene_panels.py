@@ -16,14 +16,8 @@ from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
+from physicslab.view.workbench import graph_readings
 from physicslab.view.workbench.graph_plot import GraphPlot
-from physicslab.view.workbench.graph_readings import (
-    build_cursors,
-    build_moment,
-    build_quantities,
-    build_readings,
-    named_key,
-)
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.view.workbench.panel_places import bar_at_top, has_room, is_bar, places
 from physicslab.view.workbench.small_panels import MeterPanels, SliderPanels
@@ -104,8 +98,8 @@ class GraphPanels:
         self._follow_hand(entity)
         if shown:
             self._build_head(ui, world, window, graph)
-            build_cursors(ui, window, graph)
-            build_readings(ui, world, window, graph)
+            graph_readings.build_cursors(ui, window, graph)
+            graph_readings.build_readings(ui, world, window, graph)
             height = max(imgui.get_content_region_avail().y, _LEAST_PLOT * ui.size)
             plot = self._plots.setdefault(entity, GraphPlot())
             hovered = plot.build(ui, world, window, graph, height)
@@ -146,7 +140,7 @@ class GraphPanels:
         with ui.list(f"More of graph {number}", "Cursors, files, place", shown="More") as is_open:
             if is_open:
                 self._build_more(ui, world, window, graph)
-        build_moment(ui, world, window)
+        graph_readings.build_moment(ui, world, window)
 
     @staticmethod
     def _build_lines(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
@@ -155,9 +149,9 @@ class GraphPanels:
 
         gone = [line.key for line in graph.lines if line.key[0] not in (None, *world.entity_index.row_of)]
         for key in gone:
-            if ui.item(f"Remove: {named_key(key, window)}", on=True, identity=f"remove {key}"):
+            if ui.item(f"Remove: {graph_readings.named_key(key, window)}", on=True, identity=f"remove {key}"):
                 choose(key)
-        build_quantities(ui, world, window, [line.key for line in graph.lines], choose)
+        graph_readings.build_quantities(ui, world, window, [line.key for line in graph.lines], choose)
 
     @staticmethod
     def _build_across(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
@@ -168,7 +162,7 @@ class GraphPanels:
 
         if ui.item("Time [s]", on=graph.across is None):
             choose(None)
-        build_quantities(ui, world, window, [graph.across] if graph.across else [], choose)
+        graph_readings.build_quantities(ui, world, window, [graph.across] if graph.across else [], choose)
 
     @staticmethod
     def _build_more(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from imgui_bundle import imgui
 from imgui_bundle.imgui import ImVec2
 
-from physicslab.diagnostics.account_words import ACCOUNT_WORDS, flows
+from physicslab.diagnostics.energy import ACCOUNT_WORDS, flows
 from physicslab.ecs.config import COLLISIONS, CONTACTS, INTEGRATORS, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.ecs.vector import Vector2

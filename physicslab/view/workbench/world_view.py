@@ -11,18 +11,10 @@ from physicslab.view.canvas.canvas import is_within
 from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.tools import TOOLS
+from physicslab.view.overlay import marks
 from physicslab.view.overlay.forces import draw_free_body, draw_vectors
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.instruments import draw_instruments, instruments_of
-from physicslab.view.overlay.marks import (
-    draw_band,
-    draw_cursor,
-    draw_ghost,
-    draw_handles,
-    draw_reading,
-    draw_selection,
-    draw_snap_marks,
-)
 from physicslab.view.picture.picture import draw_world
 from physicslab.view.window.placing import refused_place
 from physicslab.view.window.window import Window
@@ -55,26 +47,26 @@ class WorldView:
             draw_vectors(world, overlays, on)
         if overlays.impulses:
             self._draw_impulses(world, on)
-        draw_selection(world, window.selection.entities, on)
+        marks.draw_selection(world, window.selection.entities, on)
         self._draw_forces(world, on)
         if window.band is not None:
-            draw_band(camera.to_screen(window.band), window.pointer, on)
+            marks.draw_band(camera.to_screen(window.band), window.pointer, on)
         self._draw_instruments(world, on)
         if not window.filming.running:  # a film has no cursor
             self._draw_handles(world, on)
             self._draw_ghost(world, on)
             self._draw_snapping(on)
             if window.points_by_key:
-                draw_cursor(window.pointer, theme.accent, canvas)
+                marks.draw_cursor(window.pointer, theme.accent, canvas)
         window.spring_tool.draw(world, on, window.pointer)
 
     def _draw_snapping(self, on: Drawing) -> None:
         """Draw where what is dragged snaps, and the length of a spring whose pin is dragged."""
         window, snapping = self._window, self._window.snapping
         if window.pins.words:
-            draw_reading(window.pins.words, window.pointer, on)
+            marks.draw_reading(window.pins.words, window.pointer, on)
         if snapping.place is not None:
-            draw_snap_marks([(mark.axis, mark.at) for mark in snapping.marks], snapping.place, on)
+            marks.draw_snap_marks([(mark.axis, mark.at) for mark in snapping.marks], snapping.place, on)
 
     def _draw_forces(self, world: World, on: Drawing) -> None:
         """Measure the forces on the selection where its panel is shown, and draw them with the arrows."""
@@ -103,11 +95,11 @@ class WorldView:
         chosen, covered = window.selection.entities, window.overlays.covered
         state.rects = draw_instruments(world, shown, chosen, state.labels, covered, on)
         if state.hovered is not None:
-            draw_selection(world, (state.hovered,), on)
+            marks.draw_selection(world, (state.hovered,), on)
         idle = not (window.pointer_on_panel or window.filming.running)
         if tool.prompts and idle and state.dragged is None and state.writing is None:
             words = tool.prompts[min(len(state.spots), len(tool.prompts) - 1)]
-            draw_reading(words, window.pointer, on, window.room())
+            marks.draw_reading(words, window.pointer, on, window.room())
 
     def _draw_handles(self, world: World, on: Drawing) -> None:
         """Draw the handles of the selection while paused, and the number that one has given."""
@@ -116,9 +108,9 @@ class WorldView:
             return
         middle = camera.to_screen(world.component(entity, Transform).position)
         places = [(one.kind, camera.to_screen(one.place)) for one in window.handles.of(world, entity, camera)]
-        draw_handles(middle, places, on)
+        marks.draw_handles(middle, places, on)
         if window.handles.words:
-            draw_reading(window.handles.words, window.pointer, on)
+            marks.draw_reading(window.handles.words, window.pointer, on)
 
     def _draw_ghost(self, world: World, on: Drawing) -> None:
         """Show at the cursor what a click would make, in the colour of errors where there is no room."""
@@ -131,4 +123,4 @@ class WorldView:
             return
         ghost = spawn.outlines(window)
         colour = on.theme.error if refused_place(world, ghost) else on.theme.accent
-        draw_ghost(ghost.place, ghost.half, ghost.radius, ghost.angle, colour, on)
+        marks.draw_ghost(ghost.place, ghost.half, ghost.radius, ghost.angle, colour, on)

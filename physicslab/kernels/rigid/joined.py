@@ -1,0 +1,153 @@
+"""Joints beside rigid contacts: what the forces of points cause where joints hold bodies together.
+
+A force at a point moves bodies by P J_c^T, with P = M^-1 - M^-1 J^T (J M^-1 J^T)^-1 J M^-1 of the rows of
+joints in place of M^-1: joints answer in the same moment, impulses at once. So the laws of contacts hold
+as they are, and a joint is a pair of rows that are always kept, without a cone. The rows are packed as
+for smooth motion (:mod:`physicslab.kernels.constraint.joint_rows`), whose force is part of all others.
+"""
+
+from physicslab.kernels import Numbers, Vectors, inlined, kernel
+from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, PX, PY, SPIN
+from physicslab.kernels.constraint.joint_rows import (
+    ENDS,
+    FIRST,
+    JA,
+    JB,
+    LAMBDA,
+    RIGHT,
+    ROWS,
+    STATE,
+    book_rows,
+    factorise,
+    first_state,
+    given_by_rows,
+    measure_rows,
+    push_by_rows,
+    solve,
+)
+from physicslab.kernels.rigid.features import NA, NX, NY, ONE, TA, Points, Scene, SceneTuple, named_scene
+
+_IMMOVABLE = 1e-12
+"""Share of what a force causes alone below which joints leave nothing of it."""
+
+
+@inlined
+def measure_joints(scene: Scene, q: Numbers, v: Numbers) -> None:
+    """Find the gradients of all rows in a state, and factorise their equations."""
+    measure_rows(q, v, scene.joint_numbers, scene.joints)
+    factorise(scene.joint_numbers, scene.joints)
+
+
+@inlined
+def _at_row(scene: Scene, points: Points, measures: Vectors, i: int, r: int) -> tuple[float, float]:
+    """Return how unit forces at point i, along its normal and its tangent, accelerate row r of joints."""
+    along, across, states = 0.0, 0.0, first_state(scene.joints)
+    nx, ny = measures[i, NX], measures[i, NY]
+    for side in range(2):
+        body = points[i, ONE + side]
+        sign = 1.0 if side == 1 else -1.0
+        mass, inertia = sign * scene.inverse_mass[2 * body], sign * scene.inverse_mass[2 * scene.rows + body]
+        for end in range(2):
+            if scene.joints[FIRST + ENDS * r + 2 * end] != 2 * body:
+                continue
+            j = states + STATE * r + (JB if end == 1 else JA)
+            jx, jy = scene.joint_numbers[j], scene.joint_numbers[j + 1]
+            turn = inertia * scene.joint_numbers[j + 2]
+            along += mass * (jx * nx + jy * ny) - turn * measures[i, TA + side]
+            across += mass * (jy * nx - jx * ny) + turn * measures[i, NA + side]
+    return along, across
+
+
+@inlined
+def lessen(scene: Scene, points: Points, measures: Vectors, count: int, a: Vectors) -> None:
+    """Take from what unit forces cause at ``count`` points (2 count, 2 count) what joints hold back.
+
+    A force that joints answer in full moves nothing, and is left as if by itself: nothing presses there.
+    """
+    n, states = scene.joints[ROWS], first_state(scene.joints)
+    for column in range(2 * count):
+        for r in range(n):
+            along, across = _at_row(scene, points, measures, column // 2, r)
+            scene.joint_numbers[states + STATE * r + RIGHT] = along if column % 2 == 0 else across
+        solve(scene.joint_numbers, scene.joints)
+        own = a[column, column]
+        for row in range(column, 2 * count):
+            held = 0.0
+            for r in range(n):
+                along, across = _at_row(scene, points, measures, row // 2, r)
+                answered = scene.joint_numbers[states + STATE * r + LAMBDA]
+                held += answered * (along if row % 2 == 0 else across)
+            a[row, column] -= held
+            a[column, row] = a[row, column]
+        if a[column, column] <= _IMMOVABLE * own:
+            for row in range(2 * count):
+                a[row, column] = a[column, row] = 0.0
+            a[column, column] = own
+
+
+@inlined
+def answer(scene: Scene, points: Points, measures: Vectors, forces: Numbers, count: int) -> None:
+    """Find the forces with which joints answer the ``forces`` (2 count,) of points."""
+    states = first_state(scene.joints)
+    for r in range(scene.joints[ROWS]):
+        total = 0.0
+        for i in range(count):
+            along, across = _at_row(scene, points, measures, i, r)
+            total -= forces[2 * i] * along + forces[2 * i + 1] * across
+        scene.joint_numbers[states + STATE * r + RIGHT] = total
+    solve(scene.joint_numbers, scene.joints)
+
+
+@inlined
+def pass_on(
+    scene: Scene, points: Points, measures: Vectors, forces: Numbers, count: int, target: Numbers
+) -> None:
+    """Add to velocities or accelerations what joints answer to the ``forces`` (2 count,) of points."""
+    answer(scene, points, measures, forces, count)
+    push_by_rows(target, scene.joint_numbers, scene.joints)
+
+
+@inlined
+def book_answer(
+    scene: Scene, points: Points, measures: Vectors, forces: Numbers, count: int, q: Numbers, v: Numbers,
+    given: Numbers,
+) -> None:  # fmt: skip
+    """Add what joints give in a second as they answer the ``forces`` (2 count,) of points in (q, v)."""
+    answer(scene, points, measures, forces, count)
+    book_rows(q, v, given, scene.joint_numbers, scene.joints)
+
+
+@inlined
+def book_impulses(
+    scene: Scene, points: Points, measures: Vectors, impulses: Numbers, count: int, q: Numbers, v: Numbers,
+    account: Vectors,
+) -> None:  # fmt: skip
+    """Book what joints give as they answer ``impulses`` (2 count,) at points, at a moment."""
+    answer(scene, points, measures, impulses, count)
+    px, py, spin, driven = given_by_rows(q, v, scene.joint_numbers, scene.joints)
+    account[JOINTS, PX] += px
+    account[JOINTS, PY] += py
+    account[JOINTS, SPIN] += spin
+    account[HAND, ENERGY] -= driven
+
+
+@inlined
+def strongest_joint(scene: Scene) -> float:
+    """Return the largest acceleration that the force of a row gives to a body by itself [m/s^2]."""
+    strongest, states = 0.0, first_state(scene.joints)
+    for r in range(scene.joints[ROWS]):
+        force = abs(scene.joint_numbers[states + STATE * r + LAMBDA])
+        for end in range(2):
+            place = scene.joints[FIRST + ENDS * r + 2 * end]
+            strongest = max(strongest, scene.inverse_mass[place] * force)
+    return strongest
+
+
+@kernel
+def find_answer(
+    scene: SceneTuple, points: Points, measures: Vectors, forces: Numbers, count: int, q: Numbers, v: Numbers
+) -> None:
+    """Find the forces with which joints answer those of points in a state (:func:`answer`)."""
+    of = named_scene(scene)
+    measure_joints(of, q, v)
+    answer(of, points, measures, forces, count)

@@ -1,0 +1,80 @@
+"""Pins in the window: made, drawn, selected, removed, undone; in exported pages and in reports."""
+
+import numpy as np
+import pygame
+import pytest
+from desk import Desk, empty_world
+from recording import RecordingCanvas
+
+from physicslab.components import Mass, Pin, Shape, Transform, Velocity
+from physicslab.diagnostics.joints import joint_states
+from physicslab.export.recording import RunRecorder
+from physicslab.view.controls.tools import attachments, remove, remove_selected, take_hold
+from physicslab.world import World
+
+
+def two_bars(world: World) -> tuple[int, int]:
+    """Spawn two bars side by side."""
+    ends = []
+    for x in (0.5, 1.5):
+        ends.append(world.spawn(Transform((x, 0)), Velocity(), Mass(1.0), Shape.box(1.0, 0.1)))
+    return ends[0], ends[1]
+
+
+def test_pins_are_made_from_the_list_drawn_selected_removed_and_undone() -> None:
+    canvas = RecordingCanvas((1280, 720))
+    desk = Desk(empty_world(), canvas)
+    world, window = desk.world, desk.window
+    one, other = two_bars(world)
+    desk.key("space")
+    desk.frames()
+    for entities, words in (((one, other), "Join by a pin"), ((one,), "Pin in place")):
+        _, act = attachments(world, entities)[words]
+        act(world, window)
+    desk.frames()
+    joined, fixed = joint_states(world)
+    assert tuple(joined.place) == pytest.approx((1.0, 0.0))
+    assert (joined.is_fixed, fixed.is_fixed) == (False, True)
+    slots = next(lines for lines in reversed(canvas.called("lines")) if len(lines["start"]) == 2)
+    centre = (np.array(slots["start"]) + np.array(slots["end"])) / 2
+    assert centre == pytest.approx(np.array([desk.pixel(1.0, 0.0), desk.pixel(0.5, 0.0)]), abs=1.0)
+    assert len(canvas.called("boxes")[-1]["centre"]) == 1, "a bracket behind the one that is fixed"
+
+    window.pointer = desk.pixel(1.0, 0.0)
+    assert take_hold(world, window)
+    assert window.selection.entities == (joined.entity,)
+    desk.frames()
+    desk.frames(2)
+    assert desk.ui.rows["Pin force"].endswith("N") and "Stretch left" in desk.ui.rows
+    remove_selected(world, window)
+    window.pointer = desk.pixel(0.5, 0.0)
+    remove(world, window)
+    world.synchronise()
+    assert joint_states(world) == []
+    assert world.has(one, Transform)
+    window.edits.history.undo()
+    window.edits.history.undo()
+    world.synchronise()
+    assert [state.entity for state in joint_states(world)] == [joined.entity, fixed.entity]
+    pygame.display.quit()
+
+
+def test_a_pin_that_could_hold_nothing_is_not_made() -> None:
+    desk = Desk(empty_world())
+    rock = desk.world.spawn(Transform(), Shape.circle(1.0))
+    desk.frames()
+    attachments(desk.world, (rock,))["Pin in place"][1](desk.world, desk.window)
+    assert not len(desk.world.batch(Pin))
+    pygame.display.quit()
+
+
+def test_the_exported_page_has_every_pin() -> None:
+    world = empty_world()
+    one, other = two_bars(world)
+    world.spawn(Pin(a=one, anchor_a=(-0.5, 0.0)))
+    world.spawn(Pin(a=one, b=other, anchor_a=(0.5, 0.0), anchor_b=(-0.5, 0.0)))
+    world.synchronise()
+    joints = RunRecorder.joints(None, world)  # type: ignore[arg-type]
+    assert joints == [
+        {"body": 0, "anchor": [-0.5, 0.0], "fixed": True}, {"body": 1, "anchor": [-0.5, 0.0], "fixed": False},
+    ]  # fmt: skip
