@@ -134,7 +134,7 @@ def _draw_rounded(world: World, rows: Rows, camera: Camera, theme: Theme, canvas
 
 
 def on_canvas(outlines: Outlines, seen: NDArray[np.bool_], camera: Camera) -> Rounded:
-    """Return those of the outlines that are seen, in pixels."""
+    """Return those of the outlines that are ``seen`` (n,), in pixels."""
     corners = camera.project(outlines.place[seen])[:, None, :]
     corners = corners + outlines.corners[seen] * (camera.scale, -camera.scale)
     radius = np.maximum(outlines.radius[seen] * camera.scale, _MIN_HALF)
