@@ -7,10 +7,10 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).parent.parent / "physicslab"
 FOLDERS = (
-    "commands", "contacts", "diagnostics", "ecs", "export", "files", "history", "integrators", "lab", "ode",
-    "state", "systems",
+    "commands", "components", "contacts", "desktop", "diagnostics", "ecs", "export", "files", "history",
+    "integrators", "kernels", "lab", "ode", "prefabs", "scenes", "state", "systems", "view",
 )  # fmt: skip
-"""The folders that hold to it; the others follow."""
+"""The folders that hold to it; ``stepping`` follows."""
 SHAPE = re.compile(r"\((?:\.{3}|\w[\w +-]*)(?:,(?: [\w. +-]+)?)+\)|\bshapes?\b")
 """``(n,)``, ``(rows, 2)``, ``(2 rows, k)``; or words on the shape."""
 NAMED = {"Numbers", "Vectors", "Rows", "Flags", "Masks"}
@@ -46,13 +46,14 @@ def public_functions(tree: ast.Module) -> Iterator[ast.FunctionDef]:
 
 
 def unshaped(tree: ast.Module) -> Iterator[str]:
-    """Yield functions with an array among their arguments of which nothing gives the shape."""
+    """Yield types of arrays without a shape, and functions that take an array of which nothing gives it."""
     shaped = shaped_aliases(tree)
     arrays = {"NDArray"} | {
         statement.name.id
         for statement in tree.body
         if isinstance(statement, ast.TypeAlias) and "NDArray" in ast.unparse(statement.value)
     }
+    yield from sorted(name for name in arrays - shaped - {"NDArray"} if not name.startswith("_"))
     for function in public_functions(tree):
         taken = [
             ast.unparse(part.annotation)
@@ -75,9 +76,10 @@ def test_array_arguments_have_a_shape() -> None:
 
 
 def test_a_missing_shape_is_found() -> None:
-    head = "type Bare = NDArray[float]\ntype Row = NDArray[float]\n'''A row (n,).'''\n"
-    bare = "def f(x: Bare) -> None:\n    '''Do it with x [m].'''"
+    head = "type _Bare = NDArray[float]\ntype Row = NDArray[float]\n'''A row (n,).'''\n"
+    bare = "def f(x: _Bare) -> None:\n    '''Do it with x [m].'''"
     assert list(unshaped(ast.parse(head + bare))) == ["f"]
     assert not list(unshaped(ast.parse(head + bare.replace("[m]", "(n, 2) [m]"))))
-    assert not list(unshaped(ast.parse(head + bare.replace("Bare", "Row"))))
+    assert not list(unshaped(ast.parse(head + bare.replace("_Bare", "Row"))))
     assert not list(unshaped(ast.parse(head + bare.replace("def f", "def _f"))))
+    assert list(unshaped(ast.parse(head.replace("_Bare", "Bare")))) == ["Bare"]

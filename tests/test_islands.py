@@ -10,8 +10,8 @@ import pytest
 from numpy.typing import NDArray
 
 from physicslab import World, load_scene, save_scene
-from physicslab.components import Drag, Mass, Material, Shape, Spring, Transform, Velocity
-from physicslab.ecs.config import PhysicsConfig
+from physicslab.components import Drag, Mass, Material, Pin, Shape, Spring, Transform, Velocity
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import History
 from physicslab.kernels.accounts import EDITS
@@ -165,6 +165,77 @@ def test_springs_couple_over_any_distance() -> None:
     world.step()
     assert sizes(world) == []
     assert "coupled" in world.islands.why_one
+
+
+def test_a_marble_that_flies_far_away_and_back_is_an_island_in_between() -> None:
+    world = World()
+    floor(world)
+    few(world)
+    marble = world.spawn(
+        Transform((6.0, 0.3)),
+        Velocity((20.0, 40.0)),
+        Mass(0.1),
+        Shape("circle", radius=0.1),
+        Material(1.0, 0.0),
+    )
+    world.spawn(Spring(a=marble, rest_length=0.0, stiffness=0.02, anchor_b=(6.0, 0.3)))
+    met: list[list[int]] = []
+    for _ in world.stepping(seconds=8.0, stride=6):
+        if not met or sizes(world) != met[-1]:
+            met.append(sizes(world))
+    assert met[:3] == [[], [4, 1], []]
+
+
+def test_a_pin_makes_one_island_and_its_force_is_read_in_the_whole_world() -> None:
+    worlds = World(), World()
+    for world in worlds:
+        floor(world)
+        a, b = disc(world, 0.0, 4.0), disc(world, 1.0, 4.0)
+        world.spawn(Pin(a=a, b=b, anchor_b=(-1.0, 0.0)))
+        world.spawn(Pin(a=a, anchor_b=(0.0, 4.0)))
+    crowd(worlds[1])
+    for world in worlds:
+        world.run(steps=50)
+    assert sizes(worlds[1]) == [2, 14]
+    assert np.array_equal(motion(worlds[0], [2, 3]), motion(worlds[1], [2, 3]))
+    assert worlds[0].joints.force.any()
+    assert np.array_equal(worlds[0].joints.force, worlds[1].joints.force)
+
+
+def test_sleep_of_a_far_crowd_is_seen_in_the_whole_world_and_an_edit_wakes_it() -> None:
+    world = World(simulation=SimulationConfig(sleeping=True))
+    floor(world)
+    discs = [disc(world, FAR + 0.7 * k, 0.3) for k in range(14)]
+    wild = disc(world, 0.0, 3.0)
+    world.run(seconds=1.5)
+    assert sizes(world) == [14, 1]
+    assert world.sleep.count == 14
+    world.component(discs[3], Velocity).linear = Vector2(2.0, 0.0)
+    world.run(steps=30)
+    assert world.sleep.count < 14
+    assert world.component(wild, Transform).position.y < 3.0
+    world.remove(discs[0])
+    world.run(steps=2)
+    assert len(sizes(world)) == 2
+
+
+def test_a_driven_platform_belongs_to_every_island() -> None:
+    alone, beside = World(), World()
+    for world in (alone, beside):
+        world.spawn(
+            Transform((0.0, -0.5)),
+            Velocity((0.5, 0.0)),
+            Shape(kind="box", width=4000, height=1),
+            Material(0.4, 0.5),
+        )
+        few(world)
+    crowd(beside)
+    alone.run(steps=60)
+    beside.run(steps=60)
+    assert sizes(beside) == [4, 14]
+    assert np.array_equal(motion(alone, [2, 3, 4, 5]), motion(beside, [2, 3, 4, 5]))
+    change = beside.account.last.energy - (beside.account.start or beside.account.last).energy
+    assert beside.account.sums[:, 0].sum() == pytest.approx(change, abs=1e-8)
 
 
 def test_planets_are_one_island_and_the_reason_is_told() -> None:

@@ -198,13 +198,8 @@ class Sandbox:
     def is_still(self) -> bool:
         """Whether the next frame would show what this one does, unless the user does something."""
         window = self.window
-        busy = (
-            window.error_study.running
-            or window.filming.running
-            or window.next_world is not None
-            or bool(window.pending)
-            or window.closing
-        )
+        works = window.error_study.running or window.filming.running
+        busy = works or window.pending or window.closing or window.next_world is not None
         return not (busy or window.is_moving(self.world) or self.interface.toolkit.unsettled)
 
     def _keep(self, autosave: Autosave) -> None:

@@ -41,6 +41,7 @@ _BLOCK = 65_536
 """Rows that are computed at a time."""
 
 type Floats = NDArray[np.float64]
+"""A float64 array, of impacts (n,)."""
 type LastTimes = dict[tuple[int, int, int], float]
 """When each pair met last [s], by entities and wall."""
 

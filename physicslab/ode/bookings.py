@@ -13,6 +13,7 @@ from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
 
 type Numbers = NDArray[np.float64]
+"""A float64 array, of coordinates (d,), or of rows (rows, 2)."""
 type Packed = Sequence[tuple[ForceSystem, PackedForce | None]]
 
 

@@ -15,6 +15,7 @@ from physicslab.ode.closed_form import ClosedForm
 from physicslab.state.state import State
 
 type Numbers = NDArray[np.float64]
+"""A float64 array, of bodies by the axes of their springs (n, 2)."""
 
 _SMALL = 0.1
 """Share of a time constant of damping below which what it leaves is summed as a series."""

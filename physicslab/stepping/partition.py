@@ -109,7 +109,7 @@ def groups_of(state: State, schedule: Schedule, rows: Rows) -> Partition:
 
 def _labels(state: State, schedule: Schedule, rows: Rows) -> Rows:
     """Return a number for each of the bodies, the same for those that are one island."""
-    reach = _radii(state, rows)
+    reach = state.bodies.shapes.reach[rows]
     speed = np.hypot(*state.table(Velocity)["linear"][rows].T)
     soon = max(FAR_S, 2.5 * NEAR_STEPS * state.simulation.dt)
     reach = reach + np.maximum(FAR_RADII * reach, speed * soon + 0.25 * _gravity(state) * soon * soon)
@@ -152,13 +152,6 @@ def join(labels: Rows, pairs: Iterable[Iterable[int]]) -> Rows:
     return np.array([find(label) for label in labels.tolist()], np.int64)
 
 
-def _radii(state: State, rows: Rows) -> Numbers:
-    """Return the radii (n,) [m] of circles around the shapes in some rows."""
-    shape = state.table(Shape)
-    radii: Numbers = shape["radius"][rows] + 0.5 * np.hypot(shape["width"][rows], shape["height"][rows])
-    return radii
-
-
 def _gravity(state: State) -> float:
     """Return how fast uniform gravity accelerates bodies [m/s^2]."""
     return state.physics.gravity.magnitude if state.physics.gravity_mode == "linear" else 0.0
@@ -195,7 +188,7 @@ class Extent:
         """Return that of the rows of an island, whose springs hold ``stored`` energy [J]."""
         shaped, velocity = state.table(Shape).present, state.table(Velocity)
         rows, inverse_mass = rows[shaped[rows]], state.bodies.inverse_mass
-        position, radius = state.table(Transform)["position"][rows], _radii(state, rows)
+        position, radius = state.table(Transform)["position"][rows], state.bodies.shapes.reach[rows]
         speed = np.hypot(*velocity["linear"][rows].T)
         driven = shaped & velocity.present & (inverse_mass == 0.0)
         pushed = np.hypot(*velocity["linear"][driven].T) + np.abs(velocity["angular"][driven])

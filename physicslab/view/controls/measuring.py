@@ -193,11 +193,8 @@ def _in_the_middle(window: Window, kind: type[Any]) -> list[Spot]:
     across, up = Vector2(0.5 * reach, 0.0), Vector2(0.0, 0.5 * reach)
     if kind is Protractor:
         return [Spot(middle), Spot(middle + across), Spot(middle + up)]
-    return (
-        [Spot(middle - up), Spot(middle + up)]
-        if kind is Gate
-        else [Spot(middle - across), Spot(middle + across)]
-    )
+    way = up if kind is Gate else across
+    return [Spot(middle - way), Spot(middle + way)]
 
 
 # ---- what is there -----------------------------------------------------------------------------------------

@@ -192,16 +192,11 @@ class Dashboard:
             if line.graph is not None:
                 shown = LineShown(entity, (line.body, line.quantity))
                 lines.setdefault(line.graph, []).append(shown)
-        self.graphs = tuple(
-            GraphShown(
-                entity,
-                number,
-                None if graph.across == TIME else (graph.body, graph.across),
-                graph.side,
-                tuple(lines.get(entity, ())),
-            )
-            for number, (entity, graph) in enumerate(_all(world, Graph), start=1)
-        )
+        graphs = []
+        for number, (entity, graph) in enumerate(_all(world, Graph), start=1):
+            across = None if graph.across == TIME else (graph.body, graph.across)
+            graphs.append(GraphShown(entity, number, across, graph.side, tuple(lines.get(entity, ()))))
+        self.graphs = tuple(graphs)
         self.meters = tuple(
             MeterShown(entity, number, (meter.body, meter.quantity), meter.corner)
             for number, (entity, meter) in enumerate(_all(world, Meter), start=1)

@@ -34,6 +34,7 @@ _MIN_THROW_TIME = 0.03
 """Time [s] over which a speed can be measured at all; a shorter pull is no throw."""
 
 type Numbers = NDArray[np.float64]
+"""A float64 array, of bodies (n,), or places (n, 2) [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +61,8 @@ def _reach(world: World, entity: int) -> Vector2:
     if not world.has(entity, Shape):
         return Vector2()
     shape, angle = world.component(entity, Shape), world.component(entity, Transform).angle
-    if shape.kind == "circle":
-        return Vector2(shape.radius, shape.radius)
-    c, s = abs(math.cos(angle)), abs(math.sin(angle))
-    return 0.5 * Vector2(c * shape.width + s * shape.height, s * shape.width + c * shape.height)
+    corners, radius = [corner.rotated(angle) for corner in shape.core], shape.rounding
+    return Vector2(max(abs(one.x) for one in corners) + radius, max(abs(one.y) for one in corners) + radius)
 
 
 def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vector2:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from physicslab.components import Shape, Transform, Velocity
+from physicslab.components.shape import KINDS
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
@@ -62,7 +63,7 @@ class Handles:
             corner = _corner(world, entity)
             found.append(Handle("size", transform.position + corner.rotated(transform.angle)))
             shape = world.component(entity, Shape)
-            up = (shape.radius or 0.5 * shape.height) + _ABOVE / camera.scale
+            up = max(corner.y for corner in shape.core) + shape.rounding + _ABOVE / camera.scale
             found.append(Handle("angle", transform.position + Vector2(0.0, up).rotated(transform.angle)))
         if world.has(entity, Velocity):
             found.append(Handle("velocity", transform.position + arrow_of(world, entity, camera)))
@@ -114,10 +115,17 @@ class Handles:
     def _resize(self, edits: Edits, entity: int, corner: Vector2, snaps: bool) -> None:
         """Make a body as large as its corner says; what it weighs stays."""
         shape = edits.world.component(entity, Shape)
-        if shape.kind == "circle":
+        kind = KINDS[shape.kind]
+        if not kind.x and not kind.y:
             radius = _size(corner.magnitude, snaps)
             edits.show(entity, Shape, "radius", radius)
             self.words = f"radius {quantity(radius, 'm')}"
+            return
+        if kind.radius:  # its round end goes with the corner, and is as high as that is low
+            radius = _size(abs(corner.y), snaps)
+            edits.show(entity, Shape, kind.radius, radius)
+            edits.show(entity, Shape, kind.x, _size(2.0 * abs(corner.x), snaps))
+            self.words = f"{shape.length:.3g} m, radius {radius:.3g} m"
             return
         width, height = _size(2.0 * abs(corner.x), snaps), _size(2.0 * abs(corner.y), snaps)
         edits.show(entity, Shape, "width", width)
@@ -136,9 +144,10 @@ def arrow_of(world: World, entity: int, camera: Camera) -> Vector2:
 
 def _corner(world: World, entity: int) -> Vector2:
     shape = world.component(entity, Shape)
-    if shape.kind == "circle":
+    if len(shape.core) == 1:
         return Vector2.from_angle(-0.25 * math.pi, shape.radius)
-    return Vector2(0.5 * shape.width, -0.5 * shape.height)
+    right, low = max(corner.x for corner in shape.core), min(corner.y for corner in shape.core)
+    return Vector2(right, low - shape.rounding)
 
 
 def _size(length: float, snaps: bool) -> float:

@@ -16,6 +16,7 @@ from physicslab.view.window.pace import Pace
 from physicslab.world import World
 
 type Records = NDArray[Any]
+"""Records of impacts (n,)."""
 
 LIMIT = 100_000
 """Impacts that are kept: beyond that number the oldest are forgotten."""

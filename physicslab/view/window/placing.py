@@ -135,6 +135,7 @@ _FINE = 5
 """Into how many parts the distance of grid lines is divided: places snap to these."""
 
 type Numbers = NDArray[np.float64]
+"""A float64 array, of bodies (n, 2) [m], or a place (2,) [m]."""
 
 
 @dataclass(frozen=True, slots=True)

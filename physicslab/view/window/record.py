@@ -19,6 +19,7 @@ from physicslab.world import World
 type Key = tuple[int | None, str]
 """A body, or ``None`` for the world, and the name of a quantity."""
 type Numbers = NDArray[np.float64]
+"""A float64 array, of samples (n,)."""
 
 CAPACITY = 36_000
 """Moments that are kept: ten minutes at 60 a second. Beyond them every other one of the older half goes."""

@@ -369,12 +369,8 @@ class Window:
 
     def is_moving(self, world: World) -> bool:
         """Whether something in the picture changes by itself: time runs, a body is held, words will go."""
-        waits = self.pace.due(world.simulation.dt) == 0
-        return (
-            not (self.pace.paused and waits)
-            or self.hand.entity is not None
-            or bool(self.notice or len(self.sparks))
-        )
+        stands = self.pace.paused and self.pace.due(world.simulation.dt) == 0 and self.hand.entity is None
+        return not stands or bool(self.notice or len(self.sparks))
 
     def follow_size(self, world: World) -> None:
         """Let the camera follow the canvas and its room; an untouched view still shows all of the world."""

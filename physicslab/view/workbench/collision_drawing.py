@@ -5,9 +5,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Shape
+from physicslab.contacts.outlines import rim_of
 from physicslab.diagnostics.collision import Body, Collision
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, without_rounding
@@ -19,7 +21,8 @@ from physicslab.world import World
 # ---- a drawing within a panel, at places in pixels from its top left corner --------------------------------
 
 
-type Place = tuple[float, float]
+type Place = Vector2
+"""A place in a sketch, right and down from its top left corner [px]."""
 
 THIN, THICK = 1.4, 3.4
 """Widths of arrows: before an impact, and after it [px]."""
@@ -35,44 +38,38 @@ class Sketch:
 
     def __init__(self, ui: Ui, corner: Place, width: float, height: float) -> None:
         self.ui, self.width, self.height = ui, width, height
-        self._left, self._top = corner
+        self._corner = corner
         self._paper = imgui.get_window_draw_list()
         self._words: list[tuple[float, float, float, float]] = []
 
     def _at(self, place: Place) -> ImVec2:
-        return ImVec2(self._left + place[0], self._top + place[1])
+        return ImVec2(*(self._corner + place))
 
     def line(
         self, start: Place, end: Place, colour: Colour, width: float = 1.0, *, dashed: bool = False
     ) -> None:
         """Draw a line."""
-        length = math.dist(start, end)
+        length = (end - start).magnitude
         if not dashed or length < _DASH:
             self._paper.add_line(self._at(start), self._at(end), packed(colour), width)
             return
-        dx, dy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
-        done = 0.0
+        way, done = (end - start) / length, 0.0
         while done < length:
-            until = min(done + _DASH, length)
-            self._paper.add_line(
-                self._at((start[0] + done * dx, start[1] + done * dy)),
-                self._at((start[0] + until * dx, start[1] + until * dy)), packed(colour), width,
-            )  # fmt: skip
+            begin, until = start + done * way, start + min(done + _DASH, length) * way
+            self._paper.add_line(self._at(begin), self._at(until), packed(colour), width)
             done += _DASH + _GAP
 
     def arrow(self, start: Place, end: Place, colour: Colour, *, before: bool) -> None:
         """Draw an arrow: thin and dashed for what was before, thick for what is after."""
-        length = math.dist(start, end)
+        length = (end - start).magnitude
         if length < _DOT:
             self._paper.add_circle_filled(self._at(start), _DOT, packed(colour))
             return
-        head = min(_HEAD[0] if before else _HEAD[1], length)
-        dx, dy = (end[0] - start[0]) / length, (end[1] - start[1]) / length
-        neck = end[0] - head * dx, end[1] - head * dy
+        head, way = min(_HEAD[0] if before else _HEAD[1], length), (end - start) / length
+        neck, side = end - head * way, 0.5 * head * Vector2(-way.y, way.x)
         self.line(start, neck, colour, THIN if before else THICK, dashed=before)
-        half = 0.5 * head
-        left, right = (neck[0] - half * dy, neck[1] + half * dx), (neck[0] + half * dy, neck[1] - half * dx)
-        self._paper.add_triangle_filled(self._at(end), self._at(left), self._at(right), packed(colour))
+        tip, left, right = self._at(end), self._at(neck + side), self._at(neck - side)
+        self._paper.add_triangle_filled(tip, left, right, packed(colour))
 
     def polygon(self, corners: Sequence[Place], fill: Colour, rim: Colour, width: float = 2.0) -> None:
         """Draw a convex outline that is filled."""
@@ -91,17 +88,17 @@ class Sketch:
             self._paper.add_rect_filled(self._at(low), self._at(high), packed(fill))
             return
         self._paper.add_rect(self._at(low), self._at(high), packed(fill))
-        x, tall = low[0], high[1] - low[1]
-        while x < high[0]:
-            up = min(tall, high[0] - x)
-            self.line((x, high[1]), (x + up, high[1] - up), fill)
+        x, tall = low.x, high.y - low.y
+        while x < high.x:
+            up = min(tall, high.x - x)
+            self.line(Vector2(x, high.y), Vector2(x + up, high.y - up), fill)
             x += 6.0
 
     def words(self, place: Place, words: str, colour: Colour) -> None:
         """Write words with their middle at a place, or near it where others are; all within the sketch."""
         size = imgui.calc_text_size(words)
-        x = min(max(place[0] - 0.5 * size.x, 0.0), max(self.width - size.x, 0.0))
-        y = min(max(place[1] - 0.5 * size.y, 0.0), max(self.height - size.y, 0.0))
+        x = min(max(place.x - 0.5 * size.x, 0.0), max(self.width - size.x, 0.0))
+        y = min(max(place.y - 0.5 * size.y, 0.0), max(self.height - size.y, 0.0))
         for _ in range(4):
             taken = next((one for one in self._words if _overlap(one, (x, y, size.x, size.y))), None)
             if taken is None:
@@ -109,7 +106,7 @@ class Sketch:
             below = taken[1] + taken[3]
             y = below if below + size.y <= self.height else max(taken[1] - size.y, 0.0)
         self._words.append((x, y, size.x, size.y))
-        self._paper.add_text(self._at((x, y)), packed(colour), words)
+        self._paper.add_text(self._at(Vector2(x, y)), packed(colour), words)
         self.ui.words.append(words)
 
 
@@ -126,7 +123,7 @@ def sketch(ui: Ui, width: float, height: float) -> Iterator[Sketch]:
     paper.add_rect_filled(corner, end, packed(ui.theme.background), 4.0)
     paper.push_clip_rect(corner, end, True)
     try:
-        yield Sketch(ui, (corner.x, corner.y), width, height)
+        yield Sketch(ui, Vector2(corner.x, corner.y), width, height)
     finally:
         paper.pop_clip_rect()
         imgui.dummy(ImVec2(width, height))
@@ -169,7 +166,7 @@ def draw_bodies(ui: Ui, world: World, seen: Collision, size: tuple[float, float]
     scale = 0.5 * min(width, height) / (_ROOM * (small + min(max(radii), _BIGGEST * small)))
 
     def at(place: Vector2) -> Place:
-        return 0.5 * width + scale * (place.x - middle.x), 0.5 * height - scale * (place.y - middle.y)
+        return Vector2(0.5 * width, 0.5 * height) + scale * _down(place - middle)
 
     speeds = [m.linear.magnitude for body in (seen.a, seen.b) for m in (body.before, body.after)]
     per_speed = _REACH * min(width, height) / max(*speeds, 1e-300)
@@ -182,16 +179,21 @@ def draw_bodies(ui: Ui, world: World, seen: Collision, size: tuple[float, float]
         for name, body, colour in zip("AB", (seen.a, seen.b), colours_of(theme, seen), strict=True):
             start = at(body.centre)
             for motion, mark, before in ((body.before, "", True), (body.after, "'", False)):
-                way = per_speed * motion.linear
+                way = per_speed * _down(motion.linear)
                 if way.magnitude < _SHORT:
                     continue
-                end = start[0] + way.x, start[1] - way.y
+                end = start + way
                 paper.arrow(start, end, colour, before=before)
                 paper.words(_beyond(start, end, ui.size), f"v{name}{mark}", theme.text)
-            if not (0.0 < start[0] < width and 0.0 < start[1] < height) or body.entity == 0:
-                side, (x, y) = -4.0 if name == "A" else 4.0, at(middle)
-                start = x + side * ui.size * seen.normal.x, y - side * ui.size * seen.normal.y
-            paper.words((start[0], start[1] + 0.9 * ui.size), name, theme.heading)
+            if not (0.0 < start.x < width and 0.0 < start.y < height) or body.entity == 0:
+                side = -4.0 if name == "A" else 4.0
+                start = at(middle) + side * ui.size * _down(seen.normal)
+            paper.words(start + Vector2(0.0, 0.9 * ui.size), name, theme.heading)
+
+
+def _down(way: Vector2) -> Vector2:
+    """Return a way of the world as one of a drawing, whose y points down."""
+    return Vector2(way.x, -way.y)
 
 
 def _extent(world: World, body: Body, seen: Collision) -> float:
@@ -200,7 +202,7 @@ def _extent(world: World, body: Body, seen: Collision) -> float:
     if shape is None:
         arms = [spot.arm_a if body is seen.a else spot.arm_b for spot in seen.spots]
         return math.inf if body.entity == 0 else max(*(arm.magnitude for arm in arms), 1e-9)
-    return shape.radius if shape.kind == "circle" else 0.5 * math.hypot(shape.width, shape.height)
+    return shape.reach
 
 
 def _draw_body(
@@ -210,24 +212,17 @@ def _draw_body(
     fill = theme.fill(colour)
     shape = world.component(body.entity, Shape) if body.entity and world.has(body.entity, Shape) else None
     if shape is None and body.entity == 0:
-        x, y = at(seen.spots[0].place)
-        n, far = seen.normal, paper.width + paper.height
-        t = seen.tangent
-        corners = [
-            (x + far * (s * t.x - d * n.x), y - far * (s * t.y - d * n.y))
-            for s, d in ((-1, 0), (1, 0), (1, 1), (-1, 1))
-        ]
+        n, t = (_down(way) * (paper.width + paper.height) for way in (seen.normal, seen.tangent))
+        touch = at(seen.spots[0].place)
+        corners = [touch + s * t - d * n for s, d in ((-1, 0), (1, 0), (1, 1), (-1, 1))]
         paper.polygon(corners, fill, colour)
-    elif shape is not None and shape.kind == "circle":
+    elif shape is not None and len(shape.core) == 1:
         paper.disc(at(body.centre), scale * shape.radius, fill, colour)
         rim = body.centre + shape.radius * Vector2.from_angle(body.angle)
         paper.line(at(body.centre), at(rim), colour)
     elif shape is not None:
-        half = 0.5 * shape.width, 0.5 * shape.height
-        corners = [
-            at(body.centre + Vector2(u * half[0], v * half[1]).rotated(body.angle))
-            for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-        ]
+        outline = rim_of(np.array([tuple(corner) for corner in shape.core]), shape.rounding).tolist()
+        corners = [at(body.centre + Vector2(x, y).rotated(body.angle)) for x, y in outline]
         paper.polygon(corners, fill, colour)
     if body.entity:
         paper.disc(at(body.centre), 2.5, colour, colour)
@@ -237,16 +232,15 @@ def _draw_axes(paper: Sketch, seen: Collision, origin: Place) -> None:
     """Draw the directions of normal and tangent at the contact."""
     theme, length = paper.ui.theme, 4.4 * paper.ui.size
     for way, name in ((seen.normal, "n"), (seen.tangent, "t")):
-        end = origin[0] + length * way.x, origin[1] - length * way.y
-        back = origin[0] - length * way.x, origin[1] + length * way.y
-        paper.line(back, end, theme.faint, dashed=True)
+        end = origin + length * _down(way)
+        paper.line(2.0 * origin - end, end, theme.faint, dashed=True)
         paper.words(_beyond(origin, end, 0.6 * paper.ui.size), name, theme.contact_normal)
 
 
 def _beyond(start: Place, end: Place, by: float) -> Place:
     """Return a place beyond the tip of an arrow."""
-    length = max(math.dist(start, end), 1e-9)
-    return end[0] + by * (end[0] - start[0]) / length, end[1] + by * (end[1] - start[1]) / length
+    way = end - start
+    return end + by / max(way.magnitude, 1e-9) * way
 
 
 # ---- velocities at the contact, and momenta ----------------------------------------------------------------
@@ -260,14 +254,14 @@ def draw_contact(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
     largest = max(max(map(abs, pair)) for pair in speeds) or 1.0
     scale = 0.36 * min(width, height) / largest
     with sketch(ui, width, height) as paper:
-        origin = 0.5 * width, 0.5 * height
-        paper.line((0.0, origin[1]), (width, origin[1]), theme.axis)
-        paper.line((origin[0], 0.0), (origin[0], height), theme.axis)
-        paper.words((origin[0], 0.0), "n", theme.contact_normal)
-        paper.words((0.0, origin[1] - 0.6 * ui.size), "t", theme.contact_normal)
+        origin, across, up = Vector2(0.5 * width, 0.5 * height), Vector2(width, 0.0), Vector2(0.0, height)
+        paper.line(origin - 0.5 * across, origin + 0.5 * across, theme.axis)
+        paper.line(origin - 0.5 * up, origin + 0.5 * up, theme.axis)
+        paper.words(origin - 0.5 * up, "n", theme.contact_normal)
+        paper.words(origin - 0.5 * across - Vector2(0.0, 0.6 * ui.size), "t", theme.contact_normal)
         for (vn, vt), words, before in zip(speeds, ("before", "after"), (True, False), strict=True):
-            end = origin[0] - scale * vt, origin[1] - scale * vn
-            for foot in ((end[0], origin[1]), (origin[0], end[1])):
+            end = origin - scale * Vector2(vt, vn)
+            for foot in (Vector2(end.x, origin.y), Vector2(origin.x, end.y)):
                 paper.line(end, foot, theme.faint, dashed=True)
             paper.arrow(origin, end, theme.velocity, before=before)
             paper.words(_beyond(origin, end, 0.8 * ui.size), words, theme.text)
@@ -302,28 +296,27 @@ def draw_momenta(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
         for parts, names, colours, thin in chains:
             places = [at(tip) for tip in _tips(parts)]
             for start, end, name, colour in zip(places, places[1:], names, colours, strict=False):
-                if math.dist(start, end) < _SHORT:
+                if (end - start).magnitude < _SHORT:
                     continue
-                start, end = ((x + drawn * aside[0], y + drawn * aside[1]) for x, y in (start, end))
+                start, end = start + drawn * aside, end + drawn * aside
                 drawn += 1
                 paper.arrow(start, end, colour, before=thin)
-                side = 0.9 if thin != any(aside) else -0.9
+                side = 0.9 if thin != bool(aside) else -0.9
                 paper.words(_beside(start, end, side * ui.size), name, theme.text)
         if len(chains[1][0]) == 2:
             start, end = at(Vector2()), at(sum(before, Vector2()))
             paper.disc(start, 3.0, theme.heading, theme.heading)
             paper.disc(end, 5.0, theme.background, theme.heading, 1.5)
-            paper.words((start[0], start[1] + 0.9 * ui.size), "start", theme.faint)
-            paper.words((end[0], end[1] + 0.9 * ui.size), "sum", theme.faint)
+            paper.words(start + Vector2(0.0, 0.9 * ui.size), "start", theme.faint)
+            paper.words(end + Vector2(0.0, 0.9 * ui.size), "sum", theme.faint)
 
 
 def _aside(parts: Sequence[Vector2], by: float) -> Place:
     """Return by how much each arrow is drawn beside the one before [px]: where all lie in one line."""
     longest = max(parts, key=lambda part: part.magnitude)
     if not longest or any(abs(part.cross(longest)) > _ALIKE * longest.magnitude_squared for part in parts):
-        return 0.0, 0.0
-    way = longest.normalized.perpendicular
-    return by * way.x, -by * way.y
+        return Vector2()
+    return by * _down(longest.normalized.perpendicular)
 
 
 def _tips(parts: Sequence[Vector2]) -> list[Vector2]:
@@ -343,17 +336,14 @@ def _fitted(places: Sequence[Vector2], size: tuple[float, float], margin: float)
         for side, span in zip(size, spans, strict=True)
     )
     scale = 0.0 if math.isinf(scale) else scale
-    x, y = 0.5 * (max(xs) + min(xs)), 0.5 * (max(ys) + min(ys))
-    return lambda place: (0.5 * size[0] + scale * (place.x - x), 0.5 * size[1] - scale * (place.y - y))
+    middle = Vector2(0.5 * (max(xs) + min(xs)), 0.5 * (max(ys) + min(ys)))
+    return lambda place: 0.5 * Vector2(*size) + scale * _down(place - middle)
 
 
 def _beside(start: Place, end: Place, by: float) -> Place:
     """Return a place beside the middle of an arrow."""
-    length = max(math.dist(start, end), 1e-9)
-    return (
-        0.5 * (start[0] + end[0]) + by * (end[1] - start[1]) / length,
-        0.5 * (start[1] + end[1]) - by * (end[0] - start[0]) / length,
-    )
+    way = end - start
+    return 0.5 * (start + end) + by / max(way.magnitude, 1e-9) * Vector2(way.y, -way.x)
 
 
 # ---- energy ------------------------------------------------------------------------------------------------
@@ -384,34 +374,27 @@ def draw_energies(ui: Ui, seen: Collision, width: float) -> None:
         for n, (when, bar) in enumerate(zip(("before", "after"), parts, strict=True)):
             words = f"{when} {quantity(totals[n], 'J')}"
             top = 0.4 * ui.size + n * (high + 0.4 * ui.size)
-            paper.words((0.5 * label, top + 0.5 * high), words, theme.text)
+            paper.words(Vector2(0.5 * label, top + 0.5 * high), words, theme.text)
             x = label + 0.4 * ui.size
             across = (width - x - 0.4 * ui.size) / full
             for name, energy, colour, hatched in bar:
                 if energy * across < 1.0:
                     continue
                 end = x + energy * across
-                paper.bar((x, top), (end - 1.0, top + high), colour, hatched=hatched)
-                _label_bar(
-                    paper,
-                    name,
-                    (x, end),
-                    top + 0.5 * high,
-                    theme,
-                    plain=hatched or colour not in (a_colour, b_colour),
-                )
+                paper.bar(Vector2(x, top), Vector2(end - 1.0, top + high), colour, hatched=hatched)
+                own = colour in (a_colour, b_colour) and not hatched
+                shade = theme.background if own else theme.text
+                _label_bar(paper, name, (x, end), top + 0.5 * high, shade)
                 x = end
     _write_losses(ui, seen, full)
 
 
-def _label_bar(
-    paper: Sketch, name: str, span: tuple[float, float], middle: float, theme: Theme, *, plain: bool
-) -> None:
+def _label_bar(paper: Sketch, name: str, span: tuple[float, float], middle: float, colour: Colour) -> None:
     """Write what a part of a bar is, in the longest of its names for which there is room."""
     per_letter = 0.56 * paper.ui.size
     for words in name.split("|"):
         if len(words) * per_letter < span[1] - span[0]:
-            paper.words((0.5 * sum(span), middle), words, theme.text if plain else theme.background)
+            paper.words(Vector2(0.5 * sum(span), middle), words, colour)
             return
 
 

@@ -136,13 +136,8 @@ def _law(collision: Collision, result: Result) -> Iterator[str]:
 
 def law_steps(collision: Collision, result: Result) -> list[Step]:
     """Return the working, line by line; figures of the solver are those of the record."""
-    steps = [*_masses(collision)]
-    steps += (
-        _impulses_of_two(collision, result)
-        if len(collision.spots) == 2
-        else _impulses_of_one(collision, result)
-    )
-    return [*steps, *_motions(collision, result)]
+    impulses = _impulses_of_two if len(collision.spots) == 2 else _impulses_of_one
+    return [*_masses(collision), *impulses(collision, result), *_motions(collision, result)]
 
 
 def _number(value: float) -> str:

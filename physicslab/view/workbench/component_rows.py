@@ -120,11 +120,12 @@ class ComponentRows:
     def _change(self, kind: Kind, spec: Field, value_of: Callable[[int], object]) -> None:
         """Give the field of all that is selected a value, before the click that ended the writing is done."""
         chosen, name = self.window.selection.entities, kind.__name__
-        self.window.do_first(
-            lambda world, window: change_fields(
-                world, window, [SetField(entity, name, spec.name, value_of(entity)) for entity in chosen]
-            )
-        )
+
+        def change(world: World, window: Window) -> None:
+            changes = [SetField(entity, name, spec.name, value_of(entity)) for entity in chosen]
+            change_fields(world, window, changes)
+
+        self.window.do_first(change)
 
 
 def _ends(world: World, entity: int, none: str) -> dict[int | None, str]:

@@ -75,14 +75,8 @@ def _build_result(ui: Ui, window: Window) -> None:
         if ui.button("Close"):
             study.shown = False
         imgui.same_line()
-        ui.button(
-            "CSV of all runs",
-            "Write the table to a file",
-            file_actions.save_table,
-            "errors",
-            study.csv,
-            shown="CSV",
-        )
+        save, tip = file_actions.save_table, "Write the table to a file"
+        ui.button("CSV of all runs", tip, save, "errors", study.csv, shown="CSV")
 
 
 def _chaos(study: ErrorStudy) -> str:

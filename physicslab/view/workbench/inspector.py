@@ -186,13 +186,8 @@ def build_inspector(ui: Ui, numbers: NumberFields, world: World, window: Window)
     ui.faint(_kind(world, first) if is_one else "Changes go to all of them")
     if is_one:
         _build_name(ui, numbers, world, window, first)
-    kinds = [
-        type(held)
-        for held in world.components(first)
-        if isinstance(held, Component)
-        and not isinstance(held, Held)
-        and all(world.has(other, type(held)) for other in chosen)
-    ]
+    kinds = [type(part) for part in world.components(first) if isinstance(part, Component)]
+    kinds = [kind for kind in kinds if kind is not Held and all(world.has(one, kind) for one in chosen)]
     rows = ComponentRows(ui, numbers, world, window)
     for kind in sorted(kinds, key=lambda kind: ORDER.get(kind, len(ORDER))):
         rows.build(kind)

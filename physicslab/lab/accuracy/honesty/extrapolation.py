@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from physicslab.lab.accuracy.twins import Document
 
 type Long = NDArray[np.longdouble]
+"""An array of long floats, a point a row (n, 2) [m], [m/s]."""
 
 _COLUMNS = 9
 """Rows of the table of extrapolation: the order is twice that."""
