@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle
+from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, Rounded, TextStyle
 from physicslab.view.canvas.theme import Colour
 
 __all__ = ["RecordingCanvas"]
@@ -51,6 +51,10 @@ class RecordingCanvas:
         """Note the boxes."""
         given = {"centre": centre, "extent": extent, "angle": angle, "look": look}
         self.calls.append(("boxes", given))
+
+    def rounded(self, shapes: Rounded, look: Look) -> None:
+        """Note the polygons."""
+        self.calls.append(("rounded", {"shapes": shapes, "look": look}))
 
     def lines(
         self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0

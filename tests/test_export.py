@@ -119,9 +119,12 @@ def test_bodies_springs_and_laws_are_described() -> None:
     world.spawn(Spring(a=ball, anchor_b=(0, 9)))
     recorder = RunRecorder(world)
     assert recorder.bodies(world) == [
-        {"name": "wall", "kind": "box", "entity": 1, "size": [4.0, 1.0], "pose": [1.0, 2.0, 0.5]},
         {
-            "name": "ball", "kind": "circle", "entity": ball, "radius": 0.5,
+            "name": "wall", "kind": "box", "entity": 1, "pose": [1.0, 2.0, 0.5], "radius": 0.0,
+            "core": [[2.0, 0.5], [-2.0, 0.5], [-2.0, -0.5], [2.0, -0.5]],
+        },
+        {
+            "name": "ball", "kind": "circle", "entity": ball, "radius": 0.5, "core": [[0.0, 0.0]],
             "mass": 2.0, "inertia": 0.25, "trail": 3.0,
             "moves": 0,
         },
@@ -198,14 +201,15 @@ def test_what_falls_for_ever_is_not_followed() -> None:
 
 
 def test_a_floor_of_a_kilometre_makes_no_speck_of_a_ball() -> None:
-    floor = {"kind": "box", "size": [1000.0, 1.0], "pose": [0.0, -0.5, 0.0]}
+    corners = [(500.0, 0.5), (-500.0, 0.5), (-500.0, -0.5), (500.0, -0.5)]
+    floor = {"kind": "box", "core": corners, "pose": [0.0, -0.5, 0.0]}
     ball = {"kind": "circle", "radius": 0.5, "moves": 0}
     motion = np.zeros((2, 1, 6), np.float32)
     left, low, right, _ = frame_run([floor, ball], motion, [])
     assert right - left < 20.0 and low < -0.5
 
 
-@pytest.mark.parametrize("bodies", [[], [{"kind": "box", "size": [2.0, 1.0], "pose": [7.0, 8.0, 0.0]}]])
+@pytest.mark.parametrize("bodies", [[], [{"kind": "circle", "radius": 2.0, "pose": [7.0, 8.0, 0.0]}]])
 def test_where_nothing_moves_there_is_a_frame_all_the_same(bodies: list[dict[str, Any]]) -> None:
     left, low, right, high = frame_run(bodies, np.zeros((2, 0, 6), np.float32), [])
     assert right > left and high > low

@@ -262,7 +262,7 @@ def test_scenes_open_framed_for_their_first_ten_seconds(name: str) -> None:
     for _ in range(20):
         world.run(seconds=0.5)
         rows = body_rows(world)
-        every = np.concatenate((rows.boxes, rows.discs, rows.points))
+        every = rows.all
         reach = _reach(world, every)[moves.present[every]]
         assert (reach[:, :2] >= np.array(view[:2]) - 0.05).all(), world.time
         assert (reach[:, 2:] <= np.array(view[2:]) + 0.05).all(), world.time

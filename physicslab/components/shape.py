@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from physicslab.components.lengths import extent
 from physicslab.ecs.component import Component, InvalidValue, component, field
+from physicslab.ecs.vector import Vector2
 
 
 class Kind(NamedTuple):
@@ -56,6 +57,24 @@ class Shape(Component):
     length: float = extent(0.0, "distance of the centres of a capsule's round ends, along its own x axis")
 
     SIZES = {name: kind.sizes for name, kind in KINDS.items()}  # noqa: RUF012
+
+    @property
+    def core(self) -> tuple[Vector2, ...]:
+        """The vertices of its core [m], counter-clockwise: of a circle its middle, of a box its corners."""
+        kind = KINDS[self.kind]
+        x, y = (float(getattr(self, name)) if name else 0.0 for name in (kind.x, kind.y))
+        return tuple(Vector2(u * x, v * y) for u, v in kind.core)
+
+    @property
+    def rounding(self) -> float:
+        """The radius that rounds the core [m]."""
+        name = KINDS[self.kind].radius
+        return float(getattr(self, name)) if name else 0.0
+
+    @property
+    def reach(self) -> float:
+        """The largest distance of the outline from the middle [m]."""
+        return max(corner.magnitude for corner in self.core) + self.rounding
 
     @staticmethod
     def circle(radius: float) -> Shape:

@@ -1,15 +1,16 @@
-"""Outlines of bodies as discs and boxes, and by how much they overlap."""
+"""Outlines of bodies, and by how much they overlap."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform
-from physicslab.components.shape import BOX
 from physicslab.ecs.vector import Vector2
+from physicslab.state.shapes import cores_of, lengths_of
 from physicslab.state.state import State
 
 type Numbers = NDArray[np.float64]
@@ -17,50 +18,95 @@ type Numbers = NDArray[np.float64]
 type Rows = NDArray[np.int64]
 """Row numbers (n,)."""
 
+_PARALLEL = 1e-9
+"""Sine of the angle of two normals up to which they are one axis."""
+
 
 @dataclass(frozen=True, slots=True)
 class Outlines:
-    """Discs and boxes, a row each; a disc has a radius and no extent, a box the other way round.
+    """Rounded polygons, a row each: a disc has one corner, its middle, and a radius; a box four and none.
 
     Attributes
     ----------
-    place, half : float64 arrays (n, 2)
-        Where the middle is, and half of a box's width and height [m].
-    radius, angle : float64 arrays (n,)
-        Of a disc [m], and how far a box has turned [rad].
+    place : float64 array (n, 2)
+        Where the middle is [m].
+    corners : float64 array (n, 8, 2)
+        The vertices of its core from there, counter-clockwise, the last one repeated [m].
+    vertices : int64 array (n,)
+        Their numbers.
+    radius, size : float64 arrays (n,)
+        What rounds the core, and the smaller one of its whole extents [m].
     """
 
     place: Numbers
-    half: Numbers
+    corners: Numbers
+    vertices: Rows
     radius: Numbers
-    angle: Numbers
+    size: Numbers
 
     def moved(self, by: Vector2) -> Outlines:
         """Return the same elsewhere."""
-        return Outlines(self.place + np.array((by.x, by.y)), self.half, self.radius, self.angle)
+        return replace(self, place=self.place + np.array((by.x, by.y)))
+
+    def only(self, n: int) -> Outlines:
+        """Return the one in a row, with a place of its own."""
+        own = slice(n, n + 1)
+        place, corners, vertices = self.place[own].copy(), self.corners[own], self.vertices[own]
+        return Outlines(place, corners, vertices, self.radius[own], self.size[own])
 
     @property
     def reach(self) -> Numbers:
         """Half of the width and height of what is taken up along the axes of the world (n, 2) [m]."""
-        c, s = np.abs(np.cos(self.angle)), np.abs(np.sin(self.angle))
-        across = c * self.half[:, 0] + s * self.half[:, 1] + self.radius
-        up = s * self.half[:, 0] + c * self.half[:, 1] + self.radius
-        return np.stack((across, up), axis=1)
+        reach: Numbers = np.abs(self.corners).max(axis=1) + self.radius[:, None]
+        return reach
 
-    @property
-    def size(self) -> Numbers:
-        """The diameter of each disc, the smaller side of each box (n,) [m]."""
-        sizes: Numbers = np.where(self.radius > 0.0, 2.0 * self.radius, 2.0 * self.half.min(axis=1))
-        return sizes
+    def gaps(self, x: float, y: float) -> Numbers:
+        """Return how far a place [m] is from each outline (n,) [m]; negative within."""
+        edges = np.roll(self.corners, -1, axis=1) - self.corners
+        offset = np.array((x, y)) - self.place[:, None, :] - self.corners
+        share = (offset * edges).sum(axis=2) / np.maximum((edges * edges).sum(axis=2), 1e-300)
+        away = offset - np.clip(share, 0.0, 1.0)[:, :, None] * edges
+        distance = np.hypot(away[:, :, 0], away[:, :, 1]).min(axis=1)
+        across = edges[:, :, 0] * offset[:, :, 1] - edges[:, :, 1] * offset[:, :, 0]
+        within = (self.vertices > 2) & (across >= 0.0).all(axis=1)
+        gaps: Numbers = np.where(within, -distance, distance) - self.radius
+        return gaps
 
 
 def outlines_of(state: State, rows: Rows) -> Outlines:
-    """Return the outlines of the shapes in some rows (n,)."""
-    transform, shape = state.table(Transform), state.table(Shape)
-    box = shape["kind"][rows] == BOX
-    half = 0.5 * np.stack((shape["width"][rows], shape["height"][rows]), axis=1) * box[:, None]
-    radius = np.where(box, 0.0, shape["radius"][rows])
-    return Outlines(transform["position"][rows].copy(), half, radius, transform["angle"][rows].copy())
+    """Return the outlines of the shapes in some rows, as they are now."""
+    transform = state.table(Transform)
+    return outlines_at(state, rows, transform["position"][rows].copy(), transform["angle"][rows])
+
+
+def outlines_at(state: State, rows: Rows, place: Numbers, angle: Numbers) -> Outlines:
+    """Return outlines of the shapes in some rows, at places (n, 2) [m] and turned by angles (n,) [rad]."""
+    half, radius = lengths_of(state.table(Shape), rows)
+    corners, vertices, _ = cores_of(state.table(Shape), rows)
+    c, s = np.cos(angle), np.sin(angle)
+    turned = np.stack((c, s, -s, c), axis=1).reshape(-1, 2, 2)
+    return Outlines(place, corners @ turned, vertices, radius, 2.0 * (half.min(axis=1) + radius))
+
+
+def rim_of(corners: Numbers, radius: float, lines: int = 48) -> Numbers:
+    """Return the outline of a rounded polygon (n, 2) [m] with straight lines, so many to a whole turn.
+
+    Parameters
+    ----------
+    corners : float64 array (m, 2)
+        The vertices of its core [m], counter-clockwise.
+    radius : float
+        What rounds it [m].
+    """
+    if radius == 0.0:
+        return corners
+    ways = np.roll(corners, -1, axis=0) - corners
+    faces = np.arctan2(-ways[:, 0], ways[:, 1])[np.hypot(ways[:, 0], ways[:, 1]) > 0.0]
+    around = np.arange(lines) * (2.0 * math.pi / lines) - math.pi
+    turns = np.unique(np.concatenate((around, faces - 1e-9, faces + 1e-9)))
+    normals = np.stack((np.cos(turns), np.sin(turns)), axis=1)
+    rim: Numbers = corners[np.argmax(normals @ corners.T, axis=1)] + radius * normals
+    return rim
 
 
 def overlapping(one: Outlines, n: int, others: Outlines) -> Rows:
@@ -78,17 +124,26 @@ def overlap(one: Outlines, n: int, two: Outlines, m: int) -> tuple[float, Number
     """
     offset = two.place[m] - one.place[n]
     axes = [*_axes(one, n), *_axes(two, m)]
-    for disc, centre, other, k in ((one, n, two, m), (two, m, one, n)):
-        if disc.radius[centre] > 0.0:
-            towards = _nearest(other, k, disc.place[centre]) - disc.place[centre]
-            length = float(np.hypot(*towards))
-            if length > 0.0:
-                axes.append(towards / length)
+    if one.radius[n] + two.radius[m] > 0.0:
+        axes += _between(one, n, two, m)
     if not axes:
         axes = [np.array((0.0, 1.0))]  # two discs at one place
-    gaps = [_extent(one, n, axis) + _extent(two, m, axis) - abs(float(offset @ axis)) for axis in axes]
-    least = int(np.argmin(gaps))
-    return gaps[least], axes[least] if float(offset @ axes[least]) >= 0.0 else -axes[least]
+    found = []
+    for axis in axes:
+        for way in (axis, -axis):
+            found.append((_extent(one, n, way) + _extent(two, m, -way) - float(offset @ way), way))
+    return min(found, key=lambda pair: pair[0])
+
+
+def _between(one: Outlines, n: int, two: Outlines, m: int) -> list[Numbers]:
+    """Return the direction (2,) from the point of a core that is nearest to another core to that one's."""
+    ways = []
+    for core, centre, other, k, sign in ((one, n, two, m, 1.0), (two, m, one, n, -1.0)):
+        for corner in core.place[centre] + core.corners[centre, : core.vertices[centre]]:
+            ways.append(sign * (_nearest(other, k, corner) - corner))
+    shortest = min(ways, key=lambda way: float(np.hypot(*way)))
+    length = float(np.hypot(*shortest))
+    return [shortest / length] if length > 0.0 else []
 
 
 def exits(one: Outlines, n: int, two: Outlines, m: int) -> list[Numbers]:
@@ -96,35 +151,34 @@ def exits(one: Outlines, n: int, two: Outlines, m: int) -> list[Numbers]:
     offset = two.place[m] - one.place[n]
     ways = []
     for axis in (*_axes(one, n), np.array((1.0, 0.0)), np.array((0.0, 1.0))):
-        both, along = _extent(one, n, axis) + _extent(two, m, axis), float(offset @ axis)
-        ways += [(both - along) * axis, -(both + along) * axis]
+        along = float(offset @ axis)
+        ways.append((_extent(one, n, axis) + _extent(two, m, -axis) - along) * axis)
+        ways.append(-(_extent(one, n, -axis) + _extent(two, m, axis) + along) * axis)
     return ways
 
 
 def _axes(shape: Outlines, n: int) -> list[Numbers]:
-    """Return the directions of a box's edges; a disc has none."""
-    if shape.radius[n] > 0.0:
-        return []
-    c, s = np.cos(shape.angle[n]), np.sin(shape.angle[n])
-    return [np.array((c, s)), np.array((-s, c))]
+    """Return the normals of a core's edges (2,), those that are parallel once; a disc has none."""
+    corners = shape.corners[n, : shape.vertices[n]]
+    ways = np.roll(corners, -1, axis=0) - corners
+    normals = np.stack((ways[:, 1], -ways[:, 0]), axis=1) if len(corners) > 1 else ways[:0]
+    found: list[Numbers] = []
+    for normal in normals / np.hypot(normals[:, 0], normals[:, 1])[:, None]:
+        if all(abs(normal[0] * other[1] - normal[1] * other[0]) > _PARALLEL for other in found):
+            found.append(normal)
+    return found
 
 
 def _extent(shape: Outlines, n: int, axis: Numbers) -> float:
     """Return how far a shape reaches from its middle along a direction [m]."""
-    if shape.radius[n] > 0.0:
-        return float(shape.radius[n])
-    along, across = _axes(shape, n)
-    return float(shape.half[n, 0] * abs(along @ axis) + shape.half[n, 1] * abs(across @ axis))
+    return float((shape.corners[n] @ axis).max() + shape.radius[n])
 
 
 def _nearest(shape: Outlines, n: int, place: Numbers) -> Numbers:
-    """Return the point of a shape that is nearest to a place; of a disc its middle."""
-    middle: Numbers = shape.place[n]
-    if shape.radius[n] > 0.0:
-        return middle
-    along, across = _axes(shape, n)
-    offset = place - middle
-    u = float(np.clip(offset @ along, -shape.half[n, 0], shape.half[n, 0]))
-    v = float(np.clip(offset @ across, -shape.half[n, 1], shape.half[n, 1]))
-    nearest: Numbers = middle + u * along + v * across
+    """Return the point of a core's edges that is nearest to a place (2,) [m]; of a disc its middle."""
+    corners = shape.place[n] + shape.corners[n]
+    edges = np.roll(corners, -1, axis=0) - corners
+    share = ((place - corners) * edges).sum(axis=1) / np.maximum((edges * edges).sum(axis=1), 1e-300)
+    points = corners + np.clip(share, 0.0, 1.0)[:, None] * edges
+    nearest: Numbers = points[np.argmin(np.hypot(*(points - place).T))]
     return nearest

@@ -11,7 +11,6 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from physicslab.components import Shape, Transform, Velocity
-from physicslab.components.shape import BOX
 from physicslab.diagnostics.contact_warnings import (
     RIGID_LIMIT,
     ContactGraph,
@@ -21,6 +20,7 @@ from physicslab.diagnostics.contact_warnings import (
 )
 from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, ModelWarning, WorstWarnings, step_warnings
 from physicslab.state.masses import quiet
+from physicslab.state.shapes import lengths_of
 from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.stepper import MAX_FACTOR, MAX_FALL, falls_far
 from physicslab.world import World
@@ -141,10 +141,10 @@ def _distance(world: World) -> Iterator[ModelWarning]:
     batch = world.batch(Transform, Shape)
     if not len(batch):
         return
-    shape, rows = world.table(Shape), batch.rows
+    rows = batch.rows
     reach = np.abs(world.table(Transform)["position"][rows]).max(axis=1)
-    box = shape["kind"][rows] == BOX
-    size = np.where(box, np.minimum(shape["width"][rows], shape["height"][rows]), 2.0 * shape["radius"][rows])
+    half, radius = lengths_of(world.table(Shape), rows)
+    size = 2.0 * (half.min(axis=1) + radius)
     worst = int(np.argmax(reach / size))
     limit = DISTANCE_LIMIT * float(size[worst])
     if reach[worst] >= limit:
@@ -195,12 +195,12 @@ def _speeds(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
 
 
 def _spins(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
-    """Yield the box that spins fastest near others."""
+    """Yield the body with corners that spins fastest near others."""
     h = world.simulation.dt / world.simulation.substeps
-    kind = world.table(Shape)["kind"]
-    involved = np.zeros(len(kind), np.bool_)
+    turns = world.bodies.shapes.vertices > 1
+    involved = np.zeros(len(turns), np.bool_)
     involved[graph.a] = involved[graph.b] = True
-    rows = np.flatnonzero(involved & (kind == BOX))
+    rows = np.flatnonzero(involved & turns)
     angles = np.abs(world.table(Velocity)["angular"][rows]) * h
     if len(angles) and angles.max() > SPIN_LIMIT:
         setting = _more_substeps(world, float(angles.max()) / SPIN_LIMIT)

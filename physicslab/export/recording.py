@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components.shape import KINDS
 from physicslab.diagnostics.energy import Accounts
 from physicslab.diagnostics.run_report import body_names
+from physicslab.state.shapes import cores_of
 from physicslab.world import World
 
 type Columns = NDArray[np.float32]
@@ -107,14 +109,14 @@ class RunRecorder:
         for (entity, name), row in zip(
             body_names(world).items(), world.batch(Transform).rows.tolist(), strict=True
         ):
-            kind = ("point", "circle", "box")[int(shape["kind"][row])]
+            kind = ("point", *KINDS)[int(shape["kind"][row])]
             if kind == "point" and row not in moves and not mass.present[row]:
                 kind = "none"
             body: dict[str, Any] = {"name": name, "kind": kind, "entity": entity}
-            if kind == "circle":
-                body["radius"] = float(shape["radius"][row])
-            elif kind == "box":
-                body["size"] = [float(shape["width"][row]), float(shape["height"][row])]
+            if shape.present[row]:
+                corners, vertices, radius = cores_of(shape, np.array([row]))
+                body["core"] = corners[0, : vertices[0]].tolist()
+                body["radius"] = float(radius[0])
             if mass.present[row]:
                 body["mass"], body["inertia"] = float(mass["mass"][row]), float(mass["inertia"][row])
             if trail.present[row]:
@@ -212,15 +214,17 @@ def frame_run(
 
 def _reach(body: dict[str, Any]) -> float:
     """Return the radius of the circle about a body's centre in which it turns [m]."""
-    return float(body.get("radius", 0.5 * math.hypot(*body.get("size", (0.0, 0.0)))))
+    core = body.get("core", [(0.0, 0.0)])
+    return float(max(math.hypot(*corner) for corner in core) + body.get("radius", 0.0))
 
 
 def _outline(body: dict[str, Any]) -> list[float]:
     """Return the box around a body that does not move [m]."""
     x, y, angle = body["pose"]
-    width, height = body.get("size", (0.0, 0.0))
-    c, s, radius = abs(math.cos(angle)), abs(math.sin(angle)), body.get("radius", 0.0)
-    across, up = radius + 0.5 * (c * width + s * height), radius + 0.5 * (s * width + c * height)
+    core, radius = body.get("core", [(0.0, 0.0)]), body.get("radius", 0.0)
+    c, s = math.cos(angle), math.sin(angle)
+    across = max(abs(c * u - s * v) for u, v in core) + radius
+    up = max(abs(s * u + c * v) for u, v in core) + radius
     return [x - across, y - up, x + across, y + up]
 
 

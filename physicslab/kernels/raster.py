@@ -1,4 +1,4 @@
-"""Discs, boxes and lines with smooth edges, painted into an array of pixels.
+"""Discs, boxes, rounded polygons and lines with smooth edges, painted into an array of pixels.
 
 Coverage comes from the signed distance to the outline [px], so position, size and angle are exact to a
 fraction of a pixel. Pixels are 32 bits of four 8-bit channels in any order; colours are packed in the same
@@ -15,7 +15,7 @@ import numpy as np
 from numba import uint32
 from numpy.typing import NDArray
 
-from physicslab.kernels import Flags, Numbers, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 
 Pixels = Annotated[NDArray[np.uint32], uint32[:, ::1]]
 """A uint32 array (height, width): a picture."""
@@ -225,6 +225,61 @@ def paint_boxes(
         if min(a, b) >= NOTCH_FROM and not hatched[i]:
             near, far = a - 0.5 * min(a, b), a - band
             _stroke(pixels, x + near * c, y - near * s, x + far * c, y - far * s, 0.5 * band, edge, 1.0)
+
+
+@inlined
+def _beyond_core(px: float, py: float, corners: Vectors, i: int, count: int) -> float:
+    """Return how far a place is from a core [px], negative within; y points down."""
+    nearest, within = math.inf, count > 2
+    for k in range(count):
+        x, y = corners[i, 2 * k], corners[i, 2 * k + 1]
+        end = 2 * (k + 1) if k + 1 < count else 0
+        along_x, along_y = corners[i, end] - x, corners[i, end + 1] - y
+        dx, dy = px - x, py - y
+        square = along_x * along_x + along_y * along_y
+        share = _unit((dx * along_x + dy * along_y) / square) if square > 0.0 else 0.0
+        away_x, away_y = dx - share * along_x, dy - share * along_y
+        nearest = min(nearest, away_x * away_x + away_y * away_y)
+        within = within and along_x * dy - along_y * dx <= 0.0
+    return -math.sqrt(nearest) if within else math.sqrt(nearest)
+
+
+@kernel
+def paint_rounded(
+    pixels: Pixels, corners: Vectors, vertices: Rows, radius: Numbers,
+    fill: Colours, rim: Colours, hatched: Flags, rim_width: float,
+) -> None:  # fmt: skip
+    """Paint rounded polygons with a rim; a line from the middle to the first vertex shows how they lie.
+
+    ``corners`` (n, 16) holds x and y of each vertex in turn [px], counter-clockwise as it is seen.
+    """
+    height, width = pixels.shape
+    for i in range(len(radius)):
+        count, inside, edge = vertices[i], int(fill[i]), int(rim[i])
+        left, right, top, bottom, x, y = math.inf, -math.inf, math.inf, -math.inf, 0.0, 0.0
+        for k in range(count):
+            at_x, at_y = corners[i, 2 * k], corners[i, 2 * k + 1]
+            left, right, top, bottom = min(left, at_x), max(right, at_x), min(top, at_y), max(bottom, at_y)
+            x, y = x + at_x / count, y + at_y / count
+        reach = radius[i] + 0.5
+        along_x, along_y = corners[i, 0] - x, corners[i, 1] - y
+        length = max(math.sqrt(along_x * along_x + along_y * along_y), 1e-9)
+        c, s = along_x / length, along_y / length
+        for row in range(_pixel(top - reach, height), _pixel(bottom + reach, height)):
+            for column in range(_pixel(left - reach, width), _pixel(right + reach, width)):
+                px, py = column + 0.5, row + 0.5
+                depth = radius[i] - _beyond_core(px, py, corners, i, count)
+                if depth <= -0.5:
+                    continue
+                dx, dy, colour = px - x, py - y, inside
+                if hatched[i]:
+                    colour = _hatched(c * dx + s * dy, c * dy - s * dx, inside, edge)
+                colour = _rimmed(depth, rim_width, colour, edge)
+                if depth < 0.5:
+                    colour = _mixed(int(pixels[row, column]), colour, depth + 0.5)
+                pixels[row, column] = colour
+        if not hatched[i]:
+            _stroke(pixels, x, y, corners[i, 0], corners[i, 1], 0.5 * rim_width, edge, 1.0)
 
 
 @kernel

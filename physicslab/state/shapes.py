@@ -1,12 +1,14 @@
 """The table of shapes of a world, and the register of kinds as the arrays that it is derived with."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import shape
 from physicslab.components.shape import Kind
 from physicslab.ecs.table import Table
-from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, SizesTuple
+from physicslab.kernels.geometry.shapes import MOST_VERTICES, Shapes, ShapesTuple, SizesTuple
 
 _SIZES = tuple(spec.name for spec in shape.Shape.FIELDS if spec.name != "kind")
 
@@ -45,3 +47,30 @@ def sizes_in(table: Table) -> SizesTuple:
     """Return the columns of sizes of the ``Shape`` component."""
     radius, width, height, length = (table[name] for name in _SIZES)
     return radius, width, height, length
+
+
+class Cores(NamedTuple):
+    """Rounded polygons: vertices (n, 8, 2) [m], the last one repeated; their numbers and radii (n,) [m]."""
+
+    corners: NDArray[np.float64]
+    vertices: NDArray[np.int64]
+    radius: NDArray[np.float64]
+
+
+def lengths_of(table: Table, rows: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return half of the extents (n, 2) and the radii (n,) of the cores in some rows of ``Shape`` [m]."""
+    code, own = table["kind"][rows], np.arange(len(rows))
+    columns = np.zeros((1 + len(_SIZES), len(rows)))
+    columns[1:] = [column[rows] for column in sizes_in(table)]
+    which = KINDS[code, 2:].T + 1
+    half: NDArray[np.float64] = EXTENTS[code] * columns[which[:2], own].T
+    return half, columns[which[2], own]
+
+
+def cores_of(table: Table, rows: NDArray[np.int64]) -> Cores:
+    """Return the shapes of some rows as they are now, be they in the table of shapes yet or not."""
+    half, radius = lengths_of(table, rows)
+    vertices, first = KINDS[table["kind"][rows], :2].T
+    last = np.maximum(vertices - 1, 0)[:, None]
+    corners = _POOL[first[:, None] + np.minimum(np.arange(MOST_VERTICES), last)] * half[:, None, :]
+    return Cores(corners, vertices, radius)

@@ -100,8 +100,7 @@ def _free_place(
     low, high = low + reach, high - reach
     if (high < low).any():
         return None  # it is larger than the world
-    parts = bodies.place, bodies.half, bodies.radius, bodies.angle
-    own = Outlines(*(part[n : n + 1].copy() for part in parts))
+    own = bodies.only(n)
 
     def hits(place: Numbers) -> list[int]:
         own.place[0] = place

@@ -33,17 +33,26 @@ world.addEventListener("wheel", event => {
   zoom(Math.exp(-0.0015 * event.deltaY * (event.deltaMode ? 30 : 1)), event.offsetX, event.offsetY);
 }, { passive: false });
 
+// How far a place in a body's own directions is from its outline [m]; negative within.
+function beyond({ core, radius }, u, v) {
+  let nearest = Infinity, within = core.length > 2;
+  core.forEach(([x, y], k) => {
+    const [toX, toY] = core[(k + 1) % core.length], ex = toX - x, ey = toY - y, dx = u - x, dy = v - y;
+    const share = Math.min(Math.max((dx * ex + dy * ey) / (ex * ex + ey * ey || 1), 0), 1);
+    nearest = Math.min(nearest, Math.hypot(dx - share * ex, dy - share * ey));
+    within &&= ex * dy - ey * dx >= 0;
+  });
+  return (within ? -nearest : nearest) - radius;
+}
+
 // The nearest body within 14 pixels, one that moves before one that does not.
 function bodyAt(px, py) {
   const [frame, share] = moment();
   let best = null, nearest = 14;
   for (const body of drawn) {
     const [x, y, angle] = pose(body, frame, share), dx = px - toX(x), dy = py - toY(y);
-    const c = Math.cos(angle), s = Math.sin(angle);
-    const [w, h] = (body.size ?? [0, 0]).map(size => size * camera.scale / 2);
-    const off = body.kind === "box"
-      ? Math.hypot(Math.max(Math.abs(c * dx - s * dy) - w, 0), Math.max(Math.abs(s * dx + c * dy) - h, 0))
-      : Math.max(Math.hypot(dx, dy) - (body.radius ?? 0) * camera.scale, 0);
+    const c = Math.cos(angle), s = Math.sin(angle), scale = camera.scale;
+    const off = Math.max(beyond(body, (c * dx - s * dy) / scale, (-s * dx - c * dy) / scale) * scale, 0);
     if (off < nearest || best && off <= nearest && body.columns) { best = body; nearest = off; }
   }
   return best;

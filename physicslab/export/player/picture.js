@@ -90,18 +90,23 @@ function drawGrid(width, height) {
   }
 }
 
-function outline(body, [x, y, angle], grow = 0) {
-  if (body.kind === "box") {
-    const [w, h] = body.size.map(size => Math.max(size * camera.scale, 1.5) / 2 + grow);
-    const c = Math.cos(angle), s = Math.sin(angle);
-    const corner = ([u, v]) => [toX(x) + c * u + s * v, toY(y) - s * u + c * v];
-    path(...[[-w, -h], [w, -h], [w, h], [-w, h]].map(corner));
-    pen.closePath();
-  } else {
-    const radius = body.kind === "circle" ? Math.max(body.radius * camera.scale, 1) : 5;
-    pen.beginPath();
-    pen.arc(toX(x), toY(y), radius + grow, 0, 2 * Math.PI);
+// A core of vertices, counter-clockwise, rounded by a radius: an arc around each, between the normals of two faces.
+function outline({ core, radius, reach, kind }, [x, y, angle], grow = 0) {
+  const c = Math.cos(angle), s = Math.sin(angle);
+  pen.beginPath();
+  if (core.length === 1 || reach * camera.scale < 1) {
+    pen.arc(toX(x), toY(y), (kind === "point" ? 5 : Math.max(reach * camera.scale, 1)) + grow, 0, 2 * Math.PI);
+    return;
   }
+  const normal = k => {
+    const [u, v] = core[k], [p, q] = core[(k + 1) % core.length];
+    return -angle - Math.atan2(u - p, q - v);
+  };
+  core.forEach(([u, v], k) => {
+    const before = normal((k + core.length - 1) % core.length);
+    pen.arc(toX(x + c * u - s * v), toY(y + s * u + c * v), radius * camera.scale + grow, before, normal(k), true);
+  });
+  pen.closePath();
 }
 
 function drawBody(body, at) {
@@ -123,7 +128,7 @@ function drawBody(body, at) {
   pen.fill();
   pen.globalAlpha = 1;
   pen.stroke();
-  const mark = (body.radius ?? (body.size ? body.size[0] / 2 : 0)) * camera.scale;
+  const mark = (Math.max(...body.core.map(corner => corner[0])) + body.radius) * camera.scale;
   if (mark > 7) { path([x, y], [x + mark * Math.cos(at[2]), y - mark * Math.sin(at[2])]); pen.stroke(); }
 }
 
@@ -216,8 +221,7 @@ function drawNames(now) {
   const wanted = show.names ? movers.filter(body => body.named || !named) : [];
   for (const body of new Set([...(selected ? [selected] : []), ...wanted])) {
     if (body.kind === "none") continue;
-    const at = now(body), half = body.radius ?? (body.size ? Math.max(...body.size) / 2 : 0);
-    const above = body.columns ? half * camera.scale + 9 : 0;
+    const at = now(body), above = body.columns ? body.half * camera.scale + 9 : 0;
     const wide = pen.measureText(body.name).width / 2 + 4;
     const label = { x: toX(at[0]), y: Math.max(toY(at[1]) - above, 16), half: wide };
     for (let i = 0; i < 3 && taken.some(other => overlaps(label, other)); i++) label.y -= 16;

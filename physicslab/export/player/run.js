@@ -31,7 +31,10 @@ const times = column(0), end = times[COUNT - 1];
 for (const body of run.bodies) {
   body.columns = "moves" in body ? PARTS.map(k => column(HEAD + 6 * body.moves + k)) : null;
   body.at = frame => body.columns ? body.columns.map(values => values[frame]) : [...body.pose, 0, 0, 0];
-  body.reach = body.radius ?? (body.size ? Math.hypot(...body.size) / 2 : 0);
+  body.core ??= [[0, 0]];
+  body.radius ??= 0;
+  body.reach = Math.max(...body.core.map(corner => Math.hypot(...corner))) + body.radius;
+  body.half = Math.max(...body.core.flat().map(Math.abs)) + body.radius;
   body.named = !/^entity \d+$/.test(body.name);
 }
 const drawn = run.bodies.filter(body => body.kind !== "none");

@@ -108,7 +108,7 @@ def _change_most_violated(equations: Equations, count: int, w_scale: float, z_sc
     return worst >= 0
 
 
-@inlined
+@fused
 def _settle_by_changes(
     equations: Equations, count: int, changes: int, w_scale: float, z_scale: float
 ) -> bool:
@@ -154,7 +154,7 @@ def _largest_violation(equations: Equations, count: int, w_scale: float, z_scale
     return worst
 
 
-@inlined
+@fused
 def settle_at_an_edge(equations: Equations, count: int, scale: float) -> bool:
     """Find forces that solve the equations of what the points do, after others were FITTING; return if any.
 
@@ -204,24 +204,25 @@ def solve_complementarity(equations: Equations, count: int, scale: float, exactl
         points[i, STATUS] = _closed_status(equations, i, free_n, free_t) if free_n < 0.0 else points[i, GIVEN]
     if largest == 0.0:
         return SETTLED
-    if _settle_by_changes(equations, count, 4 + 2 * count if exactly else _FEW_CHANGES, w_scale, z_scale):
-        return SETTLED
-    if exactly:  # what holds each other may rest where each of them alone would slide
-        for i in range(count):
-            points[i, STATUS] = points[i, GIVEN]
-        if _settle_by_changes(equations, count, 2 + count, w_scale, z_scale):
-            return SETTLED
-    # Of what the pivots leave open or sliding, some may rest with the others: forces are of least norm then.
-    for attempt in range(len(_SLACKS)):
-        if not find_by_pivots(equations, count, _SLACKS[attempt]):
-            continue
-        for i in range(2 * count):
-            z_scale = max(z_scale, abs(vectors[UNKNOWN, i]))
-        limit = _AT_REST * w_scale if attempt == 0 else -1.0
-        _take_pivots(equations, count, limit, limit)
-        fits = _largest_violation(equations, count, w_scale, z_scale) <= _AT_REST
-        if fits and (attempt >= 2 or not exactly):
-            return FITTING
-        if _settle_by_changes(equations, count, 2 + count, w_scale, z_scale):
+    for attempt in range(-2, len(_SLACKS)):
+        changes = 2 + count
+        if attempt == -2:
+            changes = 4 + 2 * count if exactly else _FEW_CHANGES
+        elif attempt == -1:  # what holds each other may rest where each of them alone would slide
+            if not exactly:
+                continue
+            for i in range(count):
+                points[i, STATUS] = points[i, GIVEN]
+        else:  # of what the pivots leave open or sliding, some may rest with the others: forces of least norm
+            if not find_by_pivots(equations, count, _SLACKS[attempt]):
+                continue
+            for i in range(2 * count):
+                z_scale = max(z_scale, abs(vectors[UNKNOWN, i]))
+            limit = _AT_REST * w_scale if attempt == 0 else -1.0
+            _take_pivots(equations, count, limit, limit)
+            fits = _largest_violation(equations, count, w_scale, z_scale) <= _AT_REST
+            if fits and (attempt >= 2 or not exactly):
+                return FITTING
+        if _settle_by_changes(equations, count, changes, w_scale, z_scale):
             return SETTLED
     return NOT_FOUND

@@ -130,7 +130,7 @@ def _leaving(equations: Equations, size: int, column: int, slack: float) -> int:
     return best
 
 
-@inlined
+@fused
 def find_by_pivots(equations: Equations, count: int, slack: float) -> bool:
     """Find forces that keep all laws but for a share ``slack`` of the largest right side.
 

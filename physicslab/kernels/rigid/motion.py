@@ -9,7 +9,7 @@ steps.
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
 from physicslab.kernels.constraint.joint_rows import ROWS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.ode.dop853_tableau import LAST
@@ -205,7 +205,7 @@ def _any_approaches(
     return approaching
 
 
-@inlined
+@fused
 def _make_smooth(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
     tolerance: float, stages: Stages, allowed: Numbers,

@@ -178,7 +178,7 @@ def _first_event(
     return first_kind, first
 
 
-@inlined
+@fused
 def _cross(
     on_curve: bool, kind: int, index: int, scene: Scene, equations: Equations, count: int, scratch: Equations,
     stages: Stages, q: Numbers, v: Numbers, h: float, t: float, end: float, slope: float, f_low: float,

@@ -109,7 +109,7 @@ def _error(
     return h * fifth / math.sqrt((fifth + 0.01 * third) * 2 * free) / tolerance
 
 
-@inlined
+@fused
 def make_stages(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, short: bool,
     stages: Stages,

@@ -249,7 +249,7 @@ def _changed_status(equations: Equations, i: int, changed: Points) -> int:
     return status
 
 
-@inlined
+@fused
 def _stop_across(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
     """Remove speeds that count as none: equations of points that rest would contradict each other."""
     for i in range(count):
@@ -294,7 +294,7 @@ def _note_given(equations: Equations, count: int, changed: Points, rest: float) 
         equations.points[i, GIVEN] = given
 
 
-@inlined
+@fused
 def hold_closed(
     scene: Scene, equations: Equations, count: int, changed: Points,
     q: Numbers, v: Numbers, acceleration: Numbers, rest: float, least: float,
@@ -326,7 +326,7 @@ def hold_closed(
     return count, solved
 
 
-@inlined
+@fused
 def hold_evenly(
     scene: Scene, equations: Equations, count: int, changed: Points, acceleration: Numbers, rest: float,
     least: float, inverse_mass: Numbers, pulled: Numbers,

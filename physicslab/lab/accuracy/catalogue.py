@@ -4,7 +4,6 @@ from physicslab.lab.accuracy.friction import FRICTION
 from physicslab.lab.accuracy.impacts import IMPACTS
 from physicslab.lab.accuracy.planets import ATTRACTED
 from physicslab.lab.accuracy.points import POINTS
-from physicslab.lab.accuracy.problem import LeftOut
 from physicslab.lab.case import Catalogue
 
 PROBLEMS = Catalogue((*POINTS, *ATTRACTED, *IMPACTS, *FRICTION))
@@ -12,11 +11,11 @@ PROBLEMS = Catalogue((*POINTS, *ATTRACTED, *IMPACTS, *FRICTION))
 
 _NO_RODS = "the engine has no rigid rods: a pendulum in it swings on a spring (see elastic_pendulum)"
 
-LEFT_OUT = (
-    LeftOut("pendulum_period", _NO_RODS),
-    LeftOut("pendulum_state", _NO_RODS),
-    LeftOut("atwood", "the engine has no ropes over pulleys"),
-    LeftOut("plummer100", "its figures do not contain the hundred places it starts from; see crowd100"),
-    LeftOut("galperin_n5", "314,159 collisions, of which only the number is on record"),
-)
-"""Reference problems that are not among these, and why."""
+LEFT_OUT = {
+    "pendulum_period": _NO_RODS,
+    "pendulum_state": _NO_RODS,
+    "atwood": "the engine has no ropes over pulleys",
+    "plummer100": "its figures do not contain the hundred places it starts from; see crowd100",
+    "galperin_n5": "314,159 collisions, of which only the number is on record",
+}
+"""Reference problems that are not among these, by name, and why."""

@@ -24,7 +24,7 @@ def document(
         problems=[_study(study) for study in studies],
         contacts=[_contacts(study) for study in contacts],
         scenes=[_scene(study) for study in scenes],
-        left_out=LEFT_OUT,
+        left_out=[{"name": name, "reason": reason} for name, reason in LEFT_OUT.items()],
     )
 
 

@@ -17,6 +17,7 @@ from physicslab.files.reader import read_scene
 from physicslab.lab.accuracy.twins import ROUNDING, Document
 from physicslab.lab.jobs import Job
 from physicslab.state.masses import Diverged
+from physicslab.state.shapes import lengths_of
 from physicslab.world import World
 
 _MIRROR = np.array([-1.0, 1.0, -1.0, -1.0, 1.0, -1.0])
@@ -184,8 +185,11 @@ _LOOKS = 400
 def sizes_of(world: World, bodies: Sequence[str]) -> NDArray[np.float64]:
     """Return half the extent of each body (n,) [m]; of one without a shape that of the whole scene."""
     rows = rows_of(world, bodies)
-    shape, places = world.table(Shape), world.table(Transform)["position"][rows]
-    sizes = np.maximum(shape["radius"][rows], 0.5 * np.hypot(shape["width"][rows], shape["height"][rows]))
+    places, (half, radius) = (
+        world.table(Transform)["position"][rows],
+        lengths_of(world.table(Shape), np.array(rows)),
+    )
+    sizes = radius + np.hypot(half[:, 0], half[:, 1])
     whole = float(np.abs(places - places.mean(axis=0)).max(initial=0.0)) or 1.0
     return np.where(sizes > 0.0, sizes, whole)
 

@@ -141,14 +141,6 @@ class Problem(KnownCase):
         return self.source or self.name
 
 
-@dataclass(frozen=True, slots=True)
-class LeftOut:
-    """A reference problem that the engine cannot compute, and why."""
-
-    name: str
-    reason: str
-
-
 def distance(world: World, expected: Mapping[str, Sequence[float]]) -> float:
     """Return the largest distance of a body from where it should be [m], of those that are named."""
     return max((place(world, name) - Vector2(*where)).magnitude for name, where in expected.items())

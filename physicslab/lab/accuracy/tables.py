@@ -236,7 +236,7 @@ def _is_excellent(study: Study) -> bool:
 
 def left_out_text() -> str:
     """Return which reference problems are not there, and why."""
-    return "\n".join(["not computed:", *(f"  {left.name}: {left.reason}" for left in LEFT_OUT)])
+    return "\n".join(["not computed:", *(f"  {name}: {reason}" for name, reason in LEFT_OUT.items())])
 
 
 def trust_rows_text(rows: Sequence[TrustRow]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +66,14 @@ class TextStyle:
     bold: bool = False
 
 
+class Rounded(NamedTuple):
+    """Rounded polygons: vertices (n, 8, 2) [px], the last one repeated; their numbers and radii (n,) [px]."""
+
+    corners: Numbers
+    vertices: NDArray[np.int64]
+    radius: Numbers
+
+
 class Canvas(Protocol):
     """A picture in the making. All lengths are pixels, y points down, and what comes later lies on top.
 
@@ -85,6 +93,9 @@ class Canvas(Protocol):
 
     def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
         """Draw boxes: centres and sides (n, 2) [px], angles (n,) [rad]; with a notch, or hatched."""
+
+    def rounded(self, shapes: Rounded, look: Look) -> None:
+        """Draw rounded polygons, each with a rim and a line that shows its angle, or hatched."""
 
     def lines(
         self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0

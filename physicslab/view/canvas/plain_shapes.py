@@ -11,7 +11,8 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.canvas import Look, Numbers, Points
+from physicslab.contacts.outlines import rim_of
+from physicslab.view.canvas.canvas import Look, Numbers, Points, Rounded
 
 _LARGE = 200.0
 """Radius [px] from which a disc is drawn as a polygon, which can be cut off."""
@@ -57,6 +58,17 @@ def draw_boxes(
         if min(a, b) >= _NOTCH_FROM and not look.hatched[i]:
             near = a - 0.5 * min(a, b)
             _stroke(surface, (x + near * c, y - near * s), (x + a * c, y - a * s), edge, width)
+
+
+def draw_rounded(surface: pygame.Surface, shapes: Rounded, look: Look, rim: float) -> None:
+    """Draw rounded polygons, each with a rim and a line that shows its angle, or filled evenly."""
+    for i, (fill, edge) in enumerate(_colours(look)):
+        core = shapes.corners[i, : shapes.vertices[i]]
+        outline = rim_of(core[::-1], float(shapes.radius[i]))
+        _polygon(surface, outline[:, 0], outline[:, 1], fill, edge, max(1, round(rim)))
+        if not look.hatched[i]:
+            (x, y), (tip_x, tip_y) = core.mean(axis=0).tolist(), core[0].tolist()
+            _stroke(surface, (x, y), (tip_x, tip_y), edge, max(1, round(rim)))
 
 
 def draw_strokes(

@@ -6,8 +6,8 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, TextStyle
-from physicslab.view.canvas.plain_shapes import draw_boxes, draw_discs, draw_strokes
+from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, Rounded, TextStyle
+from physicslab.view.canvas.plain_shapes import draw_boxes, draw_discs, draw_rounded, draw_strokes
 from physicslab.view.canvas.surface_cache import SurfaceCache
 from physicslab.view.canvas.theme import Colour
 
@@ -75,6 +75,16 @@ class PygameCanvas:
         fill, rim = self._packed(look.fill), self._packed(look.rim)
         centre, half, angle = _plain(centre), _plain(0.5 * extent), _plain(angle)
         paint_boxes(self._pixels(), centre, half, angle, fill, rim, look.hatched, _RIM)
+
+    def rounded(self, shapes: Rounded, look: Look) -> None:
+        """Draw rounded polygons, each with a rim and a line that shows its angle, or hatched."""
+        paint_rounded = _painter("paint_rounded")
+        if paint_rounded is None:
+            draw_rounded(self.surface, shapes, look, _RIM)
+            return
+        fill, rim = self._packed(look.fill), self._packed(look.rim)
+        corners, radius = _plain(shapes.corners.reshape(len(fill), -1)), _plain(shapes.radius)
+        paint_rounded(self._pixels(), corners, shapes.vertices, radius, fill, rim, look.hatched, _RIM)
 
     def lines(
         self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0

@@ -286,8 +286,7 @@ def _width(world: World, entity: int) -> float:
     """Return how far beside a body its copy is put [m]."""
     if not world.has(entity, Shape):
         return 0.5
-    shape = world.component(entity, Shape)
-    return 1.1 * (2.0 * shape.radius if shape.kind == "circle" else math.hypot(shape.width, shape.height))
+    return 2.2 * world.component(entity, Shape).reach
 
 
 # ---- laws in words -----------------------------------------------------------------------------------------

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Note, Shape, Spring, Transform
+from physicslab.components import Note, Spring, Transform
+from physicslab.contacts.outlines import outlines_of
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Rect, is_within
@@ -37,14 +38,12 @@ def body_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | N
     """
     place, rows = camera.to_world(pixel), body_rows(world)
     entities = world.entity_index.entities
-    point_gap = _distance(world, rows.points, place) - POINT_RADIUS / camera.scale
-    disc_gap = _distance(world, rows.discs, place) - world.table(Shape)["radius"][rows.discs]
-    box_gap = _box_gap(world, rows.boxes, place)
-    for kind, gap in ((rows.points, point_gap), (rows.discs, disc_gap), (rows.boxes, box_gap)):
-        hit = np.flatnonzero(gap <= 0.0)
-        if len(hit):
-            return int(entities[kind[hit[-1]]])
-    everything = np.concatenate((rows.boxes, rows.discs, rows.points))
+    everything = rows.all
+    gap = outlines_of(world, everything).gaps(place.x, place.y)
+    gap[len(gap) - len(rows.points) :] -= POINT_RADIUS / camera.scale
+    hit = np.flatnonzero(gap <= 0.0)
+    if len(hit):
+        return int(entities[everything[hit[-1]]])
     distance = _distance(world, everything, place)
     if len(distance) and np.fmin.reduce(distance) <= _MAX_DISTANCE / camera.scale:
         return int(entities[everything[int(np.nanargmin(distance))]])
@@ -71,7 +70,7 @@ def spring_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int |
 def centre_near(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
     """Return the body whose middle is nearest to a place on the screen [px], if it is within a few pixels."""
     place, rows = camera.to_world(pixel), body_rows(world)
-    everything = np.concatenate((rows.boxes, rows.discs, rows.points))
+    everything = rows.all
     distance = _distance(world, everything, place)
     if not len(distance) or not np.fmin.reduce(distance) <= _MIDDLE / camera.scale:
         return None
@@ -80,8 +79,8 @@ def centre_near(world: World, camera: Camera, pixel: tuple[float, float]) -> int
 
 def directions_near(world: World, camera: Camera, place: Vector2) -> list[float]:
     """Return the angles of the boxes at a place [rad]: along them, or across, lines may be meant to go."""
-    rows = body_rows(world).boxes
-    near = rows[_box_gap(world, rows, place) <= _MIDDLE / camera.scale]
+    rows = np.concatenate((body_rows(world).boxes, body_rows(world).rounded))
+    near = rows[outlines_of(world, rows).gaps(place.x, place.y) <= _MIDDLE / camera.scale]
     angles: list[float] = world.table(Transform)["angle"][near].tolist()
     return angles
 
@@ -129,13 +128,3 @@ def _distance(world: World, rows: Rows, place: Vector2) -> Numbers:
     offset = world.table(Transform)["position"][rows] - (place.x, place.y)
     distance: Numbers = np.hypot(offset[:, 0], offset[:, 1])
     return distance
-
-
-def _box_gap(world: World, rows: Rows, place: Vector2) -> Numbers:
-    """Return how far outside of each box a place is, along the box's own axes [m]; negative inside."""
-    transform, shape = world.table(Transform), world.table(Shape)
-    offset, angle = transform["position"][rows] - (place.x, place.y), transform["angle"][rows]
-    c, s = np.cos(angle), np.sin(angle)
-    u, v = c * offset[:, 0] + s * offset[:, 1], c * offset[:, 1] - s * offset[:, 0]
-    gap: Numbers = np.maximum(np.abs(u) - 0.5 * shape["width"][rows], np.abs(v) - 0.5 * shape["height"][rows])
-    return gap

@@ -11,7 +11,7 @@ from physicslab.contacts.outlines import Outlines
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Spawn
-from physicslab.prefabs import binary, box, chain, circle, container, pendulum, pile, pyramid, stack
+from physicslab.prefabs import binary, box, capsule, chain, circle, container, pendulum, pile, pyramid, stack
 from physicslab.view.window.edits import Recipe
 from physicslab.view.window.placing import outlines_of, refused_place
 from physicslab.view.window.spring_tool import rod_stiffness
@@ -43,6 +43,17 @@ def _box(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
     mass = recipe.density * width * height
     box(
         world, place, width=width, height=height, mass=mass,
+        restitution=recipe.restitution, friction=recipe.friction,
+    )  # fmt: skip
+
+
+def _capsule(world: World, place: Vector2, turn: int, recipe: Recipe) -> None:
+    length, radius = _SIZES[turn % len(_SIZES)][0], 0.5 * _SIZES[turn % len(_SIZES)][1]
+    if recipe.size:
+        length, radius = 2.0 * recipe.size, 0.5 * recipe.size
+    mass = recipe.density * radius * (2.0 * length + math.pi * radius)
+    capsule(
+        world, place, length=length, radius=radius, mass=mass,
         restitution=recipe.restitution, friction=recipe.friction,
     )  # fmt: skip
 
@@ -162,6 +173,7 @@ _PENDULUM = Spawnable("pendulum", "Pendulum", "at its upper end", _pendulum)
 SPAWNS = (
     CIRCLE,
     _BOX,
+    Spawnable("capsule", "Capsule", "on empty space for a capsule", _capsule),
     Spawnable("block", "Plank", "at its middle", _plank),
     _PENDULUM,
     Spawnable("chain", "Chain", "at its upper end", _chain),

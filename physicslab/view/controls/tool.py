@@ -38,8 +38,8 @@ class Tool:
 
 
 ICONS = {
-    "select": "\uf25a", "circle": "\uf111", "box": "\uf0c8", "block": "\uf068", "pendulum": "\uf5cd",
-    "chain": "\uf0c1", "spring": "\uf83e", "remove": "\uf12d", "ruler": "\uf545",
+    "select": "\uf25a", "circle": "\uf111", "box": "\uf0c8", "capsule": "\uf46b", "block": "\uf068",
+    "pendulum": "\uf5cd", "chain": "\uf0c1", "spring": "\uf83e", "remove": "\uf12d", "ruler": "\uf545",
     "protractor": "\uf568", "gate": "\uf11e", "note": "\uf249", "pan": "\uf0b2",
     "more": "\uf141", "stack": "\uf5fd", "pyramid": "\uf5ee", "heap": "\uf1ce", "pit": "\uf5ee",
     "binary": "\uf753", "play": "\uf04b", "pause": "\uf04c", "step": "\uf051", "back": "\uf048",

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.ecs.vector import Vector2
+from physicslab.state.shapes import lengths_of
 from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.quantities import round_quantity
@@ -139,7 +140,8 @@ def _out_of_sight(world: World, camera: Camera, room: Rect) -> NDArray[np.float6
     # Most bodies are in sight as a rule, by their middle alone: only the others are looked at closely.
     beyond = np.flatnonzero((across < low[0]) | (across > high[0]) | (down < low[1]) | (down > high[1]))
     rows, place, shape = rows[beyond], place[beyond], world.table(Shape)
-    reach = shape["radius"][rows] + 0.5 * np.hypot(shape["width"][rows], shape["height"][rows])
+    half, radius = lengths_of(shape, rows)
+    reach = radius + np.hypot(half[:, 0], half[:, 1])
     margin = (reach * camera.scale)[:, None]
     out = ((place < low - margin) | (place > high + margin)).any(axis=1)
     found: NDArray[np.float64] = place[out & np.isfinite(place).all(axis=1)]

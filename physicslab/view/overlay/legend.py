@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Velocity
+from physicslab.state.shapes import lengths_of
 from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import Align, Rect, TextStyle
 from physicslab.view.canvas.quantities import round_quantity, rounded_up
@@ -148,9 +149,8 @@ class Overlays:
         rows = world.batch(Shape, Velocity).rows
         self.reach = _REACH * min(camera.size) / camera.scale
         if len(rows) > 1:
-            size = np.maximum(
-                2.0 * shape["radius"][rows], np.maximum(shape["width"][rows], shape["height"][rows])
-            )
+            half, radius = lengths_of(shape, rows)
+            size = 2.0 * (half.max(axis=1) + radius)
             self.reach = min(
                 self.reach, max(_MAX_IN_CROWD * float(np.median(size)), _MIN_LENGTH / camera.scale)
             )

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from physicslab.components import Shape, Transform
+from physicslab.contacts.outlines import Outlines, rim_of
 from physicslab.diagnostics.period import spring_state
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Drawing
@@ -81,21 +82,12 @@ def draw_band(corner: tuple[float, float], pointer: tuple[float, float], on: Dra
 
 def _outline(world: World, entity: int, gap: float) -> Points:
     """Return the corners of the line around a body (n, 2) [m]."""
-    transform = world.component(entity, Transform)
-    shape = world.component(entity, Shape) if world.has(entity, Shape) else None
-    if shape is not None and shape.kind == "box":
-        half = np.array((0.5 * shape.width + gap, 0.5 * shape.height + gap))
-        corners = half * _SQUARE
-    else:
-        radius = (POINT_RADIUS / 100.0 if shape is None else shape.radius) + gap
-        corners = radius * _ring(_CORNERS)
+    transform, core, radius = world.component(entity, Transform), np.zeros((1, 2)), POINT_RADIUS / 100.0
+    if world.has(entity, Shape):
+        shape = world.component(entity, Shape)
+        core, radius = np.array([tuple(corner) for corner in shape.core]), shape.rounding
+    corners = rim_of(core, radius + gap, _CORNERS)
     return _placed(corners, transform.angle, np.array((transform.position.x, transform.position.y)))
-
-
-def _ring(corners: int) -> Points:
-    """Return the corners of a polygon (n, 2) that looks like a circle of radius 1."""
-    angles = np.arange(corners) * (2.0 * math.pi / corners)
-    return np.stack((np.cos(angles), np.sin(angles)), axis=1)
 
 
 def _placed(corners: Points, angle: float, place: Numbers) -> Points:
@@ -118,17 +110,12 @@ def draw_cursor(pixel: tuple[float, float], colour: Colour, canvas: Canvas) -> N
     canvas.lines(pixel + 0.3 * _ARM * arms, pixel + _ARM * arms, colour, 1.6)
 
 
-def draw_ghost(
-    place: Points, half: Points, radius: Numbers, angle: Numbers, colour: Colour, on: Drawing
-) -> None:
-    """Draw the outlines of shapes at places (n, 2) [m], turned by angles (n,) [rad].
-
-    Discs have a radius (n,) [m], boxes half extents (n, 2) [m].
-    """
-    ring = _ring(_GHOST_CORNERS)
-    for n in range(len(place)):
-        own = radius[n] * ring if radius[n] > 0.0 else half[n] * _SQUARE
-        corners = on.camera.project(_placed(own, float(angle[n]), place[n]))
+def draw_ghost(ghost: Outlines, colour: Colour, on: Drawing) -> None:
+    """Draw outlines of bodies that are not there yet."""
+    for n in range(len(ghost.place)):
+        core = ghost.corners[n, : ghost.vertices[n]]
+        own = rim_of(core, float(ghost.radius[n]), _GHOST_CORNERS)
+        corners = on.camera.project(ghost.place[n] + own)
         on.canvas.lines(corners, np.roll(corners, -1, axis=0), colour, 1.4, _GHOST_OPACITY)
 
 

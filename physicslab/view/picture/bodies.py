@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
 from physicslab.components.shape import BOX, CIRCLE
+from physicslab.contacts.outlines import Outlines, outlines_of
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Canvas, Look
+from physicslab.view.canvas.canvas import Canvas, Look, Rounded
 from physicslab.view.canvas.theme import Theme
 from physicslab.world import World
 
@@ -28,16 +29,19 @@ class BodyRows:
 
     Attributes
     ----------
-    boxes, discs, points : int64 arrays
-        Drawn in this order, so that points lie on top.
+    boxes, rounded, discs, points : int64 arrays
+        Drawn in this order, so that points lie on top; ``rounded`` are all other polygons.
     """
 
     boxes: Rows
+    rounded: Rows
     discs: Rows
     points: Rows
 
-    def __len__(self) -> int:
-        return len(self.boxes) + len(self.discs) + len(self.points)
+    @property
+    def all(self) -> Rows:
+        """All of them, in this order (n,)."""
+        return np.concatenate((self.boxes, self.rounded, self.discs, self.points))
 
 
 def body_rows(world: World) -> BodyRows:
@@ -47,7 +51,10 @@ def body_rows(world: World) -> BodyRows:
     rows = np.concatenate((rows[~moves], rows[moves]))
     kind = world.table(Shape)["kind"][rows]
     is_body = world.table(Velocity).present[rows] | world.table(Mass).present[rows]
-    return BodyRows(rows[kind == BOX], rows[kind == CIRCLE], rows[(kind == 0) & is_body])
+    boxes, discs = kind == BOX, kind == CIRCLE
+    return BodyRows(
+        rows[boxes], rows[(kind != 0) & ~boxes & ~discs], rows[discs], rows[(kind == 0) & is_body]
+    )
 
 
 @lru_cache(maxsize=8)
@@ -97,6 +104,7 @@ def draw_bodies(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> N
     """Draw every body that is on the screen."""
     rows = body_rows(world)
     _draw_boxes(world, rows.boxes, camera, theme, canvas)
+    _draw_rounded(world, rows.rounded, camera, theme, canvas)
     _draw_discs(world, rows.discs, camera, theme, canvas)
     centre = camera.project(world.table(Transform)["position"][rows.points])
     radius = np.full(len(centre), POINT_RADIUS)
@@ -114,6 +122,23 @@ def _draw_boxes(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: 
     seen = _on_screen(centre, 0.5 * np.hypot(extent[:, 0], extent[:, 1]), camera.size) & np.isfinite(angle)
     if seen.any():
         canvas.boxes(centre[seen], extent[seen], angle[seen], _look(world, theme, rows[seen]))
+
+
+def _draw_rounded(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: Canvas) -> None:
+    outlines = outlines_of(world, rows)
+    centre = camera.project(outlines.place)
+    reach = camera.scale * (np.hypot(*outlines.corners.transpose(2, 0, 1)).max(axis=1) + outlines.radius)
+    seen = _on_screen(centre, reach, camera.size) & np.isfinite(outlines.corners).all(axis=(1, 2))
+    if seen.any():
+        canvas.rounded(on_canvas(outlines, seen, camera), _look(world, theme, rows[seen]))
+
+
+def on_canvas(outlines: Outlines, seen: NDArray[np.bool_], camera: Camera) -> Rounded:
+    """Return those of the outlines that are ``seen`` (n,), in pixels."""
+    corners = camera.project(outlines.place[seen])[:, None, :]
+    corners = corners + outlines.corners[seen] * (camera.scale, -camera.scale)
+    radius = np.maximum(outlines.radius[seen] * camera.scale, _MIN_HALF)
+    return Rounded(corners, outlines.vertices[seen], radius)
 
 
 def _draw_discs(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: Canvas) -> None:

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape, Spring, Transform, Velocity
+from physicslab.components import Spring, Velocity
+from physicslab.contacts.outlines import outlines_of
 from physicslab.view.canvas.camera import Extent
 from physicslab.view.picture.bodies import body_rows
 from physicslab.world import World
@@ -23,7 +24,7 @@ def extent_of(world: World) -> Extent | None:
     world.synchronise()
     rows = body_rows(world)
     moves = world.table(Velocity).present
-    everything = np.concatenate((rows.boxes, rows.discs, rows.points))
+    everything = rows.all
     shapes = _reach(world, everything)
     movable = moves[everything]
     moving = np.concatenate((shapes[movable], _fixed_ends(world), _bounds(world)))
@@ -43,14 +44,8 @@ def extent_of(world: World) -> Extent | None:
 
 
 def _reach(world: World, rows: NDArray[np.int64]) -> Boxes:
-    transform, shape = world.table(Transform), world.table(Shape)
-    c, s = np.abs(np.cos(transform["angle"][rows])), np.abs(np.sin(transform["angle"][rows]))
-    width, height, radius = shape["width"][rows], shape["height"][rows], shape["radius"][rows]
-    half = np.stack(
-        (radius + 0.5 * (c * width + s * height), radius + 0.5 * (s * width + c * height)), axis=1
-    )
-    position = transform["position"][rows]
-    return np.concatenate((position - half, position + half), axis=1)
+    outlines = outlines_of(world, rows)
+    return np.concatenate((outlines.place - outlines.reach, outlines.place + outlines.reach), axis=1)
 
 
 def _fixed_ends(world: World) -> Boxes:

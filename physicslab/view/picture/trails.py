@@ -7,12 +7,14 @@ from numpy.typing import NDArray
 
 from physicslab.components import Shape, Trail, Transform, Velocity
 from physicslab.components.shape import BOX, CIRCLE
+from physicslab.contacts.outlines import outlines_at
+from physicslab.state.shapes import lengths_of
 from physicslab.systems.strobe import StrobeSystem
 from physicslab.systems.trail import SAMPLES, TrailSystem
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look, Points
 from physicslab.view.canvas.theme import Theme, mixed
-from physicslab.view.picture.bodies import POINT_RADIUS, own_colour
+from physicslab.view.picture.bodies import POINT_RADIUS, on_canvas, own_colour
 from physicslab.world import World
 
 _SHADES = 16
@@ -163,21 +165,25 @@ def draw_strobes(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> 
     centre, angle = camera.project(seen[:, :2]), seen[:, 2]
     shape = world.table(Shape)
     kind = shape["kind"][rows]
-    extent = camera.scale * np.stack((shape["width"][rows], shape["height"][rows]), axis=1)
-    radius = np.where(kind == CIRCLE, camera.scale * shape["radius"][rows], POINT_RADIUS)
-    reach = np.where(kind == BOX, np.hypot(extent[:, 0], extent[:, 1]), radius)[:, None]
+    half, rounding = lengths_of(shape, rows)
+    extent, radius = 2.0 * camera.scale * half, np.where(kind == 0, POINT_RADIUS, camera.scale * rounding)
+    reach = (np.hypot(extent[:, 0], extent[:, 1]) + radius)[:, None]
     with np.errstate(invalid="ignore"):
         inside = ((centre > -reach) & (centre < np.array(camera.size) + reach)).all(axis=1)
     fills, rims = _strobe_tints(theme)
     own = own_colour(world, theme, rows)
-    for which, draw in ((inside & (kind == BOX), True), (inside & (kind != BOX), False)):
+    boxes, discs = kind == BOX, (kind == CIRCLE) | (kind == 0)
+    for which in (inside & boxes, inside & ~boxes & ~discs, inside & discs):
         if not which.any():
             continue
         look = Look(fills[own[which]], rims[own[which]], np.zeros(int(which.sum()), np.bool_))
-        if draw:
+        if boxes[which].any():
             canvas.boxes(centre[which], extent[which], angle[which], look)
-        else:
+        elif discs[which].any():
             canvas.discs(centre[which], radius[which], angle[which], look)
+        else:
+            outlines = outlines_at(world, rows, seen[:, :2], angle)
+            canvas.rounded(on_canvas(outlines, which, camera), look)
 
 
 @lru_cache(maxsize=8)

@@ -121,6 +121,7 @@ def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable
     if kind is Shape:
         yield "Shape: circle", lambda entity: Shape.circle(_SIZE)
         yield "Shape: box", lambda entity: Shape.box(2.0 * _SIZE, 2.0 * _SIZE)
+        yield "Shape: capsule", lambda entity: Shape.capsule(2.0 * _SIZE, _SIZE)
         return
     if kind is Spring:
         yield plain_kind(kind), lambda entity: _spring_above(world, entity)

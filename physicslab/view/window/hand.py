@@ -61,10 +61,8 @@ def _reach(world: World, entity: int) -> Vector2:
     if not world.has(entity, Shape):
         return Vector2()
     shape, angle = world.component(entity, Shape), world.component(entity, Transform).angle
-    if shape.kind == "circle":
-        return Vector2(shape.radius, shape.radius)
-    c, s = abs(math.cos(angle)), abs(math.sin(angle))
-    return 0.5 * Vector2(c * shape.width + s * shape.height, s * shape.width + c * shape.height)
+    corners, radius = [corner.rotated(angle) for corner in shape.core], shape.rounding
+    return Vector2(max(abs(one.x) for one in corners) + radius, max(abs(one.y) for one in corners) + radius)
 
 
 def _yielding(world: World, entity: int, wanted: Vector2, coming: float) -> Vector2:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from physicslab.components import Shape, Transform, Velocity
+from physicslab.components.shape import KINDS
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
@@ -62,7 +63,7 @@ class Handles:
             corner = _corner(world, entity)
             found.append(Handle("size", transform.position + corner.rotated(transform.angle)))
             shape = world.component(entity, Shape)
-            up = (shape.radius or 0.5 * shape.height) + _ABOVE / camera.scale
+            up = max(corner.y for corner in shape.core) + shape.rounding + _ABOVE / camera.scale
             found.append(Handle("angle", transform.position + Vector2(0.0, up).rotated(transform.angle)))
         if world.has(entity, Velocity):
             found.append(Handle("velocity", transform.position + arrow_of(world, entity, camera)))
@@ -113,16 +114,18 @@ class Handles:
 
     def _resize(self, edits: Edits, entity: int, corner: Vector2, snaps: bool) -> None:
         """Make a body as large as its corner says; what it weighs stays."""
-        shape = edits.world.component(entity, Shape)
-        if shape.kind == "circle":
-            radius = _size(corner.magnitude, snaps)
-            edits.show(entity, Shape, "radius", radius)
-            self.words = f"radius {quantity(radius, 'm')}"
-            return
-        width, height = _size(2.0 * abs(corner.x), snaps), _size(2.0 * abs(corner.y), snaps)
-        edits.show(entity, Shape, "width", width)
-        edits.show(entity, Shape, "height", height)
-        self.words = f"{width:.3g} m x {height:.3g} m"
+        kind, sizes = KINDS[edits.world.component(entity, Shape).kind], {}
+        if kind.radius:
+            sizes[kind.radius] = abs(corner.y) if kind.x else corner.magnitude
+        for axis, name in enumerate((kind.x, kind.y)):
+            if name:  # what both axes have in common goes by the one along which the corner is farther
+                size = abs((corner.x, corner.y)[axis]) / max(abs(place[axis]) for place in kind.core)
+                sizes[name] = max(size, sizes.get(name, 0.0))
+        sizes = {name: _size(size, snaps) for name, size in sizes.items()}
+        for name, size in sizes.items():
+            edits.show(entity, Shape, name, size)
+        values = [f"{size:.3g} m" for size in sizes.values()]
+        self.words = " x ".join(values) if len(values) > 1 else f"radius {quantity(size, 'm')}"
 
 
 def arrow_of(world: World, entity: int, camera: Camera) -> Vector2:
@@ -136,9 +139,10 @@ def arrow_of(world: World, entity: int, camera: Camera) -> Vector2:
 
 def _corner(world: World, entity: int) -> Vector2:
     shape = world.component(entity, Shape)
-    if shape.kind == "circle":
+    if len(shape.core) == 1:
         return Vector2.from_angle(-0.25 * math.pi, shape.radius)
-    return Vector2(0.5 * shape.width, -0.5 * shape.height)
+    right, low = max(corner.x for corner in shape.core), min(corner.y for corner in shape.core)
+    return Vector2(right, low - shape.rounding)
 
 
 def _size(length: float, snaps: bool) -> float:

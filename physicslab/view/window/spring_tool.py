@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
+from physicslab.contacts.outlines import outlines_of
 from physicslab.diagnostics.period import spring_state
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
@@ -35,10 +36,8 @@ def local_point(world: World, body: int | None, place: Vector2) -> Vector2:
     local = in_frame(world, body, place)
     if not world.has(body, Shape):
         return Vector2()
-    shape = world.component(body, Shape)
-    if shape.kind == "circle":
-        return local if local.magnitude <= shape.radius else Vector2()
-    inside = abs(local.x) <= 0.5 * shape.width and abs(local.y) <= 0.5 * shape.height
+    row = np.array([world.entity_index.row_of[body]])
+    inside = outlines_of(world, row).gaps(place.x, place.y)[0] <= 0.0
     return local if inside else Vector2()
 
 

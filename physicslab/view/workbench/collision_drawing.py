@@ -5,9 +5,11 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
+import numpy as np
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Shape
+from physicslab.contacts.outlines import rim_of
 from physicslab.diagnostics.collision import Body, Collision
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, without_rounding
@@ -200,7 +202,7 @@ def _extent(world: World, body: Body, seen: Collision) -> float:
     if shape is None:
         arms = [spot.arm_a if body is seen.a else spot.arm_b for spot in seen.spots]
         return math.inf if body.entity == 0 else max(*(arm.magnitude for arm in arms), 1e-9)
-    return shape.radius if shape.kind == "circle" else 0.5 * math.hypot(shape.width, shape.height)
+    return shape.reach
 
 
 def _draw_body(
@@ -214,16 +216,13 @@ def _draw_body(
         touch = at(seen.spots[0].place)
         corners = [touch + s * t - d * n for s, d in ((-1, 0), (1, 0), (1, 1), (-1, 1))]
         paper.polygon(corners, fill, colour)
-    elif shape is not None and shape.kind == "circle":
+    elif shape is not None and len(shape.core) == 1:
         paper.disc(at(body.centre), scale * shape.radius, fill, colour)
         rim = body.centre + shape.radius * Vector2.from_angle(body.angle)
         paper.line(at(body.centre), at(rim), colour)
     elif shape is not None:
-        half = 0.5 * shape.width, 0.5 * shape.height
-        corners = [
-            at(body.centre + Vector2(u * half[0], v * half[1]).rotated(body.angle))
-            for u, v in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-        ]
+        outline = rim_of(np.array([tuple(corner) for corner in shape.core]), shape.rounding).tolist()
+        corners = [at(body.centre + Vector2(x, y).rotated(body.angle)) for x, y in outline]
         paper.polygon(corners, fill, colour)
     if body.entity:
         paper.disc(at(body.centre), 2.5, colour, colour)

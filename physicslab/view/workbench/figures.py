@@ -89,7 +89,7 @@ class WorldFigures:
 
     def __init__(self, world: World, watch: EnergyWatch, frame_rate: float = 0.0) -> None:
         contacts, moving = world.contacts, world.batch(Transform, Velocity).rows
-        self.bodies, self.asleep = len(body_rows(world)), world.sleep.count
+        self.bodies, self.asleep = len(body_rows(world).all), world.sleep.count
         self.candidate_pairs, self.contacts = contacts.candidate_pairs, contacts.count
         self.audit = watch.sample(world)
         self.energy, now = self.audit.latest, self.audit.account.now

@@ -123,4 +123,4 @@ class WorldView:
             return
         ghost = spawn.outlines(window)
         colour = on.theme.error if refused_place(world, ghost) else on.theme.accent
-        marks.draw_ghost(ghost.place, ghost.half, ghost.radius, ghost.angle, colour, on)
+        marks.draw_ghost(ghost, colour, on)
