@@ -3,17 +3,27 @@
 import math
 from pathlib import Path
 
+import numpy as np
+import pygame
 import pytest
+from desk import Desk
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from recording import RecordingCanvas
 
 from physicslab import World, load_scene, save_scene
 from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.contacts.outlines import outlines_of
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, capsule, circle
 from physicslab.systems.standard import standard_systems
+from physicslab.view.canvas.canvas import Look, Rounded
+from physicslab.view.canvas.plain_shapes import draw_rounded
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.controls.picking import body_at
 
 
 def ground() -> World:
@@ -152,3 +162,44 @@ def test_a_file_keeps_it_and_goes_on_with_the_same_bits(tmp_path: Path) -> None:
 def test_bad_sizes_are_refused_by_name(name: str, value: float) -> None:
     with pytest.raises(InvalidValue, match=rf"^Shape\.{name} = {value}: must be"):
         Shape("capsule", **{"length": 1.0, "radius": 0.5, name: value})
+
+
+def test_in_the_window_it_is_picked_painted_and_resized_by_its_outline() -> None:
+    canvas = RecordingCanvas((1280, 720))
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="none"))
+    pill = capsule(world, (1.0, 0.5), length=1.0, radius=0.25, angle=0.5 * math.pi)
+    desk = Desk(world, canvas)
+    camera = desk.window.camera
+    desk.frames()
+    (drawn,) = canvas.called("rounded")[-1:]
+    assert drawn["shapes"].radius.tolist() == pytest.approx([0.25 * camera.scale])
+    for place, hit in (((1.0, 1.2), pill), ((1.2, 1.0), pill), ((1.0, 1.4), None), ((1.24, 1.24), None)):
+        assert body_at(world, camera, camera.to_screen(Vector2(*place))) == hit
+    outlines = outlines_of(world, np.array([world.entity_index.row_of[pill]]))
+    assert outlines.reach[0].tolist() == pytest.approx([0.25, 0.75])
+    assert outlines.size[0] == 0.5
+    handles, edits = desk.window.handles, desk.window.edits
+    handles.dragged = "size"
+    handles.drag(edits, pill, camera, Vector2(1.0 + 0.4, 0.5 + 0.9), snaps=False)
+    handles.release(edits)
+    shape = world.component(pill, Shape)
+    assert (shape.length, shape.radius) == pytest.approx((1.8, 0.4))
+    pygame.display.quit()
+
+
+def test_it_is_painted_smoothly_and_before_that_roughly() -> None:
+    surface = pygame.Surface((80, 60), depth=32)
+    corners = np.zeros((1, 8, 2))
+    corners[0, :] = (60.0, 30.0), *((20.0, 30.0),) * 7
+    look = Look(np.array([[9, 99, 9]], np.uint8), np.array([[200, 0, 0]], np.uint8), np.zeros(1, np.bool_))
+    shapes = Rounded(corners, np.array([2]), np.array([12.0]))
+    for draw in (
+        PygameCanvas(surface).rounded,
+        lambda shapes, look: draw_rounded(surface, shapes, look, 1.6),
+    ):
+        surface.fill((0, 0, 0))
+        draw(shapes, look)
+        assert surface.get_at((30, 35))[:3] == (9, 99, 9)
+        assert surface.get_at((20, 18))[0] > 100, "its rim"
+        assert surface.get_at((70, 40))[:3] == surface.get_at((9, 19))[:3] == (0, 0, 0), "its ends are round"
+        assert surface.get_at((50, 30))[0] > 50 > surface.get_at((30, 30))[0], "a line shows how it lies"

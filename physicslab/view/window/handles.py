@@ -114,23 +114,18 @@ class Handles:
 
     def _resize(self, edits: Edits, entity: int, corner: Vector2, snaps: bool) -> None:
         """Make a body as large as its corner says; what it weighs stays."""
-        shape = edits.world.component(entity, Shape)
-        kind = KINDS[shape.kind]
-        if not kind.x and not kind.y:
-            radius = _size(corner.magnitude, snaps)
-            edits.show(entity, Shape, "radius", radius)
-            self.words = f"radius {quantity(radius, 'm')}"
-            return
-        if kind.radius:  # its round end goes with the corner, and is as high as that is low
-            radius = _size(abs(corner.y), snaps)
-            edits.show(entity, Shape, kind.radius, radius)
-            edits.show(entity, Shape, kind.x, _size(2.0 * abs(corner.x), snaps))
-            self.words = f"{shape.length:.3g} m, radius {radius:.3g} m"
-            return
-        width, height = _size(2.0 * abs(corner.x), snaps), _size(2.0 * abs(corner.y), snaps)
-        edits.show(entity, Shape, "width", width)
-        edits.show(entity, Shape, "height", height)
-        self.words = f"{width:.3g} m x {height:.3g} m"
+        kind, sizes = KINDS[edits.world.component(entity, Shape).kind], {}
+        if kind.radius:
+            sizes[kind.radius] = abs(corner.y) if kind.x else corner.magnitude
+        for axis, name in enumerate((kind.x, kind.y)):
+            if name:  # what both axes have in common goes by the one along which the corner is farther
+                size = abs((corner.x, corner.y)[axis]) / max(abs(place[axis]) for place in kind.core)
+                sizes[name] = max(size, sizes.get(name, 0.0))
+        sizes = {name: _size(size, snaps) for name, size in sizes.items()}
+        for name, size in sizes.items():
+            edits.show(entity, Shape, name, size)
+        values = [f"{size:.3g} m" for size in sizes.values()]
+        self.words = " x ".join(values) if len(values) > 1 else f"radius {quantity(size, 'm')}"
 
 
 def arrow_of(world: World, entity: int, camera: Camera) -> Vector2:
