@@ -180,7 +180,7 @@ def test_a_marble_that_flies_far_away_and_back_is_an_island_in_between() -> None
     )
     world.spawn(Spring(a=marble, rest_length=0.0, stiffness=0.02, anchor_b=(6.0, 0.3)))
     met: list[list[int]] = []
-    for _ in world.stepping(seconds=8.0, stride=6):
+    for _ in world.stepping(seconds=10.0, stride=6):
         if not met or sizes(world) != met[-1]:
             met.append(sizes(world))
     assert met[:3] == [[], [4, 1], []]

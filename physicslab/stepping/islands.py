@@ -44,6 +44,8 @@ type Make = Callable[[Sequence[System], PhysicsConfig, SimulationConfig], Part]
 
 EXAMINED_S = 2.0
 """At each multiple of this time [s] it is looked whether an island has come apart."""
+FEW_EXAMINED = 2
+"""Every how many of these times one is that has the best steppers already, as few bodies do."""
 _LATE = 1e-9
 """Share of that time by which the clock, a sum of rounded steps, may be late."""
 _NEVER = 1 << 60
@@ -115,7 +117,7 @@ class Islands:
         self.why_one = "an island itself"
         self.due, self.paused, self.joined = make is not None, False, False
         self._comes_apart = False
-        self._examined = 0
+        self._examined = self._bodies = 0
         self._apart_until = -math.inf
         self._left = b""
         self._entities: Rows | None = None
@@ -210,7 +212,8 @@ class Islands:
         """Return how many steps of ``h`` seconds are made at most before islands are looked for again."""
         if not self._comes_apart:
             return _NEVER
-        until = (self._examined + 1) * EXAMINED_S - _LATE
+        every = FEW_EXAMINED if not self.members and self._bodies <= MAX_BODIES else 1
+        until = (self._examined // every + 1) * every * EXAMINED_S - _LATE
         steps = math.ceil((until - state.time) / h)
         if self.members:
             apart = max(0.0, self._apart_until - state.time)
@@ -290,6 +293,7 @@ class Islands:
         self._apart_until, rows = -math.inf, np.flatnonzero(movable_in(state))
         self.why_one = why_whole(state, self._schedule) or ""
         self._comes_apart = not self.why_one and len(rows) > 1 and self._schedule.runs(Stage.CONTACT)
+        self._bodies = len(rows)
         return rows
 
     def _begin(self, state: State) -> None:
@@ -306,12 +310,14 @@ class Islands:
         if period == self._examined or not self._comes_apart:
             return False
         self._examined = period
+        few_too = period % FEW_EXAMINED == 0
         if not self.members:
-            self._divide(state)
+            if few_too or self._bodies > MAX_BODIES:
+                self._divide(state)
             return bool(self.members)
         found = [
             groups_of(island.state, island.world.schedule, island.own).groups
-            if island.touches
+            if island.touches and (few_too or len(island.own) > MAX_BODIES)
             else (island.own,)
             for island in self.members
         ]

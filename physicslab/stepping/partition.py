@@ -114,8 +114,10 @@ def _labels(state: State, schedule: Schedule, rows: Rows) -> Rows:
     soon = max(FAR_S, 2.5 * NEAR_STEPS * state.simulation.dt)
     reach = reach + np.maximum(FAR_RADII * reach, speed * soon + 0.25 * _gravity(state) * soon * soon)
     position, labels = state.table(Transform)["position"][rows], np.full(len(rows), -1)
-    left = np.flatnonzero(state.table(Shape).present[rows])
-    number = 0
+    shaped = state.table(Shape).present[rows]
+    if shaped.all() and np.hypot(*np.ptp(position, axis=0)) <= 2.0 * reach.min():
+        return np.zeros(len(rows), np.int64)
+    left, number = np.flatnonzero(shaped), 0
     while len(left):
         waiting, left = [int(left[0])], left[1:]
         labels[waiting] = number
