@@ -9,11 +9,14 @@ import numpy as np
 import pytest
 
 from physicslab import World, load_scene, save_scene
-from physicslab.components import Mass, Name, Pin, Shape, Transform, Velocity
+from physicslab.components import Mass, Name, Pin, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.free_body import forces_on, last_step
+from physicslab.diagnostics.period import period_of
+from physicslab.diagnostics.reference_solution import reference_solution
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import SimulationConfig
-from physicslab.ecs.vector import rotated
+from physicslab.ecs.vector import Vector2, rotated
 from physicslab.files.checks import SceneError
 from physicslab.files.reader import FORMAT, read_scene
 from physicslab.files.writer import write_scene
@@ -258,3 +261,36 @@ def test_damping_is_part_of_the_constrained_equations() -> None:
     lost = measure_energy(world).total - before
     assert stretch(world) < 1e-13
     assert world.account.sums[DAMPING, ENERGY] == pytest.approx(lost, abs=1e-10)
+
+
+def test_what_joints_hold_has_no_closed_form_and_no_period_of_its_spring() -> None:
+    world = World()
+    bob = world.spawn(Transform((0.0, -1.0)), Velocity((0.1, 0.0)), Mass(1.0), Shape.circle(0.1))
+    world.add(bob, Spring(rest_length=1.0, stiffness=50.0))
+    assert period_of(world, bob) is not None
+    world.spawn(Pin(b=bob, anchor_a=(0.0, -1.0)))
+    assert reference_solution(world) is None
+    assert period_of(world, bob) is None
+    world.simulation = replace(world.simulation, integrator="exact")
+    world.step()
+    assert "the force of JointSystem has no closed form" in world.plan.refused
+
+
+def test_forces_on_a_body_on_a_pin_sum_up_to_its_acceleration() -> None:
+    world = chain(2)
+    world.run(seconds=0.7)
+    world.step(1e-4)
+    bar = world.entity("bar0")
+    forces, step = forces_on(world, bar), last_step(world, bar)
+    assert [one.name for one in forces] == ["weight", "pin0", "pin1"]
+    total = sum((one.force for one in forces), Vector2())
+    assert step is not None
+    assert tuple(total) == pytest.approx(tuple(step.inertia), rel=1e-2)
+
+
+def test_a_light_bar_between_a_pin_and_a_heavy_one_costs_no_digits() -> None:
+    world = chain(2, end=1e9)
+    world.step()
+    before = measure_energy(world).total
+    world.run(seconds=1.0)
+    assert measure_energy(world).total == pytest.approx(before, abs=1e9 * 9.81 * 1e-12)

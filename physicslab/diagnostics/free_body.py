@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.report import ContactPoint, contacts_of
+from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.vector import Vector2
 from physicslab.state.masses import quiet
 from physicslab.stepping.forces import forces_by_system
@@ -61,7 +62,8 @@ class NamedForce:
 def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
     """Return the forces on a body as they are now, by what brings them about; of one that cannot move none.
 
-    Springs and gravity are those of the present state of motion, contacts those of the last substep.
+    Springs and gravity are those of the present state of motion, contacts and soft joints those of the last
+    substep.
     """
     moves = world.has(entity, Velocity) and world.has(entity, Mass) and world.has(entity, Transform)
     if not moves:
@@ -76,6 +78,10 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
     if damping > 0.0:
         velocity, mass = world.component(entity, Velocity).linear, world.component(entity, Mass).mass
         found.append(NamedForce(_DAMPING, -damping * mass * velocity, centre, "field"))
+    for joint in joint_states(world):
+        if entity in (joint.a, joint.b):
+            force = joint.force if entity == joint.b else -joint.force
+            found.append(NamedForce(world.label(joint.entity), force, joint.place, "field"))
     for contact in contacts_of(world, entity):
         on_b = contact.b == entity
         other = world.label(contact.a if on_b else contact.b) if contact.a and contact.b else "the wall"

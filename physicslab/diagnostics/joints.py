@@ -24,8 +24,8 @@ class JointState:
         Where it holds A [m].
     angle : float
         How B is turned [rad].
-    is_fixed : bool
-        Whether it holds a body to the world.
+    a, b : int
+        The bodies; 0 is the world.
     force : Vector2
         On B, at the end of the last step or as its mean [N].
     stretch : float
@@ -36,9 +36,15 @@ class JointState:
     kind: type[Any]
     place: Vector2
     angle: float
-    is_fixed: bool
+    a: int
+    b: int
     force: Vector2
     stretch: float
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether it holds a body to the world."""
+        return not (self.a and self.b)
 
 
 def joint_states(state: State) -> list[JointState]:
@@ -58,8 +64,8 @@ def joint_states(state: State) -> list[JointState]:
         a, b = int(joints.a[n]), int(joints.b[n])
         angle = float(transform["angle"][b or a])
         stretch = float(np.hypot(*(at_b[n] - at_a[n])))
-        fixed = a == 0 or b == 0
+        ends = int(state.entity_index.entities[a]), int(state.entity_index.entities[b])
         found.append(
-            JointState(joint.entity, joint.kind, Vector2(*at_a[n]), angle, fixed, Vector2(*force), stretch)
+            JointState(joint.entity, joint.kind, Vector2(*at_a[n]), angle, *ends, Vector2(*force), stretch)
         )
     return found

@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.state.attached import motion_of_point
@@ -73,8 +75,9 @@ def period_of(world: World, entity: int) -> Period | None:
     """Return how long an oscillation of a body or a spring takes; ``None`` where there is none.
 
     One spring alone may hold the body, and its other end something fixed; then uniform gravity and the spring
-    are looked at, and no other force and no contact. A body that its weight hardly stretches the spring of is
-    a pendulum, whose period follows from its amplitude and from how far the spring gives way.
+    are looked at, and no other force and no contact. A body on a joint has none here. One that its weight
+    hardly stretches the spring of is a pendulum, whose period follows from its amplitude and from how far the
+    spring gives way.
     """
     holding = [entity] if world.has(entity, Spring) else _springs_at(world, entity)
     if len(holding) != 1:
@@ -82,7 +85,10 @@ def period_of(world: World, entity: int) -> Period | None:
     number = holding[0]
     spring = world.component(number, Spring)
     bodies = [end for end in (spring.a or number, spring.b) if end is not None and _moves(world, end)]
-    if spring.stiffness <= 0.0 or not bodies or any(len(_springs_at(world, end)) > 1 for end in bodies):
+    joined = world.entity_index.entities[world.joints.edges]
+    if spring.stiffness <= 0.0 or np.isin(bodies, joined).any():
+        return None
+    if not bodies or any(len(_springs_at(world, end)) > 1 for end in bodies):
         return None
     mass = 1.0 / sum(1.0 / world.component(end, Mass).mass for end in bodies)
     if len(bodies) == 1:

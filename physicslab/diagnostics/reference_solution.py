@@ -51,7 +51,7 @@ def reference_solution(world: World) -> ReferenceSolution | None:
     if why_not_smooth(world, world.schedule) is not None or not len(world.batch(Transform, Velocity)):
         return None
     try:
-        form = closed_form(world, world.schedule.forces)
+        form = closed_form(world, world.schedule.smooth_forces)
     except NoClosedForm:
         return _two_bodies(world)
     x, v = form.motion(world)
@@ -67,7 +67,7 @@ def reference_solution(world: World) -> ReferenceSolution | None:
 
 def _two_bodies(world: World) -> ReferenceSolution | None:
     """Return Kepler's solution where two bodies attract each other and nothing else acts."""
-    physics, forces = world.physics, [force.name for force in world.schedule.forces]
+    physics, forces = world.physics, [force.name for force in world.schedule.smooth_forces]
     rows = world.batch(Transform, Mass).rows
     moving = np.flatnonzero(world.table(Transform).present & world.table(Velocity).present)
     alone = forces == ["GravitySystem"] and physics.gravity_mode == "planet" and physics.softening == 0.0

@@ -230,7 +230,7 @@ def _mover(state: State, schedule: Schedule) -> StepPlan:
         )
     if method is EXACT:
         try:
-            closed_form(state, schedule.forces)
+            closed_form(state, schedule.smooth_forces)
         except NoClosedForm as error:
             reason = f"exact was asked for, and there is no closed form: {error}"
             return replace(_best(state, schedule), reason=reason, refused=reason)
@@ -240,7 +240,7 @@ def _mover(state: State, schedule: Schedule) -> StepPlan:
 def _in_python(state: State, schedule: Schedule) -> StepPlan:
     """Return the method for a world in which nothing but forces acts, of which Python computes some."""
     substeps, name = state.simulation.substeps, schedule.interpreted[0]
-    if _sees_velocity(state, schedule.forces):
+    if _sees_velocity(state, schedule.smooth_forces):
         reason = f"the force of {name} has no compiled kernel, and forces may depend on velocities"
         return StepPlan(DOP853, reason, 1, smooth=True)
     return StepPlan(LEAPFROG, f"the force of {name} has no compiled kernel", substeps, smooth=True)
@@ -257,7 +257,7 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
         return _in_python(state, schedule)
     try:
         return StepPlan(
-            EXACT, f"{closed_form(state, schedule.forces).what}: solved in closed form", 1, smooth=True
+            EXACT, f"{closed_form(state, schedule.smooth_forces).what}: solved in closed form", 1, smooth=True
         )
     except NoClosedForm as error:
         why = str(error)

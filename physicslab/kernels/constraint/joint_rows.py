@@ -162,8 +162,8 @@ def factorise(numbers: Any, whole: Any) -> None:
 
 
 @always_inlined
-def _substitute(numbers: Any, whole: Any) -> None:
-    """Find how the forces change from the right side, which is used up; none for a dependent row."""
+def substitute(numbers: Any, whole: Any) -> None:
+    """Find how the forces change from the right side; none for a dependent row."""
     n, states = whole[ROWS], first_state(whole)
     matrix, begin = states + STATE * n, FIRST + ENDS * n
     for i in range(n):
@@ -190,7 +190,7 @@ def solve(numbers: Any, whole: Any) -> None:
     matrix, begin = states + STATE * n, FIRST + ENDS * n
     for i in range(n):
         numbers[states + STATE * i + LAMBDA] = numbers[states + STATE * i + RIGHT]
-    _substitute(numbers, whole)
+    substitute(numbers, whole)
     for i in range(n):
         left = numbers[states + STATE * i + LAMBDA]
         left -= numbers[states + STATE * i + DIAGONAL] * numbers[states + STATE * i + CHANGE]
@@ -201,7 +201,7 @@ def solve(numbers: Any, whole: Any) -> None:
         numbers[states + STATE * i + RIGHT] = left
     for i in range(n):
         numbers[states + STATE * i + LAMBDA] = numbers[states + STATE * i + CHANGE]
-    _substitute(numbers, whole)
+    substitute(numbers, whole)
     for i in range(n):
         numbers[states + STATE * i + LAMBDA] += numbers[states + STATE * i + CHANGE]
 
@@ -271,26 +271,28 @@ def constrain(q, v, span, force, parameters, indices):  # type: ignore[no-untype
     damping = inverse + m
     measure_rows(q, v, parameters, indices)
     factorise(parameters, indices)
-    for i in range(n):
-        s, w, change = states + STATE * i, FIRST + ENDS * i, 0.0
-        for end in range(2):
-            x, turn, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + JA + (JB - JA) * end
-            for k in range(3):
-                place = x + k if k < 2 else turn
-                if 0 <= place < m:
-                    gained = parameters[inverse + place] * force[place]
-                    change += parameters[j + k] * (gained - parameters[damping + place] * v[place])
-        parameters[s + RIGHT] = -(change + parameters[s + RATE])
-    solve(parameters, indices)
-    for i in range(n):
-        s, w = states + STATE * i, FIRST + ENDS * i
-        pull = parameters[s + LAMBDA]
-        for end in range(2):
-            x, turn, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + JA + (JB - JA) * end
-            force[x] += pull * parameters[j]
-            force[x + 1] += pull * parameters[j + 1]
-            if turn >= 0:
-                force[turn] += pull * parameters[j + 2]
+    for turn in range(2):  # what is light between heavy bodies is left with the difference of large forces
+        for i in range(n):
+            s, w, change = states + STATE * i, FIRST + ENDS * i, 0.0
+            for end in range(2):
+                x, angle, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + JA + (JB - JA) * end
+                for k in range(3):
+                    place = x + k if k < 2 else angle
+                    if 0 <= place < m:
+                        gained = parameters[inverse + place] * force[place]
+                        change += parameters[j + k] * (gained - parameters[damping + place] * v[place])
+            parameters[s + RIGHT] = -(change + parameters[s + RATE])
+        substitute(parameters, indices)
+        for i in range(n):
+            s, w = states + STATE * i, FIRST + ENDS * i
+            pull = parameters[s + CHANGE]
+            parameters[s + LAMBDA] = pull + (parameters[s + LAMBDA] if turn > 0 else 0.0)
+            for end in range(2):
+                x, angle, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + JA + (JB - JA) * end
+                force[x] += pull * parameters[j]
+                force[x + 1] += pull * parameters[j + 1]
+                if angle >= 0:
+                    force[angle] += pull * parameters[j + 2]
     book_rows(q, v, force, parameters, indices)
 
 

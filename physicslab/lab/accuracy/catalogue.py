@@ -2,11 +2,12 @@
 
 from physicslab.lab.accuracy.friction import FRICTION
 from physicslab.lab.accuracy.impacts import IMPACTS
+from physicslab.lab.accuracy.joints import JOINED
 from physicslab.lab.accuracy.planets import ATTRACTED
 from physicslab.lab.accuracy.points import POINTS
 from physicslab.lab.case import Catalogue
 
-PROBLEMS = Catalogue((*POINTS, *ATTRACTED, *IMPACTS, *FRICTION))
+PROBLEMS = Catalogue((*POINTS, *JOINED, *ATTRACTED, *IMPACTS, *FRICTION))
 """Every problem by name, from the simplest on; families are those of one source."""
 
 _NO_RODS = "the engine has no rigid rods: a pendulum in it swings on a spring (see elastic_pendulum)"

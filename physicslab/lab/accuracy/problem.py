@@ -238,4 +238,4 @@ def sees_velocity(problem: Problem) -> bool:
     """Whether forces in a problem depend on velocities."""
     world = problem.build(SimulationConfig(dt=problem.dt))
     world.synchronise()
-    return any(force.sees_velocity(world) for force in world.schedule.forces)
+    return any(force.sees_velocity(world) for force in world.schedule.smooth_forces)

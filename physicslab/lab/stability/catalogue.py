@@ -6,12 +6,13 @@ from physicslab.lab.case import Catalogue
 from physicslab.lab.stability.case import StabilityCase, run_case
 from physicslab.lab.stability.contacts import SQUEEZED, STANDING
 from physicslab.lab.stability.impacts import IMPACTS
+from physicslab.lab.stability.joints import JOINTS
 from physicslab.lab.stability.many_bodies import ATTRACTION, CHAINS
 from physicslab.lab.stability.ranges import RANGES
 from physicslab.lab.stability.springs import SPRINGS
 from physicslab.lab.stability.steps import STEPS
 
-CASES = Catalogue((*SPRINGS, *CHAINS, *STANDING, *SQUEEZED, *IMPACTS, *STEPS, *ATTRACTION, *RANGES))
+CASES = Catalogue((*SPRINGS, *CHAINS, *JOINTS, *STANDING, *SQUEEZED, *IMPACTS, *STEPS, *ATTRACTION, *RANGES))
 """Every case by name; families are groups."""
 
 
