@@ -25,7 +25,7 @@ from physicslab.integrators import SPLIT_METHODS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import View
-from physicslab.stepping.islands import KeptIsland
+from physicslab.stepping.island import KeptIsland
 from physicslab.stepping.plan import MAX_STEPS
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World

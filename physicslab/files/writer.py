@@ -23,7 +23,7 @@ from physicslab.files.reader import FORMAT
 from physicslab.files.remainders import export_remainders
 from physicslab.state.contacts import Contacts
 from physicslab.state.state import State
-from physicslab.stepping.islands import KeptIsland
+from physicslab.stepping.island import KeptIsland
 from physicslab.stepping.plan import outlived
 from physicslab.world import World
 

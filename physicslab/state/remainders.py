@@ -46,6 +46,16 @@ class Remainders:
         return q_low, v_low
 
     @classmethod
+    def joined(cls, kept: Sequence[Remainders]) -> Remainders:
+        """Return all remainders of several parts of a world; a coordinate of more than one has the first."""
+        if len(kept) == 1:
+            return kept[0]
+        names = ("keys", "q", "v", "q_low", "v_low")
+        columns = [np.concatenate([getattr(one, name) for one in kept]) for name in names]
+        _, first = np.unique(columns[0], return_index=True)
+        return cls(*(column[first] for column in columns))
+
+    @classmethod
     def of_bodies(cls, bodies: Mapping[int, tuple[Sequence[float], Sequence[float]]]) -> Remainders:
         """Return the remainders of entities.
 

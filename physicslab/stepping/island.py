@@ -1,13 +1,14 @@
 """An island: some bodies of a world, and a world of their own that advances them."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Name, Shape
+from physicslab.components import Name, Shape, Transform, Velocity
 from physicslab.contacts.arguments import motion_of
 from physicslab.ecs.component import Component
 from physicslab.ecs.context import create_numbered
@@ -15,8 +16,8 @@ from physicslab.ecs.table import Table
 from physicslab.kernels import near_counts
 from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
-from physicslab.stepping.partition import Extent
-from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.partition import Extent, movable_in
+from physicslab.stepping.plan import StepPlan, outlived
 from physicslab.stepping.run import Stepped
 from physicslab.stepping.select import Steppers
 
@@ -229,3 +230,52 @@ def join_logs(state: State, parts: list[State], logged: list[int]) -> None:
         impacts = impacts[np.argsort(impacts["time"], kind="stable")][-len(log) :]
         log[np.arange(first, first + len(impacts)) % len(log)] = impacts
         state.contacts.logged += len(impacts)
+
+
+@dataclass(frozen=True, slots=True)
+class KeptIsland:
+    """What a file keeps of an island, beside the contacts, rests and remainders of all bodies.
+
+    Attributes
+    ----------
+    bodies : list of int
+        Its entities.
+    span, finer : float, int
+        The time [s] over which impulses of its contacts act; by which factor its next step needs more
+        substeps.
+    chosen : tuple, optional
+        What was chosen for it as it once moved, where it would not be chosen now (:attr:`StepPlan.kept`).
+    driven : list of lists
+        Of bodies that move at given speeds the entity, x, y [m] and the angle, where rounding has led them
+        elsewhere than in the whole world.
+    """
+
+    bodies: list[int]
+    span: float
+    finer: int
+    chosen: tuple[str, str, int] | None
+    driven: list[list[float]]
+
+    def is_fresh(self, state: State) -> bool:
+        """Whether an island begins so."""
+        simulation = state.simulation
+        begins = self.finer == 1 and self.chosen is None and not self.driven
+        return begins and self.span == simulation.dt / simulation.substeps
+
+
+def kept_of(state: State, island: Island) -> KeptIsland:
+    """Return what a file keeps of an island."""
+    part, contacts = island.state, island.state.contacts
+    span = contacts.impulse_dt or part.simulation.dt / part.simulation.substeps
+    rows = np.flatnonzero(part.table(Velocity).present & ~movable_in(part))
+    there = state.entity_index.rows_of(part.entity_index.entities[rows])
+    own, whole = part.table(Transform), state.table(Transform)
+    moved = (own["position"][rows] != whole["position"][there]).any(axis=1)
+    moved |= own["angle"][rows] != whole["angle"][there]
+    driven = [
+        [int(part.entity_index.entities[row]), *own["position"][row].tolist(), float(own["angle"][row])]
+        for row in rows[moved]
+    ]
+    with part.active():
+        chosen = outlived(part, island.world.schedule, island.world.plan)
+    return KeptIsland(island.entities.tolist(), span, contacts.substep_factor, chosen, driven)

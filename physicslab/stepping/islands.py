@@ -9,7 +9,6 @@ its bodies move. So the bits of an island are those that it has alone.
 import math
 import weakref
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
@@ -24,16 +23,17 @@ from physicslab.state.remainders import Remainders
 from physicslab.state.state import State
 from physicslab.stepping.island import (
     Island,
+    KeptIsland,
     Part,
     Rows,
     copy_joints,
     fill,
     join_logs,
+    kept_of,
     numbers_of,
     rows_changed,
 )
 from physicslab.stepping.partition import MAX_BODIES, MAX_ISLANDS, groups_of, join, movable_in, why_whole
-from physicslab.stepping.plan import outlived
 from physicslab.stepping.stepper import Advance
 from physicslab.stepping.undo import go_back
 from physicslab.systems.schedule import Schedule
@@ -49,37 +49,6 @@ FEW_EXAMINED = 2
 _LATE = 1e-9
 """Share of that time by which the clock, a sum of rounded steps, may be late."""
 _NEVER = 1 << 60
-
-
-@dataclass(frozen=True, slots=True)
-class KeptIsland:
-    """What a file keeps of an island, beside the contacts, rests and remainders of all bodies.
-
-    Attributes
-    ----------
-    bodies : list of int
-        Its entities.
-    span, finer : float, int
-        The time [s] over which impulses of its contacts act; by which factor its next step needs more
-        substeps.
-    chosen : tuple, optional
-        What was chosen for it as it once moved, where it would not be chosen now (:attr:`StepPlan.kept`).
-    driven : list of lists
-        Of bodies that move at given speeds the entity, x, y [m] and the angle, where rounding has led them
-        elsewhere than in the whole world.
-    """
-
-    bodies: list[int]
-    span: float
-    finer: int
-    chosen: tuple[str, str, int] | None
-    driven: list[list[float]]
-
-    def is_fresh(self, state: State) -> bool:
-        """Whether an island begins so."""
-        simulation = state.simulation
-        begins = self.finer == 1 and self.chosen is None and not self.driven
-        return begins and self.span == simulation.dt / simulation.substeps
 
 
 class Islands:
@@ -394,7 +363,7 @@ class Islands:
         for source in sources:
             carry_sleep(source, part)
         part.joints.restore([kept for source in sources for kept in source.joints.kept()])
-        part.remainders = _joined_remainders([source.remainders for source in sources])
+        part.remainders = Remainders.joined([source.remainders for source in sources])
         return island
 
     def adopt(self, state: State, members: Sequence[Island]) -> None:
@@ -408,7 +377,7 @@ class Islands:
     def keep(self, state: State) -> list[KeptIsland] | None:
         """Return what a file keeps of the islands; ``None`` where a loaded world would find the same."""
         present = [island.entities.tolist() for island in self.members]
-        kept = [_kept(state, island) for island in self.members]
+        kept = [kept_of(state, island) for island in self.members]
         found: list[list[int]] = []
         if self._make is not None and why_whole(state, self._schedule) is None:
             groups, _ = groups_of(state, self._schedule, np.flatnonzero(movable_in(state)))
@@ -451,7 +420,7 @@ class Islands:
             for island in self.members:
                 carry_sleep(island.state, state)
             state.joints.restore([kept for island in self.members for kept in island.state.joints.kept()])
-            state.remainders = _joined_remainders([island.state.remainders for island in self.members])
+            state.remainders = Remainders.joined([island.state.remainders for island in self.members])
         state.contacts.source, self.members, self._left = None, (), b""
 
     def find_again(self) -> None:
@@ -469,34 +438,6 @@ def _in_order(members: Iterable[Island]) -> tuple[Island, ...]:
     return tuple(sorted(members, key=lambda island: int(island.entities[0])))
 
 
-def _kept(state: State, island: Island) -> KeptIsland:
-    """Return what a file keeps of an island."""
-    part, contacts = island.state, island.state.contacts
-    span = contacts.impulse_dt or part.simulation.dt / part.simulation.substeps
-    rows = np.flatnonzero(part.table(Velocity).present & ~movable_in(part))
-    there = state.entity_index.rows_of(part.entity_index.entities[rows])
-    own, whole = part.table(Transform), state.table(Transform)
-    moved = (own["position"][rows] != whole["position"][there]).any(axis=1)
-    moved |= own["angle"][rows] != whole["angle"][there]
-    driven = [
-        [int(part.entity_index.entities[row]), *own["position"][row].tolist(), float(own["angle"][row])]
-        for row in rows[moved]
-    ]
-    with part.active():
-        chosen = outlived(part, island.world.schedule, island.world.plan)
-    return KeptIsland(island.entities.tolist(), span, contacts.substep_factor, chosen, driven)
-
-
 def _period(state: State) -> int:
     """Return how often it was time to look for islands."""
     return math.floor((state.time + _LATE) / EXAMINED_S) if math.isfinite(state.time) else 0
-
-
-def _joined_remainders(kept: Sequence[Remainders]) -> Remainders:
-    """Return all remainders; each coordinate has one."""
-    if len(kept) == 1:
-        return kept[0]
-    names = ("keys", "q", "v", "q_low", "v_low")
-    columns = [np.concatenate([getattr(one, name) for one in kept]) for name in names]
-    _, first = np.unique(columns[0], return_index=True)
-    return Remainders(*(column[first] for column in columns))
