@@ -28,7 +28,7 @@ def test_pins_are_made_from_the_list_drawn_selected_removed_and_undone() -> None
     one, other = two_bars(world)
     desk.key("space")
     desk.frames()
-    for entities, words in (((one, other), "Join by a pin"), ((one,), "Pin in place")):
+    for entities, words in (((one, other), "Join by a pin"), ((one,), "Pin")):
         _, act = attachments(world, entities)[words]
         act(world, window)
     desk.frames()
@@ -63,7 +63,7 @@ def test_a_pin_that_could_hold_nothing_is_not_made() -> None:
     desk = Desk(empty_world())
     rock = desk.world.spawn(Transform(), Shape.circle(1.0))
     desk.frames()
-    attachments(desk.world, (rock,))["Pin in place"][1](desk.world, desk.window)
+    attachments(desk.world, (rock,))["Pin"][1](desk.world, desk.window)
     assert not len(desk.world.batch(Pin))
     pygame.display.quit()
 

@@ -384,7 +384,7 @@ def test_no_click_on_a_panel_reaches_the_world(desk: Desk, button: str, first: i
     desk.frames(SETTLED)
     centre = desk.window.camera.centre
     window = Window(desk.window.canvas)
-    changes = ("Delete", "Duplicate", "Hang on a rod", "Plot", "Step back", "Time line")
+    changes = ("Delete", "Duplicate", "Hang on a rod", "Pin", "Plot", "Step back", "Time line")
     for label in [label for label in desk.ui.places if label not in changes][first::3]:
         click(desk, label, button)
         tap(desk, "escape")

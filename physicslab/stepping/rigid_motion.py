@@ -41,8 +41,8 @@ _SHORT_STEPS = 32
 """Number of steps by impulses in a whole step."""
 _MAX_SHORT_STEPS = 320
 """Largest number of them: fast bodies must not pass through each other."""
-_NONE = 2.0
-"""Multiple of what forces add to a speed in a short step up to which an approach is none."""
+_SLOW = 2.0
+"""Multiple of what forces add to a speed in a short step up to which an approach is treated as zero."""
 _OVERLAP = 1e-3
 """Largest overlap that is moved apart at the start of a step, as a share of a size; soft contacts leave
 half."""
@@ -219,9 +219,9 @@ class RigidMotion:
             h = left if last else h
             time_stepping.drift(q, v, 0.5 * h)
             gained = h * time_stepping.kick(scene, self._stages[-1], q, v, h)
-            none = _NONE * gained
+            tolerance = _SLOW * gained
             made.evaluations, made.closed = made.evaluations + 1, 0
-            why = self._resist(scene, state, end - left + 0.5 * h, h, none, made)
+            why = self._resist(scene, state, end - left + 0.5 * h, h, tolerance, made)
             if why != motion.DONE:
                 return _WHY[why]
             time_stepping.drift(q, v, 0.5 * h)
@@ -280,7 +280,7 @@ class RigidMotion:
             why, count, rest, deepest, _ = self._touch(scene, q, _NEAR * deepest)
             if why != motion.DONE:
                 return _WHY[why]
-            if not math.isfinite(rest):  # every speed would count as none
+            if not math.isfinite(rest):  # every speed would be treated as zero
                 return "squares of speeds or accelerations are not finite"
             if deepest <= max(_SEPARATE, rounding):
                 if before is not None:
@@ -297,17 +297,18 @@ class RigidMotion:
         return f"bodies overlap by {deepest:.2g} of their size"
 
     def _resist(
-        self, scene: tuple[Any, ...], state: State, time: float, h: float, none: float, made: MadeStep
+        self, scene: tuple[Any, ...], state: State, time: float, h: float, tolerance: float, made: MadeStep
     ) -> int:
         """Find the impulses in the middle of a short step of ``h`` seconds; return why that failed.
 
-        They act at all points that would touch by its end, or bounce. Speeds up to ``none`` are none [m/s].
+        They act at all points that would touch by its end, or bounce. Speeds up to ``tolerance`` [m/s]
+        are treated as zero.
         """
         q, v, soon = self._ode.q, self._ode.v, self._stages[2]
         for _ in range(_SHORT_REPEATS):
             soon[:] = q
             time_stepping.drift(soon, v, h)
-            why, _, points = self._meet(scene, state, soon, none, 2.0 / h, 1, time, made)
+            why, _, points = self._meet(scene, state, soon, tolerance, 2.0 / h, 1, time, made)
             if why != motion.DONE or points == 0:
                 return why
             made.closed = points
@@ -328,14 +329,14 @@ class RigidMotion:
         return motion.touch(scene, self._equations, self._room, acceleration, place, q, v, within)
 
     def _meet(
-        self, scene: tuple[Any, ...], state: State, place: NDArray[np.float64], none: float, rate: float,
+        self, scene: tuple[Any, ...], state: State, place: NDArray[np.float64], tolerance: float, rate: float,
         repeats: int, time: float, made: MadeStep,
     ) -> tuple[int, int, int]:  # fmt: skip
         """Find which points touch at a place, and let those that approach bounce; repeat both.
 
-        An impact can change which faces two boxes turn to each other. Speeds up to ``none`` are none [m/s];
-        points that would touch in 1 / ``rate`` seconds do. Returns why the motion cannot go on, how many
-        points touch, and how many the last impulses act at.
+        An impact can change which faces two boxes turn to each other. Speeds up to ``tolerance`` [m/s] are
+        treated as zero; points that would touch in 1 / ``rate`` seconds do. Returns why the motion cannot go
+        on, how many points touch, and how many the last impulses act at.
         """
         contacts, count, last = state.contacts, 0, 0
         for _ in range(repeats):
@@ -344,7 +345,7 @@ class RigidMotion:
                 return why, count, last
             new, solved, energetic, lowered, last, work = motion.collide(
                 scene, self._equations, count, self._room, self._ode.q, self._ode.v, self._stages[3],
-                self._stages[-1], max(rest, none), rate, state.entity_index.entities, contacts.log,
+                self._stages[-1], max(rest, tolerance), rate, state.entity_index.entities, contacts.log,
                 contacts.logged, time, state.account.sums,
             )  # fmt: skip
             contacts.logged += new

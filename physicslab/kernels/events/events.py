@@ -56,7 +56,7 @@ DEEP = 0.01
 _MAX_IMPACTS = 1_000_000
 """Largest number of impacts within one step."""
 _MIN_SPEED_RATIO = 1e-17
-"""Share of the fastest speed that counts as none: bodies that stay together keep about as much."""
+"""Share of the fastest speed that is treated as zero: bodies that stay together keep about as much."""
 _SAME_TIME = 1e-12
 """Share of a step within which impacts of one pair count as simultaneous."""
 _AHEAD = 64.0
@@ -108,7 +108,7 @@ def _first(due: Vectors, count: int) -> int:
 def _begin_all(flight: Flight, step: int, span: float, left: int) -> tuple[int, float, float]:
     """Begin all paths of a step, of which ``left`` are to come.
 
-    Returns OVERLAP if bodies overlap too deeply, else DONE; the speed that counts as none [m/s]; and the
+    Returns OVERLAP if bodies overlap too deeply, else DONE; the tolerance of speeds [m/s]; and the
     distance that rounding may make until pairs that are apart are looked at again [m].
     """
     paths, mode, due, (position, angle, linear, _) = flight.paths, flight.mode, flight.due, flight.motion

@@ -191,7 +191,7 @@ def constrained_acceleration(
 def project(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
     """Move bodies by the least that closes the gaps of closed points, and remove their speeds across.
 
-    What sticks loses its speed along the surface as well. Speeds that counted as none are taken by contacts;
+    What sticks loses its speed along the surface as well. Speeds below the tolerance are taken by contacts;
     what moving bodies does to energy and momentum is an error.
     """
     for turn in range(3):

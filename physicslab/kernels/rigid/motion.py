@@ -160,7 +160,7 @@ def touch(
 ) -> tuple[int, int, float, float, bool]:  # fmt: skip
     """Find which points touch at ``place``, or are ``within`` a share of a size.
 
-    Returns why the motion cannot go on (DONE if it can), how many points touch, the speed that counts as none
+    Returns why the motion cannot go on (DONE if it can), how many points touch, the tolerance of speeds
     [m/s], the deepest overlap as a share of a size, and whether any point approaches in (q, v).
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
@@ -175,21 +175,22 @@ def touch(
 @kernel
 def collide(
     scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, q: Numbers, v: Numbers,
-    old: Numbers, acceleration: Numbers, none: float, rate: float, entities: Rows, log: Impacts, logged: int,
-    time: float, account: Vectors,
+    old: Numbers, acceleration: Numbers, tolerance: float, rate: float, entities: Rows, log: Impacts,
+    logged: int, time: float, account: Vectors,
 ) -> tuple[int, bool, int, int, int, int]:  # fmt: skip
     """Let those of ``count`` points that approach in (q, v) bounce.
 
-    Speeds up to ``none`` are none [m/s]; points that would touch in 1 / ``rate`` seconds do. ``old`` is room
-    for speeds, ``acceleration`` what forces cause; what the impulses give is added to ``account``. Returns
-    how many impacts there were, whether impulses were found, how many impacts obeyed Stronge's law, how often
-    restitutions were lowered to keep the energy, how many points the last impulses act at, which are left in
-    ``room``, and the work of all rounds (1 + n^4 / 500 for n points).
+    Speeds up to ``tolerance`` [m/s] are treated as zero; points that would touch in 1 / ``rate`` seconds do.
+    ``old`` is room for speeds, ``acceleration`` what forces cause; what the impulses give is added to
+    ``account``. Returns how many impacts there were, whether impulses were found, how many impacts obeyed
+    Stronge's law, how often restitutions were lowered to keep the energy, how many points the last impulses
+    act at, which are left in ``room``, and the work of all rounds (1 + n^4 / 500 for n points).
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
     new, solved, by_energy, kept, last, rounds = resolve_simultaneous_impacts(
-        of, points, count, scratch, q, v, old, acceleration, none, rate, entities, log, logged, time, account
-    )
+        of, points, count, scratch, q, v, old, acceleration, tolerance, rate, entities, log, logged, time,
+        account,
+    )  # fmt: skip
     return new, solved, by_energy, kept, last, rounds * (500 + count * count * count * count) // 500
 
 
@@ -272,7 +273,7 @@ def begin_motion(
 
     ``changed`` has the points that ended the piece before; ``steady`` whether forces depend on the state of
     motion alone. Returns why the motion cannot go on (DONE if it can), the number of closed points, the
-    speed that counts as none [m/s], and whether nothing moves or accelerates.
+    tolerance of speeds [m/s], and whether nothing moves or accelerates.
     """
     of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
     accelerate(q, v, at.acceleration, of.inverse_mass, of.damping, of.calls)

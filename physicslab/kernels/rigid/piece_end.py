@@ -122,7 +122,7 @@ def _can_end(kind: int, i: int, equations: Equations) -> bool:
 
 @inlined
 def _allowance(kind: int, i: int, scene: Scene, equations: Equations, start: float, rest: float) -> float:
-    """Return how far a function may fall that begins at nothing: by as much as counts as none.
+    """Return how far a function may fall that begins at zero: by as much as is treated as zero.
 
     A corner at the end of a face is on it as long as both are level.
     """

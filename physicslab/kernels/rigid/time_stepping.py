@@ -81,7 +81,7 @@ def separate(scene: SceneTuple, equations: EquationsTuple, count: int, q: Number
 
 @inlined
 def _find_islands(scene: Scene, equations: Equations, count: int, island: Numbers) -> None:
-    """Give all bodies that hang together by points or joints one number: the lowest row of them."""
+    """Give all bodies that points or joints connect one number: the lowest row of them."""
     for row in range(scene.rows):
         island[row] = row
     changed, n = True, scene.joints[ROWS]

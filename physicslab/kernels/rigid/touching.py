@@ -57,7 +57,7 @@ __all__ = [
 _TOUCH = 1e-10
 """Share of the smaller size within which a gap is closed."""
 _REST = 1e-6
-"""Speeds below this, times the speed of a fall over the smallest size, are none."""
+"""Tolerance of speeds, in shares of the speed of a fall over the smallest size."""
 SLOW = 1e-3
 """Share of that speed below which a point does not slide: what is slower comes to rest before it should."""
 NO_SPEED = 1e-8
@@ -211,7 +211,7 @@ def find_touching(
 
 @inlined
 def rest_limits(scene: Scene, acceleration: Numbers, v: Numbers) -> tuple[float, float]:
-    """Return the speed [m/s] and the acceleration [m/s^2] below which there is none."""
+    """Return the tolerances of speeds [m/s] and of accelerations [m/s^2], below which all is zero."""
     strongest, fastest, smallest = 0.0, 0.0, math.inf
     for row in range(scene.rows):
         if scene.inverse_mass[2 * row] > 0.0:
@@ -251,7 +251,7 @@ def _changed_status(equations: Equations, i: int, changed: Points) -> int:
 
 @fused
 def _stop_across(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
-    """Remove speeds that count as none: equations of points that rest would contradict each other."""
+    """Remove speeds below the tolerance: equations of points that rest would contradict each other."""
     for i in range(count):
         equations.points[i, STATUS] = SLIDES_ON
         equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = equations.measures[i, VN], 0.0

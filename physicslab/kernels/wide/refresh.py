@@ -115,7 +115,7 @@ def _refresh_boxes(slots: L.Slots, k: int, motion: Motion, tolerance: float) -> 
     return mask_bits(moved)
 
 
-@fused
+@inlined
 def _find_again(
     slots: L.Slots, slot: int, near: Near, motion: Motion, shapes: Shapes, inverse: Inverse,
     bounds: Bounds, h: float, start: float, speculative_margin: float,

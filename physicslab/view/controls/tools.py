@@ -210,7 +210,7 @@ def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, A
     if len(entities) == 2:
         found["Join by a pin"] = "A pin half way between the middles of these two, about which they turn", pin
     else:
-        found["Pin in place"] = "A pin through its middle, about which it turns", pin
+        found["Pin"] = "A pin through its middle, about which it turns", pin
     return found
 
 

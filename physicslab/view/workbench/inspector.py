@@ -244,16 +244,15 @@ def _build_components(ui: Ui, world: World, window: Window) -> None:
 
 def _build_buttons(ui: Ui, world: World, window: Window) -> None:
     ui.gap(0.2)
-    attached = attachments(world, window.selection.entities)
-    for n, (words, (tip, action)) in enumerate(attached.items()):
+    buttons = attachments(world, window.selection.entities) | {
+        "Duplicate": ("A copy beside it (Ctrl+D)", duplicate_selected),
+        "Delete": ("Remove the selection (Del)", remove_selected),
+        "Done": ("Select nothing (Esc)", lambda _, window: window.selection.clear()),
+    }
+    for n, (words, (tip, action)) in enumerate(buttons.items()):
         if n:
             ui.same_line_if_room(words)
         ui.button(words, tip, action)
-    ui.button("Duplicate", "A copy beside it (Ctrl+D)", duplicate_selected)
-    imgui.same_line()
-    ui.button("Delete", "Remove the selection (Del)", remove_selected)
-    ui.same_line_if_room("Done")
-    ui.button("Done", "Select nothing (Esc)", lambda _, window: window.selection.clear())
 
 
 def _made(kind: type[Component], entity: int) -> Component:
