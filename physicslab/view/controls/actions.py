@@ -5,13 +5,14 @@ import math
 from collections.abc import Sequence
 from pathlib import Path
 
-from physicslab.components import Held, Pin, Shape, Spring, Transform, Velocity
+from physicslab.components import Held, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import SceneError, file_stem
 from physicslab.history import Branch, Command, Remove, SetField, SetPhysics, Spawn
+from physicslab.state.joints import KINDS
 from physicslab.systems.gravity import GravitySystem
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.file_actions import new_paths
@@ -193,7 +194,7 @@ def _parts(world: World, entity: int) -> list[Component]:
     return [
         type(part)(**part.given())
         for part in world.components(entity)
-        if isinstance(part, Component) and not isinstance(part, Held | Pin | Spring)
+        if isinstance(part, Component) and not isinstance(part, (Held, Spring, *KINDS))
     ]
 
 

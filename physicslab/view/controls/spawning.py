@@ -6,12 +6,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from physicslab.components import Pin, Spring, Transform
+from physicslab.components import Spring, Transform
 from physicslab.contacts.outlines import Outlines
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Spawn
 from physicslab.prefabs import binary, box, capsule, chain, circle, container, pendulum, pile, pyramid, stack
+from physicslab.state.joints import KINDS
 from physicslab.view.window.edits import Recipe
 from physicslab.view.window.placing import outlines_of, refused_place
 from physicslab.view.window.spring_tool import rod_stiffness
@@ -147,14 +148,14 @@ def _spawn_commands(make: Make, window: Window, first: int) -> list[Command]:
     for entity in entities:
         parts = [copy.copy(part) for part in scratch.components(entity) if isinstance(part, Component)]
         for part in parts:
-            if isinstance(part, Spring | Pin):
+            if isinstance(part, (Spring, *KINDS)):
                 parts[parts.index(part)] = _renumbered(part, number)
         commands.append(Spawn(parts))
     return commands
 
 
-def _renumbered(part: Spring | Pin, number: dict[int, int]) -> Spring | Pin:
-    """Return a spring or a pin between the same bodies under other numbers."""
+def _renumbered[C: Component](part: C, number: dict[int, int]) -> C:
+    """Return a spring or a joint between the same bodies under other numbers."""
     ends = {end: None if getattr(part, end) is None else number[getattr(part, end)] for end in ("a", "b")}
     return type(part)(**{**part.values(), **ends})
 

@@ -9,7 +9,6 @@ from physicslab.components import (
     Mass,
     Material,
     Name,
-    Pin,
     Shape,
     Spring,
     Strobe,
@@ -23,6 +22,7 @@ from physicslab.ecs.text import in_words
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, RemoveComponent, SetField
 from physicslab.state.attached import local_point as in_frame
+from physicslab.state.joints import KINDS
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.spring_tool import local_point, point_of
 from physicslab.view.window.window import Window
@@ -126,8 +126,8 @@ def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable
     if kind is Spring:
         yield plain_kind(kind), lambda entity: _spring_above(world, entity)
         return
-    if kind is Pin:
-        yield plain_kind(kind), lambda entity: Pin(anchor_b=world.component(entity, Transform).position)
+    if kind in KINDS:
+        yield plain_kind(kind), lambda entity: kind(anchor_b=world.component(entity, Transform).position)
         return
     given = {spec.name: _first(spec) for spec in kind.FIELDS if spec.default is REQUIRED}
     with contextlib.suppress(InvalidValue, TypeError):
@@ -162,7 +162,6 @@ _MEANINGS: dict[type[Component], str] = {
     Material: "its restitution and friction",
     Drag: "a medium slows it, as air does",
     Spring: "it hangs from a point that can be dragged",
-    Pin: "it turns about its middle, which stays in place",
     Strobe: "it leaves pictures of its past positions",
     Trail: "its past path is shown",
 }
@@ -189,7 +188,7 @@ def set_end(
         return
     held = world.component(entity, kind)
     values = held.given() | {field: end}
-    if isinstance(held, Spring | Pin):
+    if isinstance(held, (Spring, *KINDS)):
         own = entity if world.has(entity, Transform) else None
         first = values["a"] or own
         if first == values["b"] or (first is None and isinstance(held, Spring)):
@@ -197,7 +196,7 @@ def set_end(
             window.notify(words, 6.0, failed=True)
             return
         anchor = f"anchor_{field}"
-        before = getattr(held, field) if field == "b" else held.a or own
+        before = getattr(held, field) or (own if field == "a" else None)
         place = point_of(world, before, getattr(held, anchor))
         values[anchor] = local_point(world, end if field == "b" else end or own, place)
     elif (point := field.removesuffix("_body")) in getattr(kind, "POINTS", ()):

@@ -7,12 +7,13 @@ from typing import Any
 
 from imgui_bundle import imgui
 
-from physicslab.components import Drag, Mass, Material, Pin, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import Drag, Mass, Material, Shape, Spring, Trail, Transform, Velocity
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetField
+from physicslab.state.joints import KINDS
 from physicslab.view.canvas.quantities import without_rounding
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.changing import change_fields, set_end
@@ -151,17 +152,26 @@ def _label(spec: Field) -> str:
 
 
 ORDER: dict[Kind, int] = {
-    kind: n for n, kind in enumerate((Transform, Velocity, Mass, Shape, Material, Drag, Spring, Pin, Trail))
+    kind: n
+    for n, kind in enumerate((Transform, Velocity, Mass, Shape, Material, Drag, Spring, *KINDS, Trail))
 }
 """In which order components are shown; others come after these."""
+_JOINING: tuple[type[Component], ...] = (Spring, *KINDS)
+"""The components with two ends."""
 _NAMES = {
     ("Velocity", "linear"): "Velocity", ("Velocity", "angular"): "Turning",
-    ("Mass", "fixed_rotation"): "Keeps its angle", ("Spring", "a"): "From", ("Spring", "b"): "To",
-    ("Spring", "anchor_a"): "Holds at", ("Spring", "anchor_b"): "Other end",
-    ("Pin", "a"): "From", ("Pin", "b"): "To",
-    ("Pin", "anchor_a"): "Holds at", ("Pin", "anchor_b"): "Other end",
+    **{
+        (kind.__name__, field): words
+        for kind in _JOINING
+        for field, words in (("a", "From"), ("b", "To"), ("anchor_a", "Holds at"), ("anchor_b", "Other end"))
+    },
+    ("Mass", "fixed_rotation"): "Keeps its angle",
     ("Drag", "linear"): "Drag of v", ("Drag", "quadratic"): "Drag of v²", ("Trail", "length"): "Trail of",
 }  # fmt: skip
 """Plainer names for the labels, by component and field."""
-_ABSENT = {"Spring.a": "itself", "Spring.b": "a fixed point", "Pin.a": "itself", "Pin.b": "a fixed point"}
+_ABSENT = {
+    f"{kind.__name__}.{field}": words
+    for kind in _JOINING
+    for field, words in (("a", "itself"), ("b", "a fixed point"))
+}
 """The meaning of an absent entity, by component and field."""
