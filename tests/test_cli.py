@@ -235,7 +235,10 @@ USAGE = [
     (["drop", "--fast"], "unrecognized arguments: --fast"),
     (["bench", "pilez"], '"pilez": is no scene; did you mean "pile"'),
     (["stability", "springz"], '"springz": is no case; did you mean "springs"?'),
-    (["stability", "qqqq"], '"qqqq": is no case; there are the groups springs, dampers, chains, stacks, '),
+    (
+        ["stability", "qqqq"],
+        '"qqqq": is no case; there are the groups springs, dampers, chains, joints, stacks, ',
+    ),
     (["stability", "--json", "none/x.json", "far"], "--json none/x.json: cannot be written"),
 ]
 

@@ -75,8 +75,8 @@ def folders(monkeypatch: pytest.MonkeyPatch, edited: str) -> dict[str, str]:
 @pytest.mark.parametrize(
     ("module", "stale", "kept"),
     [
-        ("narrow.sweep", {"narrow.sweep"}, {"motion", "raster", "solver.impulse", "ode.dop853"}),
-        ("ode.compensated", {"ode.compensated", "ode.dop853", "events.events"}, {"raster", "solver.impulse"}),
+        ("geometry.sweep", {"geometry.sweep"}, {"motion", "raster", "solver.impulse", "ode.dop853"}),
+        ("ode.compensated", {"ode.compensated", "ode.dop853", "events.events"}, {"raster", "geometry.sweep"}),
         ("raster", {"raster"}, {"motion", "energy", "solver.soft"}),
         ("compiler", {"motion", "raster", "solver.soft", "forces.drag"}, set()),
         ("loading", set(), {"motion", "raster", "solver.soft", "forces.drag"}),

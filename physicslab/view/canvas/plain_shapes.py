@@ -11,8 +11,8 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from physicslab.contacts.outlines import rim_of
 from physicslab.view.canvas.canvas import Look, Numbers, Points, Rounded
+from physicslab.view.canvas.rim import rim_of
 
 _LARGE = 200.0
 """Radius [px] from which a disc is drawn as a polygon, which can be cut off."""

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from physicslab.components import Shape, Transform
-from physicslab.contacts.outlines import Outlines, rim_of
+from physicslab.contacts.outlines import Outlines
 from physicslab.diagnostics.period import spring_state
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Look, Numbers, Points, Rect, TextStyle
+from physicslab.view.canvas.rim import rim_of
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.overlay.arrows import VELOCITY, draw_arrows
 from physicslab.view.picture.bodies import POINT_RADIUS
