@@ -113,7 +113,7 @@ class Joints:
         for joint, _, a, b, rows in found:
             own = slice(joint.first, joint.first + joint.size)
             self.a[own], self.b[own] = a, b
-            self.axis[own], self.block[own] = [row.axis for row in rows], [row.block for row in rows]
+            self.block[own] = [row.block for row in rows]
             held = kept.get((joint.entity, joint.kind))
             if held is not None:
                 self.impulse[own], self.force[own] = held
@@ -136,8 +136,7 @@ class Joints:
 
     def settings(self, index: EntityIndex) -> bytes:
         """Return the numbers of all joints, bit by bit."""
-        columns = ("anchor_a", "anchor_b")
-        return b"".join(index.table(kind)[name].tobytes() for kind in KINDS for name in columns)
+        return b"".join(index.table(kind)[spec.name].tobytes() for kind in KINDS for spec in kind.FIELDS)
 
     def refresh(self, index: EntityIndex) -> bool:
         """Take the numbers of joints where they were changed; return whether they were."""
@@ -151,6 +150,7 @@ class Joints:
             table, row = index.table(joint.kind), index.row_of[joint.entity]
             own = slice(joint.first, joint.first + joint.size)
             self.anchor_a[own], self.anchor_b[own] = table["anchor_a"][row], table["anchor_b"][row]
+            self.axis[own] = [one.axis for one in KINDS[joint.kind](table, row)]
         return True
 
     def may_touch(self, a: NDArray[Any], b: NDArray[Any]) -> NDArray[np.bool_]:
