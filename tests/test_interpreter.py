@@ -237,6 +237,11 @@ def drawn() -> None:
     rims = two[::-1].copy()
     raster.paint_discs(pixels, centre, sizes[:, 0].copy(), turned, two, rims, hatched, 1.6)
     raster.paint_boxes(pixels, centre, sizes, turned, two, rims, hatched, 1.6)
+    capsules = np.concatenate(
+        (centre - 3.0, centre + 3.0, np.repeat(centre + 3.0, 6, axis=0).reshape(2, -1)), axis=1
+    )
+    rounded = np.array((2.0, 4.5))
+    raster.paint_rounded(pixels, capsules, np.array((2, 2)), rounded, two, rims, hatched, 1.6)
     raster.paint_lines(pixels, centre, sizes, 2.5, 0x123456, np.array((1.0, 0.3)))
     raster.paint_strokes(pixels, centre - 12.0, sizes + 30.0, np.array((1.0, 7.0)), two)
     assert len(np.unique(pixels)) > 20
@@ -309,6 +314,15 @@ def impacts() -> None:
     assert world.collisions > 0
 
 
+def joints() -> None:
+    """Let a box turn about a pin, by itself and beside what it hits."""
+    pin: Entity = {"Pin": {"b": "e0", "anchor_a": [0, 2], "anchor_b": [-0.5, 0]}}
+    for others, contacts in (((), "auto"), ((body(1.5, 0.5, "disc"), FLOOR), "rigid")):
+        world = scene(body(0.5, 2.0, "box"), pin, *others, contacts=contacts)
+        world.run(steps=24)
+        assert len(world.joints) == 2
+
+
 def recorded() -> None:
     """Record steps, of which each has a digest."""
     History(load_scene("pyramid")).step(steps=3)
@@ -324,6 +338,7 @@ def test_every_kernel_gives_the_same_bits_as_python() -> None:
         stages_with_hooks,
         forces_by_hand,
         drawn,
+        joints,
         recorded,
         panels,
     ):

@@ -13,7 +13,7 @@ from physicslab import World, load_scene, save_scene
 from physicslab.components import Drag, Mass, Material, Pin, Shape, Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.history import History
+from physicslab.history import History, Remove, RemoveComponent
 from physicslab.kernels.accounts import EDITS
 from physicslab.state.masses import Diverged
 from physicslab.systems.standard import standard_systems
@@ -340,6 +340,28 @@ def test_seeking_across_islands_that_meet_gives_the_same_bits() -> None:
     assert np.array_equal(motion(world, bodies), late)
     assert sizes(world) == count
     assert history.difference is None
+
+
+def test_what_is_undone_is_undone_in_the_islands() -> None:
+    world = World()
+    floor(world)
+    balls = [disc(world, x, 3.0) for x in (0.0, FAR, 2.0 * FAR)]
+    history = History(world)
+    for edit in (RemoveComponent(balls[0], "Material"), Remove(balls[2])):
+        history.step(steps=3)
+        history.do(edit)
+    rubs = []
+    for _ in range(3):  # the body, three steps, the component
+        history.undo()
+        assert sizes(world) == [1, 1, 1]
+        parts = [island.state for island in world.islands.members]
+        rubs.append(
+            [
+                bool(part.table(Material).present[part.entity_index.row_of[ball]])
+                for part, ball in zip(parts, balls, strict=True)
+            ]
+        )
+    assert rubs == [[False, True, True], [False, True, True], [True, True, True]]
 
 
 def test_a_step_that_diverges_in_one_island_is_made_in_none() -> None:

@@ -284,6 +284,9 @@ def _tuples_of_numbers() -> set[str]:
                 kinds[node.name] -= {"N"}  # float, or eight of them
             elif isinstance(node, ast.TypeAlias):
                 kinds[node.name.id] = set(re.findall(r"\w+", ast.unparse(node.value))) - {"tuple"}
+            elif isinstance(node, ast.Assign) and ast.unparse(node.value).startswith("tuple["):
+                name = ast.unparse(node.targets[0])
+                kinds[name] = set(re.findall(r"\w+", ast.unparse(node.value))) - {"tuple"}
     found: set[str] = set()
     while more := {name for name in kinds.keys() - found if kinds[name] <= {"float", "int", "bool"} | found}:
         found |= more

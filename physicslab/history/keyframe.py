@@ -8,6 +8,7 @@ numbers, and entities keep theirs.
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Iterator, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
@@ -44,8 +45,10 @@ class _Structure:
 
     Attributes
     ----------
+    world : weak reference
+        The world that last had it: one island may be followed by another of the same bodies.
     changes : int
-        That of the entity index when the world last had it; nothing has come or gone while it is the same.
+        That of its entity index then; nothing has come or gone there while it is the same.
     entities : int64 array (rows,)
         The entity of each row, 0 for blank ones.
     present : dict of component type to bool array (rows,)
@@ -54,6 +57,7 @@ class _Structure:
         The components of each entity that have no columns, such as its name.
     """
 
+    world: weakref.ref[World]
     changes: int
     entities: NDArray[np.int64]
     present: dict[type[Any], NDArray[np.bool_]]
@@ -69,12 +73,15 @@ class _Structure:
             if plain:
                 others[entity] = plain
         present = {kind: table.present.copy() for kind, table in index.tables.items() if table.handles}
-        return cls(index.changes, index.entities.copy(), present, others)
+        return cls(weakref.ref(world), index.changes, index.entities.copy(), present, others)
+
+    def is_unchanged(self, world: World) -> bool:
+        """Whether the world has had it last, and nothing came or went since."""
+        return self.world() is world and self.changes == world.entity_index.changes
 
     def is_that_of(self, world: World) -> bool:
-        """Whether nothing came or went since, and rows are numbered alike."""
-        index = world.entity_index
-        return self.changes == index.changes and np.array_equal(self.entities, index.entities)
+        """Whether that is so, and rows are numbered alike."""
+        return self.is_unchanged(world) and np.array_equal(self.entities, world.entity_index.entities)
 
     def restore(self, world: World) -> None:
         """Make the same entities of the same components; what is there already stays as it is."""
@@ -188,10 +195,10 @@ class Keyframe:
         with world.active():
             if index.synchronise():
                 world.stale = True
-            if index.changes != structure.changes:
+            if not structure.is_unchanged(world):
                 structure.restore(world)
                 world.stale |= index.synchronise()
-                structure.changes = index.changes
+                structure.world, structure.changes = weakref.ref(world), index.changes
             rows = np.where(structure.entities > 0, index.rows_of(structure.entities), -1)
             for kind, columns in self._columns.items():
                 for now, then in zip(world.table(kind).columns, columns, strict=True):
