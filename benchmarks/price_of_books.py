@@ -31,10 +31,10 @@ def leave_out_books() -> None:
     """Replace every function that books by one that does nothing, before any kernel is compiled."""
     import physicslab.stepping.substeps  # noqa: F401 (so that all kernels of contacts are there)
     from physicslab import world
-    from physicslab.kernels import inlined
+    from physicslab.kernels import float64x8, inlined
     from physicslab.kernels.constraint.pair import PairVelocity
     from physicslab.kernels.solver import impact_log, impulse, soft, work
-    from physicslab.kernels.wide import float64x8, solve
+    from physicslab.kernels.wide import solve
     from physicslab.state.account import Account
     from physicslab.stepping import soft as stepper
 

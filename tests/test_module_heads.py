@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).parent.parent / "physicslab"
 FOLDERS = (
     "commands", "components", "contacts", "desktop", "diagnostics", "ecs", "export", "files", "history",
     "integrators", "lab", "ode", "prefabs", "scenes", "state", "stepping", "systems", "view",
-    "kernels/constraint", "kernels/forces", "kernels/ode", "kernels/sleep", "kernels/wide",
+    "kernels/constraint", "kernels/forces", "kernels/joints", "kernels/ode", "kernels/sleep", "kernels/wide",
 )  # fmt: skip
 """The folders that hold to it; the others follow."""
 

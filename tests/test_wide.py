@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from physicslab.kernels.wide.float64x8 import (
+from physicslab.kernels.float64x8 import (
     choose,
     greater,
     lesser,
@@ -20,7 +20,7 @@ from physicslab.kernels.wide.float64x8 import (
     take_numbers,
     take_vectors,
 )
-from physicslab.kernels.wide.layout import WIDE
+from physicslab.kernels.wide_layout import WIDE
 
 type Numbers = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from physicslab.kernels import near_counts
 from physicslab.kernels.arguments import Motion, MotionTuple
 from physicslab.kernels.solver import soft
 from physicslab.kernels.wide import restore_slots
-from physicslab.kernels.wide.layout import MASS_A, MASS_B, WIDE
+from physicslab.kernels.wide_layout import MASS_A, MASS_B, WIDE
 from physicslab.lab.worlds import floor, open_space, place
 from physicslab.prefabs import box, circle, container, pile, pyramid
 from physicslab.world import World

@@ -12,8 +12,8 @@ from physicslab.kernels.arguments import (
     NearTuple,
     SoftnessTuple,
 )
-from physicslab.kernels.constraint.soft_joints import MEASURED, JointsTuple
 from physicslab.kernels.geometry.shapes import ShapesTuple
+from physicslab.kernels.joints.soft import MEASURED, JointsTuple
 from physicslab.kernels.solver import soft
 from physicslab.state.state import State
 

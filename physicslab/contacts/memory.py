@@ -6,8 +6,8 @@ from physicslab.contacts.report import ordered_records
 from physicslab.kernels.events.events import DEEP
 from physicslab.kernels.geometry.contact import AS_FOUND
 from physicslab.kernels.records import MANIFOLD, POINT
-from physicslab.kernels.wide.layout import WIDE
 from physicslab.kernels.wide.slots import COLOURS
+from physicslab.kernels.wide_layout import WIDE
 from physicslab.state.contacts import Contacts
 
 _NO_ROWS = ("entity_a", "entity_b", "a", "b", "gap", "slot")

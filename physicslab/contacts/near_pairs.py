@@ -9,8 +9,8 @@ from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.kernels.wide import graph_colour, restore_slots, slots
 from physicslab.kernels.wide.graph_colour import MIN_WIDE
-from physicslab.kernels.wide.layout import WIDE
 from physicslab.kernels.wide.slots import COLOURS
+from physicslab.kernels.wide_layout import WIDE
 from physicslab.state.state import State
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, fused
 from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Couples, Impacts, Manifolds, Points
-from physicslab.kernels.wide.layout import Slots, SlotsTuple
+from physicslab.kernels.wide_layout import Slots, SlotsTuple
 
 
 class Motion(NamedTuple):

@@ -14,7 +14,7 @@ from numba.extending import is_jitted
 
 from physicslab.kernels.stand_ins import arithmetic, math_functions, stand_in_of
 
-_VECTORS = "physicslab.kernels.wide.interpreted"
+_VECTORS = "physicslab.kernels.float64x8_interpreted"
 """Where the stand-ins of vectors are: they are imported when the first kernel is interpreted."""
 _endless: set[Any] = set()
 

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.kernels.accounts import DAMPING, ENERGY, SPIN
-from physicslab.kernels.constraint.joint_rows import FIRST, RANK, constrain, forces_of, project
 from physicslab.kernels.forces.bookings import ACCOUNTS, END
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import PLAIN_LIMIT
+from physicslab.kernels.joints.rows import FIRST, RANK, constrain, forces_of, project
 from physicslab.ode.bookings import BookKeeper, book_in_python
 from physicslab.state.packed import StateLayout
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys

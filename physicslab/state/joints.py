@@ -62,7 +62,7 @@ class Joints:
     force : float64 array (n,)
         At the end of the last step, or as its mean [N].
     measured : float64 array (n, k)
-        Room for what soft constraints measure of a row (:mod:`physicslab.kernels.constraint.soft_joints`).
+        Room for what soft constraints measure of a row (:mod:`physicslab.kernels.joints.soft`).
     beside_contacts : bool
         Whether contacts are solved at all, and joints with them.
     rank : int

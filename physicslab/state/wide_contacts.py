@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import near_counts
 from physicslab.kernels.wide import graph_colour, refresh, restore_slots, slots
-from physicslab.kernels.wide.layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE, SlotsTuple
+from physicslab.kernels.wide_layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE, SlotsTuple
 
 type _Rows = NDArray[np.int64]
 
@@ -18,7 +18,7 @@ class WideConstraints:
     kind, rows : int
         ``DISC`` or ``BOX``, and how many numbers a block has.
     data : float64 array (capacity * rows,)
-        What they hold, as :mod:`physicslab.kernels.wide.layout` has it.
+        What they hold, as :mod:`physicslab.kernels.wide_layout` has it.
     a, b, pair : int64 arrays (capacity * WIDE,)
         Rows of the bodies in each slot, and which near pair it is; -1 for a free slot.
     colour : int64 array (capacity,)

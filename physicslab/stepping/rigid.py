@@ -10,7 +10,7 @@ from physicslab.components import Material, Velocity
 from physicslab.contacts.arguments import shapes_of
 from physicslab.kernels.accounts import CONTACT, FRICTION, HAND
 from physicslab.kernels.broad import near_pairs
-from physicslab.kernels.constraint.joint_rows import forces_of
+from physicslab.kernels.joints.rows import forces_of
 from physicslab.kernels.rigid import joined, motion, time_stepping
 from physicslab.kernels.wide import slots
 from physicslab.ode.system import OdeSystem

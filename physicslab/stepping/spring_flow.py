@@ -10,7 +10,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS
 from physicslab.kernels.arguments import SpringsTuple
 from physicslab.kernels.ode.spring_flow import HEAD, KNOWN, WEIGHT
-from physicslab.kernels.wide.layout import WIDE
+from physicslab.kernels.wide_layout import WIDE
 from physicslab.state.packed import StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
 from physicslab.systems.gravity import GravitySystem

@@ -13,7 +13,7 @@ from physicslab.contacts.islands import wake_all
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.vector import rotated
 from physicslab.kernels import accounts
-from physicslab.kernels.constraint import joint_rows
+from physicslab.kernels.joints import rows as joint_rows
 from physicslab.kernels.solver import soft
 from physicslab.state.joints import KINDS, ends_of
 from physicslab.state.packed import PackedForce, StateLayout

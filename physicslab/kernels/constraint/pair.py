@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Vectors, fused
 from physicslab.kernels.arguments import Inverse
+from physicslab.kernels.float64x8 import Wide
 from physicslab.kernels.records import Manifold, Point
-from physicslab.kernels.wide.float64x8 import Wide
 
 
 class PairVelocity[N: (float, Wide)](NamedTuple):

@@ -14,8 +14,8 @@ from typing import Any
 
 from physicslab.kernels import Numbers, Rows, fused, inlined
 from physicslab.kernels.accounts import book
+from physicslab.kernels.forces.fall_shares import fall_shares
 from physicslab.kernels.forces.force_calls import force_kernel
-from physicslab.kernels.ode.fall_shares import fall_shares
 
 CLOCK, END, BODIES, DAMPED, KEPT = range(5)
 """What :attr:`physicslab.ode.system.OdeSystem.places` holds: where the time is; where the accounts behind it

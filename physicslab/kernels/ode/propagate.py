@@ -3,7 +3,7 @@
 import math
 
 from physicslab.kernels import Vectors, inlined, kernel
-from physicslab.kernels.ode.fall_shares import fall_shares
+from physicslab.kernels.forces.fall_shares import fall_shares
 
 
 @inlined

@@ -10,8 +10,8 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
 from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, SPRINGS, book
 from physicslab.kernels.arguments import Motion, Springs
-from physicslab.kernels.wide.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
-from physicslab.kernels.wide.layout import WIDE
+from physicslab.kernels.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
+from physicslab.kernels.wide_layout import WIDE
 
 TURNS_FAST = -1
 """What is returned where a spring is too short, or turns too far, for steps of this length."""

@@ -50,7 +50,7 @@ class Scene(NamedTuple):
 
     The number of rows; inverse masses (3 rows,), damping, forces; shapes, walls of the bounds (4,) [m];
     pairs (n, 3), and of each the friction, restitution and smaller size [m] (n, 3); where accounts are (3,);
-    the rows of joints, their numbers and whole numbers (:mod:`physicslab.kernels.constraint.joint_rows`).
+    the rows of joints, their numbers and whole numbers (:mod:`physicslab.kernels.joints.rows`).
     """
 
     rows: int

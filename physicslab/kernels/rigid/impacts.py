@@ -22,8 +22,8 @@ from physicslab.kernels.constraint.impact_law import (
     narrow_search,
     solve_impact,
 )
-from physicslab.kernels.constraint.joint_rows import ROWS
 from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity
+from physicslab.kernels.joints.rows import ROWS
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all

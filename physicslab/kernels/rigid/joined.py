@@ -3,12 +3,12 @@
 A force at a point moves bodies by P J_c^T, with P = M^-1 - M^-1 J^T (J M^-1 J^T)^-1 J M^-1 of the rows of
 joints in place of M^-1: joints answer in the same moment, impulses at once. So the laws of contacts hold
 as they are, and a joint is a pair of rows that are always kept, without a cone. The rows are packed as
-for smooth motion (:mod:`physicslab.kernels.constraint.joint_rows`), whose force is part of all others.
+for smooth motion (:mod:`physicslab.kernels.joints.rows`), whose force is part of all others.
 """
 
 from physicslab.kernels import Numbers, Vectors, inlined, kernel
 from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, PX, PY, SPIN
-from physicslab.kernels.constraint.joint_rows import (
+from physicslab.kernels.joints.rows import (
     ENDS,
     FIRST,
     JA,

@@ -10,8 +10,8 @@ steps.
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
-from physicslab.kernels.constraint.joint_rows import ROWS
 from physicslab.kernels.forces.force_calls import accelerate
+from physicslab.kernels.joints.rows import ROWS
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds

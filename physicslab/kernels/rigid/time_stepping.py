@@ -10,8 +10,8 @@ of order one.
 import math
 
 from physicslab.kernels import Numbers, inlined, kernel
-from physicslab.kernels.constraint.joint_rows import ENDS, FIRST, ROWS
 from physicslab.kernels.forces.force_calls import accelerate
+from physicslab.kernels.joints.rows import ENDS, FIRST, ROWS
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, Equations, EquationsTuple, named_equations

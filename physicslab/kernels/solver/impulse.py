@@ -13,7 +13,7 @@ from physicslab.kernels.constraint.pair import (
     put_velocity,
     velocity_of,
 )
-from physicslab.kernels.constraint.soft_joints import (
+from physicslab.kernels.joints.soft import (
     Joints,
     JointSoftness,
     begin_joints,

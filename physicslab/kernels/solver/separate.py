@@ -3,12 +3,12 @@
 import math
 
 from physicslab.kernels import Numbers, Vectors, allocating, always_inlined, fused, inlined
+from physicslab.kernels import wide_layout as L
 from physicslab.kernels.accounts import ENERGY, OVERLAP, SPIN
 from physicslab.kernels.arguments import Acting, Contacts, Motion, Near
+from physicslab.kernels.float64x8 import lesser, mask_bits, take
 from physicslab.kernels.near_counts import DISC_BLOCKS, OUTSIDE
 from physicslab.kernels.records import Manifold, Points
-from physicslab.kernels.wide import layout as L
-from physicslab.kernels.wide.float64x8 import lesser, mask_bits, take
 
 _DEEP = 0.1
 """Share beyond which overlap is resolved by moving bodies."""

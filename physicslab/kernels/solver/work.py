@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, inlined, kernel
+from physicslab.kernels import wide_layout as L
 from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, SPIN, book
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
 from physicslab.kernels.constraint.pair import (
@@ -25,7 +26,6 @@ from physicslab.kernels.constraint.pair import (
 from physicslab.kernels.motion import damped
 from physicslab.kernels.near_counts import DISC_BLOCKS, WIDE_COUNT
 from physicslab.kernels.solver.impact_log import Pose, book_outside
-from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.solve import slot_frame
 
 _unsigned: Any = np.uint64

@@ -29,9 +29,9 @@ from physicslab.kernels.near_counts import (
     WIDE_COUNT,
 )
 from physicslab.kernels.records import Manifold, Manifolds, Point
-from physicslab.kernels.wide.layout import BOX, WIDE, Masks, Slots, rows_of
 from physicslab.kernels.wide.restore_slots import fill_slot, is_of_kind
 from physicslab.kernels.wide.slots import COLOURS, clear_slot, list_scalar
+from physicslab.kernels.wide_layout import BOX, WIDE, Masks, Slots, rows_of
 
 MIN_WIDE = 64
 """Smallest number of contacts for which blocks are made: solving fewer takes less time than sorting them."""

@@ -1,7 +1,19 @@
 """Where wide contacts touch now, eight at a time; those that are not steady any more become scalar."""
 
 from physicslab.kernels import Numbers, fused, inlined, kernel
+from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import Bounds, Inverse, Motion, Near
+from physicslab.kernels.float64x8 import (
+    Wide,
+    choose,
+    mask_bits,
+    put,
+    root,
+    size_of,
+    take,
+    take_numbers,
+    take_vectors,
+)
 from physicslab.kernels.geometry.contact import (
     CACHE_TOLERANCE,
     CACHE_TURN_TOLERANCE,
@@ -15,18 +27,6 @@ from physicslab.kernels.geometry.outline import Way
 from physicslab.kernels.geometry.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.near_counts import DISC_BLOCKS, SCALAR
-from physicslab.kernels.wide import layout as L
-from physicslab.kernels.wide.float64x8 import (
-    Wide,
-    choose,
-    mask_bits,
-    put,
-    root,
-    size_of,
-    take,
-    take_numbers,
-    take_vectors,
-)
 from physicslab.kernels.wide.restore_slots import fill_points
 from physicslab.kernels.wide.slots import empty_slot, set_scalar, store_slot
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Vectors, inlined, kernel
+from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import (
     Inverse,
     InverseTuple,
@@ -14,7 +15,6 @@ from physicslab.kernels.arguments import (
 from physicslab.kernels.geometry.contact import effective_masses
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, has_own_way, named_shapes
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
-from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.slots import clear_slot, store_slot
 
 

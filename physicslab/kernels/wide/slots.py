@@ -5,12 +5,12 @@ import math
 import numpy as np
 
 from physicslab.kernels import Flags, Rows, allocating, allocating_kernel, inlined, kernel
+from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import Acting, Inverse, Motion, Near
 from physicslab.kernels.constraint.pair import point_state, velocity_of
 from physicslab.kernels.geometry.contact import AS_FOUND, follow_pose
 from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, SCALAR
 from physicslab.kernels.records import Manifolds, Points
-from physicslab.kernels.wide import layout as L
 from physicslab.kernels.wide.solve import slot_frame
 
 COLOURS = 64

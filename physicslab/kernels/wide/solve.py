@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Vectors, always_inlined, fused, inlined
+from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import Motion, Near
 from physicslab.kernels.constraint.pair import (
     ContactFrame,
@@ -15,9 +16,7 @@ from physicslab.kernels.constraint.pair import (
     moments_of,
     response,
 )
-from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
-from physicslab.kernels.wide import layout as L
-from physicslab.kernels.wide.float64x8 import (
+from physicslab.kernels.float64x8 import (
     Wide,
     choose,
     everywhere,
@@ -31,6 +30,7 @@ from physicslab.kernels.wide.float64x8 import (
     take_numbers,
     take_vectors,
 )
+from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
 
 SOFT = 0.02
 """Share of the smaller body's size that the contact spring corrects at its full rate, in addition to what the

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, PX, PY, SPIN
 from physicslab.kernels.arguments import Acting, Inverse, Motion
-from physicslab.kernels.constraint.joint_rows import measure_row
+from physicslab.kernels.joints.rows import measure_row
 
 _FASTEST, _DAMPING, _OF_SUBSTEPS = 60.0, 2.0, 0.25
 """The frequency [Hz] of the constraint and its damping ratio; at most that share of the rate of substeps."""

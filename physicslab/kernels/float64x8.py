@@ -17,7 +17,7 @@ from numba.core.typing.templates import ConcreteTemplate, infer_global
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
 from physicslab.kernels import Numbers, Rows, Vectors
-from physicslab.kernels.wide.layout import WIDE
+from physicslab.kernels.wide_layout import WIDE
 
 
 class Wide:

@@ -1,13 +1,13 @@
-"""Eight numbers as one in plain Python: an array (8,) stands in for each vector of :mod:`.float64x8`."""
+"""Eight numbers as one in plain Python: an array (8,) stands in for each vector of ``float64x8``."""
 
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.kernels import float64x8
 from physicslab.kernels.stand_ins import stands_in_for
-from physicslab.kernels.wide import float64x8
-from physicslab.kernels.wide.layout import WIDE
+from physicslab.kernels.wide_layout import WIDE
 
 __all__: list[str] = []
 

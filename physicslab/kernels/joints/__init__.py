@@ -1,0 +1,1 @@
+"""What joints measure and the forces that hold them, in smooth motion and beside contacts."""
