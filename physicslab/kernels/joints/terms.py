@@ -17,7 +17,7 @@ angle of B less that of A [rad]."""
 
 
 class TermEnd(NamedTuple):
-    """A body at an end of a term: place [m], angle [rad], their rates, and the anchor in its own frame [m]."""
+    """A body at an end of a term: place [m], angle [rad], their rates; the anchor in its own frame [m]."""
 
     x: float
     y: float
