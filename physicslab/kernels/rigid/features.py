@@ -90,9 +90,7 @@ def turned_by(scene: Scene, row: int, q: Numbers) -> tuple[float, float]:
 
 
 @inlined
-def rate_along(
-    rows: int, points: Points, measures: Vectors, i: int, gradient: int, values: Numbers
-) -> float:
+def rate_along(rows: int, points: Points, measures: Vectors, i: int, gradient: int, values: Numbers) -> float:
     """Return how fast point number i opens or slides at given velocities, by a ``gradient`` of its measures.
 
     Or how these rates change at given accelerations, but for those at no acceleration.
