@@ -97,7 +97,7 @@ def rate_along(rows: int, points: Points, measures: Vectors, i: int, gradient: i
     """
     one, other, at, end = points[i, ONE], points[i, OTHER], gradient, gradient + 3
     dx, dy = values[2 * other] - values[2 * one], values[2 * other + 1] - values[2 * one + 1]
-    rate = measures[i, end] * dx + measures[i, end + 1] * dy
+    rate: float = measures[i, end] * dx + measures[i, end + 1] * dy
     rate += values[2 * rows + other] * measures[i, end + 2]
     rate += values[2 * rows + one] * measures[i, at + 2]
     return rate
