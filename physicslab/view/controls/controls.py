@@ -104,7 +104,6 @@ ARROWS = {
 type State = Callable[[World, Window], bool]
 
 
-
 @dataclass(frozen=True, slots=True)
 class Control:
     """One thing the user can do.

@@ -310,4 +310,3 @@ def reading(world: World, drawn: Drawn, window: Window) -> str:
         size = drawn.measure.said(place - first)
         return f"{sketch.typed}_   {size}" if sketch.typed else size
     return drawn.prompts[min(begun, len(drawn.prompts) - 1)] if drawn.prompts else ""
-
