@@ -8,7 +8,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from physicslab.components import Held, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import Gear, Held, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components.gear import COUPLED
 from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.components.name import why_no_id
 from physicslab.components.spring import OTHER_END
@@ -16,7 +17,7 @@ from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
 from physicslab.ecs.text import suggestion
 from physicslab.files import checks
 from physicslab.state.attached import INSTRUMENTS
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 
 UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""
@@ -238,6 +239,12 @@ def _check_joint(
 ) -> None:  # fmt: skip
     """Refuse a joint whose ends are not two points with places, or are those of another of its kind."""
     kind = type(joint).__name__
+    if isinstance(joint, Gear):
+        _check_gear(joint, entities, where, joined)
+        joined[frozenset((joint.first, joint.second)),] = str(
+            entities[number - 1].get("id", f"entity {number}")
+        )
+        return
     for name in ("a", "b"):
         end = getattr(joint, name)
         if end is not None and "Transform" not in entities[end - 1]:
@@ -249,6 +256,22 @@ def _check_joint(
         value = entities[joint.b - 1].get("id") if joint.b else None
         raise checks.refusal(f"{where}: {kind}.{refused[0]}", value, refused[1])
     joined[key_of(*ends)] = str(entities[number - 1].get("id", f"entity {number}"))
+
+
+def _check_gear(
+    gear: Gear, entities: Sequence[Mapping[str, Any]], where: str, joined: Mapping[tuple[Any, ...], str]
+) -> None:
+    """Refuse a gear that couples no two joints, or those of another."""
+    for name in ("first", "second"):
+        end = entities[getattr(gear, name) - 1]
+        if ("Pin" in end) == ("Slot" in end):
+            raise checks.refusal(
+                f"{where}: Gear.{name}", end.get("id"), COUPLED.replace("an", "the id of an", 1)
+            )
+    other = joined.get((frozenset((gear.first, gear.second)),))
+    if other is not None:
+        value = entities[(gear.second or 0) - 1].get("id")
+        raise checks.refusal(f"{where}: Gear.second", value, f"another joint than {other} couples")
 
 
 def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any]], where: str) -> None:

@@ -62,8 +62,8 @@ class Soft:
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
-        """None: any world can be stepped so."""
-        return None
+        """None but for joints: any other world can be stepped so."""
+        return state.joints.why_not({Role.HOLD}, {Measure.ALONG}, terms=1)
 
     def holds(self, state: State) -> bool:
         """Whether the sub-integrated bodies and their forces are still the same."""

@@ -22,7 +22,7 @@ from physicslab.ecs.text import in_words
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, RemoveComponent, SetField
 from physicslab.state.attached import local_point as in_frame
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.spring_tool import local_point, point_of
 from physicslab.view.window.window import Window
@@ -126,8 +126,17 @@ def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable
     if kind is Spring:
         yield plain_kind(kind), lambda entity: _spring_above(world, entity)
         return
-    if kind in KINDS:
+    if kind in (Pin, Slot, Weld):
         yield plain_kind(kind), lambda entity: kind(anchor_b=world.component(entity, Transform).position)
+        return
+    if kind in (Rod, Rope):
+        above = Vector2(0.0, _ABOVE)
+        yield (
+            plain_kind(kind),
+            lambda entity: kind(anchor_b=world.component(entity, Transform).position + above),
+        )
+        return
+    if kind in KINDS:  # which need two ends
         return
     given = {spec.name: _first(spec) for spec in kind.FIELDS if spec.default is REQUIRED}
     with contextlib.suppress(InvalidValue, TypeError):
