@@ -5,6 +5,8 @@ from physicslab.ecs.component import Component, Derived, InvalidValue, component
 
 COUPLED = "an entity with a Pin or a Slot, and not both"
 """The allowed ends."""
+OTHER_JOINT = "another entity than first"
+"""The allowed ``second``."""
 
 
 @component
@@ -26,7 +28,5 @@ class Gear(Component):
         for name in ("first", "second"):
             if getattr(self, name) is None:
                 raise InvalidValue("Gear", name, None, COUPLED)
-        if self.first == self.second:
-            raise InvalidValue("Gear", "second", self.second, "another entity than first")
         if self.ratio == 0.0:
             raise InvalidValue("Gear", "ratio", self.ratio, "a finite number other than 0")

@@ -66,8 +66,11 @@ def joint_states(state: State) -> list[JointState]:
         place = transform["position"][a] + rotated(anchor, transform["angle"][a])
         angle = float(transform["angle"][b or a])
         ends = int(state.entity_index.entities[a]), int(state.entity_index.entities[b])
-        figures = _figures(state, joint)
-        found.append(JointState(joint.entity, joint.kind, Vector2(*place), angle, *ends, *figures))
+        force, torque, stretch, twist = _figures(state, joint)
+        held = JointState(
+            joint.entity, joint.kind, Vector2(*place), angle, *ends, force, torque, stretch, twist
+        )
+        found.append(held)
     return found
 
 
@@ -82,10 +85,8 @@ def _figures(state: State, joint: Joint) -> tuple[Vector2, float, float, float]:
             one, scale = measured(joints.term(n), state.entity_index), float(joints.scale[n])
             error += scale * one.value
             pull = scale * float(joints.force[row])
-            for end, gradient, sign in (
-                (joints.a[n], (one.ax, one.ay), -1.0),
-                (joints.b[n], (one.bx, one.by), 1.0),
-            ):
+            ends = (joints.a[n], (one.ax, one.ay), -1.0), (joints.b[n], (one.bx, one.by), 1.0)
+            for end, gradient, sign in ends:
                 if end == joint.b:
                     force += pull * np.array(gradient)
                     torque += sign * pull * (joints.measure[n] == Measure.ANGLE)

@@ -8,8 +8,20 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from physicslab.components import Gear, Held, Mass, Material, Shape, Spring, Trail, Transform, Velocity
-from physicslab.components.gear import COUPLED
+from physicslab.components import (
+    Gear,
+    Held,
+    Mass,
+    Material,
+    Pin,
+    Shape,
+    Slot,
+    Spring,
+    Trail,
+    Transform,
+    Velocity,
+)
+from physicslab.components.gear import COUPLED, OTHER_JOINT
 from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.components.name import why_no_id
 from physicslab.components.spring import OTHER_END
@@ -240,10 +252,7 @@ def _check_joint(
     """Refuse a joint whose ends are not two points with places, or are those of another of its kind."""
     kind = type(joint).__name__
     if isinstance(joint, Gear):
-        _check_gear(joint, entities, where, joined)
-        joined[frozenset((joint.first, joint.second)),] = str(
-            entities[number - 1].get("id", f"entity {number}")
-        )
+        _check_gear(joint, number, entities, where, joined)
         return
     for name in ("a", "b"):
         end = getattr(joint, name)
@@ -259,19 +268,21 @@ def _check_joint(
 
 
 def _check_gear(
-    gear: Gear, entities: Sequence[Mapping[str, Any]], where: str, joined: Mapping[tuple[Any, ...], str]
-) -> None:
+    gear: Gear, number: int, entities: Sequence[Mapping[str, Any]], where: str,
+    joined: dict[tuple[Any, ...], str],
+) -> None:  # fmt: skip
     """Refuse a gear that couples no two joints, or those of another."""
-    for name in ("first", "second"):
-        end = entities[getattr(gear, name) - 1]
-        if ("Pin" in end) == ("Slot" in end):
-            raise checks.refusal(
-                f"{where}: Gear.{name}", end.get("id"), COUPLED.replace("an", "the id of an", 1)
-            )
-    other = joined.get((frozenset((gear.first, gear.second)),))
-    if other is not None:
-        value = entities[(gear.second or 0) - 1].get("id")
-        raise checks.refusal(f"{where}: Gear.second", value, f"another joint than {other} couples")
+    ends = gear.first or 0, gear.second or 0
+    for name, end in zip(("first", "second"), ends, strict=True):
+        if (Pin.__name__ in entities[end - 1]) == (Slot.__name__ in entities[end - 1]):
+            raise checks.refusal(f"{where}: Gear.{name}", entities[end - 1].get("id"), f"the id of {COUPLED}")
+    if ends[0] == ends[1]:
+        raise checks.refusal(f"{where}: Gear.second", entities[ends[1] - 1].get("id"), OTHER_JOINT)
+    label = str(entities[number - 1].get("id", f"entity {number}"))
+    other = joined.setdefault(tuple(sorted(ends)), label)
+    if other is not label:
+        allowed = f"another joint than {other} couples"
+        raise checks.refusal(f"{where}: Gear.second", entities[ends[1] - 1].get("id"), allowed)
 
 
 def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any]], where: str) -> None:

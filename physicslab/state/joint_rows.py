@@ -54,9 +54,9 @@ class Term(NamedTuple):
 class Row(NamedTuple):
     """One row: g is the sum of one or two terms less ``offset``, its force acts by the gradient of g.
 
-    ``target`` is the speed of a motor, ``strongest`` its largest force, which may be infinite. Soft constraints
-    solve so many rows from here on as one ``block``; 0 are those after its first. ``placed`` is the field that
-    has the sum of the terms over the first one's scale, which is measured where it is not given.
+    ``target`` is the speed of a motor, ``strongest`` its largest force, which may be infinite. Soft
+    constraints solve so many rows from here on as one ``block``; 0 are those after its first. ``placed`` is
+    the field that has the sum of the terms over the first one's scale; it is measured where it is not given.
     """
 
     terms: tuple[Term, ...]
@@ -71,7 +71,7 @@ class Row(NamedTuple):
 class Joined(NamedTuple):
     """A joint as the columns of its component have it, and the rows of the bodies at its ends."""
 
-    index: EntityIndex
+    entity_index: EntityIndex
     table: Table
     row: int
     a: int
@@ -173,7 +173,7 @@ def _coordinate(index: EntityIndex, entity: int) -> tuple[Joined, Term] | None:
 def _gear(joint: Joined) -> Sequence[Row]:
     """Return one row: the second coordinate less ratio times the first stays as it is."""
     first, second = (
-        _coordinate(joint.index, int(joint.table[end][joint.row])) for end in ("first", "second")
+        _coordinate(joint.entity_index, int(joint.table[end][joint.row])) for end in ("first", "second")
     )
     if first is None or second is None:
         return []
@@ -192,13 +192,14 @@ The component has the fields of :mod:`physicslab.components.joint_ends`.
 def measured(term: Term, index: EntityIndex) -> MeasuredTerm:
     """Return what a term measures where bodies are."""
     transform = index.table(Transform)
-    ends = (
-        TermEnd(
-            *transform["position"][body].tolist(), float(transform["angle"][body]), 0.0, 0.0, 0.0, *anchor
-        )
-        for body, anchor in ((term.a, term.anchor_a), (term.b, term.anchor_b))
-    )
-    found: MeasuredTerm = measure_term.py_func(int(term.measure), *ends, *term.axis)
+
+    def end(body: int, anchor: tuple[float, float]) -> TermEnd:
+        x, y = transform["position"][body].tolist()
+        return TermEnd(x, y, float(transform["angle"][body]), 0.0, 0.0, 0.0, *anchor)
+
+    ends = end(term.a, term.anchor_a), end(term.b, term.anchor_b)
+    in_python: Any = measure_term
+    found: MeasuredTerm = in_python.py_func(int(term.measure), *ends, *term.axis)
     return found
 
 
@@ -208,8 +209,8 @@ def ends_of(
     """Return the rows (n,) of the bodies at the ends A of joints of a kind, and at B; 0 is the world.
 
     An end that is not there any more is -1. ``a`` that is absent is the entity that carries the joint, or
-    the world if that has no place. The ends of a Gear are what its joints turn or move: B, or A if B is the world.
-    ``rows`` (n,) are those of the joints, by default all.
+    the world if that has no place. The ends of a Gear are what its joints turn or move: B, or A if B is the
+    world. ``rows`` (n,) are those of the joints, by default all.
     """
     table = index.table(kind)
     rows = index.batch(kind).rows if rows is None else rows

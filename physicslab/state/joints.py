@@ -44,7 +44,8 @@ class Joints:
     a, b : int64 arrays (m,)
         The rows of its bodies; 0 is the world.
     anchor_a, anchor_b, axis : float64 arrays (m, 2)
-        In the bodies' own frames [m], or in the world's; the axis is a unit vector of the world, or in A's frame.
+        In the bodies' own frames [m], or in the world's; the axis is a unit vector of the world, or in A's
+        frame.
     scale : float64 array (m,)
         The factor of the measure.
     second : int64 array (n,)
@@ -113,7 +114,8 @@ class Joints:
         """Take the joints that there are; return whether they are others than before. Impulses are kept."""
         before, entities = self._joined, index.entities
         held = {(joint.entity, joint.kind): self._held(joint) for joint in self.joints}
-        joints, rows = [], []
+        joints: list[Joint] = []
+        rows: list[Row] = []
         edges: set[tuple[int, int]] = set()
         apart: set[tuple[int, int]] = set()
         for kind, rows_of in KINDS.items():
@@ -200,7 +202,7 @@ def _placed(joined: Joined, row: Row) -> Row:
         return row
     table, scale = joined.table, row.terms[0].scale
     if joined.given(row.placed) is None:
-        value = sum(term.scale * measured(term, joined.index).value for term in row.terms) / scale
+        value = sum(term.scale * measured(term, joined.entity_index).value for term in row.terms) / scale
         kind = table.component
         spec = next(spec for spec in kind.FIELDS if spec.name == row.placed)
         table[row.placed][joined.row] = spec.check(value)

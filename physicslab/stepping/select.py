@@ -16,10 +16,6 @@ STEPPERS: tuple[type[Stepper], ...] = (Asleep, Flow, EventDriven, Rigid, Soft)
 """All of them, the best first. The last can advance any world."""
 
 
-class NoStepper(ValueError):
-    """No stepper can advance a world; the message says why."""
-
-
 @dataclass(frozen=True, slots=True)
 class Steppers:
     """The steppers that can advance a world as it is made now, the best first, and why not the others."""
@@ -77,8 +73,6 @@ def select_steppers(state: State, schedule: Schedule, plan: StepPlan) -> Stepper
             left_out.append(LeftOut(kind.name, reason))
         if kind is Flow and reason is None:
             break
-    if all(isinstance(stepper, Asleep) for stepper in usable):
-        raise NoStepper("; ".join(f"{one.name}: {one.reason}" for one in left_out))
     return Steppers(tuple(usable), tuple(left_out))
 
 

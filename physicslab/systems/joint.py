@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Gear, Name, Pin, Slot, Transform
-from physicslab.components.gear import COUPLED
+from physicslab.components.gear import COUPLED, OTHER_JOINT
 from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.contacts.arguments import do_stage
 from physicslab.contacts.islands import wake_all
@@ -40,16 +40,18 @@ def remove_lost(state: State, kind: type[Any], a: NDArray[np.int64], b: NDArray[
         If an end never was an entity, or is one without a Transform, or without a joint.
     """
     placed, batch = state.table(Transform).present, state.batch(kind)
-    names, needed = ("a", "b"), "an entity with a Transform"
+    names, needed, coupled = ("a", "b"), "an entity with a Transform", set[tuple[int, type[Any]]]()
     if kind is Gear:
         names, needed = ("first", "second"), COUPLED
+        coupled = {(joint.entity, joint.kind) for joint in state.joints.joints}
     lost_a, lost_b = (a < 0) | ~(placed[a] | (a == 0)), (b < 0) | ~(placed[b] | (b == 0))
     for i in np.flatnonzero(lost_a | lost_b).tolist():
         entity, name = int(batch.entities[i]), names[0 if lost_a[i] else 1]
         if not (esper.entity_exists(entity) and esper.has_component(entity, kind)):
             continue  # removed by an earlier call, before rows were numbered again
         end = int(state.table(kind)[name][batch.rows[i]]) or entity
-        if end in state.entity_index.row_of or end > state.entity_index.newest:
+        gone = end not in state.entity_index.row_of and end <= state.entity_index.newest
+        if not gone and (entity, kind) not in coupled:
             owner = f"{state.label(entity)}: {kind.__name__}"
             raise InvalidValue(owner, name, end, needed)
         esper.remove_component(entity, kind)
@@ -80,12 +82,14 @@ def _refuse_equal(
 
 def _refuse_gears(state: State, rows: NDArray[np.int64]) -> None:
     """Refuse what couples an entity with two joints, or the joints of another Gear."""
-    table, known = state.table(Gear), {}
+    table, known = state.table(Gear), dict[frozenset[int], str]()
     for row in rows.tolist():
         label, ends = state.label_of_row(row), [int(table[name][row]) for name in ("first", "second")]
         for name, end in zip(("first", "second"), ends, strict=True):
             if all(state.table(kind).present[state.entity_index.row_of[end]] for kind in (Pin, Slot)):
                 raise InvalidValue(f"{label}: Gear", name, end, COUPLED)
+        if ends[0] == ends[1]:
+            raise InvalidValue(f"{label}: Gear", "second", ends[1], OTHER_JOINT)
         other = known.setdefault(frozenset(ends), label)
         if other is not label:
             raise InvalidValue(f"{label}: Gear", "second", ends[1], f"another joint than {other} couples")

@@ -9,12 +9,17 @@ from physicslab.components import (
     Mass,
     Material,
     Name,
+    Pin,
+    Rod,
+    Rope,
     Shape,
+    Slot,
     Spring,
     Strobe,
     Trail,
     Transform,
     Velocity,
+    Weld,
 )
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
@@ -130,11 +135,7 @@ def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable
         yield plain_kind(kind), lambda entity: kind(anchor_b=world.component(entity, Transform).position)
         return
     if kind in (Rod, Rope):
-        above = Vector2(0.0, _ABOVE)
-        yield (
-            plain_kind(kind),
-            lambda entity: kind(anchor_b=world.component(entity, Transform).position + above),
-        )
+        yield plain_kind(kind), lambda entity: kind(anchor_b=_above(world, entity))
         return
     if kind in KINDS:  # which need two ends
         return
@@ -155,8 +156,11 @@ def _first(spec: Field) -> object:
 
 
 def _spring_above(world: World, entity: int) -> Spring:
-    place = world.component(entity, Transform).position
-    return Spring(anchor_b=place + Vector2(0.0, _ABOVE), rest_length=_ABOVE)
+    return Spring(anchor_b=_above(world, entity), rest_length=_ABOVE)
+
+
+def _above(world: World, entity: int) -> Vector2:
+    return world.component(entity, Transform).position + Vector2(0.0, _ABOVE)
 
 
 _PLAIN: dict[type[Component], str] = {
