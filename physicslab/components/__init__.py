@@ -21,6 +21,7 @@ from physicslab.components.slider import Slider
 from physicslab.components.slot import Slot
 from physicslab.components.spring import Spring
 from physicslab.components.strobe import Strobe
+from physicslab.components.thrust import Thrust
 from physicslab.components.trail import Trail
 from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
@@ -29,5 +30,5 @@ from physicslab.components.weld import Weld
 __all__ = [
     "Drag", "Gate", "Gear", "Graph", "GraphLine", "Held", "Mass", "Material", "Meter", "Name", "Note",
     "Pin", "Protractor", "Pulley", "Rod", "Rope", "Ruler", "Shape", "Slider", "Slot", "Spring", "Strobe",
-    "Trail", "Transform", "Velocity", "Weld",
+    "Thrust", "Trail", "Transform", "Velocity", "Weld",
 ]  # fmt: skip
