@@ -12,7 +12,7 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Spawn
 from physicslab.prefabs import binary, box, capsule, chain, circle, container, pendulum, pile, pyramid, stack
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 from physicslab.view.window.edits import Recipe
 from physicslab.view.window.placing import outlines_of, refused_place
 from physicslab.view.window.spring_tool import rod_stiffness
@@ -156,8 +156,9 @@ def _spawn_commands(make: Make, window: Window, first: int) -> list[Command]:
 
 def _renumbered[C: Component](part: C, number: dict[int, int]) -> C:
     """Return a spring or a joint between the same bodies under other numbers."""
-    ends = {end: None if getattr(part, end) is None else number[getattr(part, end)] for end in ("a", "b")}
-    return type(part)(**{**part.values(), **ends})
+    given = part.given()
+    ends = (spec.name for spec in part.FIELDS if spec.kind == "entity" and given[spec.name] is not None)
+    return type(part)(**(given | {end: number[given[end]] for end in ends}))
 
 
 @functools.lru_cache(maxsize=32)

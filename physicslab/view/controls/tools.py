@@ -8,7 +8,7 @@ from physicslab.diagnostics.period import gives_way
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Remove, RemoveComponent, Spawn
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument
 from physicslab.view.controls.picking import body_at, instrument_at, spring_at
