@@ -15,17 +15,18 @@ ENDS = 4
 MEASURE, ROLE, NUMBER, BEGIN, AT, PLACES = 8, 10, 11, 12, 13, 14
 """The whole numbers of a row. First, of each end, where x and the angle are, as the packed coordinates have
 them; -1 for what is not there, and for an angle that never changes. Then what both terms measure, or -1; its
-role; its number among all rows of joints; its first neighbour in the envelope; where its entries are there."""
+role; its number among all rows of joints; its first neighbour in the envelope; where its entries are
+there."""
 ANCHOR_A, ANCHOR_B, AXIS, SCALE, ANGLE_A, TERM = 0, 2, 4, 6, 7, 9
-"""The numbers of a term: anchors at A and B in the bodies' own frames [m]; the axis; the factor; the angles of
-A and B [rad], where they never change."""
+"""The numbers of a term: anchors at A and B in the bodies' own frames [m]; the axis; the factor; the angles
+of A and B [rad], where they never change."""
 OFFSET, TARGET, GIVEN = 18, 19, 20
 """The numbers of a row, behind those of its two terms: what is taken from these, and the speed of a motor.
-Behind all rows are the inverse masses of the coordinates, then their rates of damping [1/s], ``STATE`` numbers
-a row, the matrix, its factor, and room for a number of each coordinate."""
+Behind all rows are the inverse masses of the coordinates, then their rates of damping [1/s], ``STATE``
+numbers a row, the matrix, its factor, and room for a number of each coordinate."""
 ERROR, RATE, LAMBDA, RIGHT, DIAGONAL, CHANGE, STATE = range(12, 19)
-"""The state of a row, behind its gradient by x, y and angle of each end: the error g [m or rad]; Jdot v [1/s^2
-of that]; the force [N or N m]; the right side; the diagonal of the matrix; how the force changes."""
+"""The state of a row, behind its gradient by x, y and angle of each end: the error g [m or rad]; Jdot v
+[1/s^2 of that]; the force [N or N m]; the right side; the diagonal of the matrix; how the force changes."""
 
 
 def room_of(rows: int, coordinates: int, entries: int) -> tuple[int, int]:

@@ -1,11 +1,12 @@
-"""Rows of equations between bodies: the forces with which joints hold, and how what they hold is put together.
+"""Rows of equations between bodies: the forces with which joints hold, and how errors of theirs are removed.
 
-A row's quantity g is the sum of one or two terms (:mod:`physicslab.kernels.joints.terms`) less its offset; J is
-its gradient, and its force acts by J^T. ``HOLD`` keeps g at zero, ``MOTOR`` J v at its target. The motion
-solves [M J^T; J 0] [a; -lambda] = [f; -Jdot v]: with A = J M^-1 J^T, A lambda = -(J M^-1 f + Jdot v).
+A row's quantity g is the sum of one or two terms (:mod:`physicslab.kernels.joints.terms`) less its offset; J
+is its gradient, and its force acts by J^T. ``HOLD`` keeps g at zero, ``MOTOR`` J v at its target. The motion
+solves [M J^T; J 0] [a; -lambda] = [f; -Jdot v]: with A = J M^-1 J^T, A lambda = -(J M^-1 f + Jdot v);
+:mod:`physicslab.kernels.joints.envelope` solves that.
 
 Rows are packed like forces (:mod:`physicslab.kernels.forces.force_calls`), in an array of numbers and one of
-whole numbers, which kernels get as arrays or by pointers. A is solved in :mod:`physicslab.kernels.joints.envelope`.
+whole numbers, which kernels get as arrays or by pointers.
 """
 
 from typing import Any
@@ -15,31 +16,28 @@ import numpy as np
 from physicslab.kernels import Numbers, Rows, always_inlined, kernel
 from physicslab.kernels.accounts import ENERGY, book
 from physicslab.kernels.forces.force_calls import force_kernel
+from physicslab.kernels.joints import layout as L
 from physicslab.kernels.joints.envelope import factorise, solve, substitute
-from physicslab.kernels.joints.layout import (
-    ANCHOR_A, ANCHOR_B, ANGLE_A, AXIS, CHANGE, COORDINATES, DRIVEN, ENDS, ERROR, FIRST, GIVEN, HOLD, HOLDING,
-    LAMBDA, MEASURE, MOTOR, NUMBER, OFFSET, PLACES, POWERED, RATE, RIGHT, ROLE, ROWS, SCALE, STATE, TARGET, TERM,
-    first_room, first_state, inverse_of,
-)  # fmt: skip
 from physicslab.kernels.joints.terms import TermEnd, measure_term
 from physicslab.kernels.ode.compensated import add
 
 _ROUNDING = 4e-16
 """Share of the largest coordinate, and of the largest speed, below which an error is rounding."""
 _JUMP = 1e-9
-"""Share of the largest speed above which a speed that joints do not allow was given, and is no method's error."""
+"""Share of the largest speed above which a speed that joints do not allow is no error of a method."""
 _MOST = 24
 """How often errors are measured while bodies are put together; three times do unless they were far apart."""
 _FAR, _HALVED = 1e-6, 1 / 64
-"""Share of the largest coordinate above which errors may not grow by a correction; it is halved where they do,
-down to this share of it."""
+"""Share of the largest coordinate above which errors may not grow by a correction; it is halved where they
+do, down to this share of it."""
 
 
 def forces_of(numbers: Numbers, whole: Rows, count: int) -> Numbers:
-    """Return the forces (count,) [N or N m] of rows by their numbers, as they were found last; 0 of others."""
-    n, states, forces = int(whole[ROWS]), int(first_state.py_func(whole)), np.zeros(count)
-    found = numbers[states : states + STATE * n].reshape(n, STATE)[:, LAMBDA]
-    forces[whole[FIRST : FIRST + PLACES * n].reshape(n, PLACES)[:, NUMBER]] = found
+    """Return the forces (count,) [N or N m] of rows by their numbers, as found last; zero for others."""
+    n, forces = int(whole[L.ROWS]), np.zeros(count)
+    states = L.GIVEN * n + 2 * int(whole[L.COORDINATES])
+    found = numbers[states : states + L.STATE * n].reshape(n, L.STATE)[:, L.LAMBDA]
+    forces[whole[L.FIRST : L.FIRST + L.PLACES * n].reshape(n, L.PLACES)[:, L.NUMBER]] = found
     return forces
 
 
@@ -47,39 +45,42 @@ def forces_of(numbers: Numbers, whole: Rows, count: int) -> Numbers:
 def _end(q: Any, v: Any, numbers: Any, place: Any, turn: Any, anchor: int, steady: int) -> TermEnd:
     """Return a body at an end of a term, from where its places and its anchor are."""
     angle, spin = (q[turn], v[turn]) if turn >= 0 else (numbers[steady], 0.0)
-    return TermEnd(q[place], q[place + 1], angle, v[place], v[place + 1], spin, numbers[anchor], numbers[anchor + 1])
+    return TermEnd(
+        q[place], q[place + 1], angle, v[place], v[place + 1], spin, numbers[anchor], numbers[anchor + 1]
+    )
 
 
 @always_inlined
 def measure_rows(q: Any, v: Any, numbers: Any, whole: Any) -> None:
     """Find gradient, error and Jdot v of every row in a state. A motor has no error: it holds no place."""
-    for i in range(whole[ROWS]):
-        w, s = FIRST + PLACES * i, first_state(whole) + STATE * i
+    for i in range(whole[L.ROWS]):
+        w, s = L.FIRST + L.PLACES * i, L.first_state(whole) + L.STATE * i
         error, rate = 0.0, 0.0
         for term in range(2):
-            if whole[w + MEASURE + term] < 0:
+            if whole[w + L.MEASURE + term] < 0:
                 break
-            r, e, j = GIVEN * i + TERM * term, w + 4 * term, s + 6 * term
+            r, e, j = L.GIVEN * i + L.TERM * term, w + 4 * term, s + 6 * term
             one = measure_term(
-                whole[w + MEASURE + term],
-                _end(q, v, numbers, whole[e], whole[e + 1], r + ANCHOR_A, r + ANGLE_A),
-                _end(q, v, numbers, whole[e + 2], whole[e + 3], r + ANCHOR_B, r + ANGLE_A + 1),
-                numbers[r + AXIS], numbers[r + AXIS + 1],
+                whole[w + L.MEASURE + term],
+                _end(q, v, numbers, whole[e], whole[e + 1], r + L.ANCHOR_A, r + L.ANGLE_A),
+                _end(q, v, numbers, whole[e + 2], whole[e + 3], r + L.ANCHOR_B, r + L.ANGLE_A + 1),
+                numbers[r + L.AXIS], numbers[r + L.AXIS + 1],
             )  # fmt: skip
-            scale = numbers[r + SCALE]
+            scale = numbers[r + L.SCALE]
             numbers[j], numbers[j + 1], numbers[j + 2] = scale * one.ax, scale * one.ay, scale * one.turn_a
-            numbers[j + 3], numbers[j + 4], numbers[j + 5] = scale * one.bx, scale * one.by, scale * one.turn_b
+            numbers[j + 3], numbers[j + 4] = scale * one.bx, scale * one.by
+            numbers[j + 5] = scale * one.turn_b
             error += scale * one.value
             rate += scale * one.rate
-        numbers[s + ERROR] = error - numbers[GIVEN * i + OFFSET] if whole[w + ROLE] == HOLD else 0.0
-        numbers[s + RATE] = rate
+        numbers[s + L.ERROR] = error - numbers[L.GIVEN * i + L.OFFSET] if whole[w + L.ROLE] == L.HOLD else 0.0
+        numbers[s + L.RATE] = rate
 
 
 @always_inlined
 def along_row(values: Any, numbers: Any, whole: Any, i: int) -> float:
     """Return the product of the gradient of row i with packed values: of speeds, how fast g grows."""
-    w, s, total = FIRST + PLACES * i, first_state(whole) + STATE * i, 0.0
-    for end in range(ENDS):
+    w, s, total = L.FIRST + L.PLACES * i, L.first_state(whole) + L.STATE * i, 0.0
+    for end in range(L.ENDS):
         x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + 3 * end
         if x < 0:
             break
@@ -98,25 +99,25 @@ def given_by_rows(
     All of that in a second, momenta to what they move; last, the power with which they act on what they do
     not move, which is part of the first.
     """
-    power, px, py, spin, driven, states = 0.0, 0.0, 0.0, 0.0, 0.0, first_state(whole)
-    for i in range(whole[ROWS]):
-        s, w = states + STATE * i, FIRST + PLACES * i
-        if whole[w + ROLE] != role:
+    power, px, py, spin, driven, states = 0.0, 0.0, 0.0, 0.0, 0.0, L.first_state(whole)
+    for i in range(whole[L.ROWS]):
+        s, w = states + L.STATE * i, L.FIRST + L.PLACES * i
+        if whole[w + L.ROLE] != role:
             continue
-        pull = numbers[s + LAMBDA]
+        pull = numbers[s + L.LAMBDA]
         power += pull * along_row(v, numbers, whole, i)
-        for end in range(ENDS):
+        for end in range(L.ENDS):
             x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + 3 * end
             if x < 0:
                 break
             fx, fy, torque = pull * numbers[j], pull * numbers[j + 1], pull * numbers[j + 2]
-            if inverse_of(numbers, whole, x) > 0.0:
+            if L.inverse_of(numbers, whole, x) > 0.0:
                 px += fx
                 py += fy
                 spin += q[x] * fy - q[x + 1] * fx
             else:
                 driven += fx * v[x] + fy * v[x + 1]
-            if inverse_of(numbers, whole, turn) > 0.0:
+            if L.inverse_of(numbers, whole, turn) > 0.0:
                 spin += torque
             elif turn >= 0:
                 driven += torque * v[turn]
@@ -129,31 +130,31 @@ def book_rows(q: Any, v: Any, given: Any, numbers: Any, whole: Any) -> None:
 
     What holds does no work but on what is driven; what little it does by rounding is an error.
     """
-    for role in (HOLD, MOTOR):
-        account = whole[HOLDING] if role == HOLD else whole[POWERED]
+    for role in (L.HOLD, L.MOTOR):
+        account = whole[L.HOLDING] if role == L.HOLD else whole[L.POWERED]
         if account < 0:
             continue
         power, px, py, spin, driven = given_by_rows(q, v, numbers, whole, role)
-        book(given, account, power if role == MOTOR else 0.0, px, py, spin)
-        if whole[DRIVEN] >= 0:
-            given[whole[DRIVEN] + ENERGY] -= driven
+        book(given, account, power if role == L.MOTOR else 0.0, px, py, spin)
+        if whole[L.DRIVEN] >= 0:
+            given[whole[L.DRIVEN] + ENERGY] -= driven
 
 
 @always_inlined
 def push_by_rows(target: Any, numbers: Any, whole: Any) -> None:
     """Add to velocities what the impulses of rows cause, or to accelerations what their forces do."""
-    states = first_state(whole)
-    for i in range(whole[ROWS]):
-        s, w = states + STATE * i, FIRST + PLACES * i
-        for end in range(ENDS):
+    states = L.first_state(whole)
+    for i in range(whole[L.ROWS]):
+        s, w = states + L.STATE * i, L.FIRST + L.PLACES * i
+        for end in range(L.ENDS):
             x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + 3 * end
             if x < 0:
                 break
-            pull = numbers[s + LAMBDA]
-            target[x] += inverse_of(numbers, whole, x) * numbers[j] * pull
-            target[x + 1] += inverse_of(numbers, whole, x) * numbers[j + 1] * pull
+            pull = numbers[s + L.LAMBDA]
+            target[x] += L.inverse_of(numbers, whole, x) * numbers[j] * pull
+            target[x + 1] += L.inverse_of(numbers, whole, x) * numbers[j + 1] * pull
             if turn >= 0:
-                target[turn] += inverse_of(numbers, whole, turn) * numbers[j + 2] * pull
+                target[turn] += L.inverse_of(numbers, whole, turn) * numbers[j + 2] * pull
 
 
 @force_kernel
@@ -162,15 +163,15 @@ def constrain(q, v, span, force, parameters, indices):  # type: ignore[no-untype
 
     So it is the last of all forces. ``parameters`` and ``indices`` are the rows, as the module has them.
     """
-    n, m = indices[ROWS], indices[COORDINATES]
-    inverse, states = GIVEN * n, first_state(indices)
+    n, m = indices[L.ROWS], indices[L.COORDINATES]
+    inverse, states = L.GIVEN * n, L.first_state(indices)
     damping = inverse + m
     measure_rows(q, v, parameters, indices)
     factorise(parameters, indices)
     for turn in range(2):  # what is light between heavy bodies is left with the difference of large forces
         for i in range(n):
-            s, w, change = states + STATE * i, FIRST + PLACES * i, 0.0
-            for end in range(ENDS):
+            s, w, change = states + L.STATE * i, L.FIRST + L.PLACES * i, 0.0
+            for end in range(L.ENDS):
                 x, angle, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + 3 * end
                 if x < 0:
                     break
@@ -179,13 +180,13 @@ def constrain(q, v, span, force, parameters, indices):  # type: ignore[no-untype
                     if 0 <= place < m:
                         gained = parameters[inverse + place] * force[place]
                         change += parameters[j + k] * (gained - parameters[damping + place] * v[place])
-            parameters[s + RIGHT] = -(change + parameters[s + RATE])
+            parameters[s + L.RIGHT] = -(change + parameters[s + L.RATE])
         substitute(parameters, indices)
         for i in range(n):
-            s, w = states + STATE * i, FIRST + PLACES * i
-            pull = parameters[s + CHANGE]
-            parameters[s + LAMBDA] = pull + (parameters[s + LAMBDA] if turn > 0 else 0.0)
-            for end in range(ENDS):
+            s, w = states + L.STATE * i, L.FIRST + L.PLACES * i
+            pull = parameters[s + L.CHANGE]
+            parameters[s + L.LAMBDA] = pull + (parameters[s + L.LAMBDA] if turn > 0 else 0.0)
+            for end in range(L.ENDS):
                 x, angle, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + 3 * end
                 if x < 0:
                     break
@@ -200,10 +201,10 @@ def constrain(q, v, span, force, parameters, indices):  # type: ignore[no-untype
 def _errors(numbers: Numbers, whole: Rows) -> float:
     """Return the largest error, and leave those to be undone as right sides."""
     largest = 0.0
-    for i in range(whole[ROWS]):
-        s = first_state(whole) + STATE * i
-        largest = max(largest, abs(numbers[s + ERROR]))
-        numbers[s + RIGHT] = -numbers[s + ERROR]
+    for i in range(whole[L.ROWS]):
+        s = L.first_state(whole) + L.STATE * i
+        largest = max(largest, abs(numbers[s + L.ERROR]))
+        numbers[s + L.RIGHT] = -numbers[s + L.ERROR]
     return largest
 
 
@@ -211,31 +212,33 @@ def _errors(numbers: Numbers, whole: Rows) -> float:
 def _rates(v: Numbers, numbers: Numbers, whole: Rows) -> float:
     """Return by how much speeds miss at most what rows demand, and leave that as right sides."""
     fastest = 0.0
-    for i in range(whole[ROWS]):
-        rate = along_row(v, numbers, whole, i) - numbers[GIVEN * i + TARGET]
+    for i in range(whole[L.ROWS]):
+        rate = along_row(v, numbers, whole, i) - numbers[L.GIVEN * i + L.TARGET]
         fastest = max(fastest, abs(rate))
-        numbers[first_state(whole) + STATE * i + RIGHT] = -rate
+        numbers[L.first_state(whole) + L.STATE * i + L.RIGHT] = -rate
     return fastest
 
 
 @always_inlined
 def _solved_changes(numbers: Numbers, whole: Rows) -> None:
     """Leave in the room how coordinates change by the least that makes up for the right sides."""
-    room, m = first_room(whole), whole[COORDINATES]
+    room, m = L.first_room(whole), whole[L.COORDINATES]
     factorise(numbers, whole)
     solve(numbers, whole)
     for place in range(m):
         numbers[room + place] = 0.0
-    for i in range(whole[ROWS]):
-        s, w = first_state(whole) + STATE * i, FIRST + PLACES * i
-        for end in range(ENDS):
+    for i in range(whole[L.ROWS]):
+        s, w = L.first_state(whole) + L.STATE * i, L.FIRST + L.PLACES * i
+        for end in range(L.ENDS):
             x, angle, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + 3 * end
             if x < 0:
                 break
             for k in range(3):
                 place = x + k if k < 2 else angle
                 if 0 <= place < m:
-                    numbers[room + place] += inverse_of(numbers, whole, place) * numbers[j + k] * numbers[s + LAMBDA]
+                    numbers[room + place] += (
+                        L.inverse_of(numbers, whole, place) * numbers[j + k] * numbers[s + L.LAMBDA]
+                    )
 
 
 @always_inlined
@@ -251,10 +254,10 @@ def project(q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, numbers: Num
     """Move bodies by the least that closes what joints hold together, and remove speeds that they forbid.
 
     ``q_low`` and ``v_low`` (n,) are the remainders of what moves. Returns the largest error left [m or rad]:
-    more than rounding where joints contradict each other. What this changes of energy and momentum is an error
-    of the method.
+    more than rounding where joints contradict each other. What this changes of energy and momentum is an
+    error of the method.
     """
-    m, room, share, before = whole[COORDINATES], first_room(whole), 1.0, 0.0
+    m, room, share, before = whole[L.COORDINATES], L.first_room(whole), 1.0, 0.0
     largest, size = 0.0, _size(q, m)
     for turn in range(_MOST):
         measure_rows(q, v, numbers, whole)
@@ -286,18 +289,18 @@ def set_going(q: Numbers, v: Numbers, numbers: Numbers, whole: Rows) -> bool:
     and after, and the momenta that they give are booked behind the clock.
     """
     measure_rows(q, v, numbers, whole)
-    if _rates(v, numbers, whole) <= _JUMP * _size(v, whole[COORDINATES]):
+    if _rates(v, numbers, whole) <= _JUMP * _size(v, whole[L.COORDINATES]):
         return False
     _solved_changes(numbers, whole)
     for turn in range(2):
-        for role in (HOLD, MOTOR):
-            account = whole[HOLDING] if role == HOLD else whole[POWERED]
+        for role in (L.HOLD, L.MOTOR):
+            account = whole[L.HOLDING] if role == L.HOLD else whole[L.POWERED]
             if account >= 0:
                 power, px, py, spin, driven = given_by_rows(q, v, numbers, whole, role)
                 book(v, account, 0.5 * power, 0.5 * px, 0.5 * py, 0.5 * spin)
-                if whole[DRIVEN] >= 0:
-                    v[whole[DRIVEN] + ENERGY] -= 0.5 * driven
+                if whole[L.DRIVEN] >= 0:
+                    v[whole[L.DRIVEN] + ENERGY] -= 0.5 * driven
         if turn == 0:
-            for i in range(whole[COORDINATES]):
-                v[i] += numbers[first_room(whole) + i]
+            for i in range(whole[L.COORDINATES]):
+                v[i] += numbers[L.first_room(whole) + i]
     return True
