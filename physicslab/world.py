@@ -153,8 +153,14 @@ class World(State):
         except NotSmooth:
             self._choose(plan_for_jumps(self, self.schedule, self.plan))
             made = self._make(h, steps)
-        while not made.steps:  # it cannot make this step, and is not ready for it any more
-            made = self._make(h, steps)
+        start, begun = self.time, 0.0
+        try:
+            while not made.steps:  # it is not ready for this step any more, or for what is left of it
+                begun += made.begun
+                self.time = start + begun
+                made = self._make(h - begun, 1 if begun else steps)
+        finally:
+            self.time = start
         return made
 
     def _make(self, h: float, steps: int) -> Advance:

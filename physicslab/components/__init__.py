@@ -16,11 +16,13 @@ from physicslab.components.shape import Shape
 from physicslab.components.slider import Slider
 from physicslab.components.spring import Spring
 from physicslab.components.strobe import Strobe
+from physicslab.components.thrust import Thrust
 from physicslab.components.trail import Trail
 from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 
 __all__ = [
     "Drag", "Gate", "Graph", "GraphLine", "Held", "Mass", "Material", "Meter", "Name", "Note",
-    "Pin", "Protractor", "Ruler", "Shape", "Slider", "Spring", "Strobe", "Trail", "Transform", "Velocity",
+    "Pin", "Protractor", "Ruler", "Shape", "Slider", "Spring", "Strobe", "Thrust", "Trail", "Transform",
+    "Velocity",
 ]  # fmt: skip

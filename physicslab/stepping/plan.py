@@ -277,7 +277,8 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
     singular = _why_singular(state, forces)
     if singular is not None:
         return StepPlan(DOP853, f"{singular}: the step follows it", 1, smooth=True)
-    reason = f"conservative and smooth; {needed} steps of omega h = {rate * h / needed:.2g}"
+    kind = "smooth, and go by places and the time" if any(f.sees_time(state) for f in forces) else ""
+    reason = f"{kind or 'conservative and smooth'}; {needed} steps of omega h = {rate * h / needed:.2g}"
     return StepPlan(BLANES_MOAN, reason, needed, smooth=True)
 
 

@@ -74,7 +74,8 @@ class Rigid:
         self.why_impulses, self.energy_added = "", 0.0
         within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
         self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
-        self._motion = RigidMotion(self._ode, len(self._pairs), not schedule.interpreted)
+        steady = not any(force.sees_time(state) for force in schedule.smooth_forces)
+        self._motion = RigidMotion(self._ode, len(self._pairs), steady)
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:

@@ -16,6 +16,7 @@ from typing import Any
 from physicslab.kernels import Numbers, Rows, always_inlined, kernel
 from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
 from physicslab.kernels.forces.force_calls import force_kernel
+from physicslab.kernels.joints.terms import ALONG, TermEnd, measure_term
 from physicslab.kernels.ode.compensated import add
 
 ROWS, COORDINATES, BOOKED, DRIVEN, RANK, FIRST = range(6)
@@ -64,20 +65,11 @@ def _inverse(numbers: Any, whole: Any, place: Any) -> float:
 
 
 @always_inlined
-def measure_row(
-    ax: float, ay: float, turn_a: float, bx: float, by: float, turn_b: float,
-    arm_ax: float, arm_ay: float, arm_bx: float, arm_by: float, nx: float, ny: float,
-) -> tuple[float, float, float, float, float]:  # fmt: skip
-    """Return r_a x n and r_b x n, r_a . n and r_b . n of both arms, and B's point from A's along n [m].
-
-    By r x n a row turns a body.
-    """
-    ca, sa, cb, sb = math.cos(turn_a), math.sin(turn_a), math.cos(turn_b), math.sin(turn_b)
-    rax, ray = ca * arm_ax - sa * arm_ay, sa * arm_ax + ca * arm_ay
-    rbx, rby = cb * arm_bx - sb * arm_by, sb * arm_bx + cb * arm_by
-    error = nx * ((bx - ax) + (rbx - rax)) + ny * ((by - ay) + (rby - ray))
-    along_a, along_b = rax * nx + ray * ny, rbx * nx + rby * ny
-    return rax * ny - ray * nx, rbx * ny - rby * nx, along_a, along_b, error
+def _end(q: Any, v: Any, numbers: Any, whole: Any, end: int, arm: int) -> TermEnd:
+    """Return a body at an end of a row, from where its places and its anchor are."""
+    x, turn = whole[end], whole[end + 1]
+    angle, spin = (q[turn], v[turn]) if turn >= 0 else (0.0, 0.0)
+    return TermEnd(q[x], q[x + 1], angle, v[x], v[x + 1], spin, numbers[arm], numbers[arm + 1])
 
 
 @always_inlined
@@ -85,18 +77,13 @@ def measure_rows(q: Any, v: Any, numbers: Any, whole: Any) -> None:
     """Find gradient, error and Jdot v of every row in a state."""
     for i in range(whole[ROWS]):
         r, w, s = GIVEN * i, FIRST + ENDS * i, first_state(whole) + STATE * i
-        a, turn_a, b, turn_b = whole[w], whole[w + 1], whole[w + 2], whole[w + 3]
-        angle_a, spin_a = (q[turn_a], v[turn_a]) if turn_a >= 0 else (0.0, 0.0)
-        angle_b, spin_b = (q[turn_b], v[turn_b]) if turn_b >= 0 else (0.0, 0.0)
-        nx, ny = numbers[r + AXIS], numbers[r + AXIS + 1]
-        across_a, across_b, along_a, along_b, error = measure_row(
-            q[a], q[a + 1], angle_a, q[b], q[b + 1], angle_b, numbers[r + ARM_A], numbers[r + ARM_A + 1],
-            numbers[r + ARM_B], numbers[r + ARM_B + 1], nx, ny,
+        one = measure_term(
+            ALONG, _end(q, v, numbers, whole, w, r + ARM_A), _end(q, v, numbers, whole, w + 2, r + ARM_B),
+            numbers[r + AXIS], numbers[r + AXIS + 1],
         )  # fmt: skip
-        numbers[s + JA], numbers[s + JA + 1], numbers[s + JA + 2] = -nx, -ny, -across_a
-        numbers[s + JB], numbers[s + JB + 1], numbers[s + JB + 2] = nx, ny, across_b
-        numbers[s + ERROR] = error
-        numbers[s + RATE] = spin_a * spin_a * along_a - spin_b * spin_b * along_b
+        numbers[s + JA], numbers[s + JA + 1], numbers[s + JA + 2] = one.ax, one.ay, one.turn_a
+        numbers[s + JB], numbers[s + JB + 1], numbers[s + JB + 2] = one.bx, one.by, one.turn_b
+        numbers[s + ERROR], numbers[s + RATE] = one.value, one.rate
 
 
 @always_inlined

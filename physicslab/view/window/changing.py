@@ -12,6 +12,7 @@ from physicslab.components import (
     Shape,
     Spring,
     Strobe,
+    Thrust,
     Trail,
     Transform,
     Velocity,
@@ -162,6 +163,7 @@ _MEANINGS: dict[type[Component], str] = {
     Material: "its restitution and friction",
     Drag: "a medium slows it, as air does",
     Spring: "it hangs from a point that can be dragged",
+    Thrust: "it is pushed and turned from within, as by a rocket or a motor",
     Strobe: "it leaves pictures of its past positions",
     Trail: "its past path is shown",
 }
