@@ -132,6 +132,8 @@ def scene_bytes(world: World, source: str) -> bytes:
     SceneError
         If the world holds what no scene may.
     """
+    if is_step(source):
+        raise SceneError(f"{printable(source)}: is the name of a world of KDE Step; a scene is JSON")
     try:
         document = write_scene(world)
     except InvalidValue as error:  # written to a column

@@ -18,9 +18,9 @@ _POINT_SHARE = 0.005
 
 def take_particle(item: Item, draft: Draft) -> None:
     """Take a particle: a body without a shape."""
-    body = _take(item, draft, {}, is_point=True)
+    _take(item, draft, {}, is_point=True)
     if item.kind == "ChargedParticle":
-        body.entity["Charge"] = {"charge": item.number_of("charge", 0.0)}
+        draft.lose(item, "there is no charge")
 
 
 def take_disc(item: Item, draft: Draft) -> None:
@@ -72,7 +72,7 @@ def _rectangle(vertices: Sequence[Pair]) -> tuple[Pair, Pair] | None:
 
 def _take(
     item: Item, draft: Draft, shape: Mapping[str, Any], *, is_point: bool = False, centre: Pair = (0.0, 0.0)
-) -> Body:
+) -> None:
     """Add a body with its motion and its mass. An infinite mass is one that nothing moves."""
     place, velocity = item.pair("position"), item.pair("velocity")
     angle, spin = (item.number_of(name, 0.0) for name in ("angle", "angularVelocity"))
@@ -88,6 +88,9 @@ def _take(
         parts["Transform"]["angle"] = angle
     if shape:
         parts |= {"Shape": dict(shape), "Material": dict(_SURFACE)}
+    if mass == math.inf > inertia and not is_point and velocity == (0.0, 0.0):
+        mass = 1.0  # on an axle the mass does not matter
+        parts["Pin"] = {"anchor_a": body.anchor((0.0, 0.0)), "anchor_b": list(place)}
     if mass < math.inf:
         weight: dict[str, Any] = {"mass": mass}
         if inertia == math.inf:
@@ -99,13 +102,13 @@ def _take(
         parts["Velocity"] = moving
     if mass < math.inf and inertia == math.inf and moving.pop("angular", 0.0):
         draft.lose(item, f"it turns at {spin:g} rad/s with an infinite inertia; here it does not turn")
-    if mass == math.inf > inertia and not is_point:
-        draft.lose(item, "its mass is infinite and its inertia is not; here nothing turns it")
     if centre != (0.0, 0.0) and "Mass" in parts:
-        draft.lose(item, f"its centre of mass is ({-centre[0]:g}, {-centre[1]:g}) m off that of its area; here it is not")
+        draft.lose(
+            item,
+            f"its centre of mass is ({-centre[0]:g}, {-centre[1]:g}) m off that of its area; here it is not",
+        )
     body.entity = draft.place(item, parts)
     draft.bodies[item.number] = body
-    return body
 
 
 def give_points_extent(draft: Draft) -> None:

@@ -10,8 +10,8 @@ from physicslab.files.kde_step.item import Item, Pair
 
 _ROUNDED = 1e-4
 """Share of a length by which Step's files, of six digits, may be off: the length is then as placed."""
-_WEIGHT, _GRAVITATION, _COULOMB = 9.80665, 6.67428e-11, 8.987551787e9
-"""Step's constants where a file has none [m/s^2], [N m^2/kg^2], [N m^2/C^2]."""
+_WEIGHT, _GRAVITATION = 9.80665, 6.67428e-11
+"""Step's constants where a file has none [m/s^2], [N m^2/kg^2]."""
 
 
 def take_spring(item: Item, draft: Draft) -> None:
@@ -80,38 +80,39 @@ def take_motor(item: Item, draft: Draft) -> None:
     if body is None:
         _lose_end(item, draft, "body")
         return
-    linear = item.kind == "LinearMotor"
-    if not linear and body.is_point:
+    draft.placed[item.number] = body.entity
+    if item.kind == "CircularMotor" and body.is_point:
         draft.lose(item, "a particle does not turn")
         return
-    thrust: dict[str, Any] = {"torque": item.number_of("torqueValue", 0.0)}
-    if linear:
-        fixed = item.flag("rigidlyFixed") and not body.is_point
-        force = item.pair("forceValue")
-        point = (0.0, 0.0) if body.is_point else item.pair("localPosition")
-        thrust = {
-            "force": list(turned(force, -body.angle) if fixed else force),
-            "at": body.anchor(point),
-            "frame": "body" if fixed else "world",
-        }
-    known = body.entity.get("Thrust")
-    if known is None:
-        body.entity["Thrust"] = thrust
-    else:
-        _add(item, draft, known, thrust)
-    draft.placed[item.number] = body.entity
+    if not body.moves:
+        return
+    thrust = body.entity.setdefault("Thrust", {"force": [0.0, 0.0], "torque": 0.0})
+    if item.kind == "CircularMotor":
+        thrust["torque"] += item.number_of("torqueValue", 0.0)
+        return
+    force, fixed = item.pair("forceValue"), item.flag("rigidlyFixed") and not body.is_point
+    point = (0.0, 0.0) if body.is_point else item.pair("localPosition")
+    if fixed:
+        force = turned(force, -body.angle)
+    _push(item, draft, thrust, force, body.anchor(point), "body" if fixed else "world")
 
 
-def _add(item: Item, draft: Draft, known: dict[str, Any], more: Mapping[str, Any]) -> None:
-    """Add a motor to what acts on the body already: at one point, and in one frame, forces add up."""
-    if "torque" in more:
-        known["torque"] = known.get("torque", 0.0) + more["torque"]
-    elif "force" not in known:
-        known.update(more)
-    elif (known["at"], known["frame"]) == (more["at"], more["frame"]):
-        known["force"] = [one + other for one, other in zip(known["force"], more["force"], strict=True)]
-    else:
-        draft.lose(item, "another motor pushes the body at another point, or in another frame")
+def _push(item: Item, draft: Draft, thrust: dict[str, Any], more: Pair, at: list[float], frame: str) -> None:
+    """Add a force to a thrust. As complex numbers conj(a) F is a . F + i a x F, of which forces add up."""
+    one, other = complex(*thrust["force"]), complex(*more)
+    if one == 0.0:
+        thrust |= {"force": list(more), "at": at, "frame": frame}
+        return
+    arm, sum_ = complex(*thrust["at"]), one + other
+    moment = arm.conjugate() * one + complex(*at).conjugate() * other
+    if thrust["frame"] != frame or (frame == "world" and sum_ == 0.0 != moment):
+        draft.lose(item, "it cannot be one with the other motors of the body")
+        return
+    if frame == "body":
+        thrust["torque"] += ((complex(*at) - arm).conjugate() * other).imag
+    elif sum_ != 0.0:
+        arm = (moment / sum_).conjugate()
+    thrust |= {"force": [sum_.real, sum_.imag], "at": [arm.real, arm.imag]}
 
 
 def take_weight(item: Item, draft: Draft) -> None:
@@ -134,12 +135,6 @@ def take_gravitation(item: Item, draft: Draft) -> None:
         draft.lose(item, f"here it pulls {solid[0]} too" + (f" and {len(solid) - 1} more" * (len(solid) > 1)))
 
 
-def take_coulomb(item: Item, draft: Draft) -> None:
-    """Take the force of charges."""
-    strength = item.number_of("coulombConst", _COULOMB)
-    draft.physics["coulomb_constant"] = draft.physics.get("coulomb_constant", 0.0) + strength
-
-
 HOLDS: Mapping[str, Callable[[Item, Draft], None]] = {"Pin": take_pin, "Anchor": take_anchor}
 """The classes of what holds one body to the world."""
 COUPLINGS: Mapping[str, Callable[[Item, Draft], None]] = {
@@ -151,7 +146,6 @@ COUPLINGS: Mapping[str, Callable[[Item, Draft], None]] = {
     "CircularMotor": take_motor,
     "WeightForce": take_weight,
     "GravitationForce": take_gravitation,
-    "CoulombForce": take_coulomb,
 }
 """The classes of what else acts on bodies."""
 
@@ -187,4 +181,5 @@ def _lose_end(item: Item, draft: Draft, name: str) -> None:
 
 def _hold(body: Body) -> None:
     """Keep a body where it is; its mass still attracts others."""
-    body.entity.pop("Velocity", None)
+    for name in ("Velocity", "Pin"):
+        body.entity.pop(name, None)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+
 from physicslab.files.checks import SceneError, refusal, shown
 from physicslab.files.kde_step.bodies import BODIES, give_points_extent
 from physicslab.files.kde_step.couplings import COUPLINGS, HOLDS
@@ -61,7 +62,9 @@ def _draft(content: bytes, source: str) -> Draft:
         raise SceneError(f"{source}: is a model of CAD (ISO 10303), not a world of KDE Step")
     root = parse_xml(content, source)
     if root.tag != "world":
-        raise refusal(f"{source}: line {root.line}: the root element", root.tag, '"world", as KDE Step has it')
+        raise refusal(
+            f"{source}: line {root.line}: the root element", root.tag, '"world", as KDE Step has it'
+        )
     world = Item(root, source)
     draft = Draft(world.number)
     items = list(_all(world))

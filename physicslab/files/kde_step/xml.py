@@ -1,4 +1,4 @@
-"""XML of Step as a tree of elements with their lines, in bounded memory: entities are refused, not expanded."""
+"""XML as a tree of elements with their lines, in bounded memory: entities are refused, not expanded."""
 
 from __future__ import annotations
 
@@ -86,6 +86,4 @@ class _Tree:
 
     def refuse_entity(self, name: str, *_: object) -> None:
         line = self._parser.CurrentLineNumber
-        raise SceneError(
-            f"{self._source}: line {line}: declares the entity {shown(name)}; must declare none"
-        )
+        raise SceneError(f"{self._source}: line {line}: declares the entity {shown(name)}; must declare none")
