@@ -1,7 +1,5 @@
 """Bodies of Step: particles, discs, boxes and polygons. Its collisions are elastic and without friction."""
 
-from __future__ import annotations
-
 import math
 import random
 from collections.abc import Callable, Mapping, Sequence

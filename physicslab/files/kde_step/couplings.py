@@ -1,7 +1,5 @@
 """What acts on bodies of Step: springs, joints, motors and laws of force."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The scene that an import makes: entities as a scene file has them, and what of the world they leave out."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Step's notes, graphs, meters, controllers and tracers as those of the workbench."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Callable, Mapping
 from html.parser import HTMLParser

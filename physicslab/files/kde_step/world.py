@@ -1,7 +1,5 @@
 """A Step file as a world, with what of it a scene has no place for."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from physicslab.files.checks import SceneError, refusal, shown
