@@ -17,6 +17,7 @@ from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_WITH_SPLIT_FORCES
 from physicslab.integrators.rk4 import RK4
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.ode.closed_form import NoClosedForm, closed_form
+from physicslab.state.joint_rows import Measure, Role
 from physicslab.state.masses import quiet
 from physicslab.state.packed import spring_ends
 from physicslab.state.state import State
@@ -388,4 +389,4 @@ def why_not_smooth(state: State, schedule: Schedule) -> str | None:
             return f"{system.name} acts within the step"
     if (state.table(Velocity).present & ~state.table(Transform).present).any():
         return "something moves that is nowhere"
-    return None
+    return state.joints.why_not({Role.HOLD}, {Measure.ALONG}, terms=1)

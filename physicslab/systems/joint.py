@@ -6,7 +6,8 @@ import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Name, Transform
+from physicslab.components import Gear, Name, Pin, Slot, Transform
+from physicslab.components.gear import COUPLED, OTHER_JOINT
 from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.contacts.arguments import do_stage
 from physicslab.contacts.islands import wake_all
@@ -15,7 +16,7 @@ from physicslab.ecs.vector import rotated
 from physicslab.kernels import accounts
 from physicslab.kernels.joints import rows as joint_rows
 from physicslab.kernels.solver import soft
-from physicslab.state.joints import KINDS, ends_of
+from physicslab.state.joint_rows import KINDS, ends_of
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem, Stage, System, at
@@ -29,25 +30,30 @@ def remove_lost(state: State, kind: type[Any], a: NDArray[np.int64], b: NDArray[
     state : State
         Whose.
     kind : component type
-        It has ends ``a`` and ``b``.
+        It has ends ``a`` and ``b``, bodies; or those of a Gear, entities with joints.
     a, b : int64 arrays (n,)
         The rows of the bodies at the ends of each; 0 is the world, -1 what is not there.
 
     Raises
     ------
     InvalidValue
-        If an end never was an entity, or is one without a Transform.
+        If an end never was an entity, or is one without a Transform, or without a joint.
     """
     placed, batch = state.table(Transform).present, state.batch(kind)
+    names, needed, coupled = ("a", "b"), "an entity with a Transform", set[tuple[int, type[Any]]]()
+    if kind is Gear:
+        names, needed = ("first", "second"), COUPLED
+        coupled = {(joint.entity, joint.kind) for joint in state.joints.joints}
     lost_a, lost_b = (a < 0) | ~(placed[a] | (a == 0)), (b < 0) | ~(placed[b] | (b == 0))
     for i in np.flatnonzero(lost_a | lost_b).tolist():
-        entity, name = int(batch.entities[i]), "a" if lost_a[i] else "b"
+        entity, name = int(batch.entities[i]), names[0 if lost_a[i] else 1]
         if not (esper.entity_exists(entity) and esper.has_component(entity, kind)):
             continue  # removed by an earlier call, before rows were numbered again
         end = int(state.table(kind)[name][batch.rows[i]]) or entity
-        if end in state.entity_index.row_of or end > state.entity_index.newest:
+        gone = end not in state.entity_index.row_of and end <= state.entity_index.newest
+        if not gone and (entity, kind) not in coupled:
             owner = f"{state.label(entity)}: {kind.__name__}"
-            raise InvalidValue(owner, name, end, "an entity with a Transform")
+            raise InvalidValue(owner, name, end, needed)
         esper.remove_component(entity, kind)
         left: tuple[object, ...] = esper.components_for_entity(entity)
         if all(isinstance(component, Name) for component in left):
@@ -58,6 +64,9 @@ def _refuse_equal(
     state: State, kind: type[Any], rows: NDArray[np.int64], a: NDArray[np.int64], b: NDArray[np.int64]
 ) -> None:
     """Refuse joints (n,) whose ends are one body, and those that join the points of another of their kind."""
+    if kind is Gear:
+        _refuse_gears(state, rows)
+        return
     known: dict[tuple[Any, ...], str] = {}
     table, entities = state.table(kind), state.entity_index.entities
     for row, one, other in zip(rows.tolist(), a.tolist(), b.tolist(), strict=True):
@@ -69,6 +78,21 @@ def _refuse_equal(
             end = int(entities[other]) if other else None
             raise InvalidValue(f"{label}: {kind.__name__}", name, end, allowed)
         known[key_of(*ends)] = label
+
+
+def _refuse_gears(state: State, rows: NDArray[np.int64]) -> None:
+    """Refuse what couples an entity with two joints, or the joints of another Gear."""
+    table, known = state.table(Gear), dict[frozenset[int], str]()
+    for row in rows.tolist():
+        label, ends = state.label_of_row(row), [int(table[name][row]) for name in ("first", "second")]
+        for name, end in zip(("first", "second"), ends, strict=True):
+            if all(state.table(kind).present[state.entity_index.row_of[end]] for kind in (Pin, Slot)):
+                raise InvalidValue(f"{label}: Gear", name, end, COUPLED)
+        if ends[0] == ends[1]:
+            raise InvalidValue(f"{label}: Gear", "second", ends[1], OTHER_JOINT)
+        other = known.setdefault(frozenset(ends), label)
+        if other is not label:
+            raise InvalidValue(f"{label}: Gear", "second", ends[1], f"another joint than {other} couples")
 
 
 class JointForces(ForceSystem):
@@ -135,7 +159,7 @@ class JointForces(ForceSystem):
 
 
 class JointSystem(System):
-    """Holds together what joints join: Pin.
+    """Holds together what joints join: Pin, Slot, Weld, Rod, Rope, Pulley and Gear.
 
     In smooth motion, and with rigid contacts, the equations of the joints are solved with those of the
     motion (:class:`JointForces`). Beside soft contacts joints are soft constraints, solved with these.
@@ -157,7 +181,7 @@ class JointSystem(System):
         """
         index = state.entity_index
         for kind in KINDS:
-            rows, a, b = ends_of(index, kind)
+            rows, (a, b) = state.batch(kind).rows, ends_of(index, kind)
             remove_lost(state, kind, a, b)
             _refuse_equal(state, kind, rows, a, b)
         if state.joints.rebuild(index) and state.sleep.count:

@@ -12,7 +12,7 @@ from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import SceneError, file_stem
 from physicslab.history import Branch, Command, Remove, SetField, SetPhysics, Spawn
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 from physicslab.systems.gravity import GravitySystem
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.file_actions import new_paths

@@ -15,7 +15,7 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Spawn
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 from physicslab.view.controls.measure import LENGTH, Measure
 from physicslab.view.controls.picking import body_at
 from physicslab.view.window.edits import Recipe

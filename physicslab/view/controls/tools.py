@@ -6,7 +6,7 @@ import pygame
 
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.history import Command, Group, Remove, RemoveComponent
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 from physicslab.view.controls import drawing
 from physicslab.view.controls.drawing import Drawn
 from physicslab.view.controls.joining import JOINTS, SPRING
