@@ -19,7 +19,7 @@ _CATCH = 6.5
 """How near to a screw, a slider or a bead a press need be [px]."""
 _NEAR_LINE = 6.0
 """How near to a rod or a rope [px]."""
-_LIMIT, _TICK, _MOTOR = 19.0, 5.0, 12.5
+_LIMIT, _TICK, _MOTOR = 22.0, 5.0, 12.5
 """Radius of the arc between limits, half length of the stops at its ends, radius of the arrow of a motor."""
 _RAIL, _SLIDER = 5.5, (9.0, 6.0)
 """Half the width of a rail, half the sides of its slider [px]."""
@@ -27,7 +27,7 @@ _OPEN = 0.6
 """How far beyond its slider a rail without a limit is drawn [m]."""
 _TOOTH, _PITCH = 5.5, 11.0
 """How far teeth stand out of a rim, and about how far apart they are [px]."""
-_BEAD = 3.4
+_BEAD = 3.8
 """Radius of the beads of a weld [px]."""
 
 
@@ -100,11 +100,13 @@ def _draw_limits(pen: Pen, centre: Points, arm: float, now: float, table: object
     high = stops[-1] if table["upper_given"][row] else stops[0] + 0.5 * math.pi  # type: ignore[index]
     if high - low > 2.0 * math.pi:
         low, high = high - 2.0 * math.pi, high
-    pen.paths(_around(centre, radius, low, high), pen.dark(colour, 0.35), 1.5)
-    for stop in stops:
-        way = np.array((math.cos(stop), -math.sin(stop)))
-        tick = _TICK * pen.unit * way
-        pen.lines((centre + radius * way - tick)[None], (centre + radius * way + tick)[None], colour, 2.6)
+    edge = pen.dark(colour, 0.85)
+    for shade, width in ((edge, 3.6), (colour, 1.6)):
+        pen.paths(_around(centre, radius, low, high), shade, width)
+        for stop in stops:
+            way = np.array((math.cos(stop), -math.sin(stop)))
+            tick, at = _TICK * pen.unit * way, (centre + radius * way)[None]
+            pen.lines(at - tick, at + tick, shade, width + 1.2)
 
 
 def _draw_motor(pen: Pen, centre: Points, speed: float, turns_a: bool) -> None:
@@ -153,7 +155,8 @@ def _draw_slot(
     """Add a rail of two bars, with stops where it has limits, and the block that slides between them."""
     ahead = np.array((math.cos(turn), -math.sin(turn)))
     aside, colour = _RAIL * pen.unit * np.array((ahead[1], -ahead[0])), pen.theme.rod
-    pen.lines(rail[:1], rail[1:], pen.dark(colour, 0.8), 2.0 * _RAIL)
+    inset = _RAIL * pen.unit * ahead
+    pen.lines(rail[:1] + inset, rail[1:] - inset, pen.dark(colour, 0.8), 2.0 * _RAIL)
     for side in (aside, -aside):
         pen.lines(rail[:1] + side, rail[1:] + side, pen.dark(colour), 3.6)
         pen.lines(rail[:1] + side, rail[1:] + side, colour, 2.0)
@@ -169,9 +172,9 @@ def _draw_slot(
 def _draw_drive(pen: Pen, slider: Points, turn: float, speed: float) -> None:
     """Add an arrow on a slider in the direction in which its motor moves it."""
     way = math.copysign(1.0, speed) * np.array((math.cos(turn), -math.sin(turn)))
-    for n in (0.5, 4.5):
+    for n in (16.0, 21.0):
         tip = slider + n * pen.unit * way
-        pen.paths(_arrow_head(tip, way, 4.5 * pen.unit), pen.dark(pen.theme.accent, 0.6), 2.0)
+        pen.paths(_arrow_head(tip, way, 4.0 * pen.unit), pen.theme.accent, 1.8)
 
 
 # ---- welds and gears ---------------------------------------------------------------------------------------
@@ -268,14 +271,14 @@ def joint_at(world: World, camera: Camera, pixel: tuple[float, float], *, lines:
             start, end = (camera.project(table[name][rows]) for name in ("wheel_a", "wheel_b"))
         elif not lines:
             start = end = end if kind is Slot else start
-        gaps = _gaps(start, end, pixel)
+        gaps = gaps_to(start, end, pixel)
         nearest = int(np.argmin(gaps))
         if gaps[nearest] < best:
             best, found = float(gaps[nearest]), int(world.batch(kind).entities[nearest])
     return found if best <= (_NEAR_LINE if lines else _CATCH) else None
 
 
-def _gaps(start: Points, end: Points, pixel: tuple[float, float]) -> NDArray[np.float64]:
+def gaps_to(start: Points, end: Points, pixel: tuple[float, float]) -> NDArray[np.float64]:
     """Return how far a place is from lines (n,) [px]; infinite for those that are not finite."""
     with np.errstate(all="ignore"):
         along, offset = end - start, np.array(pixel) - start
