@@ -196,13 +196,12 @@ def _draw_welds(world: World, pen: Pen) -> None:
 
 def _draw_gears(world: World, pen: Pen) -> None:
     """Add toothed rims to two pinned wheels that a gear couples, and a dashed line between other joints."""
-    table = world.table(Gear)
+    table, known = world.table(Gear), _wheels(world)
     for row in world.batch(Gear).rows.tolist():
         ends = [int(table[name][row]) for name in ("first", "second")]
-        wheels = [_wheel(world, entity) for entity in ends]
-        if wheels[0] is None or wheels[1] is None:
+        if not all(end in known for end in ends):
             continue
-        (one, first), (other, second) = wheels
+        (one, first), (other, second) = (known[end] for end in ends)
         gap, ratio = float(np.hypot(*(other - one))), abs(float(table["ratio"][row]))
         spots = pen.camera.project(np.stack((one, other)))
         if not np.isfinite(spots).all():
@@ -218,17 +217,15 @@ def _draw_gears(world: World, pen: Pen) -> None:
             _draw_rim(pen, spots[n], float(radii[n]), int(teeth[n]), angle, way + n * math.pi, n)
 
 
-def _wheel(world: World, entity: int) -> tuple[Points, float] | None:
-    """Return where the joint is that a gear couples [m], and the angle of its body [rad], if it is a pin."""
+def _wheels(world: World) -> dict[int, tuple[Points, float]]:
+    """Return where each joint is that a gear can couple [m], and the angle of a pin's body [rad], by entity."""
+    found: dict[int, tuple[Points, float]] = {}
     for kind in (Pin, Slot):
-        if world.has(entity, kind):
-            rows = world.batch(kind).entities.tolist()
-            n = rows.index(entity)
-            at_a, at_b, _, fixed = link_ends(world, kind)
-            angle_a, angle_b = _angles(world, kind)
-            turned = float((angle_a if fixed[n] else angle_b)[n])
-            return (at_a if kind is Pin else at_b)[n], turned if kind is Pin else math.nan
-    return None
+        at_a, at_b, _, fixed = link_ends(world, kind)
+        angle = np.where(fixed, *_angles(world, kind)).tolist()
+        for n, entity in enumerate(world.batch(kind).entities.tolist()):
+            found[entity] = (at_a[n], angle[n]) if kind is Pin else (at_b[n], math.nan)
+    return found
 
 
 def _draw_rim(

@@ -9,7 +9,7 @@ from physicslab.components import Pulley, Rod, Rope
 from physicslab.ecs.vector import Vector2
 from physicslab.state.joint_rows import ends_of
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Points
+from physicslab.view.canvas.canvas import Numbers, Points
 from physicslab.view.picture.pen import Pen, aside
 from physicslab.view.picture.springs import place_of
 from physicslab.world import World
@@ -29,6 +29,10 @@ _NARROW = 1e-3
 _WHEEL = 11.0
 """Radius of the wheel of a pulley [px]."""
 _DOWN = Vector2(0.0, -1.0)
+_FAR = 4e3
+"""Length of a rope above which it is not woven [px]."""
+_STEPS = 8
+"""Steps of Newton's method for catenaries: the last ones change nothing."""
 
 
 def link_ends(world: World, kind: type) -> tuple[Points, Points, NDArray[np.bool_], NDArray[np.bool_]]:
@@ -61,76 +65,75 @@ def draw_ropes(world: World, pen: Pen) -> None:
     """Add ropes; one whose ends are nearer than it is long hangs as a chain does, with its whole length."""
     at_a, at_b, *fixed = link_ends(world, Rope)
     length = world.table(Rope)["length"][world.batch(Rope).rows]
-    down = world.physics.gravity if world.physics.gravity_mode == "linear" else Vector2()
-    paths = [
-        pen.camera.project(np.array(rope_path(Vector2(*start), Vector2(*end), float(whole), down)))
-        for start, end, whole in zip(at_a.tolist(), at_b.tolist(), length, strict=True)
-    ]
-    ends = np.array([path[0] for path in paths]), np.array([path[-1] for path in paths])
+    ends, project = (pen.camera.project(at_a), pen.camera.project(at_b)), pen.camera.project
+    with np.errstate(over="ignore", invalid="ignore"):
+        slack = np.hypot(*(at_b - at_a).T) < length * (1.0 - _SLACK)
     _hold(pen, ends, fixed)
-    for path in paths:
-        _weave(pen, path, is_woven=len(paths) <= _MAX_WOVEN)
+    if not slack.all():
+        _weave(pen, np.stack((ends[0][~slack], ends[1][~slack]), axis=1))
+    if slack.any():
+        linear = world.physics.gravity_mode == "linear" and bool(world.physics.gravity)
+        pull = world.physics.gravity if linear else _DOWN
+        hanging = rope_paths(at_a[slack], at_b[slack], length[slack], pull)
+        _weave(pen, project(hanging.reshape(-1, 2)).reshape(hanging.shape))
     for spots in ends:
         pen.rings(spots, 3.6, pen.dark(pen.theme.rope), pen.theme.rope, 1.0)
     _screw(pen, ends, fixed)
 
 
-def rope_path(start: Vector2, end: Vector2, length: float, pull: Vector2) -> list[tuple[float, float]]:
-    """Return points along a rope of a length between two ends [m]: a straight line, or a catenary.
+def rope_paths(start: Points, end: Points, length: Numbers, pull: Vector2) -> Points:
+    """Return points (n, k, 2) [m], at equal distances along ropes (n,) that hang between two ends (n, 2).
 
-    With the span h, the drop v and the length L, h / 2a = x follows from sinh(x) / x = sqrt(L^2 - v^2) / h;
-    the points are at equal distances along it. Without a pull it hangs downwards all the same.
+    They are catenaries: with the span h, the drop v and the length L, h / 2a = x follows from
+    sinh(x) / x = sqrt(L^2 - v^2) / h. The lengths [m] are above the distances of the ends.
     """
-    way = end - start
-    if not math.isfinite(length) or way.magnitude >= length * (1.0 - _SLACK):
-        return [tuple(start), tuple(end)]
-    up = -pull.normalized if pull else -_DOWN
-    right = Vector2(up.y, -up.x)
-    across, v = way.dot(right), way.dot(up)
-    h = max(abs(across), _NARROW * length)
-    right = right if across >= 0.0 else -right
-    wanted = math.sqrt(length * length - v * v) / h
-    x = _catenary(wanted)
-    a, half = 0.5 * h / x, 0.5 * h
-    lowest = half - a * math.atanh(v / length)  # from the start, along the span
-    first = a * math.sinh(-lowest / a)
-    points = []
-    for n in range(_PIECES + 1):
-        s = first + length * n / _PIECES
-        along = (lowest + a * math.asinh(s / a)) * (abs(across) / h)
-        height = math.hypot(a, s) - math.hypot(a, first)
-        points.append(tuple(start + right * along + up * height))
+    up = -pull.normalized
+    axes = np.array(((up.y, -up.x), (up.x, up.y)))
+    across, v = ((end - start) @ axes.T).T
+    h = np.maximum(np.abs(across), _NARROW * length)
+    a = 0.5 * h / _catenary(np.sqrt(length * length - v * v) / h)
+    lowest = 0.5 * h - a * np.arctanh(v / length)  # from the start, along the span
+    first = -a * np.sinh(lowest / a)
+    s = first[:, None] + length[:, None] * np.linspace(0.0, 1.0, _PIECES + 1)
+    a, first, lowest = a[:, None], first[:, None], lowest[:, None]
+    along = (lowest + a * np.arcsinh(s / a)) * (across / h)[:, None]
+    height = np.hypot(a, s) - np.hypot(a, first)
+    points: Points = start[:, None, :] + np.stack((along, height), axis=2) @ axes
     return points
 
 
-def _catenary(wanted: float) -> float:
-    """Return x > 0 with sinh(x) / x = ``wanted`` > 1, by bisection, which nothing upsets.
+def _catenary(wanted: Numbers) -> Numbers:
+    """Return x > 0 with sinh(x) / x = ``wanted`` > 1, by Newton's method for the logarithm of both sides.
 
-    >>> round(_catenary(1.1752011936438014), 9)
-    1.0
+    >>> _catenary(np.array((1.1752011936438014, 100.0))).round(9).tolist()
+    [1.0, 7.283997681]
     """
-    low, high = 1e-4, 20.0
-    for _ in range(60):
-        x = 0.5 * (low + high)
-        low, high = (x, high) if math.sinh(x) < wanted * x else (low, x)
-    return 0.5 * (low + high)
+    logarithm = np.log(wanted)
+    x = np.sqrt(6.0 * logarithm) + logarithm
+    for _ in range(_STEPS):
+        x = x - (np.log(np.sinh(x) / x) - logarithm) / (1.0 / np.tanh(x) - 1.0 / x)
+    return x
 
 
-def _weave(pen: Pen, path: Points, *, is_woven: bool) -> None:
-    """Add a rope along a path (n, 2) [px]: a dark edge, its body, and its strands at equal distances."""
-    colour, corners = pen.theme.rope, path[None]
-    pen.paths(corners, pen.dark(colour, 0.6), _ROPE + 1.8)
-    pen.paths(corners, colour, _ROPE)
-    steps = np.hypot(*np.diff(path, axis=0).T)
-    along = np.concatenate(([0.0], np.cumsum(steps)))
-    count = int(min(along[-1], 4e3) / (_STRAND * pen.unit)) if np.isfinite(along[-1]) else 0
-    if not is_woven or count < 2:
+def _weave(pen: Pen, paths: Points) -> None:
+    """Add ropes along paths (n, k, 2) [px] of points at equal distances: dark edges, bodies, and strands."""
+    colour, pieces = pen.theme.rope, paths.shape[1] - 1
+    pen.paths(paths, pen.dark(colour, 0.6), _ROPE + 1.8)
+    pen.paths(paths, colour, _ROPE)
+    ways = np.diff(paths, axis=1)
+    with np.errstate(all="ignore"):
+        length = pieces * np.hypot(ways[:, 0, 0], ways[:, 0, 1])
+        count = np.where(length < _FAR, length / (_STRAND * pen.unit), 0.0).astype(np.int64)
+    if len(paths) > _MAX_WOVEN or not count.any():
         return
-    at = (np.arange(count) + 0.5) * along[-1] / count
-    spots = np.stack((np.interp(at, along, path[:, 0]), np.interp(at, along, path[:, 1])), axis=1)
-    piece = np.clip(np.searchsorted(along, at) - 1, 0, len(steps) - 1)
-    ways = np.diff(path, axis=0)[piece] / np.maximum(steps[piece], 1e-9)[:, None]
-    slant = (1.1 * ways + 1.5 * aside(ways)) * pen.unit
+    rope = np.repeat(np.arange(len(paths)), count)
+    nth = np.arange(len(rope)) - np.repeat(np.cumsum(count) - count, count)
+    share = (nth + 0.5) * pieces / count[rope]
+    piece = share.astype(np.int64)
+    way = ways[rope, piece]
+    spots = paths[rope, piece] + (share - piece)[:, None] * way
+    way = way * (pen.unit / np.maximum(np.hypot(way[:, 0], way[:, 1]), 1e-9))[:, None]
+    slant = 1.1 * way + 1.5 * np.stack((way[:, 1], -way[:, 0]), axis=1)
     pen.lines(spots - slant, spots + slant, pen.dark(colour, 0.45), 1.1)
 
 
@@ -143,11 +146,11 @@ def draw_pulleys(world: World, pen: Pen) -> None:
         ends = pen.camera.project(np.stack((at_a[n], at_b[n])))
         if not (np.isfinite(hubs).all() and np.isfinite(ends).all()):
             continue
-        over = pulley_path(ends, hubs, _WHEEL * pen.unit)
+        over = _evenly(pulley_path(ends, hubs, _WHEEL * pen.unit))
         pen.brackets(hubs, 1.0)
         pen.rings(hubs, _WHEEL, pen.dark(pen.theme.rod), pen.dark(pen.theme.rod, 0.2), 1.6)
         pen.rings(hubs, 0.62 * _WHEEL, pen.dark(pen.theme.rod, 0.4), pen.dark(pen.theme.rod, 0.05), 1.0)
-        _weave(pen, over, is_woven=len(rows) <= _MAX_WOVEN)
+        _weave(pen, over[None])
         pen.rings(ends, 3.6, pen.dark(pen.theme.rope), pen.theme.rope, 1.0)
         pen.screws(hubs, np.full(2, 0.7))
 
@@ -166,6 +169,13 @@ def pulley_path(ends: Points, hubs: Points, radius: float) -> Points:
         arc = hubs[n] + radius * np.stack((np.cos(angles), np.sin(angles)), axis=1)
         corners += list(arc if n == 0 else arc[::-1])
     return np.array([*corners, ends[1]])
+
+
+def _evenly(path: Points) -> Points:
+    """Return points at equal distances along a path (n, 2) [px]."""
+    along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))))
+    at = np.linspace(0.0, along[-1], 4 * _PIECES + 1)
+    return np.stack((np.interp(at, along, path[:, 0]), np.interp(at, along, path[:, 1])), axis=1)
 
 
 def _hold(pen: Pen, ends: tuple[Points, Points], fixed: list[NDArray[np.bool_]]) -> None:
