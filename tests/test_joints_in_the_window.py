@@ -9,7 +9,8 @@ from recording import RecordingCanvas
 from physicslab.components import Mass, Pin, Shape, Transform, Velocity
 from physicslab.diagnostics.joints import joint_states
 from physicslab.export.recording import RunRecorder
-from physicslab.view.controls.tools import attachments, remove, remove_selected, take_hold
+from physicslab.view.controls.joining import attachments
+from physicslab.view.controls.tools import remove, remove_selected, take_hold
 from physicslab.world import World
 
 

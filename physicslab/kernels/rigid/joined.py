@@ -22,7 +22,7 @@ from physicslab.kernels.joints.layout import (
     first_state,
 )
 from physicslab.kernels.joints.rows import book_rows, given_by_rows, measure_rows, push_by_rows
-from physicslab.kernels.rigid.features import NA, NX, NY, ONE, TA, Points, Scene, SceneTuple, named_scene
+from physicslab.kernels.rigid.features import NORMAL, ONE, TANGENT, Points, Scene, SceneTuple, named_scene
 
 _IMMOVABLE = 1e-12
 """Share of what a force causes alone below which joints leave nothing of it."""
@@ -39,19 +39,18 @@ def measure_joints(scene: Scene, q: Numbers, v: Numbers) -> None:
 def _at_row(scene: Scene, points: Points, measures: Vectors, i: int, r: int) -> tuple[float, float]:
     """Return how unit forces at point i, along its normal and its tangent, accelerate row r of joints."""
     along, across, states = 0.0, 0.0, first_state(scene.joints)
-    nx, ny = measures[i, NX], measures[i, NY]
     for side in range(2):
         body = points[i, ONE + side]
-        sign = 1.0 if side == 1 else -1.0
-        mass, inertia = sign * scene.inverse_mass[2 * body], sign * scene.inverse_mass[2 * scene.rows + body]
+        mass, inertia = scene.inverse_mass[2 * body], scene.inverse_mass[2 * scene.rows + body]
+        n, t = NORMAL + 3 * side, TANGENT + 3 * side
         for end in range(ENDS):
             if scene.joints[FIRST + PLACES * r + 2 * end] != 2 * body:
                 continue
             j = states + STATE * r + 3 * end
             jx, jy = scene.joint_numbers[j], scene.joint_numbers[j + 1]
             turn = inertia * scene.joint_numbers[j + 2]
-            along += mass * (jx * nx + jy * ny) - turn * measures[i, TA + side]
-            across += mass * (jy * nx - jx * ny) + turn * measures[i, NA + side]
+            along += mass * (jx * measures[i, n] + jy * measures[i, n + 1]) + turn * measures[i, n + 2]
+            across += mass * (jx * measures[i, t] + jy * measures[i, t + 1]) + turn * measures[i, t + 2]
     return along, across
 
 

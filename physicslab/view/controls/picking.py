@@ -36,18 +36,23 @@ def body_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | N
 
     Otherwise the nearest whose middle is within a few pixels is taken.
     """
+    return next(iter(bodies_at(world, camera, pixel)), None)
+
+
+def bodies_at(world: World, camera: Camera, pixel: tuple[float, float]) -> list[int]:
+    """Return the bodies at a place on the screen [px], the upper ones first, as :func:`body_at` does."""
     place, rows = camera.to_world(pixel), body_rows(world)
     entities = world.entity_index.entities
     everything = rows.all
     gap = outlines_of(world, everything).gaps(place.x, place.y)
     gap[len(gap) - len(rows.points) :] -= POINT_RADIUS / camera.scale
-    hit = np.flatnonzero(gap <= 0.0)
-    if len(hit):
-        return int(entities[everything[hit[-1]]])
+    hit: list[int] = entities[everything[np.flatnonzero(gap <= 0.0)[::-1]]].tolist()
+    if hit:
+        return hit
     distance = _distance(world, everything, place)
     if len(distance) and np.fmin.reduce(distance) <= _MAX_DISTANCE / camera.scale:
-        return int(entities[everything[int(np.nanargmin(distance))]])
-    return None
+        return [int(entities[everything[int(np.nanargmin(distance))]])]
+    return []
 
 
 def spring_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:

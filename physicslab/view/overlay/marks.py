@@ -13,7 +13,7 @@ from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Look, Numbers, Points, Rect, TextStyle
 from physicslab.view.canvas.rim import rim_of
 from physicslab.view.canvas.theme import Colour
-from physicslab.view.overlay.arrows import VELOCITY, draw_arrows
+from physicslab.view.overlay.arrows import VELOCITY, draw_arrows, even_dashes
 from physicslab.view.picture.bodies import POINT_RADIUS
 from physicslab.world import World
 
@@ -118,6 +118,21 @@ def draw_ghost(ghost: Outlines, colour: Colour, on: Drawing) -> None:
         own = rim_of(core, float(ghost.radius[n]), _GHOST_CORNERS)
         corners = on.camera.project(ghost.place[n] + own)
         on.canvas.lines(corners, np.roll(corners, -1, axis=0), colour, 1.4, _GHOST_OPACITY)
+
+
+_DASH, _END = 9.0, 4.0
+"""Length of a dash, and radius of the discs at the ends, of a joint in the making [px]."""
+
+
+def draw_dashes(places: Sequence[Vector2], on: Drawing) -> None:
+    """Draw a dashed line between each two of some points of the world [m], with a disc at each."""
+    spots = on.camera.project(np.array([tuple(place) for place in places]))
+    if not (np.abs(spots) < _FAR).all():
+        return
+    for start, end in zip(spots[::2], spots[1::2], strict=False):
+        on.canvas.lines(*even_dashes(start, end, _DASH), on.theme.accent, 2.0)
+    look = Look.plain(on.theme.accent, on.theme.accent, len(spots))
+    on.canvas.discs(spots, np.full(len(spots), _END), np.zeros(len(spots)), look)
 
 
 _SNAP_OPACITY = 0.75

@@ -18,7 +18,8 @@ from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, vector_quantity, without_rounding
 from physicslab.view.controls.actions import duplicate_selected
 from physicslab.view.controls.dashboard_actions import plot_selected
-from physicslab.view.controls.tools import attachments, remove_selected
+from physicslab.view.controls.joining import attachments
+from physicslab.view.controls.tools import remove_selected
 from physicslab.view.overlay.forces import Measured
 from physicslab.view.overlay.instruments import readings_of
 from physicslab.view.toolkit.ui import Ui
