@@ -4,7 +4,7 @@ import math
 
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
-from physicslab.kernels.joints.rows import ROWS
+from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
 from physicslab.kernels.rigid.equations import CHANGE, FREE, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
