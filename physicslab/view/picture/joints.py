@@ -218,7 +218,7 @@ def _draw_gears(world: World, pen: Pen) -> None:
 
 
 def _wheels(world: World) -> dict[int, tuple[Points, float]]:
-    """Return where each joint is that a gear can couple [m], and the angle of a pin's body [rad], by entity."""
+    """Return by entity where each joint is that a gear can couple [m], and the angle of a pin [rad]."""
     found: dict[int, tuple[Points, float]] = {}
     for kind in (Pin, Slot):
         at_a, at_b, _, fixed = link_ends(world, kind)

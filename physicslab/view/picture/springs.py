@@ -130,7 +130,10 @@ def coil(start: Points, end: Points, rest: Numbers, unit: float = 1.0) -> tuple[
 
 
 def place_of(world: World, rows: NDArray[np.int64], anchor: Points) -> Points:
-    """Return where anchors in the bodies' own frames are in the world [m]; row 0 is the world itself."""
+    """Return where anchors (n, 2) in the frames of bodies are in the world [m].
+
+    ``rows`` (n,) are those of the bodies; row 0 is the world itself.
+    """
     transform = world.table(Transform)
     angle = transform["angle"][rows]
     c, s = np.cos(angle), np.sin(angle)
