@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -138,7 +139,7 @@ def test_two_bodies_that_part_on_a_rope_go_on_together() -> None:
 # ---- limits ------------------------------------------------------------------------------------------------
 
 
-def bar_on_a_pin(angle: float, **pin: float) -> tuple[World, int]:
+def bar_on_a_pin(angle: float, **pin: Any) -> tuple[World, int]:
     """Return a bar of 1 m on a pin at one end, level at an angle of 0."""
     world = empty()
     at = Transform((0.5 * math.cos(angle), 0.5 * math.sin(angle)), angle)
@@ -251,13 +252,13 @@ def test_a_brake_stops_a_wheel_and_keeps_it() -> None:
 def atwood(first: float, second: float, height: float = 50.0) -> tuple[World, int, int]:
     """Return two masses over two wheels, at rest, the first so high above a floor."""
     world = empty()
-    bodies = [
+    one, other = (
         world.spawn(Transform((x, 0.0)), Velocity(), Mass(mass), Shape.box(0.4, 0.4), Material(restitution=0))
         for x, mass in ((-1.0, first), (1.0, second))
-    ]
-    world.spawn(Pulley(a=bodies[0], b=bodies[1], wheel_a=(-1.0, 4.0), wheel_b=(1.0, 4.0)))
+    )
+    world.spawn(Pulley(a=one, b=other, wheel_a=(-1.0, 4.0), wheel_b=(1.0, 4.0)))
     world.spawn(Transform((-1.0, -height - 0.7)), Shape.box(1.0, 1.0))
-    return world, *bodies
+    return world, one, other
 
 
 def test_atwood() -> None:

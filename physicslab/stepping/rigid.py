@@ -1,4 +1,4 @@
-"""Few bodies that touch: rigid contacts, their laws solved to rounding, events located in time."""
+"""Few bodies that touch or have limits: laws of contacts solved to rounding, events located in time."""
 
 import time
 from typing import Any
@@ -101,6 +101,7 @@ class Rigid:
         """Make the steps, or those before the first that it cannot make and is not ready for."""
         began, parts = time.perf_counter_ns(), divisions(state, h)
         self._ode.gather(state)
+        self._ode.set_going()
         scene = self._scene(state)
         last, made = None, 0
         while made < steps:
