@@ -13,14 +13,14 @@ from physicslab.kernels.geometry.cores import Touch
 from physicslab.kernels.geometry.outline import Outline, Way
 from physicslab.kernels.geometry.shapes import BOX
 from physicslab.kernels.interpreter import twin_of
-from physicslab.state.shapes import register
+from physicslab.state.shapes import Register
 
 touch_cores, sweep_cores = twin_of(cores.touch_cores), twin_of(cores.sweep_cores)
 box_box, circle_box, pose_at = twin_of(manifold.box_box), twin_of(manifold.circle_box), twin_of(cores.pose_at)
 
 _TURNS = [2.0 * math.pi * k / 5 for k in range(5)]
 FIVE = Kind(tuple((math.cos(turn), math.sin(turn)) for turn in _TURNS), x="radius", y="radius")
-_, EXTENTS, POOL = register((*KINDS.values(), FIVE))
+POOL = Register((*KINDS.values(), FIVE)).pool
 FIRST = {"disc": 0, "box": BOX, "capsule": 5, "five": 7}
 COUNT = {"disc": 1, "box": 4, "capsule": 2, "five": 5}
 angles, extents = st.floats(-math.pi, math.pi), st.floats(0.2, 2.0)
@@ -33,7 +33,7 @@ def outline(kind: str, angle: float, a: float, b: float) -> Outline:
         "disc": (0.0, 0.0, a), "box": (a, b, 0.0), "capsule": (a, 0.0, b), "five": (a, a, 0.3 * b),
     }[kind]  # fmt: skip
     c, s = (math.cos(angle), math.sin(angle)) if kind != "disc" else (1.0, 0.0)
-    return Outline(kind == "box", c, s, half_x, half_y, radius, COUNT[kind], FIRST[kind])
+    return Outline(kind == "box", c, s, half_x, half_y, radius, COUNT[kind], FIRST[kind], min(half_x, half_y) + radius)
 
 
 def touch(dx: float, dy: float, one: Outline, other: Outline, margin: float = math.inf) -> Touch:

@@ -5,8 +5,8 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from physicslab.ecs.fields import REQUIRED, Field, Kind
-from physicslab.ecs.text import text_of
+from physicslab.ecs.fields import POINTS, REQUIRED, Field, Kind
+from physicslab.ecs.text import TEXTS
 from physicslab.ecs.vector import Vector2
 
 type Maker = Callable[[object], list[list[Any]]]
@@ -36,6 +36,20 @@ class Derived:
 
     def __set__(self, handle: object, value: float | None) -> None:
         """Give the number explicitly, or leave it to the world with ``None``."""
+        raise NotImplementedError
+
+
+class Points:
+    """The type of a list of points: reads as a tuple of :class:`Vector2`, takes a list of pairs of numbers."""
+
+    def __get__(self, handle: object, owner: type | None = None) -> tuple[Vector2, ...]:
+        """Return the points of the handle's row."""
+        raise NotImplementedError  # the decorator puts a property in this place
+
+    def __set__(
+        self, handle: object, value: Sequence[Vector2 | Sequence[float]] | NDArray[Any]
+    ) -> None:
+        """Store points in the handle's row."""
         raise NotImplementedError
 
 
@@ -78,7 +92,8 @@ def accessor(spec: Field, column: int, *, validated: bool) -> property:
         "flag": lambda self: self._views[column][self._row],
         "entity": lambda self: self._views[column][self._row] or None,
         "choice": lambda self: spec.choices[self._views[column][self._row] - 1],
-        "text": lambda self: text_of(self._views[column][self._row]),
+        "text": lambda self: TEXTS.value_of(self._views[column][self._row]),
+        "points": lambda self: POINTS.value_of(self._views[column][self._row]),
     }
 
     def read_vector(self: Any) -> Vector2:

@@ -278,8 +278,13 @@ def _fields(component: Component, ids: Mapping[int, str], label: str) -> dict[st
                 raise SceneError(f"{place} = {value}: must be an entity of this world")
             written[spec.name] = ids[value]
         elif not _is_default(spec, value):
-            written[spec.name] = list(value) if isinstance(value, Vector2) else value
+            written[spec.name] = _listed(value)
     return written
+
+
+def _listed(value: Any) -> Any:
+    """Return a value as JSON has it: vectors and lists of points as lists."""
+    return [_listed(part) for part in value] if isinstance(value, Vector2 | tuple) else value
 
 
 def _is_default(spec: Field, value: Any) -> bool:
@@ -293,6 +298,4 @@ def _is_default(spec: Field, value: Any) -> bool:
 
 def _settings(config: PhysicsConfig | SimulationConfig) -> dict[str, Any]:
     values = {name: getattr(config, name) for name in field_names(type(config))}
-    return {
-        name: list(value) if isinstance(value, Vector2 | tuple) else value for name, value in values.items()
-    }
+    return {name: _listed(value) for name, value in values.items()}

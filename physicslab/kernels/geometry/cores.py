@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from physicslab.kernels import Vectors, inlined
 from physicslab.kernels.geometry.manifold import ALIKE, FAVOUR, LEVEL, Corner
-from physicslab.kernels.geometry.outline import Outline, Way, corner, half_size, swing_of, turned
+from physicslab.kernels.geometry.outline import Outline, Way, corner, swing_of, turned
 
 _FACE, FLIPPED, VERTICES = 65, 129, 200
 """From these numbers on features are vertices on faces of A (65 + vertex + 8 face), vertices on faces of B,
@@ -82,7 +82,7 @@ def _best_face(
     """
     gap, face = _farthest_face(dx, dy, a, b, pool)
     gap_b, face_b = _farthest_face(-dx, -dy, b, a, pool)
-    smallest, flip = min(half_size(a), half_size(b)), False
+    smallest, flip = min(a.thin, b.thin), False
     if gap_b > gap + ALIKE * smallest:
         gap, face, flip = gap_b, face_b, True
     if _FACE <= old < VERTICES:
