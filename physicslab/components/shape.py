@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from physicslab.components.lengths import extent
-from physicslab.components.vertices import centred, why_not_convex, why_off_centre
+from physicslab.components.vertices import centred, plain, why_not_convex, why_off_centre
 from physicslab.ecs.component import Component, InvalidValue, Points, component, field
 from physicslab.ecs.fields import LENGTH_LIMIT
 from physicslab.ecs.vector import Vector2
@@ -117,13 +117,14 @@ class Shape(Component):
         return Shape("polygon", radius=radius, vertices=centred(vertices, radius))
 
     def validate(self) -> None:
-        """Check that the sizes are those of the kind, and greater than zero, and that vertices are a polygon."""
+        """Check that the sizes are those of the kind and above zero, and that vertices are a polygon."""
         kind, fields = KINDS[self.kind], self.HAS[self.kind]
         for spec in self.FIELDS[1:]:
             value = getattr(self, spec.name)
             if spec.name not in fields:
                 if value != spec.default:
-                    raise InvalidValue("Shape", spec.name, value, f"left out: a {self.kind} has no {spec.name}")
+                    allowed = f"left out: a {self.kind} has no {spec.name}"
+                    raise InvalidValue("Shape", spec.name, plain(value), allowed)
             elif spec.kind == "number" and value <= 0.0 and not kind.own[1]:
                 raise InvalidValue("Shape", spec.name, value, f"a finite number > 0 m for a {self.kind}")
         if kind.own[1]:
@@ -132,5 +133,4 @@ class Shape(Component):
     def _check_vertices(self, kind: Kind) -> None:
         refused = why_not_convex(self.vertices, *kind.own) or why_off_centre(self.vertices, self.radius)
         if refused is not None:
-            shown = [[vertex.x, vertex.y] for vertex in self.vertices]
-            raise InvalidValue("Shape", "vertices", shown, refused)
+            raise InvalidValue("Shape", "vertices", plain(self.vertices), refused)

@@ -1,10 +1,9 @@
 """Vertices of polygons: what they must be like, where their centre of mass is, and how they are centred."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 from physicslab.ecs.vector import Vector2
 
@@ -13,7 +12,7 @@ _ROUNDING = 1e-9
 
 
 def why_not_convex(vertices: Sequence[Vector2], least: int, most: int) -> str | None:
-    """Return what the vertices of a convex polygon must be where these [m] are none, in words, or ``None``."""
+    """Return in words what the vertices of a convex polygon must be that these [m] are not, or ``None``."""
     count = len(vertices)
     if not least <= count <= most:
         return f"{least} to {most} vertices; these are {count}"
@@ -24,10 +23,10 @@ def why_not_convex(vertices: Sequence[Vector2], least: int, most: int) -> str | 
                 return f"vertices at different places; number {j + 1} and number {k + 1} are at one"
     turns = _turns(vertices)
     if all(turn <= _ROUNDING for turn in turns) and min(turns) < -_ROUNDING:
-        return f"counter-clockwise; these are clockwise: take {_listed(vertices[::-1])}"
+        return f"counter-clockwise; these are clockwise: take {plain(vertices[::-1])}"
     for k, turn in enumerate(turns):
         if abs(turn) <= _ROUNDING:
-            return f"convex, of more than 0 m^2, each vertex a corner; number {k + 1} is in line with its neighbours"
+            return f"convex, each vertex a corner; number {k + 1} is in line with its neighbours"
         if turn < 0.0:
             return f"convex; at number {k + 1} these turn inwards"
     if sum(turns) > 3.0 * math.pi:
@@ -48,7 +47,7 @@ def why_off_centre(vertices: Sequence[Vector2], radius: float) -> str | None:
         return None
     return (
         f"about the centre of mass; that of these is at [{centre.x!r}, {centre.y!r}] m: shift them by "
-        f"[{-centre.x!r}, {-centre.y!r}] m, to {_listed(centred(vertices, radius))}"
+        f"[{-centre.x!r}, {-centre.y!r}] m, to {plain(centred(vertices, radius))}"
     )
 
 
@@ -104,5 +103,10 @@ def regular(count: int, radius: float) -> tuple[Vector2, ...]:
     return tuple(Vector2.from_angle((k + 0.5) * turn - 0.5 * math.pi, radius) for k in range(count))
 
 
-def _listed(vertices: Sequence[Vector2]) -> str:
-    return repr([[vertex.x, vertex.y] for vertex in vertices])
+def plain(value: Any) -> Any:
+    """Return a value as files have it: points as lists of numbers.
+
+    >>> plain((Vector2(1, 2),)), plain(0.5)
+    ([[1.0, 2.0]], 0.5)
+    """
+    return [plain(part) for part in value] if isinstance(value, Vector2 | tuple) else value

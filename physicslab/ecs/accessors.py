@@ -6,7 +6,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from physicslab.ecs.fields import POINTS, REQUIRED, Field, Kind
-from physicslab.ecs.text import TEXTS
+from physicslab.ecs.text import text_of
 from physicslab.ecs.vector import Vector2
 
 type Maker = Callable[[object], list[list[Any]]]
@@ -40,15 +40,13 @@ class Derived:
 
 
 class Points:
-    """The type of a list of points: reads as a tuple of :class:`Vector2`, takes a list of pairs of numbers."""
+    """The type of a list of points: reads as a tuple of :class:`Vector2`, takes any pairs of numbers."""
 
     def __get__(self, handle: object, owner: type | None = None) -> tuple[Vector2, ...]:
         """Return the points of the handle's row."""
         raise NotImplementedError  # the decorator puts a property in this place
 
-    def __set__(
-        self, handle: object, value: Sequence[Vector2 | Sequence[float]] | NDArray[Any]
-    ) -> None:
+    def __set__(self, handle: object, value: Sequence[Vector2 | Sequence[float]] | NDArray[Any]) -> None:
         """Store points in the handle's row."""
         raise NotImplementedError
 
@@ -92,7 +90,7 @@ def accessor(spec: Field, column: int, *, validated: bool) -> property:
         "flag": lambda self: self._views[column][self._row],
         "entity": lambda self: self._views[column][self._row] or None,
         "choice": lambda self: spec.choices[self._views[column][self._row] - 1],
-        "text": lambda self: TEXTS.value_of(self._views[column][self._row]),
+        "text": lambda self: text_of(self._views[column][self._row]),
         "points": lambda self: POINTS.value_of(self._views[column][self._row]),
     }
 

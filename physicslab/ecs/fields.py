@@ -10,7 +10,7 @@ from typing import Any, Concatenate, Literal
 import numpy as np
 
 from physicslab.ecs.interned import Interned
-from physicslab.ecs.text import TEXTS, has_width, is_line
+from physicslab.ecs.text import code_of, has_width, is_line
 from physicslab.ecs.vector import Vector2
 
 Kind = Literal["number", "whole", "vector", "flag", "entity", "choice", "text", "points"]
@@ -247,7 +247,7 @@ def _text(field: Field, value: object) -> int | None:
         return None
     if not all(map(is_line, value.split("\n"))) or (value and not has_width(value)):
         return None
-    return TEXTS.code_of(value)
+    return code_of(value)
 
 
 def _points(field: Field, value: object) -> int | None:

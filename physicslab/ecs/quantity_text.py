@@ -167,7 +167,6 @@ def points_text(points: Iterable[Vector2]) -> str:
     return repr([[int(x) if x == round(x) and abs(x) < 1e15 else x for x in point] for point in points])
 
 
-
 def _evaluated(text: str, shown: str) -> _Quantity:
     prepared = re.sub(r"(?<=\d),(?=\d)", ".", text.strip())
     prepared = re.sub(r"[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda found: f"^{found.group().translate(_SUPERSCRIPTS)}", prepared)

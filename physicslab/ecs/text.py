@@ -98,5 +98,6 @@ def in_words(name: str) -> str:
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", name).lower()
 
 
-TEXTS = Interned("")
-"""The texts in columns."""
+_TEXTS = Interned("")
+code_of, text_of = _TEXTS.code_of, _TEXTS.value_of
+"""The number that stands for a text in this process, 0 for the empty one; and the text of a number."""

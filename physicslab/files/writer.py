@@ -8,6 +8,7 @@ import esper
 
 from physicslab.components import Name, Shape
 from physicslab.components.naming import plain_name
+from physicslab.components.vertices import plain
 from physicslab.contacts.islands import export_rests
 from physicslab.contacts.memory import copied, kept_rows
 from physicslab.ecs.component import COMPONENTS, Component
@@ -278,13 +279,8 @@ def _fields(component: Component, ids: Mapping[int, str], label: str) -> dict[st
                 raise SceneError(f"{place} = {value}: must be an entity of this world")
             written[spec.name] = ids[value]
         elif not _is_default(spec, value):
-            written[spec.name] = _listed(value)
+            written[spec.name] = plain(value)
     return written
-
-
-def _listed(value: Any) -> Any:
-    """Return a value as JSON has it: vectors and lists of points as lists."""
-    return [_listed(part) for part in value] if isinstance(value, Vector2 | tuple) else value
 
 
 def _is_default(spec: Field, value: Any) -> bool:
@@ -298,4 +294,4 @@ def _is_default(spec: Field, value: Any) -> bool:
 
 def _settings(config: PhysicsConfig | SimulationConfig) -> dict[str, Any]:
     values = {name: getattr(config, name) for name in field_names(type(config))}
-    return {name: _listed(value) for name, value in values.items()}
+    return {name: plain(value) for name, value in values.items()}

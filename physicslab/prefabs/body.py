@@ -119,7 +119,12 @@ def circle(world: World, position: Pair, *, radius: float = 0.25, **options: Unp
 
 
 def polygon(
-    world: World, position: Pair, vertices: Sequence[Pair], *, radius: float = 0.0, **options: Unpack[BodyOptions]
+    world: World,
+    position: Pair,
+    vertices: Sequence[Pair],
+    *,
+    radius: float = 0.0,
+    **options: Unpack[BodyOptions],
 ) -> int:
     """Spawn a convex polygon of 3 to 8 vertices [m], rounded by a radius [m]; return its entity.
 

@@ -71,7 +71,8 @@ def _columns(state: State) -> tuple[Any, ...]:
     return (
         velocity.present, mass.present, state.table(Held).present,
         mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
-        shape["kind"], shape["vertices"], sizes_in(shape), REGISTER.kinds, REGISTER.extents, bodies.plain_shapes, velocity["angular"],
+        shape["kind"], shape["vertices"], sizes_in(shape), REGISTER.kinds, REGISTER.extents,
+        bodies.plain_shapes, velocity["angular"],
         bodies.inverse_mass, bodies.inverse_inertia,
         bodies.awake_inverse_mass, bodies.awake_inverse_inertia, state.sleep.asleep,
     )  # fmt: skip

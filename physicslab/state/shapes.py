@@ -20,7 +20,7 @@ class Register:
     Attributes
     ----------
     kinds : int64 array (n, 5)
-        See :func:`physicslab.kernels.geometry.shapes.derive_shape`; row ``OWN + code`` is that of the vertices
+        See :func:`physicslab.kernels.geometry.shapes.derive_shape`; in row ``OWN + code`` are the vertices
         with this code in :data:`physicslab.ecs.fields.POINTS`. Rows that are not taken yet are 0.
     extents : float64 array (n, 2)
         Half of the extents of each core, in units of the sizes that stretch it.
@@ -42,7 +42,7 @@ class Register:
         self._cores = max(self._cores, OWN + 1)
 
     def arrays(self) -> tuple[NDArray[Any], ...]:
-        """Return kinds, extents and pool with all lists of points; another tuple where one has been replaced."""
+        """Return kinds, extents and pool with all lists of points: another tuple where one is new."""
         for code in range(self._known, len(POINTS)):
             points = [(point.x, point.y) for point in POINTS.value_of(code)]
             self._add(np.array(points).reshape(-1, 2), -1, -1, 0)
@@ -83,7 +83,7 @@ def blank_shapes(rows: int) -> ShapesTuple:
 def with_names(plain: ShapesTuple) -> Shapes:
     """Return the same table, its columns by name."""
     cores, lengths, pool = plain
-    return Shapes(cores[0], cores[1], *lengths, pool)
+    return Shapes(cores[0], cores[1], lengths[0], lengths[1], lengths[2], lengths[3], lengths[4], pool)
 
 
 def sizes_in(table: Table) -> SizesTuple:
