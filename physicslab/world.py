@@ -10,7 +10,7 @@ from typing import Never
 import numpy as np
 
 from physicslab.contacts.arguments import motion_of
-from physicslab.contacts.islands import check_edits, follow_rows
+from physicslab.contacts.islands import check_edits, follow_rows, wake_all
 from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.ode.closed_form import NoClosedForm
@@ -153,8 +153,14 @@ class World(State):
         except NotSmooth:
             self._choose(plan_for_jumps(self, self.schedule, self.plan))
             made = self._make(h, steps)
-        while not made.steps:  # it cannot make this step, and is not ready for it any more
-            made = self._make(h, steps)
+        start, begun = self.time, 0.0
+        try:
+            while not made.steps:  # it is not ready for this step any more, or for what is left of it
+                begun += made.begun
+                self.time = start + begun
+                made = self._make(h - begun, 1 if begun else steps)
+        finally:
+            self.time = start
         return made
 
     def _make(self, h: float, steps: int) -> Advance:
@@ -246,7 +252,10 @@ class World(State):
             if numbers:
                 self.generation += 1
                 derive_masses(self)
-                if not self.steppers.hold(self):
+                joined = self.joints.refresh(self.entity_index)
+                if joined and self.sleep.count:
+                    wake_all(self)
+                if joined or not self.steppers.hold(self):
                     self._choose()
                 self.islands.follow(self)
                 self._follow_islands()

@@ -279,7 +279,6 @@ def test_orbits_end_where_they_should(name: str, limit: float) -> None:
 
 SHORT = {
     "kepler_e0.99": "rounding where the planet is nearest: 14 m/s beside 1 cm",
-    "bounce_rest": "a ball at rest sinks until the contact's softness holds it",
     "friction_slide": "a block that starts on the floor sinks first, and rubs less meanwhile",
     "slip_to_roll_disc_way": "a disc that starts on the floor sinks first, and rubs less meanwhile",
     "incline_block": "a block that starts on the slope sinks first, and rubs less meanwhile",

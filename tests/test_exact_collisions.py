@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from physicslab import World, load_scene
 from physicslab.components import Held, Mass, Material, Shape, Transform, Velocity
 from physicslab.contacts.report import contact_between
-from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels import compile_kernels
 from physicslab.kernels.events import events
@@ -141,6 +141,26 @@ def test_bounces_come_at_their_times_and_end_at_rest(by_step: bool) -> None:
         abs(transform.position.x) < 1e-12 and abs(transform.position.y - 0.25) < 1e-3
     )  # the contact's spring
     assert velocity.linear.magnitude < 1e-9 and velocity.angular == 0.0
+
+
+@pytest.mark.parametrize(("contacts", "limit"), [("soft", 1e-5), ("rigid", 1e-11)])
+def test_a_step_in_which_a_ball_comes_to_rest_is_flown_until_then(contacts: str, limit: float) -> None:
+    seconds = 9.086737992230740075 + 1 / 60  # Zeno's end of all bounces, and a little more
+    world = falling(e=0.8, dt=4.0 * seconds)
+    world.simulation = dataclasses.replace(world.simulation, contacts=contacts)
+    ball = circle(world, (0, 5.25), radius=0.25, restitution=0.8)
+    high = circle(world, (5, 5000.0), radius=0.25, restitution=0.8)
+    world.step(seconds)
+    assert world.steps == 1 and world.time == seconds
+    assert times(world)[:20] == pytest.approx([bounce_time(k) for k in range(1, 21)], abs=1e-11)
+    assert times(world)[-1] == pytest.approx(seconds - 1 / 60, abs=1e-2)
+    assert world.component(ball, Transform).position.y == pytest.approx(0.25, abs=limit)
+    assert world.component(ball, Velocity).linear.magnitude < limit
+    fallen = world.component(high, Transform).position.y
+    assert fallen == pytest.approx(5000.0 - 0.5 * G * seconds**2, abs=1e-9)
+    account = measure_account(world).energy
+    assert abs(account["numerical"]) < 1e-9
+    assert account["impacts"] == pytest.approx(-5.0 * G, rel=1e-3)
 
 
 def test_a_hundred_elastic_bounces_keep_the_height() -> None:

@@ -1,5 +1,6 @@
 """Motion with a closed form, to which results of the labs are compared."""
 
+import cmath
 import math
 
 
@@ -108,3 +109,24 @@ def corner_impact(
         jy = wanted / (along + edge * both)
         jx = edge * jy
     return jx, jy - fall, (x * jy - y * jx) / inertia
+
+
+def driven(
+    stiffness: float, drag: float, strength: float, rate: float, start: float, t: float
+) -> tuple[float, float]:
+    """Return x [m] and v [m/s] of 1 kg on a spring with linear drag, driven by strength cos(rate t).
+
+    Parameters
+    ----------
+    stiffness, drag, strength : float
+        Of the spring [N/m], of the drag [kg/s] and of the force [N]. The damping is below the critical one.
+    rate, start, t : float
+        That of the force [rad/s]; where it is let go at t = 0 [m]; the time [s].
+    """
+    steady = strength / complex(stiffness - rate * rate, drag * rate)
+    own = complex(-0.5 * drag, math.sqrt(stiffness - 0.25 * drag * drag))
+    # Re(free e^(own t)): what is left at t = 0 of the place and of the velocity.
+    x, v = start - steady.real, rate * steady.imag
+    free = complex(x, (own.real * x - v) / own.imag) * cmath.exp(own * t)
+    swing = steady * cmath.exp(1j * rate * t)
+    return free.real + swing.real, (own * free).real - rate * swing.imag

@@ -30,6 +30,8 @@ _NAMES = (
     "newtons_cradle",
     "pendulum",
     "spring_chain",
+    "resonance",
+    "rocket",
     "two_planets",
     "solar_system",
 )

@@ -37,8 +37,9 @@ _IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 class EventDriven:
     """Advances bodies in closed form from impact to impact.
 
-    A step in which one comes to rest on another, or rests, is left to the next stepper; one in which a body
-    meets several others at once is made by the laws of rigid contacts.
+    Where one comes to rest on another the flight ends, and the next stepper makes the rest of the step, and
+    whole steps while it rests; one in which a body meets several others at once is made by the laws of rigid
+    contacts.
 
     Which bodies rest follows from the contacts of the last step, and what rounding leaves out is part of the
     state, so that nothing here needs to be saved. Any number of steps has the bits of single ones.
@@ -93,9 +94,12 @@ class EventDriven:
         return self._left != state.steps
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
-        """Make all of the steps, in one compiled loop; or those before the first that is left to others."""
+        """Make all of the steps, in one compiled loop; or those before the first that is left to others.
+
+        If that is the first of all, it is begun as far as the bodies fly.
+        """
         parts = divisions(state, h)
-        made, why = self._fly(state, h / parts, parts, steps)
+        made, why, begun = self._fly(state, h / parts, parts, steps)
         if made:
             self._point_to_impacts(state)
             self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
@@ -104,33 +108,36 @@ class EventDriven:
             self._together = self._together or Rigid(state, self._schedule, self._plan)
             made = self._together.advance(state, h, 1).steps
         self._left = -1 if made else state.steps
-        return Advance(made, parts)
+        return Advance(made, parts, begun)
 
-    def _fly(self, state: State, span: float, parts: int, steps: int) -> tuple[int, int]:
+    def _fly(self, state: State, span: float, parts: int, steps: int) -> tuple[int, int, float]:
         """Make the steps, of ``parts`` parts of ``span`` s each, before one that is left to others.
 
-        Returns how many they are, and why the next one is left.
+        Returns how many they are, why the next one is left, and, of the first, how much is made [s].
         """
         start = [column.copy() for column in motion_of(state)]
         collisions, logged = state.collisions, state.contacts.logged
-        booked, why = state.account.sums.copy(), events.CAME_TO_REST
+        booked, why, begun = state.account.sums.copy(), events.CAME_TO_REST, 0.0
         if (_held(state) & self._ballistic).any():
-            return 0, why
+            return 0, why, 0.0
         while steps:
             self._recall_remainders(state)
             self._begin(state)
-            made, ended = self._run_events(state, span, parts * steps)
+            made, ended, flown = self._run_events(state, span, parts * steps)
             if ended == events.DONE:
                 self._keep_remainders(state)
                 self._listed = state.steps + steps
-                return steps, why
+                return steps, why, 0.0
+            if made < parts and ended != events.TOGETHER:
+                why, begun = ended, made * span + flown
+                break
             for column, kept in zip(motion_of(state), start, strict=True):
                 column[:] = kept
             state.collisions, state.contacts.logged = collisions, logged
             state.account.sums[:] = booked
             self._kept, steps, why = None, made // parts, ended
-        state.contacts.stale = True
-        return 0, why
+        self._kept, state.contacts.stale = None, True
+        return 0, why, begun
 
     def _recall_remainders(self, state: State) -> None:
         """Take what rounding left out of places and velocities, which the paths carry on."""
@@ -175,15 +182,15 @@ class EventDriven:
                 points["arm_bx"][2 * pairs + k] += moved[:, 0]
                 points["arm_by"][2 * pairs + k] += moved[:, 1]
 
-    def _run_events(self, state: State, span: float, steps: int) -> tuple[int, int]:
+    def _run_events(self, state: State, span: float, steps: int) -> tuple[int, int, float]:
         """Move bodies from impact to impact for ``steps`` times ``span`` s, or until an event.
 
-        Returns how many steps were made, and why no more.
+        Returns how many steps were made, why no more, and how far into the next one bodies are [s].
         """
         began = time.perf_counter_ns()
         contacts, bodies = state.contacts, state.bodies
         self._paths[:, _MASS] = np.where(self._ballistic, state.table(Mass)["mass"], 0.0)
-        made, impacts, why = events.run_events(
+        made, impacts, why, flown = events.run_events(
             contacts.manifolds, contacts.points, contacts.recorded,
             self._paths, self._mode, self._face, self._apart, self._due,
             self._impact_positions, motion_of(state), shapes_of(state), materials_of(state),
@@ -195,7 +202,7 @@ class EventDriven:
         self._schedule.note(IntegrateSystem.__name__, made, time.perf_counter_ns() - began)
         for name in self._within:
             self._schedule.note(name, made, 0)  # their time is part of the loop's
-        return made, why
+        return made, why, flown
 
 
 def _held(state: State) -> NDArray[np.bool_]:

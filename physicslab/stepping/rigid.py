@@ -74,7 +74,8 @@ class Rigid:
         self.why_impulses, self.energy_added = "", 0.0
         within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
         self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
-        self._motion = RigidMotion(self._ode, len(self._pairs), not schedule.interpreted)
+        steady = not any(force.sees_time(state) for force in schedule.smooth_forces)
+        self._motion = RigidMotion(self._ode, len(self._pairs), steady)
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
@@ -166,7 +167,7 @@ class Rigid:
         if len(joints):
             ode.find_joint_forces(state)
             joined.find_answer(scene, made.points, made.measures, made.forces, made.closed, ode.q, ode.v)
-            joints.force += forces_of(*ode.joints)
+            joints.force += forces_of(*ode.joints, len(joints))
             joints.impulse[:] = joints.force * state.contacts.impulse_dt  # should soft contacts have to go on
 
     def _note(self, began: int, steps: int) -> None:

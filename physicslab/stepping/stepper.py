@@ -23,10 +23,19 @@ MAX_FACTOR = 256
 
 @dataclass(frozen=True, slots=True)
 class Advance:
-    """What a stepper has done: whole steps, and into how many parts each was divided."""
+    """What a stepper has done.
+
+    Attributes
+    ----------
+    steps, divisions : int
+        Whole steps, and into how many parts each was divided.
+    begun : float
+        If none: how much of the step [s] it has made, the rest of which is the next stepper's.
+    """
 
     steps: int
     divisions: int = 1
+    begun: float = 0.0
 
 
 class Advancer(Protocol):

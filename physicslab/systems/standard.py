@@ -12,12 +12,14 @@ from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.strobe import StrobeSystem
 from physicslab.systems.system import System
+from physicslab.systems.thrust import ThrustSystem
 from physicslab.systems.trail import TrailSystem
 
 PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     GravitySystem,
     SpringSystem,
     DragSystem,
+    ThrustSystem,
     IntegrateSystem,
     JointSystem,
     BroadPhaseSystem,

@@ -213,6 +213,13 @@ class ForceSystem(System):
         """
         return not type(self).packs()
 
+    def sees_time(self, state: State) -> bool:
+        """Return whether the force depends on the time; one in Python is taken to, unless it overrides this.
+
+        What rests may then begin to move by itself.
+        """
+        return not type(self).packs()
+
     def why_singular(self, state: State) -> str | None:
         """Return why bodies may come where the force is not smooth, which fixed steps miss; or ``None``."""
         return None

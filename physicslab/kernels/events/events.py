@@ -49,10 +49,12 @@ FIXED, BALLISTIC, KINEMATIC = range(3)
 DONE, CAME_TO_REST, OVERLAP, TOO_MANY_IMPACTS, TOGETHER = range(5)
 """Why the motion ended: the time was over; a body came to rest; bodies overlap deeply; there were too many
 impacts within one step; a body meets two others at once."""
-REST = 1e-3
+REST = 1e-5
 """Share of a step: a bounce against a pressing force is rest if the force causes its speed in that time."""
 DEEP = 0.01
 """Share of the smaller body's size beyond which an overlap is not resolved by impacts."""
+_SHORT = 1e-6
+"""Share of a step too short to be handed over: a body that comes to rest in it flies on to the end."""
 _MAX_IMPACTS = 1_000_000
 """Largest number of impacts within one step."""
 _MIN_SPEED_RATIO = 1e-17
@@ -256,7 +258,7 @@ def run_events(
     due: Vectors, impact_position: Vectors, motion: MotionTuple, shapes: ShapesTuple,
     materials: MaterialsTuple, inverse: InverseTuple, bounds: BoundsTuple,
     account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int,
-) -> tuple[int, int, int]:  # fmt: skip
+) -> tuple[int, int, int, float]:  # fmt: skip
     """Move bodies from impact to impact for ``steps`` times ``span`` s, or until one rests or meets two.
 
     All paths begin again after ``span`` seconds, so that steps made at once have the bits of single ones.
@@ -283,8 +285,9 @@ def run_events(
 
     Returns
     -------
-    made, impacts, why
-        How many whole steps were made, how many impacts there were, and why it ended.
+    made, impacts, why, flown
+        How many whole steps were made, how many impacts there were, why it ended, and how far into the next
+        step [s] all bodies are where it did.
     """
     now, low, impacts, within, made, why = 0.0, 0.0, 0, 0, 0, DONE
     flight = Flight(
@@ -298,7 +301,7 @@ def run_events(
             _clear_impacts(flight)
         why, min_speed, rounding = _begin_all(flight, made, span, steps - made)
         if why == OVERLAP:
-            return made, impacts, why
+            return made, impacts, why, 0.0
         now, low, within, first, second = 0.0, 0.0, 0, -1, -1
         while why == DONE:
             _predict_pairs(flight, first, second, now, low, span, min_speed, made, steps - made, rounding)
@@ -314,11 +317,13 @@ def run_events(
             first, second = manifolds[p].a, manifolds[p].b
             why, new = _meet(flight, p, mixed, log, logged + impacts, start + made * span, now, low, span)
             impacts += new
+        if why == CAME_TO_REST and span - now <= _SHORT * span:
+            why, now, low = DONE, span, 0.0
         _end_all(flight, now, low)
         if why != DONE:
-            break
+            return made, impacts, why, now
         made += 1
-    return made, impacts, why
+    return made, impacts, why, 0.0
 
 
 @endless

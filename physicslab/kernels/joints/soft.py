@@ -10,7 +10,7 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, PX, PY, SPIN
 from physicslab.kernels.arguments import Acting, Inverse, Motion
-from physicslab.kernels.joints.rows import measure_row
+from physicslab.kernels.joints.terms import ALONG, TermEnd, measure_term
 
 _FASTEST, _DAMPING, _OF_SUBSTEPS = 60.0, 2.0, 0.25
 """The frequency [Hz] of the constraint and its damping ratio; at most that share of the rate of substeps."""
@@ -88,21 +88,29 @@ def _response(joints: Joints, i: int, j: int, inverse: Inverse) -> float:
     return (inverse.mass[a] + inverse.mass[b]) * along + turning  # type: ignore[no-any-return]
 
 
+@always_inlined
+def _end(motion: Motion, body: int, anchors: Vectors, i: int) -> TermEnd:
+    """Return a body at an end of row i."""
+    position, linear = motion.position, motion.linear
+    return TermEnd(
+        position[body, 0], position[body, 1], motion.angle[body], linear[body, 0], linear[body, 1],
+        motion.angular[body], anchors[i, 0], anchors[i, 1],
+    )  # fmt: skip
+
+
 @inlined
 def begin_joints(joints: Joints, motion: Motion, inverse: Inverse, acting: Acting, h: float) -> None:
     """Measure all rows where bodies are, and note speeds and impulses.
 
     The speeds are less than now by what ``h`` seconds of forces give (:mod:`physicslab.kernels.solver.work`).
     """
-    position, angle, axis, measured = motion.position, motion.angle, joints.axis, joints.measured
+    axis, measured = joints.axis, joints.measured
     for i in range(len(joints.impulse)):
         a, b = joints.a[i], joints.b[i]
-        across_a, across_b, _, _, error = measure_row(
-            position[a, 0], position[a, 1], angle[a], position[b, 0], position[b, 1], angle[b],
-            joints.anchor_a[i, 0], joints.anchor_a[i, 1], joints.anchor_b[i, 0], joints.anchor_b[i, 1],
-            axis[i, 0], axis[i, 1],
-        )  # fmt: skip
-        measured[i, ACROSS_A], measured[i, ACROSS_B], measured[i, ERROR] = across_a, across_b, error
+        at_a, at_b = _end(motion, a, joints.anchor_a, i), _end(motion, b, joints.anchor_b, i)
+        one = measure_term(ALONG, at_a, at_b, axis[i, 0], axis[i, 1])
+        across_a, across_b = -one.turn_a, one.turn_b
+        measured[i, ACROSS_A], measured[i, ACROSS_B], measured[i, ERROR] = across_a, across_b, one.value
         given = 0.0
         if acting.any and h > 0.0:
             force, torque, nx, ny = acting.force, acting.torque, axis[i, 0], axis[i, 1]
