@@ -39,7 +39,9 @@ class Register:
         for kind in kinds:
             sizes = (_SIZES.index(name) if name else -1 for name in (kind.x, kind.y, kind.radius))
             self._add(np.array(kind.core).reshape(-1, 2), *sizes)
-        self._cores = max(self._cores, OWN + 1)
+        if self._cores > OWN + 1:
+            raise ValueError(f"there are more than {OWN} kinds of shapes: raise OWN")
+        self._cores = OWN + 1
 
     def arrays(self) -> tuple[NDArray[Any], ...]:
         """Return kinds, extents and pool with all lists of points: another tuple where one is new."""
