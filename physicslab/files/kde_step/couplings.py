@@ -41,7 +41,7 @@ def take_stick(item: Item, draft: Draft) -> None:
     elif abs(distance - length) > _ROUNDED * length:
         values["length"] = length
         draft.lose(item, f"it is {distance:g} m long as placed, and {length:g} m as it should be")
-    draft.joins(item, kind, values | {"collide": True})
+    draft.place(item, {kind: values | {"collide": True}})
 
 
 def take_pin(item: Item, draft: Draft) -> None:
@@ -56,9 +56,9 @@ def take_pin(item: Item, draft: Draft) -> None:
     point = item.pair("localPosition")
     values: dict[str, Any] = {"a": body.id, "anchor_b": list(place)}
     if not body.is_point:
-        draft.joins(item, "Pin", values | {"anchor_a": body.anchor(point)})
+        draft.place(item, {"Pin": values | {"anchor_a": body.anchor(point)}})
     elif point != (0.0, 0.0):
-        draft.joins(item, "Rod", values)
+        draft.place(item, {"Rod": values})
     else:
         _hold(body)
 
