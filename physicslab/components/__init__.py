@@ -1,5 +1,6 @@
 """The components of bodies and of what is measured with, one file each. Presence decides what a thing is."""
 
+from physicslab.components.charge import Charge
 from physicslab.components.drag import Drag
 from physicslab.components.gate import Gate
 from physicslab.components.graph import Graph, GraphLine
@@ -22,7 +23,7 @@ from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 
 __all__ = [
-    "Drag", "Gate", "Graph", "GraphLine", "Held", "Mass", "Material", "Meter", "Name", "Note",
+    "Charge", "Drag", "Gate", "Graph", "GraphLine", "Held", "Mass", "Material", "Meter", "Name", "Note",
     "Pin", "Protractor", "Ruler", "Shape", "Slider", "Spring", "Strobe", "Thrust", "Trail", "Transform",
     "Velocity",
 ]  # fmt: skip
