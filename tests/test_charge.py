@@ -92,7 +92,9 @@ def test_methods_keep_their_order_in_a_magnetic_field(integrator: str) -> None:
     assert math.log2(coarse / fine) > method.order - 0.5
 
 
-@pytest.mark.parametrize(("contacts", "integrator"), [("soft", "auto"), ("rigid", "auto"), ("soft", "leapfrog")])
+@pytest.mark.parametrize(
+    ("contacts", "integrator"), [("soft", "auto"), ("rigid", "auto"), ("soft", "leapfrog")]
+)
 def test_beside_contacts_a_magnetic_field_does_no_work(contacts: str, integrator: str) -> None:
     world = empty({"magnetic_field": 3.0}, contacts=contacts, integrator=integrator)
     ball = circle(world, (0.0, 1.2), radius=0.2, velocity=(2.0, 0.0), restitution=1.0, friction=0.0)

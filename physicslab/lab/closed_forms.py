@@ -154,7 +154,7 @@ def crossed(
 def repelled(strength: float, axis: float, excess: float, t: float) -> tuple[complex, complex]:
     """Return r [m] and r' [m/s], as complex numbers, of r'' = strength r / |r|^3, nearest at t = 0.
 
-    It goes along the branch of a hyperbola that is turned away from the origin, with the half axis ``axis`` [m]
+    It goes along the branch of a hyperbola that is turned away from the origin, with a half axis ``axis`` [m]
     and the eccentricity ``excess``; r = a (1 + e cosh F), where t = sqrt(a^3 / strength) (F + e sinh F).
     """
     mean, found = t * math.sqrt(strength / axis**3), math.asinh(t * math.sqrt(strength / axis**3) / excess)

@@ -79,8 +79,7 @@ class StageAccounts:
         self._start = transform["position"].copy(), transform["angle"].copy()
 
     def note_force(self, system: System, before: NDArray[np.float64], state: State) -> None:
-        """Note the pull of a force, if it is booked by itself; ``before`` (3 rows,) is that of those before it.
-        """
+        """Note the pull of a force that is booked by itself; ``before`` (3 rows,) is that of those before."""
         if system in self._pulls:
             np.subtract(state.bodies.pull, before, out=self._pulls[system])
         elif self._damps and isinstance(system, SpringSystem):

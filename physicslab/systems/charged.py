@@ -31,7 +31,7 @@ class _ChargeForce(ForceSystem):
         return False
 
     def couples(self, state: State) -> NDArray[np.int64]:
-        """A field couples nothing."""
+        """Return no pairs: a field couples nothing."""
         return np.zeros((0, 2), np.int64)
 
 
@@ -43,7 +43,9 @@ class ElectricFieldSystem(_ChargeForce):
 
     def why_left_out(self, state: State) -> str | None:
         """Needed where there is a field, and a charge that it can move."""
-        return super().why_left_out(state) or (None if state.physics.electric_field else "electric_field is 0")
+        return super().why_left_out(state) or (
+            None if state.physics.electric_field else "electric_field is 0"
+        )
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
         """Return the push for compiled integrators."""
@@ -62,7 +64,9 @@ class MagneticFieldSystem(_ChargeForce):
 
     def why_left_out(self, state: State) -> str | None:
         """Needed where there is a field, and a charge that can move."""
-        return super().why_left_out(state) or (None if state.physics.magnetic_field else "magnetic_field is 0")
+        return super().why_left_out(state) or (
+            None if state.physics.magnetic_field else "magnetic_field is 0"
+        )
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
         """Return the force for methods that do not turn velocities by themselves."""

@@ -225,7 +225,7 @@ class ForceSystem(System):
         """Return for each row the rate [rad/s] at which the force turns its velocity clockwise.
 
         For a force that does nothing else, as a magnetic field: a splitting method then turns velocities
-        exactly while bodies drift, so that it keeps its order and the force does no work. ``None`` for others.
+        exactly while bodies drift, keeps its order, and the force does no work. ``None`` for others.
         """
         return None
 

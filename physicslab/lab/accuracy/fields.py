@@ -48,7 +48,11 @@ def _in_fields(name: str, title: str, mass: float, charge: float, laws: PhysicsC
     pull = complex(*laws.electric_field) * share
 
     def build(simulation: SimulationConfig) -> World:
-        world, where, how = empty_world(simulation, laws), (_START.real, _START.imag), (_SPEED.real, _SPEED.imag)
+        world, where, how = (
+            empty_world(simulation, laws),
+            (_START.real, _START.imag),
+            (_SPEED.real, _SPEED.imag),
+        )
         spawn_point(world, where, how, Charge(charge), mass=mass, name="body")
         return world
 
@@ -81,7 +85,9 @@ def _two_charges(simulation: SimulationConfig) -> World:
 
 def _rutherford_error(world: World, i: int) -> float:
     z, _ = repelled(_REPULSION, _AXIS, _EXCESS, _BEFORE + (1.0, 3.0)[i])
-    return distance(world, {"light": (0.75 * z.real, 0.75 * z.imag), "heavy": (-0.25 * z.real, -0.25 * z.imag)})
+    return distance(
+        world, {"light": (0.75 * z.real, 0.75 * z.imag), "heavy": (-0.25 * z.real, -0.25 * z.imag)}
+    )
 
 
 FIELDS = (
@@ -89,17 +95,28 @@ FIELDS = (
     _driven(1.0, "The same at resonance"),
     _driven(2.0, "The same at twice its own frequency"),
     _in_fields(
-        "cyclotron", "A charge that circles in a magnetic field, 19 times", 2.0, 3.0,
+        "cyclotron",
+        "A charge that circles in a magnetic field, 19 times",
+        2.0,
+        3.0,
         PhysicsConfig(gravity_mode="none", magnetic_field=0.8),
     ),
     _in_fields(
-        "crossed_fields", "A charge on a cycloid, in an electric and a magnetic field", 2.0, 3.0,
+        "crossed_fields",
+        "A charge on a cycloid, in an electric and a magnetic field",
+        2.0,
+        3.0,
         PhysicsConfig(gravity_mode="none", electric_field=Vector2(0.5, -1.0), magnetic_field=0.8),
     ),
     _charged(
-        name="rutherford", title="Two charges of one sign meet, and scatter", build=_two_charges,
-        error=_rutherford_error, times=(1.0, 3.0), compared="places when they are nearest, and 2 s later",
-        measure="largest distance from the true place [m]", keeps={"energy", "momentum", "angular_momentum"},
+        name="rutherford",
+        title="Two charges of one sign meet, and scatter",
+        build=_two_charges,
+        error=_rutherford_error,
+        times=(1.0, 3.0),
+        compared="places when they are nearest, and 2 s later",
+        measure="largest distance from the true place [m]",
+        keeps={"energy", "momentum", "angular_momentum"},
     ),
 )
 """Every problem with forces of this kind."""
