@@ -1,6 +1,7 @@
 """Which worlds can have rigid contacts."""
 
 from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.state.joint_rows import Measure, Role
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
 from physicslab.stepping.forces import fastest_rate
@@ -75,4 +76,4 @@ def why_not_rigid(state: State, schedule: Schedule) -> str | None:
         return "something moves that is nowhere"
     if count_pairs(state) > _MAX_PAIRS:
         return f"more than {_MAX_PAIRS} pairs may meet"
-    return None
+    return state.joints.why_not({Role.HOLD}, {Measure.ALONG}, terms=1)

@@ -168,7 +168,7 @@ class Rigid:
         if len(joints):
             ode.find_joint_forces(state)
             joined.find_answer(scene, made.points, made.measures, made.forces, made.closed, ode.q, ode.v)
-            joints.force += forces_of(*ode.joints)
+            joints.force += forces_of(*ode.joints, len(joints))
             joints.impulse[:] = joints.force * state.contacts.impulse_dt  # should soft contacts have to go on
 
     def _note(self, began: int, steps: int) -> None:

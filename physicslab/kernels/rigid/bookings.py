@@ -6,13 +6,11 @@ from physicslab.kernels.rigid.equations import STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     CONTACTS,
     DRIVEN,
-    NA,
-    NX,
-    NY,
+    NORMAL,
     ONE,
     RUBBING,
     STATUS,
-    TA,
+    TANGENT,
     VT,
     Scene,
 )
@@ -38,18 +36,18 @@ def book_contacts(
     rubbed, work = 0.0, 0.0
     for i in range(count):
         along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
-        nx, ny = measures[i, NX], measures[i, NY]
-        fx, fy = along * nx - across * ny, along * ny + across * nx
         rubbed += across * measures[i, VT] if points[i, STATUS] != STICKS else 0.0
         for side in range(2):
             body = points[i, ONE + side]
-            sign = 1.0 if side == 1 else -1.0
+            n, t = NORMAL + 3 * side, TANGENT + 3 * side
             x, y, turning = 2 * body, 2 * body + 1, 2 * rows + body
-            torque = sign * (across * measures[i, NA + side] - along * measures[i, TA + side])
+            fx = along * measures[i, n] + across * measures[i, t]
+            fy = along * measures[i, n + 1] + across * measures[i, t + 1]
+            torque = along * measures[i, n + 2] + across * measures[i, t + 2]
             if scene.inverse_mass[x] > 0.0:
-                book(given, contacts, 0.0, sign * fx, sign * fy, sign * (q[x] * fy - q[y] * fx))
+                book(given, contacts, 0.0, fx, fy, q[x] * fy - q[y] * fx)
             else:
-                work -= sign * (fx * v[x] + fy * v[y])
+                work -= fx * v[x] + fy * v[y]
             if scene.inverse_mass[turning] > 0.0:
                 given[contacts + SPIN] += torque
             else:

@@ -24,19 +24,22 @@ from physicslab.kernels.records import Pairs
 
 __all__ = [
     "BIAS_N", "BIAS_T", "CONTACTS", "CORNER", "DRIVEN", "FEATURE", "GAP", "GIVEN", "MARGIN", "MEASURES", "MU",
-    "NA", "NB", "NX", "NY", "ONE", "OTHER", "PAIR", "POINT_FIELDS", "PX", "PY", "RESTITUTION", "RUBBING",
-    "STATUS", "TA", "TB", "VERTEX", "VN", "VT", "WALL", "Points", "Scene", "SceneTuple",
-    "measure", "named_scene", "turned_by",
+    "NORMAL", "NX", "NY", "ONE", "OTHER", "PAIR", "POINT_FIELDS", "PX", "PY", "RESTITUTION", "RUBBING",
+    "STATUS", "TANGENT", "VERTEX", "VN", "VT", "WALL", "Points", "Scene", "SceneTuple",
+    "measure", "named_scene", "rate_along", "turned_by",
 ]  # fmt: skip
 
 PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)
 """The columns of a point: its pair; bodies and features; what it may do, and what it does."""
 CORNER, WALL = MOST_VERTICES, 2 * MOST_VERTICES
 """Where features of vertices and walls begin; those before are faces, from the vertex of that number on."""
-NX, NY, TA, TB, NA, NB, GAP, VN, VT, BIAS_N, BIAS_T, MARGIN, PX, PY, MU, RESTITUTION, MEASURES = range(17)
-"""The columns of measures of a point: normal; arms of ONE and OTHER along the tangent and the normal [m]; gap
-[m]; speeds along both [m/s]; their rates at no acceleration [m/s^2]; how far it is from the end of its
-feature [m]; where it is [m]; coefficients of friction and restitution."""
+NORMAL, TANGENT, NX, NY = 0, 6, 3, 4
+"""The columns of measures of a point that hold the gradients of its gap and of its way along the surface, by
+x, y and angle of ONE, then of OTHER. By OTHER's x and y that of the gap is the normal."""
+GAP, VN, VT, BIAS_N, BIAS_T, MARGIN, PX, PY, MU, RESTITUTION, MEASURES = range(12, 23)
+"""The columns behind them: gap [m]; speeds along normal and tangent [m/s]; their rates at no acceleration
+[m/s^2]; how far it is from the end of its feature [m]; where it is [m]; coefficients of friction and
+restitution."""
 RUBBING, CONTACTS, DRIVEN = range(3)
 """What ``accounts`` of a scene hold: where those of friction, of contacts and of what is driven begin behind
 the clock (:mod:`physicslab.kernels.forces.bookings`); -1 where nothing is driven."""
@@ -87,6 +90,20 @@ def turned_by(scene: Scene, row: int, q: Numbers) -> tuple[float, float]:
 
 
 @inlined
+def rate_along(rows: int, points: Points, measures: Vectors, i: int, gradient: int, values: Numbers) -> float:
+    """Return how fast point number i opens or slides at given velocities, by a ``gradient`` of its measures.
+
+    Or how these rates change at given accelerations, but for those at no acceleration.
+    """
+    one, other, at, end = points[i, ONE], points[i, OTHER], gradient, gradient + 3
+    dx, dy = values[2 * other] - values[2 * one], values[2 * other + 1] - values[2 * one + 1]
+    rate: float = measures[i, end] * dx + measures[i, end + 1] * dy
+    rate += values[2 * rows + other] * measures[i, end + 2]
+    rate += values[2 * rows + one] * measures[i, at + 2]
+    return rate
+
+
+@inlined
 def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
     """Measure point number i in a state: where it is, how it moves, and how that changes at no acceleration.
 
@@ -107,7 +124,6 @@ def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: V
         edge = scene.walls[wall]
         out[i, GAP] = nx * (cx - edge) + ny * (cy - edge) - radius
         out[i, MARGIN] = math.inf
-        out[i, NX], out[i, NY], out[i, TA], out[i, NA] = nx, ny, 0.0, 0.0
         turning, one_spin = 0.0, 0.0
         one_x, one_y, one_vx, one_vy = cx - radius * nx, cy - radius * ny, 0.0, 0.0
         out[i, BIAS_N] = -spin * spin * (nx * rho_x + ny * rho_y)
@@ -154,11 +170,13 @@ def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: V
                 - spin * spin * (nx * rho_x + ny * rho_y)
                 + one_spin * one_spin * (nx * arm_x + ny * arm_y)
             )
-        out[i, NX], out[i, NY] = nx, ny
     px, py = cx - radius * nx, cy - radius * ny
     ax, ay, bx, by = px - one_x, py - one_y, px - q[2 * other], py - q[2 * other + 1]
-    out[i, TA], out[i, NA] = nx * ay - ny * ax, nx * ax + ny * ay
-    out[i, TB], out[i, NB] = nx * by - ny * bx, nx * bx + ny * by
+    # The moment arm of a unit force along the normal is -t . r, along the tangent n . r.
+    out[i, NORMAL], out[i, NORMAL + 1], out[i, NORMAL + 2] = -nx, -ny, nx * ay - ny * ax
+    out[i, NX], out[i, NY], out[i, NORMAL + 5] = nx, ny, -(nx * by - ny * bx)
+    out[i, TANGENT], out[i, TANGENT + 1], out[i, TANGENT + 2] = ny, -nx, -(nx * ax + ny * ay)
+    out[i, TANGENT + 3], out[i, TANGENT + 4], out[i, TANGENT + 5] = -ny, nx, nx * bx + ny * by
     moving = PairVelocity(one_vx, one_vy, one_spin, v[2 * other], v[2 * other + 1], spin)
     rx, ry = point_velocity(ContactFrame(nx, ny, ax, ay, bx, by), moving)
     out[i, VN], out[i, VT] = along_and_across(nx, ny, rx, ry)

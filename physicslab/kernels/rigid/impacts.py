@@ -23,7 +23,7 @@ from physicslab.kernels.constraint.impact_law import (
     solve_impact,
 )
 from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity
-from physicslab.kernels.joints.rows import ROWS
+from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all

@@ -11,7 +11,7 @@ import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
 from physicslab.kernels.forces.force_calls import accelerate
-from physicslab.kernels.joints.rows import ROWS
+from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds

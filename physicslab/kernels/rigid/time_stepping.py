@@ -11,7 +11,7 @@ import math
 
 from physicslab.kernels import Numbers, inlined, kernel
 from physicslab.kernels.forces.force_calls import accelerate
-from physicslab.kernels.joints.rows import ENDS, FIRST, ROWS
+from physicslab.kernels.joints.layout import ENDS, FIRST, PLACES, ROWS
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, Equations, EquationsTuple, named_equations
@@ -87,8 +87,15 @@ def _find_islands(scene: Scene, equations: Equations, count: int, island: Number
     changed, n = True, scene.joints[ROWS]
     while changed:
         changed = False
-        for r in range(n):
-            one, other = scene.joints[FIRST + ENDS * r] // 2, scene.joints[FIRST + ENDS * r + 2] // 2
+        for k in range(n * ENDS * ENDS):
+            ends = FIRST + PLACES * (k // (ENDS * ENDS))
+            at_one, at_other = (
+                scene.joints[ends + 2 * (k // ENDS % ENDS)],
+                scene.joints[ends + 2 * (k % ENDS)],
+            )
+            if at_one < 0 or at_other < 0:
+                continue
+            one, other = at_one // 2, at_other // 2
             moving = scene.inverse_mass[2 * one] > 0.0 and scene.inverse_mass[2 * other] > 0.0
             if moving and island[one] != island[other]:
                 island[one] = island[other] = min(island[one], island[other])

@@ -4,7 +4,7 @@ import math
 
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
-from physicslab.kernels.joints.rows import ROWS
+from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.rigid.bookings import book_speeds
 from physicslab.kernels.rigid.complementarity import (
     FITTING,

@@ -10,13 +10,18 @@ from physicslab.components import (
     Mass,
     Material,
     Name,
+    Pin,
+    Rod,
+    Rope,
     Shape,
+    Slot,
     Spring,
     Strobe,
     Thrust,
     Trail,
     Transform,
     Velocity,
+    Weld,
 )
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
@@ -24,7 +29,7 @@ from physicslab.ecs.text import in_words
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, RemoveComponent, SetField
 from physicslab.state.attached import local_point as in_frame
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.spring_tool import local_point, point_of
 from physicslab.view.window.window import Window
@@ -128,8 +133,13 @@ def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable
     if kind is Spring:
         yield plain_kind(kind), lambda entity: _spring_above(world, entity)
         return
-    if kind in KINDS:
+    if kind in (Pin, Slot, Weld):
         yield plain_kind(kind), lambda entity: kind(anchor_b=world.component(entity, Transform).position)
+        return
+    if kind in (Rod, Rope):
+        yield plain_kind(kind), lambda entity: kind(anchor_b=_above(world, entity))
+        return
+    if kind in KINDS:  # which need two ends
         return
     given = {spec.name: _first(spec) for spec in kind.FIELDS if spec.default is REQUIRED}
     with contextlib.suppress(InvalidValue, TypeError):
@@ -148,8 +158,11 @@ def _first(spec: Field) -> object:
 
 
 def _spring_above(world: World, entity: int) -> Spring:
-    place = world.component(entity, Transform).position
-    return Spring(anchor_b=place + Vector2(0.0, _ABOVE), rest_length=_ABOVE)
+    return Spring(anchor_b=_above(world, entity), rest_length=_ABOVE)
+
+
+def _above(world: World, entity: int) -> Vector2:
+    return world.component(entity, Transform).position + Vector2(0.0, _ABOVE)
 
 
 _PLAIN: dict[type[Component], str] = {
