@@ -30,7 +30,10 @@ def test_a_magnetic_field_has_dots_or_crosses_that_stay_in_the_world(field: floa
 
 
 def test_an_electric_field_has_arrows_along_it_and_a_thrust_a_flame_against_it() -> None:
-    world, canvas = World(physics=PhysicsConfig(electric_field=(0.0, 3.0))), RecordingCanvas((640, 480))
+    world, canvas = (
+        World(physics=PhysicsConfig(electric_field=Vector2(0.0, 3.0))),
+        RecordingCanvas((640, 480)),
+    )
     thrust = Thrust((2.0, 0.0), frame="body", at=(-0.5, 0.0))
     world.spawn(Transform(angle=0.5 * np.pi), Velocity(), Mass(1.0), Charge(1.0), thrust)
     draw_fields(world, CAMERA, DARK, canvas)

@@ -30,6 +30,6 @@ from physicslab.components.weld import Weld
 
 __all__ = [
     "Charge", "Drag", "Gate", "Gear", "Graph", "GraphLine", "Held", "Mass", "Material", "Meter", "Name",
-    "Note", "Pin", "Protractor", "Pulley", "Rod", "Rope", "Ruler", "Shape", "Slider", "Slot", "Spring", "Strobe",
-    "Thrust", "Trail", "Transform", "Velocity", "Weld",
+    "Note", "Pin", "Protractor", "Pulley", "Rod", "Rope", "Ruler", "Shape", "Slider", "Slot", "Spring",
+    "Strobe", "Thrust", "Trail", "Transform", "Velocity", "Weld",
 ]  # fmt: skip

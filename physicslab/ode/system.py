@@ -287,7 +287,7 @@ class OdeSystem:
     def _calls(self, state: State) -> None:
         turned = [rates for force in self.forces if (rates := force.gyration(state)) is not None]
         drifts = self._kicked and bool(turned)  # a splitting turns velocities exactly, within its drifts
-        self.gyration = sum(turned)[self.layout.moving] if drifts else np.zeros(0)
+        self.gyration = np.sum(turned, axis=0)[self.layout.moving] if drifts else np.zeros(0)
         packed = share_steepness(
             (system, system.packed(state, system.seen(self.layout)) if type(system).packs() else None)
             for system in self.forces

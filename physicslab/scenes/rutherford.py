@@ -1,13 +1,13 @@
 """Charges that scatter at a nucleus."""
 
-from physicslab.components import Charge, Mass, Shape, Trail, Transform, Velocity
+from physicslab.components import Charge, Mass, Trail, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
 
 def _fill(world: World) -> None:
-    world.spawn(Transform(), Charge(20.0), Shape.circle(0.06), name="nucleus")
+    world.spawn(Transform(), Charge(20.0), Mass(1.0), name="nucleus")
     for n in range(-5, 6):
         world.spawn(
             Transform((-4.0, 0.22 * n + 0.02)), Velocity((2.5, 0.0)), Mass(1.0), Charge(0.1), Trail(6.0),

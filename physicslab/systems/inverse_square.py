@@ -13,7 +13,9 @@ from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 
 type Numbers = NDArray[np.float64]
+"""A float64 array (rows of the world,)."""
 _STEEPEST = 2
+"""Where among its whole numbers the kernel looks for the place of the fastest rate."""
 
 
 class InverseSquare(NamedTuple):

@@ -35,7 +35,7 @@ def packed_field(
 
 
 def field_energy(state: State, weight: NDArray[np.float64], field: Vector2) -> float:
-    """Return the sum of -``weight`` field . x of what forces can move [J], zero at the origin."""
+    """Return the energy -w field . x of what forces can move [J], zero at the origin; ``weight`` (rows,)."""
     state.compile((gravity.uniform_potential,))
     position, inverse_mass = state.table(Transform)["position"], state.bodies.inverse_mass
     return gravity.uniform_potential(position, weight, inverse_mass, field.x, field.y)
