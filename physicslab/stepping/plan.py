@@ -111,7 +111,7 @@ class StepPlan:
     @property
     def kept(self) -> tuple[str, str, int]:
         """What a file keeps: how collisions are found, what follows the forces, and in how many steps."""
-        collisions = "rigid" if self.contacts == "rigid" and self.collisions == "step" else self.collisions
+        collisions = "rigid" if self.contacts == "rigid" and self.collisions != "exact" else self.collisions
         if self.split_forces is not None:
             return collisions, self.split_forces.name, self.split_steps
         return collisions, self.integrator.name, self.substeps
@@ -140,7 +140,8 @@ def choose_plan(state: State, schedule: Schedule, kept: str | None = None) -> St
     ``kept`` is how collisions were found when ``auto`` chose for an earlier state of motion, if it did.
     """
     if not schedule.runs(Stage.CONTACT):
-        return _mover(state, schedule)
+        joint = state.joints.why_not_smooth()
+        return _mover(state, schedule) if joint is None else _bounded(state, schedule, kept)
     contacts, reason = choose_contacts(state, schedule, kept)
     plan = _plan_of_collisions(state, schedule, "step" if kept == "rigid" else kept)
     if contacts == "rigid" and (state.simulation.contacts == "rigid" or plan.collisions == "step"):
@@ -152,6 +153,15 @@ def choose_plan(state: State, schedule: Schedule, kept: str | None = None) -> St
             collisions="step", collision_reason=f"{plan.collision_reason}; {own}" if bounced else own,
         )  # fmt: skip
     return replace(plan, contacts=contacts, contact_reason=reason)
+
+
+def _bounded(state: State, schedule: Schedule, kept: str | None) -> StepPlan:
+    """Return the method where nothing can touch, and joints have limits or motors that may stall."""
+    contacts, reason = choose_contacts(state, schedule, kept)
+    plan = replace(_mover(state, schedule), contacts=contacts, contact_reason=reason)
+    if contacts == "soft":
+        return plan
+    return replace(plan, integrator=DOP853, reason="joints have limits: the step follows events")
 
 
 def _plan_of_collisions(state: State, schedule: Schedule, kept: str | None) -> StepPlan:
