@@ -10,7 +10,7 @@ from typing import Never
 import numpy as np
 
 from physicslab.contacts.arguments import motion_of
-from physicslab.contacts.islands import check_edits, follow_rows
+from physicslab.contacts.islands import check_edits, follow_rows, wake_all
 from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.ode.closed_form import NoClosedForm
@@ -252,7 +252,10 @@ class World(State):
             if numbers:
                 self.generation += 1
                 derive_masses(self)
-                if not self.steppers.hold(self):
+                joined = self.joints.refresh(self.entity_index)
+                if joined and self.sleep.count:
+                    wake_all(self)
+                if joined or not self.steppers.hold(self):
                     self._choose()
                 self.islands.follow(self)
                 self._follow_islands()

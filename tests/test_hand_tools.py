@@ -99,11 +99,14 @@ def test_a_spring_to_a_wall_moves_and_one_between_walls_is_refused(desk: Desk) -
 
 
 def test_a_spring_needs_two_ends(desk: Desk) -> None:
-    circle(desk.world, (0, 0))
-    draw_spring(desk, (3, 2), (0, 0))
-    assert not springs(desk) and "begins on a body" in desk.window.notice
+    ball = circle(desk.world, (0, 0))
+    draw_spring(desk, (3, 2), (3, 1))
+    assert not springs(desk) and "holds a body" in desk.window.notice
     draw_spring(desk, (0, 0), (0.05, 0))
     assert not springs(desk)
+    draw_spring(desk, (3, 2), (0, 0))
+    (spring,) = springs(desk)
+    assert (spring.a, spring.b) == (ball, None) and tuple(spring.anchor_b) == pytest.approx((3, 2))
 
 
 @pytest.mark.parametrize("how", ["clear", "remove", "focus"])
@@ -120,7 +123,7 @@ def test_what_was_begun_is_forgotten(desk: Desk, how: str) -> None:
     desk.frames()
     desk.key_up("s")
     desk.frames(2)
-    assert not springs(desk) and desk.window.spring_tool.entity is None
+    assert not springs(desk) and not desk.window.sketch.grips
 
 
 def test_a_dashed_line_shows_where_the_spring_would_be() -> None:

@@ -17,8 +17,9 @@ def desk() -> Desk:
 
 def test_spawned_bodies_vary(desk: Desk) -> None:
     for n in range(4):
-        desk.press(n, 2)
-        desk.press(n, -2, "right")
+        for y, button in ((2, "left"), (-2, "right")):
+            desk.press(n, y, button)
+            desk.release(n, y, button)
         desk.frames()
     shapes = [desk.world.component(entity, Shape) for entity in desk.world.entities()]
     assert len({shape.radius for shape in shapes if shape.kind == "circle"}) > 2

@@ -65,6 +65,12 @@ WRITTEN: dict[str, tuple[str, float]] = {
     "Pin.anchor_a.y": ("-3 mm", -0.003),
     "Pin.anchor_b.x": ("1.5 m", 1.5),
     "Pin.anchor_b.y": ("50 cm", 0.5),
+    "Pin.lower": ("-90 deg", -math.pi / 2),
+    "Pin.upper": ("2 rad", 2.0),
+    "Pin.motor_speed": ("30 rpm", math.pi),
+    "Pin.max_torque": ("3 N m", 3.0),
+    "Pin.breaks": ("2 kN", 2000.0),
+    "Pin.breaks_torque": ("10 N m", 10.0),
     "Trail.length": ("2 min", 120.0),
 }
 """What is written into each field, and the number in SI that it stands for."""
@@ -75,6 +81,7 @@ OUT_OF_RANGE = {
     "Drag.linear": "-1 kg/s", "Drag.quadratic": "-1", "Spring.anchor_a.x": "1e151",
     "Spring.anchor_b.y": "-1e151", "Spring.rest_length": "-1 cm", "Spring.stiffness": "-5",
     "Spring.damping": "-1", "Trail.length": "0 s", "Pin.anchor_a.y": "1e151",
+    "Pin.breaks": "-1 N", "Pin.max_torque": "-1",
 }  # fmt: skip
 KINDS: tuple[type[Component], ...] = (Transform, Velocity, Mass, Shape, Material, Drag, Spring, Pin, Trail)
 

@@ -13,7 +13,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle
 from physicslab.scenes import SCENES
 from physicslab.view.controls.tool import Tool
-from physicslab.view.controls.tools import PALETTE, REMOVE, SPRING
+from physicslab.view.controls.tools import DRAWING, PALETTE, REMOVE
 
 
 @pytest.fixture
@@ -209,7 +209,7 @@ def test_the_cursor_stays_in_the_world_and_shift_moves_it_by_a_pixel(desk: Desk)
 
 def test_a_spring_is_drawn_from_body_to_body_by_keys(desk: Desk) -> None:
     a, b = circle(desk.world, (-0.5, 0)), circle(desk.world, (0.5, 0))
-    desk.window.tool = SPRING.name
+    desk.window.tool = DRAWING["spring"].name
     desk.window.pointer, desk.window.has_pointed = desk.pixel(-0.5, 0), True
     keys(desk, "return", *["right"] * 10, "return")
     springs = [entity for entity in desk.world.entities() if desk.world.has(entity, Spring)]

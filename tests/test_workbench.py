@@ -33,8 +33,9 @@ from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.controls import CONTROLS, Control
+from physicslab.view.controls.spawning import BODIES
 from physicslab.view.controls.tool import Tool
-from physicslab.view.controls.tools import HAND, MORE_TOOLS, PALETTE, PAN, SPAWN_TOOLS, TOOLS
+from physicslab.view.controls.tools import DRAWING, HAND, MORE_TOOLS, PALETTE, PAN, TOOLS
 from physicslab.view.window.recent import Recovery
 from physicslab.view.window.window import LEVELS, Window
 from physicslab.world import World
@@ -131,7 +132,7 @@ def test_every_tool_can_be_taken_up_and_its_usage_is_told(desk: Desk, tool: Tool
     assert desk.world.entities() == []
 
 
-@pytest.mark.parametrize("tool", SPAWN_TOOLS, ids=lambda tool: tool.name)
+@pytest.mark.parametrize("tool", [DRAWING[one.name] for one in BODIES], ids=lambda tool: tool.name)
 def test_every_thing_there_is_can_be_spawned_with_a_click(desk: Desk, tool: Tool) -> None:
     take_up(desk, tool)
     at(desk, 1, -0.5)

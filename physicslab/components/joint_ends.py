@@ -1,10 +1,12 @@
-"""The fields that every joint has: the two bodies, where it holds them, and whether these collide."""
+"""The fields that joints share: the bodies, where it holds them, limits, motors, when it breaks."""
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from physicslab.components.lengths import point
-from physicslab.ecs.component import field
+from physicslab.ecs.component import InvalidValue, field
+from physicslab.ecs.fields import LENGTH_LIMIT
 
 type End = tuple[int, Sequence[float]]
 """A body and its anchor [m]; 0 is the world."""
@@ -34,6 +36,42 @@ def anchor_of_second() -> Any:
 def collides() -> Any:
     """Describe whether the two bodies of a joint touch each other."""
     return field(default=False, fixed=True, meaning="whether A and B touch each other")
+
+
+def as_placed(unit: str, meaning: str, above: float = -math.inf) -> Any:
+    """Describe a number that is what it is when the joint is made, unless it is given."""
+    limit = LENGTH_LIMIT if unit == "m" else math.inf
+    return field(default=None, unit=unit, above=above, limit=limit, derived="as placed", meaning=meaning)
+
+
+def optional(unit: str, meaning: str, minimum: float = -math.inf) -> Any:
+    """Describe a number that a joint may be without."""
+    limit = LENGTH_LIMIT if unit == "m" else math.inf
+    return field(default=None, unit=unit, minimum=minimum, limit=limit, derived="none", meaning=meaning)
+
+
+def strongest(unit: str) -> Any:
+    """Describe how much force or torque a motor has."""
+    return optional(unit, "the most that its motor gives; as much as it takes where absent", minimum=0.0)
+
+
+def breaks_at() -> Any:
+    """Describe the force beyond which a joint breaks [N]."""
+    return optional("N", "the force beyond which it breaks; never where absent", minimum=0.0)
+
+
+def breaks_at_torque() -> Any:
+    """Describe the torque beyond which a joint breaks [N m]."""
+    return optional("N m", "the torque beyond which it breaks; never where absent", minimum=0.0)
+
+
+def check_limits(joint: Any) -> None:
+    """Refuse limits that cross."""
+    if joint.is_given("lower") and joint.is_given("upper") and joint.upper < joint.lower:
+        kind = type(joint)
+        unit = next(spec.unit for spec in kind.FIELDS if spec.name == "upper")
+        allowed = f"a finite number >= lower = {joint.lower:g} {unit}, or null"
+        raise InvalidValue(kind.__name__, "upper", joint.upper, allowed)
 
 
 def key_of(first: End, second: End) -> tuple[Any, ...]:

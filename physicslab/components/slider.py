@@ -2,12 +2,14 @@
 
 from typing import ClassVar
 
+from physicslab.components.charge import Charge
 from physicslab.components.drag import Drag
 from physicslab.components.mass import Mass
 from physicslab.components.material import Material
 from physicslab.components.meter import CORNERS
 from physicslab.components.shape import Shape
 from physicslab.components.spring import Spring
+from physicslab.components.thrust import Thrust
 from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 from physicslab.ecs.component import Component, InvalidValue, component, field
@@ -18,7 +20,7 @@ GRAVITY = "gravity"
 
 SLIDER_FIELDS: dict[str, tuple[type[Component], Field]] = {
     f"{kind.__name__}.{spec.name}": (kind, spec)
-    for kind in (Mass, Material, Shape, Spring, Drag, Transform, Velocity)
+    for kind in (Mass, Material, Shape, Spring, Drag, Thrust, Charge, Transform, Velocity)
     for spec in kind.FIELDS
     if spec.kind == "number" and not spec.fixed
 }

@@ -114,7 +114,7 @@ class Sandbox:
         self._watch = StepWatch(world)
         self.history = history or History(world)
         window.follow_history(self.history)
-        window.spring_tool.cancel()
+        window.sketch.cancel()
         window.overlays.forget()
         window.sparks.clear()
         window.selection.clear()

@@ -1,5 +1,6 @@
 """Joints as people and programs read them: where they are, their forces, how far they are apart."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -7,6 +8,8 @@ import numpy as np
 
 from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2, rotated
+from physicslab.state.joint_rows import Measure, Role, measured
+from physicslab.state.joints import Joint
 from physicslab.state.state import State
 
 
@@ -28,8 +31,10 @@ class JointState:
         The bodies; 0 is the world.
     force : Vector2
         On B, at the end of the last step or as its mean [N].
-    stretch : float
-        How far the points are apart that it holds together [m].
+    torque : float
+        On B about its anchor, likewise [N m].
+    stretch, twist : float
+        How far lengths and places are from what it holds [m], and angles [rad]: the error that is left.
     """
 
     entity: int
@@ -39,7 +44,9 @@ class JointState:
     a: int
     b: int
     force: Vector2
+    torque: float
     stretch: float
+    twist: float
 
     @property
     def is_fixed(self) -> bool:
@@ -53,19 +60,38 @@ def joint_states(state: State) -> list[JointState]:
     if not joints.joints:
         return []
     joints.refresh(state.entity_index)
-    at_a, at_b = (
-        transform["position"][body] + rotated(anchor, transform["angle"][body])
-        for body, anchor in ((joints.a, joints.anchor_a), (joints.b, joints.anchor_b))
-    )
     found = []
     for joint in joints.joints:
-        n, own = joint.first, slice(joint.first, joint.first + joint.size)
-        force = joints.force[own] @ joints.axis[own]
-        a, b = int(joints.a[n]), int(joints.b[n])
+        a, b, anchor = joint.a, joint.b, joints.anchor_a[joint.first]
+        place = transform["position"][a] + rotated(anchor, transform["angle"][a])
         angle = float(transform["angle"][b or a])
-        stretch = float(np.hypot(*(at_b[n] - at_a[n])))
         ends = int(state.entity_index.entities[a]), int(state.entity_index.entities[b])
-        found.append(
-            JointState(joint.entity, joint.kind, Vector2(*at_a[n]), angle, *ends, Vector2(*force), stretch)
+        force, torque, stretch, twist = _figures(state, joint)
+        held = JointState(
+            joint.entity, joint.kind, Vector2(*place), angle, *ends, force, torque, stretch, twist
         )
+        found.append(held)
     return found
+
+
+def _figures(state: State, joint: Joint) -> tuple[Vector2, float, float, float]:
+    """Return the force on B, the torque about its anchor, the stretch and the twist."""
+    joints, force, torque = state.joints, np.zeros(2), 0.0
+    squares = {True: 0.0, False: 0.0}
+    for row in range(joint.first, joint.first + joint.size):
+        error = -float(joints.offset[row])
+        terms = [n for n in (row, int(joints.second[row])) if n >= 0]
+        for n in terms:
+            one, scale = measured(joints.term(n), state.entity_index), float(joints.scale[n])
+            error += scale * one.value
+            pull = scale * float(joints.force[row])
+            ends = (joints.a[n], (one.ax, one.ay), -1.0), (joints.b[n], (one.bx, one.by), 1.0)
+            for end, gradient, sign in ends:
+                if end == joint.b:
+                    force += pull * np.array(gradient)
+                    torque += sign * pull * (joints.measure[n] == Measure.ANGLE)
+        if joints.role[row] == Role.LIMIT:
+            error = min(error, 0.0)
+        if joints.role[row] != Role.MOTOR:
+            squares[bool(joints.measure[row] == Measure.ANGLE)] += error * error
+    return Vector2(*force.tolist()), torque, math.sqrt(squares[False]), math.sqrt(squares[True])

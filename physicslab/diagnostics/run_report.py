@@ -197,14 +197,20 @@ def _contact_forces(world: World) -> list[dict[str, Any]]:
 
 
 def _joints(world: World) -> dict[str, Any]:
-    """Return of each joint its force on B [N] and how far it is apart [m]; nothing without joints."""
+    """Return of each joint force [N] and torque [N m] on B, and the error left [m, rad]; or nothing."""
     joints = joint_states(world)
     if not joints:
         return {}
     found = {}
     for joint in joints:
         name, (x, y) = world.label(joint.entity), joint.force
-        found[name] = {"kind": joint.kind.__name__, "force": [x, y], "stretch": joint.stretch}
+        found[name] = {
+            "kind": joint.kind.__name__,
+            "force": [x, y],
+            "torque": joint.torque,
+            "stretch": joint.stretch,
+            "twist": joint.twist,
+        }
     return {"joints": found}
 
 

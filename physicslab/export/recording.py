@@ -133,8 +133,7 @@ class RunRecorder:
         place = {entity: number for number, entity in enumerate(world.batch(Transform).entities.tolist())}
         joints, entities, found = world.joints, world.entity_index.entities, []
         for joint in joints.joints:
-            n = joint.first
-            a, b = int(joints.a[n]), int(joints.b[n])
+            n, a, b = joint.first, joint.a, joint.b
             anchor = joints.anchor_b[n] if b else joints.anchor_a[n]
             body = place[int(entities[b or a])]
             found.append({"body": body, "anchor": anchor.tolist(), "fixed": not (a and b)})

@@ -8,7 +8,20 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from physicslab.components import Held, Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import (
+    Gear,
+    Held,
+    Mass,
+    Material,
+    Pin,
+    Shape,
+    Slot,
+    Spring,
+    Trail,
+    Transform,
+    Velocity,
+)
+from physicslab.components.gear import COUPLED, OTHER_JOINT
 from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.components.name import why_no_id
 from physicslab.components.spring import OTHER_END
@@ -16,7 +29,7 @@ from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
 from physicslab.ecs.text import suggestion
 from physicslab.files import checks
 from physicslab.state.attached import INSTRUMENTS
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 
 UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""
@@ -238,6 +251,9 @@ def _check_joint(
 ) -> None:  # fmt: skip
     """Refuse a joint whose ends are not two points with places, or are those of another of its kind."""
     kind = type(joint).__name__
+    if isinstance(joint, Gear):
+        _check_gear(joint, number, entities, where, joined)
+        return
     for name in ("a", "b"):
         end = getattr(joint, name)
         if end is not None and "Transform" not in entities[end - 1]:
@@ -249,6 +265,24 @@ def _check_joint(
         value = entities[joint.b - 1].get("id") if joint.b else None
         raise checks.refusal(f"{where}: {kind}.{refused[0]}", value, refused[1])
     joined[key_of(*ends)] = str(entities[number - 1].get("id", f"entity {number}"))
+
+
+def _check_gear(
+    gear: Gear, number: int, entities: Sequence[Mapping[str, Any]], where: str,
+    joined: dict[tuple[Any, ...], str],
+) -> None:  # fmt: skip
+    """Refuse a gear that couples no two joints, or those of another."""
+    ends = gear.first or 0, gear.second or 0
+    for name, end in zip(("first", "second"), ends, strict=True):
+        if (Pin.__name__ in entities[end - 1]) == (Slot.__name__ in entities[end - 1]):
+            raise checks.refusal(f"{where}: Gear.{name}", entities[end - 1].get("id"), f"the id of {COUPLED}")
+    if ends[0] == ends[1]:
+        raise checks.refusal(f"{where}: Gear.second", entities[ends[1] - 1].get("id"), OTHER_JOINT)
+    label = str(entities[number - 1].get("id", f"entity {number}"))
+    other = joined.setdefault(tuple(sorted(ends)), label)
+    if other is not label:
+        allowed = f"another joint than {other} couples"
+        raise checks.refusal(f"{where}: Gear.second", entities[ends[1] - 1].get("id"), allowed)
 
 
 def _check_ends(spring: Spring, number: int, entities: Sequence[Mapping[str, Any]], where: str) -> None:

@@ -1,5 +1,6 @@
 """Motion with a closed form, to which results of the labs are compared."""
 
+import cmath
 import math
 
 
@@ -108,3 +109,58 @@ def corner_impact(
         jy = wanted / (along + edge * both)
         jx = edge * jy
     return jx, jy - fall, (x * jy - y * jx) / inertia
+
+
+def driven(
+    stiffness: float, drag: float, strength: float, rate: float, start: float, t: float
+) -> tuple[float, float]:
+    """Return x [m] and v [m/s] of 1 kg on a spring with linear drag, driven by strength cos(rate t).
+
+    Parameters
+    ----------
+    stiffness, drag, strength : float
+        Of the spring [N/m], of the drag [kg/s] and of the force [N]. The damping is below the critical one.
+    rate, start, t : float
+        That of the force [rad/s]; where it is let go at t = 0 [m]; the time [s].
+    """
+    steady = strength / complex(stiffness - rate * rate, drag * rate)
+    own = complex(-0.5 * drag, math.sqrt(stiffness - 0.25 * drag * drag))
+    # Re(free e^(own t)): what is left at t = 0 of the place and of the velocity.
+    x, v = start - steady.real, rate * steady.imag
+    free = complex(x, (own.real * x - v) / own.imag) * cmath.exp(own * t)
+    swing = steady * cmath.exp(1j * rate * t)
+    return free.real + swing.real, (own * free).real - rate * swing.imag
+
+
+def crossed(
+    pull: complex, rate: float, start: complex, velocity: complex, t: float
+) -> tuple[complex, complex]:
+    """Return place [m] and velocity [m/s], as complex numbers, of z'' = pull - i rate z' after a time [s].
+
+    Parameters
+    ----------
+    pull : complex
+        The acceleration by a uniform field [m/s^2].
+    rate : float
+        The rate q B / m at which a magnetic field turns velocities clockwise [rad/s].
+    start, velocity : complex
+        At t = 0 [m], [m/s].
+    """
+    drift = pull / (1j * rate)
+    circling = (velocity - drift) * cmath.exp(-1j * rate * t)
+    return start + drift * t + (velocity - drift - circling) / (1j * rate), drift + circling
+
+
+def repelled(strength: float, axis: float, excess: float, t: float) -> tuple[complex, complex]:
+    """Return r [m] and r' [m/s], as complex numbers, of r'' = strength r / |r|^3, nearest at t = 0.
+
+    It goes along the branch of a hyperbola that is turned away from the origin, with a half axis ``axis`` [m]
+    and the eccentricity ``excess``; r = a (1 + e cosh F), where t = sqrt(a^3 / strength) (F + e sinh F).
+    """
+    mean, found = t * math.sqrt(strength / axis**3), math.asinh(t * math.sqrt(strength / axis**3) / excess)
+    for _ in range(50):
+        found -= (found + excess * math.sinh(found) - mean) / (1.0 + excess * math.cosh(found))
+    narrow, goes = math.sqrt(excess * excess - 1.0), math.sqrt(strength / axis)
+    goes /= 1.0 + excess * math.cosh(found)
+    place = complex(excess + math.cosh(found), narrow * math.sinh(found))
+    return axis * place, goes * complex(math.sinh(found), narrow * math.cosh(found))

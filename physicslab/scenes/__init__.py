@@ -30,6 +30,11 @@ _NAMES = (
     "newtons_cradle",
     "pendulum",
     "spring_chain",
+    "resonance",
+    "rocket",
+    "rutherford",
+    "crossed_fields",
+    "cyclotron",
     "two_planets",
     "solar_system",
 )

@@ -1,157 +1,188 @@
 """Joints as rows of constraints: one table, whatever kind of joint a row comes from."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from itertools import combinations
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Pin, Transform
 from physicslab.ecs.entity_index import EntityIndex
-from physicslab.ecs.table import Table
+from physicslab.state.joint_rows import KINDS, Joined, Measure, Role, Row, Term, ends_of, measured
 
-
-class Row(NamedTuple):
-    """One row: B's anchor is to stay at A's along an axis, a unit vector of the world.
-
-    With the next one it is solved as one ``block`` by soft constraints, where that is 2.
-    """
-
-    axis: tuple[float, float]
-    block: int = 1
-
-
-def _pin(table: Table, row: int) -> Sequence[Row]:
-    """Return two rows: the anchors are in one place."""
-    return Row((1.0, 0.0), 2), Row((0.0, 1.0), 0)
-
-
-KINDS: dict[type[Any], Callable[[Table, int], Sequence[Row]]] = {
-    Pin: _pin,
-}
-"""The kinds of joints: of each the function that returns its rows, of the component's table and a row of it.
-
-The component has the fields of :mod:`physicslab.components.joint_ends`.
-"""
+type _Held = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 class Joint(NamedTuple):
-    """One joint: its entity, its kind, the first of its rows and how many they are."""
+    """One joint: its entity, its kind, the first of its rows and how many they are, its bodies A and B."""
 
     entity: int
     kind: type[Any]
     first: int
     size: int
+    a: int
+    b: int
+
+    @property
+    def own(self) -> slice:
+        """Its rows."""
+        return slice(self.first, self.first + self.size)
 
 
 class Joints:
-    """The rows of all joints of a world.
+    """The rows of all joints of a world, and the terms of these.
+
+    A row's quantity is g = scale * measure of its first term, plus that of a second one, less its offset. The
+    first terms of rows 0 to n - 1 are the terms 0 to n - 1, and the second ones stand behind them.
 
     Attributes
     ----------
     joints : tuple of Joint
         Which joint has which rows, in the order of rows.
-    a, b : int64 arrays (n,)
-        The rows of the bodies of each constraint; 0 is the world.
-    anchor_a, anchor_b, axis : float64 arrays (n, 2)
-        In the bodies' own frames [m], or in the world's; the axis is a unit vector of the world.
+    measure : int64 array (m,)
+        What each term measures, a :class:`Measure`.
+    a, b : int64 arrays (m,)
+        The rows of its bodies; 0 is the world.
+    anchor_a, anchor_b, axis : float64 arrays (m, 2)
+        In the bodies' own frames [m], or in the world's; the axis is a unit vector of the world, or in A's
+        frame.
+    scale : float64 array (m,)
+        The factor of the measure.
+    second : int64 array (n,)
+        The second term of each row, or -1.
+    role : int64 array (n,)
+        What it demands, a :class:`Role`.
+    offset, target, strongest : float64 arrays (n,)
+        What is taken from the terms [m or rad]; the speed of a motor [m/s or rad/s]; its largest force [N or
+        N m], which may be infinite.
     block : int64 array (n,)
         How many rows are solved as one from here on; 0 for those after the first.
     impulse : float64 array (n,)
-        Of the last substep [N s], from which the next one starts.
+        Of the last substep [N s or N m s], from which the next one starts.
     force : float64 array (n,)
-        At the end of the last step, or as its mean [N].
-    measured : float64 array (n, k)
-        Room for what soft constraints measure of a row (:mod:`physicslab.kernels.joints.soft`).
+        At the end of the last step, or as its mean [N or N m].
+    measured : float64 array (m, k)
+        Room for what soft constraints measure of a term (:mod:`physicslab.kernels.joints.soft`).
     beside_contacts : bool
         Whether contacts are solved at all, and joints with them.
     rank : int
         How many rows are independent, where the last stepper found that; else -1.
+    edges : int64 array (k, 2)
+        The pairs of rows that joints hold together; 0 is the world.
     apart : int64 array (k, 2)
         The pairs of bodies a < b that do not touch each other, sorted.
     """
 
     def __init__(self) -> None:
-        self._take(())
+        self._take([], [])
         self._settings, self.beside_contacts = b"", False
         self._joined: tuple[Any, ...] = ()
 
-    def _take(self, joints: Sequence[Joint]) -> None:
-        n = sum(joint.size for joint in joints)
+    def _take(self, joints: Sequence[Joint], rows: Sequence[Row]) -> None:
         self.joints = tuple(joints)
-        self.a, self.b, self.block = np.zeros((3, n), np.int64)
-        self.anchor_a, self.anchor_b, self.axis = np.zeros((3, n, 2))
-        self.impulse, self.force = np.zeros((2, n))
+        self.second = np.full(len(rows), -1, np.int64)
+        self.second[[len(row.terms) > 1 for row in rows]] = len(rows) + np.arange(
+            sum(len(row.terms) > 1 for row in rows)
+        )
+        terms = [row.terms[0] for row in rows] + [term for row in rows for term in row.terms[1:]]
+        self.measure, self.a, self.b = (np.array([term[n] for term in terms], np.int64) for n in range(3))
+        self.anchor_a, self.anchor_b, self.axis = (
+            np.array([term[n] for term in terms], np.float64).reshape(-1, 2) for n in range(3, 6)
+        )
+        self.scale = np.array([term.scale for term in terms], np.float64)
+        self.role = np.array([row.role for row in rows], np.int64)
+        self.offset, self.target, self.strongest = (
+            np.array([row[n] for row in rows], np.float64) for n in range(2, 5)
+        )
+        self.block = np.array([row.block for row in rows], np.int64)
+        self.impulse, self.force = np.zeros((2, len(rows)))
         self.measured: NDArray[np.float64] = np.zeros((0, 0))
-        self.apart, self.rank = np.zeros((0, 2), np.int64), -1
+        self.edges, self.apart, self.rank = np.zeros((0, 2), np.int64), np.zeros((0, 2), np.int64), -1
 
     def __len__(self) -> int:
-        return len(self.a)
+        return len(self.role)
 
-    @property
-    def edges(self) -> NDArray[np.int64]:
-        """The pairs of rows (n, 2) that joints hold together; 0 is the world."""
-        first = np.array([joint.first for joint in self.joints], np.int64)
-        return np.stack((self.a[first], self.b[first]), axis=1)
+    def term(self, n: int) -> Term:
+        """Return a term."""
+        (ax, ay), (bx, by), (x, y) = (
+            array[n].tolist() for array in (self.anchor_a, self.anchor_b, self.axis)
+        )
+        ends = Measure(self.measure[n]), int(self.a[n]), int(self.b[n])
+        return Term(*ends, (ax, ay), (bx, by), (x, y), float(self.scale[n]))
 
     def rebuild(self, index: EntityIndex) -> bool:
         """Take the joints that there are; return whether they are others than before. Impulses are kept."""
-        kept = {(joint.entity, joint.kind): self._held(joint) for joint in self.joints}
-        found: list[tuple[Joint, int, int, int, Sequence[Row]]] = []
-        n = 0
+        before, entities = self._joined, index.entities
+        held = {(joint.entity, joint.kind): self._held(joint) for joint in self.joints}
+        joints: list[Joint] = []
+        rows: list[Row] = []
+        edges: set[tuple[int, int]] = set()
+        apart: set[tuple[int, int]] = set()
         for kind, rows_of in KINDS.items():
             table = index.table(kind)
-            for row, a, b in zip(*ends_of(index, kind), strict=True):
+            for row, a, b in zip(index.batch(kind).rows.tolist(), *ends_of(index, kind), strict=True):
                 if a < 0 or b < 0:
                     continue  # its body is gone, and it goes with that
-                rows = rows_of(table, row)
-                entity = int(index.entities[row])
-                found.append((Joint(entity, kind, n, len(rows)), int(row), int(a), int(b), rows))
-                n += len(rows)
-        before, entities = self._joined, index.entities
-        self._take([joint for joint, *_ in found])
-        for joint, _, a, b, rows in found:
-            own = slice(joint.first, joint.first + joint.size)
-            self.a[own], self.b[own] = a, b
-            self.block[own] = [row.block for row in rows]
-            held = kept.get((joint.entity, joint.kind))
-            if held is not None:
-                self.impulse[own], self.force[own] = held
-        self._settings = b""
-        self.refresh(index)
-        apart = {
-            (min(a, b), max(a, b))
-            for joint, row, a, b, _ in found
-            if not index.table(joint.kind)["collide"][row]
-        }
+                joined = Joined(index, table, row, int(a), int(b))
+                own = [_placed(joined, one) for one in rows_of(joined)]
+                joints.append(Joint(int(entities[row]), kind, len(rows), len(own), joined.a, joined.b))
+                rows += own
+                bodies = {end for one in own for term in one.terms for end in (term.a, term.b)}
+                edges.update(combinations(sorted(bodies), 2))
+                if not table["collide"][row]:
+                    apart.add((min(joined.a, joined.b), max(joined.a, joined.b)))
+        self._take(joints, rows)
+        self.edges = np.array(sorted(edges), np.int64).reshape(-1, 2)
         self.apart = np.array(sorted(apart), np.int64).reshape(-1, 2)
+        for joint in joints:
+            impulse, force = held.get((joint.entity, joint.kind), (_NONE, _NONE))
+            if len(impulse) == joint.size:
+                self.impulse[joint.own], self.force[joint.own] = impulse, force
+        self._settings = self.settings(index)
         self._joined = tuple(
-            (joint.entity, joint.kind, int(entities[a]), int(entities[b])) for joint, _, a, b, _ in found
+            (joint.entity, joint.kind, int(entities[joint.a]), int(entities[joint.b])) for joint in joints
         )
         return before != self._joined
 
-    def _held(self, joint: Joint) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        own = slice(joint.first, joint.first + joint.size)
-        return self.impulse[own].copy(), self.force[own].copy()
+    def _held(self, joint: Joint) -> _Held:
+        return self.impulse[joint.own].copy(), self.force[joint.own].copy()
 
     def settings(self, index: EntityIndex) -> bytes:
         """Return the numbers of all joints, bit by bit."""
-        return b"".join(index.table(kind)[spec.name].tobytes() for kind in KINDS for spec in kind.FIELDS)
+        kinds = {joint.kind for joint in self.joints}
+        tables = [index.table(kind) for kind in KINDS if kind in kinds]
+        return b"".join(column.tobytes() for table in tables for column in table.columns)
 
     def refresh(self, index: EntityIndex) -> bool:
         """Take the numbers of joints where they were changed; return whether they were."""
-        if not self.joints:
+        if not self.joints or self.settings(index) == self._settings:
             return False
-        settings = self.settings(index)
-        if settings == self._settings:
-            return False
-        self._settings = settings
-        for joint in self.joints:
-            table, row = index.table(joint.kind), index.row_of[joint.entity]
-            own = slice(joint.first, joint.first + joint.size)
-            self.anchor_a[own], self.anchor_b[own] = table["anchor_a"][row], table["anchor_b"][row]
-            self.axis[own] = [one.axis for one in KINDS[joint.kind](table, row)]
+        self.rebuild(index)
         return True
+
+    @property
+    def solved(self) -> NDArray[np.bool_]:
+        """Which rows (n,) are equations of smooth motion: what holds, and motors of any strength."""
+        solved: NDArray[np.bool_] = (self.role == Role.HOLD) | (
+            (self.role == Role.MOTOR) & np.isinf(self.strongest)
+        )
+        return solved
+
+    def why_not_smooth(self) -> str | None:
+        """Return which joint has other rows, or ``None``."""
+        left = (joint.kind.__name__ for joint in self.joints if not self.solved[joint.own].all())
+        return next((f"a {kind} has a limit, or a motor that may stall" for kind in left), None)
+
+    def why_not(self, roles: Collection[Role], measures: Collection[Measure], terms: int = 2) -> str | None:
+        """Return which joint has rows of others than these, or of more terms, or ``None``."""
+        for joint in self.joints:
+            own = joint.own
+            if not set(self.role[own].tolist()) <= {*roles} or (terms < 2 and self.second[own].max() >= 0):
+                return f"a {joint.kind.__name__} has rows that it does not solve"
+            ends = [*range(own.start, own.stop), *self.second[own][self.second[own] >= 0].tolist()]
+            if not set(self.measure[ends].tolist()) <= {*measures}:
+                return f"a {joint.kind.__name__} has rows that it does not solve"
+        return None
 
     def may_touch(self, a: NDArray[Any], b: NDArray[Any]) -> NDArray[np.bool_]:
         """Return of pairs of rows (n,) which of them no joint keeps from touching each other."""
@@ -161,7 +192,7 @@ class Joints:
     def kept(self) -> Iterator[tuple[int, str, list[float]]]:
         """Yield of each joint that has impulses its entity, its kind and these [N s]."""
         for joint in self.joints:
-            impulses = self.impulse[joint.first : joint.first + joint.size]
+            impulses = self.impulse[joint.own]
             if impulses.any():
                 yield joint.entity, joint.kind.__name__, impulses.tolist()
 
@@ -172,18 +203,21 @@ class Joints:
         for joint in self.joints:
             impulses = held.get((joint.entity, joint.kind.__name__), ())
             if len(impulses) == joint.size:
-                self.impulse[joint.first : joint.first + joint.size] = impulses
+                self.impulse[joint.own] = impulses
 
 
-def ends_of(
-    index: EntityIndex, kind: type[Any]
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Return the rows (n,) of the joints of a kind, of the bodies at their ends A, and at B; 0 is the world.
+_NONE = np.zeros(0)
 
-    An end that is not there any more is -1. ``a`` that is absent is the entity that carries the joint, or
-    the world if that has no place.
-    """
-    batch, table, rows_of = index.batch(kind), index.table(kind), index.rows_of
-    a, b = table["a"][batch.rows], table["b"][batch.rows]
-    carried = (a == 0) & index.table(Transform).present[batch.rows]
-    return batch.rows, rows_of(np.where(carried, batch.entities, a)), rows_of(b)
+
+def _placed(joined: Joined, row: Row) -> Row:
+    """Return a row with the offset of its field, which is measured where it was not given."""
+    if not row.placed:
+        return row
+    table, scale = joined.table, row.terms[0].scale
+    if joined.given(row.placed) is None:
+        value = sum(term.scale * measured(term, joined.entity_index).value for term in row.terms) / scale
+        kind = table.component
+        spec = next(spec for spec in kind.FIELDS if spec.name == row.placed)
+        table[row.placed][joined.row] = spec.check(value)
+        table[f"{row.placed}_given"][joined.row] = True
+    return row._replace(offset=scale * joined.number(row.placed))

@@ -8,7 +8,7 @@ import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Name, Shape, Transform, Velocity
+from physicslab.components import Gear, Name, Shape, Transform, Velocity
 from physicslab.contacts.arguments import motion_of
 from physicslab.ecs.component import Component
 from physicslab.ecs.context import create_numbered
@@ -142,15 +142,17 @@ def fill(state: State, part: State, entities: Rows, fixed: Rows) -> None:
     physical = [(kind, table) for kind, table in kinds if kind.physical]
     own, placed = set(entities.tolist()), set(entities.tolist()) | set(fixed.tolist())
     made: dict[int, list[Any]] = {entity: [] for entity in sorted(placed)}
-    for kind, table in physical:
+    joined: set[int] = set()
+    for kind, table in sorted(physical, key=lambda one: one[0] is Gear):  # which couples joints
         ends = [spec.name for spec in kind.FIELDS if spec.kind == "entity"]
         for entity in sorted(table.handles):
             if ends:
                 row = index.row_of[entity]
                 held = {int(table[name][row]) for name in ends} - {0}
                 held |= {entity} & placed if _holds_itself(table, row, ends) else set()
-                if not (held <= placed and held & own):
+                if not (held <= joined if kind is Gear else held <= placed and held & own):
                     continue
+                joined.add(entity)
             elif entity not in placed:
                 continue
             made.setdefault(entity, []).append(table.blank())
@@ -183,12 +185,11 @@ def copy_rows(state: State, part: State, there: Rows, own: Rows) -> None:
 def copy_joints(part: State, state: State) -> None:
     """Copy what the joints of a part hold bodies with to those of the whole world."""
     if len(part.joints):
-        first = {(joint.entity, joint.kind): joint.first for joint in state.joints.joints}
+        there = {(joint.entity, joint.kind): joint.own for joint in state.joints.joints}
         for joint in part.joints.joints:
-            there = first[joint.entity, joint.kind]
-            own = slice(joint.first, joint.first + joint.size)
             for name in ("impulse", "force"):
-                getattr(state.joints, name)[there : there + joint.size] = getattr(part.joints, name)[own]
+                whole = getattr(state.joints, name)
+                whole[there[joint.entity, joint.kind]] = getattr(part.joints, name)[joint.own]
         state.joints.rank = part.joints.rank
 
 

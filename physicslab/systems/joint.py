@@ -6,19 +6,17 @@ import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Name, Transform
+from physicslab.components import Gear, Name, Pin, Slot, Transform
+from physicslab.components.gear import COUPLED, OTHER_JOINT
 from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.contacts.arguments import do_stage
 from physicslab.contacts.islands import wake_all
 from physicslab.ecs.component import InvalidValue
-from physicslab.ecs.vector import rotated
-from physicslab.kernels import accounts
-from physicslab.kernels.joints import rows as joint_rows
 from physicslab.kernels.solver import soft
-from physicslab.state.joints import KINDS, ends_of
-from physicslab.state.packed import PackedForce, StateLayout
+from physicslab.state.joint_rows import KINDS, ends_of
 from physicslab.state.state import State
-from physicslab.systems.system import ForceSystem, Stage, System, at
+from physicslab.systems.joint_forces import JointForces
+from physicslab.systems.system import Stage, System, at
 
 
 def remove_lost(state: State, kind: type[Any], a: NDArray[np.int64], b: NDArray[np.int64]) -> None:
@@ -29,25 +27,30 @@ def remove_lost(state: State, kind: type[Any], a: NDArray[np.int64], b: NDArray[
     state : State
         Whose.
     kind : component type
-        It has ends ``a`` and ``b``.
+        It has ends ``a`` and ``b``, bodies; or those of a Gear, entities with joints.
     a, b : int64 arrays (n,)
         The rows of the bodies at the ends of each; 0 is the world, -1 what is not there.
 
     Raises
     ------
     InvalidValue
-        If an end never was an entity, or is one without a Transform.
+        If an end never was an entity, or is one without a Transform, or without a joint.
     """
     placed, batch = state.table(Transform).present, state.batch(kind)
+    names, needed, coupled = ("a", "b"), "an entity with a Transform", set[tuple[int, type[Any]]]()
+    if kind is Gear:
+        names, needed = ("first", "second"), COUPLED
+        coupled = {(joint.entity, joint.kind) for joint in state.joints.joints}
     lost_a, lost_b = (a < 0) | ~(placed[a] | (a == 0)), (b < 0) | ~(placed[b] | (b == 0))
     for i in np.flatnonzero(lost_a | lost_b).tolist():
-        entity, name = int(batch.entities[i]), "a" if lost_a[i] else "b"
+        entity, name = int(batch.entities[i]), names[0 if lost_a[i] else 1]
         if not (esper.entity_exists(entity) and esper.has_component(entity, kind)):
             continue  # removed by an earlier call, before rows were numbered again
         end = int(state.table(kind)[name][batch.rows[i]]) or entity
-        if end in state.entity_index.row_of or end > state.entity_index.newest:
+        gone = end not in state.entity_index.row_of and end <= state.entity_index.newest
+        if not gone and (entity, kind) not in coupled:
             owner = f"{state.label(entity)}: {kind.__name__}"
-            raise InvalidValue(owner, name, end, "an entity with a Transform")
+            raise InvalidValue(owner, name, end, needed)
         esper.remove_component(entity, kind)
         left: tuple[object, ...] = esper.components_for_entity(entity)
         if all(isinstance(component, Name) for component in left):
@@ -58,6 +61,9 @@ def _refuse_equal(
     state: State, kind: type[Any], rows: NDArray[np.int64], a: NDArray[np.int64], b: NDArray[np.int64]
 ) -> None:
     """Refuse joints (n,) whose ends are one body, and those that join the points of another of their kind."""
+    if kind is Gear:
+        _refuse_gears(state, rows)
+        return
     known: dict[tuple[Any, ...], str] = {}
     table, entities = state.table(kind), state.entity_index.entities
     for row, one, other in zip(rows.tolist(), a.tolist(), b.tolist(), strict=True):
@@ -71,71 +77,23 @@ def _refuse_equal(
         known[key_of(*ends)] = label
 
 
-class JointForces(ForceSystem):
-    """The forces of all joints in smooth motion: those with which the equations of the joints hold.
-
-    They follow from all other forces, and so come after them.
-    """
-
-    account = accounts.JOINTS
-    turns = True
-
-    @property
-    def name(self) -> str:
-        """That of the system of joints, with which its evaluations are counted."""
-        return JointSystem.__name__
-
-    def packed(self, state: State, layout: StateLayout) -> PackedForce:
-        """Return the rows for compiled integrators, behind which is their room."""
-        joints, bodies, physics = state.joints, state.bodies, state.physics
-        joints.refresh(state.entity_index)
-        moving, turning, n, m = layout.moving, layout.turning, len(joints), layout.moving_count
-        count, whole_count = joint_rows.room_of(n, m)
-        numbers, whole = np.zeros(count), np.zeros(whole_count, np.int64)
-        rows, angle = numbers[: n * joint_rows.GIVEN].reshape(n, -1), state.table(Transform)["angle"]
-        ends = whole[joint_rows.FIRST :][: n * joint_rows.ENDS].reshape(n, -1)
-        at_a = joints.a, joints.anchor_a, joint_rows.ARM_A
-        at_b = joints.b, joints.anchor_b, joint_rows.ARM_B
-        for place, (end, anchor, arm) in ((0, at_a), (2, at_b)):
-            ends[:, place], ends[:, place + 1] = layout.place[end], layout.turn[end]
-            rows[:, arm : arm + 2] = rotated(anchor, np.where(layout.turn[end] < 0, angle[end], 0.0))
-        rows[:, joint_rows.AXIS : joint_rows.AXIS + 2] = joints.axis
-        inverse = np.concatenate((np.repeat(bodies.inverse_mass[moving], 2), bodies.inverse_inertia[turning]))
-        rates = np.repeat((physics.linear_damping, physics.angular_damping), (2 * len(moving), len(turning)))
-        moved = np.concatenate((np.repeat(moving, 2), turning))
-        first = n * joint_rows.GIVEN
-        numbers[first : first + m] = inverse
-        numbers[first + m : first + 2 * m] = rates * (bodies.inverse_mass[moved] > 0.0)
-        whole[joint_rows.ROWS], whole[joint_rows.COORDINATES] = n, m
-        books = ((accounts.JOINTS, joint_rows.BOOKED), (accounts.HAND, joint_rows.DRIVEN))
-        return PackedForce(joint_rows.constrain, numbers, whole, books=books)
-
-    def inputs(self, state: State, layout: StateLayout) -> bytes:
-        """Return the numbers of all joints, and the angles of bodies that no force turns."""
-        joints, steady = state.joints, []
-        for end in (joints.a, joints.b):
-            steady.append(state.table(Transform)["angle"][end[layout.turn[end] < 0]].tobytes())
-        return joints.settings(state.entity_index) + b"".join(steady)
-
-    def settings(self, state: State) -> bytes:
-        """Return the numbers of all joints."""
-        return state.joints.settings(state.entity_index)
-
-    def couples(self, state: State) -> NDArray[np.int64]:
-        """Return the bodies that joints hold together (n, 2)."""
-        return state.joints.edges
-
-    def turned(self, state: State) -> NDArray[np.int64]:
-        """Return the bodies that joints hold."""
-        return state.joints.edges.ravel()
-
-    def sees_velocity(self, state: State) -> bool:
-        """Return that it does: what turns faster about a pin is held with more force."""
-        return True
+def _refuse_gears(state: State, rows: NDArray[np.int64]) -> None:
+    """Refuse what couples an entity with two joints, or the joints of another Gear."""
+    table, known = state.table(Gear), dict[frozenset[int], str]()
+    for row in rows.tolist():
+        label, ends = state.label_of_row(row), [int(table[name][row]) for name in ("first", "second")]
+        for name, end in zip(("first", "second"), ends, strict=True):
+            if all(state.table(kind).present[state.entity_index.row_of[end]] for kind in (Pin, Slot)):
+                raise InvalidValue(f"{label}: Gear", name, end, COUPLED)
+        if ends[0] == ends[1]:
+            raise InvalidValue(f"{label}: Gear", "second", ends[1], OTHER_JOINT)
+        other = known.setdefault(frozenset(ends), label)
+        if other is not label:
+            raise InvalidValue(f"{label}: Gear", "second", ends[1], f"another joint than {other} couples")
 
 
 class JointSystem(System):
-    """Holds together what joints join: Pin.
+    """Holds together what joints join: Pin, Slot, Weld, Rod, Rope, Pulley and Gear.
 
     In smooth motion, and with rigid contacts, the equations of the joints are solved with those of the
     motion (:class:`JointForces`). Beside soft contacts joints are soft constraints, solved with these.
@@ -145,7 +103,7 @@ class JointSystem(System):
     kernels = (soft.advance,)
 
     def __init__(self) -> None:
-        self.smooth = JointForces()
+        self.smooth = JointForces(type(self).__name__)
 
     def attach(self, state: State) -> None:
         """Find the bodies at both ends of every joint; a joint whose body was removed goes with it.
@@ -157,7 +115,7 @@ class JointSystem(System):
         """
         index = state.entity_index
         for kind in KINDS:
-            rows, a, b = ends_of(index, kind)
+            rows, (a, b) = state.batch(kind).rows, ends_of(index, kind)
             remove_lost(state, kind, a, b)
             _refuse_equal(state, kind, rows, a, b)
         if state.joints.rebuild(index) and state.sleep.count:

@@ -4,27 +4,25 @@ import math
 
 from physicslab.kernels import Numbers, fused, inlined
 from physicslab.kernels.forces.force_calls import accelerate
-from physicslab.kernels.joints.rows import ROWS
+from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
 from physicslab.kernels.rigid.equations import CHANGE, FREE, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     BIAS_N,
     BIAS_T,
+    FEATURE,
     GAP,
-    NA,
-    NB,
-    NX,
-    NY,
+    JOINT,
+    NORMAL,
     ONE,
-    OTHER,
-    TA,
-    TB,
+    TANGENT,
     VN,
     VT,
     Scene,
-    measure,
+    rate_along,
 )
 from physicslab.kernels.rigid.joined import book_answer, lessen, measure_joints, pass_on
+from physicslab.kernels.rigid.joint_points import OWN, is_motor, measure
 from physicslab.kernels.rigid.least_norm import (
     REFINEMENTS,
     begin_equations,
@@ -52,26 +50,31 @@ def _coupling(scene: Scene, equations: Equations, i: int, j: int) -> tuple[float
     """Return what unit forces at point j cause at point i: n n, n t, t n, t t."""
     points, measures = equations.points, equations.measures
     nn, nt, tn, tt = 0.0, 0.0, 0.0, 0.0
-    cosine = measures[i, NX] * measures[j, NX] + measures[i, NY] * measures[j, NY]
-    sine = measures[i, NX] * measures[j, NY] - measures[i, NY] * measures[j, NX]  # of j's normal against i's
     for side_i in range(2):
         body = points[i, ONE + side_i]
         mass, inertia = scene.inverse_mass[2 * body], scene.inverse_mass[2 * scene.rows + body]
         if mass == 0.0 and inertia == 0.0:
             continue
-        arm_ti, arm_ni = measures[i, TA + side_i], measures[i, NA + side_i]
+        n, t = NORMAL + 3 * side_i, TANGENT + 3 * side_i
+        nx, ny, turn_n = measures[i, n], measures[i, n + 1], inertia * measures[i, n + 2]
+        tx, ty, turn_t = measures[i, t], measures[i, t + 1], inertia * measures[i, t + 2]
         for side_j in range(2):
             if points[j, ONE + side_j] != body:
                 continue
-            sign = mass if side_i == side_j else -mass
-            turn = inertia if side_i == side_j else -inertia
-            arm_tj, arm_nj = measures[j, TA + side_j], measures[j, NA + side_j]
-            # The moment arm of a unit force along the normal is -t . r, along the tangent n . r.
-            nn += sign * cosine + turn * arm_ti * arm_tj
-            nt += -sign * sine - turn * arm_ti * arm_nj
-            tn += sign * sine - turn * arm_ni * arm_tj
-            tt += sign * cosine + turn * arm_ni * arm_nj
+            n, t = NORMAL + 3 * side_j, TANGENT + 3 * side_j
+            nn += mass * (nx * measures[j, n] + ny * measures[j, n + 1]) + turn_n * measures[j, n + 2]
+            nt += mass * (nx * measures[j, t] + ny * measures[j, t + 1]) + turn_n * measures[j, t + 2]
+            tn += mass * (tx * measures[j, n] + ty * measures[j, n + 1]) + turn_t * measures[j, n + 2]
+            tt += mass * (tx * measures[j, t] + ty * measures[j, t + 1]) + turn_t * measures[j, t + 2]
     return nn, nt, tn, tt
+
+
+@inlined
+def _own_response(scene: Scene, equations: Equations, i: int, nn: float, tt: float) -> tuple[float, float]:
+    """Return what unit forces cause at the row of a joint, and what stands for that where it has none."""
+    if is_motor(scene, equations.points, i):
+        nn = scene.row_numbers[equations.points[i, FEATURE] - JOINT, OWN]
+    return nn if nn > 0.0 else 1.0, tt if tt > 0.0 else 1.0
 
 
 @inlined
@@ -81,6 +84,8 @@ def assemble(scene: Scene, equations: Equations, count: int) -> None:
     for i in range(count):
         for j in range(i + 1):
             nn, nt, tn, tt = _coupling(scene, equations, i, j)
+            if i == j and equations.points[i, FEATURE] >= JOINT:
+                nn, tt = _own_response(scene, equations, i, nn, tt)
             a[2 * i, 2 * j], a[2 * i, 2 * j + 1], a[2 * i + 1, 2 * j], a[2 * i + 1, 2 * j + 1] = (
                 nn,
                 nt,
@@ -106,15 +111,12 @@ def apply(scene: Scene, equations: Equations, count: int, target: Numbers, which
     rows, measures, points = scene.rows, equations.measures, equations.points
     for i in range(count):
         along, across = equations.vectors[which, 2 * i], equations.vectors[which, 2 * i + 1]
-        nx, ny = measures[i, NX], measures[i, NY]
-        fx, fy = along * nx - across * ny, along * ny + across * nx
         for side in range(2):
-            body = points[i, ONE + side]
-            turn = across * measures[i, NA + side] - along * measures[i, TA + side]
-            sign = 1.0 if side == 1 else -1.0
-            target[2 * body] += sign * scene.inverse_mass[2 * body] * fx
-            target[2 * body + 1] += sign * scene.inverse_mass[2 * body + 1] * fy
-            target[2 * rows + body] += sign * scene.inverse_mass[2 * rows + body] * turn
+            body, n, t = points[i, ONE + side], NORMAL + 3 * side, TANGENT + 3 * side
+            for k in range(3):
+                place = 2 * body + k if k < 2 else 2 * rows + body
+                push = along * measures[i, n + k] + across * measures[i, t + k]
+                target[place] += scene.inverse_mass[place] * push
     if scene.joints[ROWS] > 0:
         pass_on(scene, points, measures, equations.vectors[which], count, target)
 
@@ -138,22 +140,21 @@ def rates_without_forces(
     scene: Scene, equations: Equations, i: int, acceleration: Numbers
 ) -> tuple[float, float]:
     """Return how the speeds of point i along its normal and its tangent change at given accelerations."""
-    rows, measures, points = scene.rows, equations.measures, equations.points
-    one, other = points[i, ONE], points[i, OTHER]
-    nx, ny = measures[i, NX], measures[i, NY]
-    dx = acceleration[2 * other] - acceleration[2 * one]
-    dy = acceleration[2 * other + 1] - acceleration[2 * one + 1]
-    turn_one, turn_other = acceleration[2 * rows + one], acceleration[2 * rows + other]
-    opening = nx * dx + ny * dy - turn_other * measures[i, TB] + turn_one * measures[i, TA]
-    sliding = nx * dy - ny * dx + turn_other * measures[i, NB] - turn_one * measures[i, NA]
+    points, measures = equations.points, equations.measures
+    opening = rate_along(scene.rows, points, measures, i, NORMAL, acceleration)
+    sliding = rate_along(scene.rows, points, measures, i, TANGENT, acceleration)
     return opening + measures[i, BIAS_N], sliding + measures[i, BIAS_T]
 
 
 @inlined
-def find_free_rates(scene: Scene, equations: Equations, count: int, acceleration: Numbers) -> None:
-    """Find how the speeds of points would change without contact forces."""
+def find_free_rates(
+    scene: Scene, equations: Equations, count: int, acceleration: Numbers, share: float
+) -> None:
+    """Find how the speeds of points change at accelerations, of which ``share`` of the forces are part."""
     for i in range(count):
         opening, sliding = rates_without_forces(scene, equations, i, acceleration)
+        if is_motor(scene, equations.points, i):  # nothing moves by what presses on it
+            opening += share * equations.a[2 * i, 2 * i] * equations.vectors[UNKNOWN, 2 * i]
         equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = opening, sliding
 
 
@@ -174,7 +175,7 @@ def constrained_acceleration(
         assemble(scene, equations, count)
         n, largest, residual, rank = begin_equations(equations, count, 1.0), 0.0, math.inf, 0
         for _ in range(REFINEMENTS):
-            find_free_rates(scene, equations, count, acceleration)
+            find_free_rates(scene, equations, count, acceleration, 1.0)
             for i in range(2 * count if residual == math.inf else 0):
                 largest = max(largest, abs(equations.vectors[FREE, i]))
             residual, rank = refine(equations, count, n, 1.0, FREE, largest, residual, rank)

@@ -23,23 +23,64 @@ from physicslab.kernels.geometry.vertex_cone import beside_vertex
 from physicslab.kernels.records import Pairs
 
 __all__ = [
-    "BIAS_N", "BIAS_T", "CONTACTS", "CORNER", "DRIVEN", "FEATURE", "GAP", "GIVEN", "MARGIN", "MEASURES", "MU",
-    "NA", "NB", "NX", "NY", "ONE", "OTHER", "PAIR", "POINT_FIELDS", "PX", "PY", "RESTITUTION", "RUBBING",
-    "STATUS", "TA", "TB", "VERTEX", "VN", "VT", "WALL", "Points", "Scene", "SceneTuple",
-    "measure", "named_scene", "turned_by",
+    "BIAS_N",
+    "BIAS_T",
+    "CONTACTS",
+    "CORNER",
+    "DRIVEN",
+    "FEATURE",
+    "FIRST_ROW",
+    "GAP",
+    "GIVEN",
+    "JOINED",
+    "JOINT",
+    "MARGIN",
+    "MEASURES",
+    "MOTORS",
+    "MU",
+    "NORMAL",
+    "NX",
+    "NY",
+    "ONE",
+    "OTHER",
+    "PAIR",
+    "POINT_FIELDS",
+    "PX",
+    "PY",
+    "RESTITUTION",
+    "RUBBING",
+    "STATUS",
+    "TANGENT",
+    "VERTEX",
+    "VN",
+    "VT",
+    "WALL",
+    "Points",
+    "Scene",
+    "SceneTuple",
+    "measure_contact",
+    "named_scene",
+    "rate_along",
+    "turned_by",
 ]  # fmt: skip
 
 PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)
 """The columns of a point: its pair; bodies and features; what it may do, and what it does."""
-CORNER, WALL = MOST_VERTICES, 2 * MOST_VERTICES
-"""Where features of vertices and walls begin; those before are faces, from the vertex of that number on."""
-NX, NY, TA, TB, NA, NB, GAP, VN, VT, BIAS_N, BIAS_T, MARGIN, PX, PY, MU, RESTITUTION, MEASURES = range(17)
-"""The columns of measures of a point: normal; arms of ONE and OTHER along the tangent and the normal [m]; gap
-[m]; speeds along both [m/s]; their rates at no acceleration [m/s^2]; how far it is from the end of its
-feature [m]; where it is [m]; coefficients of friction and restitution."""
-RUBBING, CONTACTS, DRIVEN = range(3)
-"""What ``accounts`` of a scene hold: where those of friction, of contacts and of what is driven begin behind
-the clock (:mod:`physicslab.kernels.forces.bookings`); -1 where nothing is driven."""
+CORNER, WALL, JOINT = MOST_VERTICES, 2 * MOST_VERTICES, 2 * MOST_VERTICES + 4
+"""Where features of vertices, walls and rows of joints begin; those before are faces, from the vertex of that
+number on."""
+FIRST_ROW = JOINT - WALL
+"""From which number on the third column of a pair is a row of a joint, and no wall."""
+NORMAL, TANGENT, NX, NY = 0, 6, 3, 4
+"""The columns of measures of a point that hold the gradients of its gap and of its way along the surface, by
+x, y and angle of ONE, then of OTHER. By OTHER's x and y that of the gap is the normal."""
+GAP, VN, VT, BIAS_N, BIAS_T, MARGIN, PX, PY, MU, RESTITUTION, MEASURES = range(12, 23)
+"""The columns behind them: gap [m]; speeds along normal and tangent [m/s]; their rates at no acceleration
+[m/s^2]; how far it is from the end of its feature [m]; where it is [m]; coefficients of friction and
+restitution."""
+RUBBING, CONTACTS, DRIVEN, JOINED, MOTORS = range(5)
+"""What ``accounts`` of a scene hold: where those of friction, of contacts, of what is driven, of joints and
+of motors begin behind the clock (:mod:`physicslab.kernels.forces.bookings`); -1 where there is none."""
 
 Points = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, POINT_FIELDS)."""
@@ -50,7 +91,9 @@ class Scene(NamedTuple):
 
     The number of rows; inverse masses (3 rows,), damping, forces; shapes, walls of the bounds (4,) [m];
     pairs (n, 3), and of each the friction, restitution and smaller size [m] (n, 3); where accounts are (3,);
-    the rows of joints, their numbers and whole numbers (:mod:`physicslab.kernels.joints.rows`).
+    the rows that joints keep in any case, their numbers and whole numbers
+    (:mod:`physicslab.kernels.joints.rows`); those that are points (n, NUMBERS) and (n, WHOLE)
+    (:mod:`physicslab.kernels.rigid.joint_points`).
     """
 
     rows: int
@@ -64,9 +107,13 @@ class Scene(NamedTuple):
     accounts: Rows
     joint_numbers: Numbers
     joints: Rows
+    row_numbers: Vectors
+    row_ends: Pairs
 
 
-SceneTuple = tuple[int, Numbers, Numbers, Calls, ShapesTuple, Numbers, Pairs, Vectors, Rows, Numbers, Rows]
+SceneTuple = tuple[
+    int, Numbers, Numbers, Calls, ShapesTuple, Numbers, Pairs, Vectors, Rows, Numbers, Rows, Vectors, Pairs
+]  # fmt: skip
 
 
 @fused
@@ -74,7 +121,7 @@ def named_scene(plain: SceneTuple) -> Scene:
     """Give names to a tuple."""
     return Scene(
         plain[0], plain[1], plain[2], plain[3], named_shapes(plain[4]), plain[5], plain[6], plain[7],
-        plain[8], plain[9], plain[10],
+        plain[8], plain[9], plain[10], plain[11], plain[12],
     )  # fmt: skip
 
 
@@ -87,11 +134,28 @@ def turned_by(scene: Scene, row: int, q: Numbers) -> tuple[float, float]:
 
 
 @inlined
-def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
-    """Measure point number i in a state: where it is, how it moves, and how that changes at no acceleration.
+def rate_along(rows: int, points: Points, measures: Vectors, i: int, gradient: int, values: Numbers) -> float:
+    """Return how fast point number i opens or slides at given velocities, by a ``gradient`` of its measures.
 
-    The rates follow by differentiating the gap twice, and the sliding speed of the material points once; the
-    point itself moves over both bodies.
+    Or how these rates change at given accelerations, but for those at no acceleration.
+    """
+    one, other, at, end = points[i, ONE], points[i, OTHER], gradient, gradient + 3
+    dx, dy = values[2 * other] - values[2 * one], values[2 * other + 1] - values[2 * one + 1]
+    rate: float = measures[i, end] * dx + measures[i, end + 1] * dy
+    rate += values[2 * rows + other] * measures[i, end + 2]
+    rate += values[2 * rows + one] * measures[i, at + 2]
+    if points[i, FEATURE] >= JOINT:  # a row of two terms pulls at its bodies in directions of their own
+        rate += (measures[i, at] + measures[i, end]) * values[2 * one]
+        rate += (measures[i, at + 1] + measures[i, end + 1]) * values[2 * one + 1]
+    return rate
+
+
+@inlined
+def measure_contact(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
+    """Measure point number i, which is of a contact: where it is, how it moves, and how that changes.
+
+    By itself, at no acceleration. The rates follow by differentiating the gap twice, and the sliding speed
+    of the material points once; the point itself moves over both bodies.
     """
     rows, shapes = scene.rows, scene.shapes
     one, other, feature = points[i, ONE], points[i, OTHER], points[i, FEATURE]
@@ -107,7 +171,6 @@ def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: V
         edge = scene.walls[wall]
         out[i, GAP] = nx * (cx - edge) + ny * (cy - edge) - radius
         out[i, MARGIN] = math.inf
-        out[i, NX], out[i, NY], out[i, TA], out[i, NA] = nx, ny, 0.0, 0.0
         turning, one_spin = 0.0, 0.0
         one_x, one_y, one_vx, one_vy = cx - radius * nx, cy - radius * ny, 0.0, 0.0
         out[i, BIAS_N] = -spin * spin * (nx * rho_x + ny * rho_y)
@@ -154,11 +217,13 @@ def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: V
                 - spin * spin * (nx * rho_x + ny * rho_y)
                 + one_spin * one_spin * (nx * arm_x + ny * arm_y)
             )
-        out[i, NX], out[i, NY] = nx, ny
     px, py = cx - radius * nx, cy - radius * ny
     ax, ay, bx, by = px - one_x, py - one_y, px - q[2 * other], py - q[2 * other + 1]
-    out[i, TA], out[i, NA] = nx * ay - ny * ax, nx * ax + ny * ay
-    out[i, TB], out[i, NB] = nx * by - ny * bx, nx * bx + ny * by
+    # The moment arm of a unit force along the normal is -t . r, along the tangent n . r.
+    out[i, NORMAL], out[i, NORMAL + 1], out[i, NORMAL + 2] = -nx, -ny, nx * ay - ny * ax
+    out[i, NX], out[i, NY], out[i, NORMAL + 5] = nx, ny, -(nx * by - ny * bx)
+    out[i, TANGENT], out[i, TANGENT + 1], out[i, TANGENT + 2] = ny, -nx, -(nx * ax + ny * ay)
+    out[i, TANGENT + 3], out[i, TANGENT + 4], out[i, TANGENT + 5] = -ny, nx, nx * bx + ny * by
     moving = PairVelocity(one_vx, one_vy, one_spin, v[2 * other], v[2 * other + 1], spin)
     rx, ry = point_velocity(ContactFrame(nx, ny, ax, ay, bx, by), moving)
     out[i, VN], out[i, VT] = along_and_across(nx, ny, rx, ry)

@@ -1,5 +1,6 @@
 """Every problem, in one explicit list; and reference problems that the engine cannot compute, and why."""
 
+from physicslab.lab.accuracy.fields import FIELDS
 from physicslab.lab.accuracy.friction import FRICTION
 from physicslab.lab.accuracy.impacts import IMPACTS
 from physicslab.lab.accuracy.joints import JOINED
@@ -7,7 +8,7 @@ from physicslab.lab.accuracy.planets import ATTRACTED
 from physicslab.lab.accuracy.points import POINTS
 from physicslab.lab.case import Catalogue
 
-PROBLEMS = Catalogue((*POINTS, *JOINED, *ATTRACTED, *IMPACTS, *FRICTION))
+PROBLEMS = Catalogue((*POINTS, *FIELDS, *JOINED, *ATTRACTED, *IMPACTS, *FRICTION))
 """Every problem by name, from the simplest on; families are those of one source."""
 
 _NO_RODS = "the engine has no rigid rods: a pendulum in it swings on a spring (see elastic_pendulum)"

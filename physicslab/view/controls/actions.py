@@ -12,7 +12,7 @@ from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import SceneError, file_stem
 from physicslab.history import Branch, Command, Remove, SetField, SetPhysics, Spawn
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 from physicslab.systems.gravity import GravitySystem
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.file_actions import new_paths
@@ -31,7 +31,7 @@ _TEXT_SCALES = (0.8, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0)
 
 def choose_tool(world: World, window: Window, tool: Tool) -> None:
     """Let the left mouse button do something else."""
-    window.spring_tool.cancel()
+    window.sketch.cancel()
     window.measuring.cancel()
     window.tool = tool.name
     window.notify(tool.usage, 5.0)
@@ -48,7 +48,7 @@ def toggle_pause(world: World, window: Window) -> None:
 def clear(world: World, window: Window) -> None:
     """Remove everything."""
     window.hand.drop(world)
-    window.spring_tool.cancel()
+    window.sketch.cancel()
     window.measuring.cancel()
     removed = [Remove(entity) for entity in world.entities()]
     if removed:
@@ -131,7 +131,7 @@ def reset_layout(world: World, window: Window) -> None:
 
 def leave(world: World, window: Window) -> None:
     """Leave the help, the plot, the selection or the tool if there is one, else the window."""
-    if window.measuring.cancel() or _close_panel(window):
+    if window.measuring.cancel() or window.sketch.cancel() or _close_panel(window):
         return
     if window.picking is not None:
         window.picking = None

@@ -19,7 +19,8 @@ from physicslab.view.controls import (
     tools,
 )
 from physicslab.view.controls.actions import has_gravity, nudger, turner
-from physicslab.view.controls.spawning import spawn_pendulum
+from physicslab.view.controls.drawing import click
+from physicslab.view.controls.spawning import PENDULUM
 from physicslab.view.controls.tool import Tool
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
@@ -102,10 +103,6 @@ ARROWS = {
 
 type State = Callable[[World, Window], bool]
 
-_BOX, _PENDULUM = (
-    next(tool for tool in tools.SPAWN_TOOLS if tool.name == name) for name in ("box", "pendulum")
-)  # fmt: skip
-
 
 @dataclass(frozen=True, slots=True)
 class Control:
@@ -182,11 +179,12 @@ def _gravity_is(world: World, mode: str) -> bool:
 
 CONTROLS: tuple[Control, ...] = (
     Control("Left", "drag, throw, new circle", tool=tools.HAND,
-            tip="Drag and throw bodies, click for a new circle"),
-    Control("Right", "new box", tool=_BOX, tip="New boxes where you click"),
-    Control("P", "pendulum", "p", spawn_pendulum, tool=_PENDULUM, tip="New pendulums where you click"),
-    Control("S", "spring: hold, drag", "s", tools.begin_spring, tools.end_spring, tool=tools.SPRING,
-            tip="Springs: drag from a body"),
+            tip="Drag and throw bodies, click or drag for a new circle"),
+    Control("Right", "new box", tool=tools.DRAWING["box"], tip="New boxes: click, or drag"),
+    Control("P", "pendulum", "p", lambda world, window: click(world, window, PENDULUM),
+            tool=tools.DRAWING["pendulum"], tip="New pendulums: click, or drag from pin to bob"),
+    Control("S", "spring: hold, drag", "s", tools.begin_by_key, tools.end_by_key,
+            tool=tools.DRAWING["spring"], tip="Springs: drag from a body"),
     Control("Del", "remove", "delete", tools.remove_selected, also=("backspace",), group="edit",
             tip="Remove the selection, or the body under the cursor"),
     Control("Ctrl+D", "duplicate", "ctrl+d", actions.duplicate_selected, group="edit",

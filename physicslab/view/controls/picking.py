@@ -13,6 +13,7 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Rect, is_within
 from physicslab.view.overlay.instruments import Instrument, instruments_of
 from physicslab.view.picture.bodies import POINT_RADIUS, body_rows
+from physicslab.view.picture.joints import gaps_to, joint_at
 from physicslab.view.picture.springs import ends_of
 from physicslab.world import World
 
@@ -36,18 +37,23 @@ def body_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | N
 
     Otherwise the nearest whose middle is within a few pixels is taken.
     """
+    return next(iter(bodies_at(world, camera, pixel)), None)
+
+
+def bodies_at(world: World, camera: Camera, pixel: tuple[float, float]) -> list[int]:
+    """Return the bodies at a place on the screen [px], the upper ones first, as :func:`body_at` does."""
     place, rows = camera.to_world(pixel), body_rows(world)
     entities = world.entity_index.entities
     everything = rows.all
     gap = outlines_of(world, everything).gaps(place.x, place.y)
     gap[len(gap) - len(rows.points) :] -= POINT_RADIUS / camera.scale
-    hit = np.flatnonzero(gap <= 0.0)
-    if len(hit):
-        return int(entities[everything[hit[-1]]])
+    hit: list[int] = entities[everything[np.flatnonzero(gap <= 0.0)[::-1]]].tolist()
+    if hit:
+        return hit
     distance = _distance(world, everything, place)
     if len(distance) and np.fmin.reduce(distance) <= _MAX_DISTANCE / camera.scale:
-        return int(entities[everything[int(np.nanargmin(distance))]])
-    return None
+        return [int(entities[everything[int(np.nanargmin(distance))]])]
+    return []
 
 
 def spring_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
@@ -55,16 +61,17 @@ def spring_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int |
     if not len(world.batch(Spring).rows):
         return None
     start, end = (camera.project(place) for place in ends_of(world))
-    with np.errstate(all="ignore"):
-        along, offset = end - start, np.array(pixel) - start
-        length = np.maximum((along**2).sum(axis=1), 1e-12)
-        share = np.clip((along * offset).sum(axis=1) / length, 0.0, 1.0)[:, None]
-        distance = np.hypot(*(offset - share * along).T)
-    distance[~np.isfinite(distance)] = np.inf
+    distance = gaps_to(start, end, pixel)
     nearest = int(np.argmin(distance))
     if distance[nearest] > _MAX_FROM_SPRING:
         return None
     return int(world.batch(Spring).entities[nearest])
+
+
+def link_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
+    """Return the entity whose rod, rope or spring is at a place on the screen [px], or ``None``."""
+    joint = joint_at(world, camera, pixel, lines=True)
+    return spring_at(world, camera, pixel) if joint is None else joint
 
 
 def centre_near(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:

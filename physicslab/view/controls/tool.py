@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from physicslab.view.controls.spawning import Spawnable
+from physicslab.view.controls.drawing import Drawn
 from physicslab.view.window.window import Action
 
 
@@ -20,8 +20,8 @@ class Tool:
         What happens.
     pans, drags : bool
         Whether dragging moves the picture, and whether it is pressed at one place and let go at another.
-    spawn : Spawnable, optional
-        What a click on empty space makes.
+    draws : Drawn, optional
+        What it draws.
     prompts : tuple of str
         What to do next, by how many points are placed; shown beside the cursor.
     """
@@ -33,13 +33,16 @@ class Tool:
     release: Action
     pans: bool = False
     drags: bool = False
-    spawn: Spawnable | None = None
+    draws: Drawn | None = None
     prompts: tuple[str, ...] = ()
 
 
 ICONS = {
     "select": "\uf25a", "circle": "\uf111", "box": "\uf0c8", "capsule": "\uf46b", "block": "\uf068",
-    "pendulum": "\uf5cd", "chain": "\uf0c1", "spring": "\uf83e", "remove": "\uf12d", "ruler": "\uf545",
+    "beam": "\uf7a4", "polygon": "\uf5ee", "ramp": "\uf5ee",
+    "pendulum": "\uf5cd", "chain": "\uf0c1", "spring": "\uf83e", "rod": "\uf547", "rope": "\uf5b7",
+    "pin": "\uf192", "motor": "\uf863", "slot": "\uf337", "weld": "\uf0fd", "pulley": "\uf1da",
+    "gear": "\uf013", "remove": "\uf12d", "ruler": "\uf545",
     "protractor": "\uf568", "gate": "\uf11e", "note": "\uf249", "pan": "\uf0b2",
     "more": "\uf141", "stack": "\uf5fd", "pyramid": "\uf5ee", "heap": "\uf1ce", "pit": "\uf5ee",
     "binary": "\uf753", "play": "\uf04b", "pause": "\uf04c", "step": "\uf051", "back": "\uf048",

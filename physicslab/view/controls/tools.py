@@ -1,22 +1,22 @@
-"""Tools, the actions of the left mouse button in the world, and springs made from a list."""
+"""Tools, the actions of the left mouse button in the world."""
 
 from collections.abc import Sequence
-from functools import partial
 
-from physicslab.components import Pin, Spring, Transform, Velocity
-from physicslab.diagnostics.period import gives_way
-from physicslab.ecs.fields import InvalidValue
-from physicslab.ecs.vector import Vector2
-from physicslab.history import Command, Group, Remove, RemoveComponent, Spawn
-from physicslab.state.joints import KINDS
-from physicslab.view.canvas.quantities import quantity
+import pygame
+
+from physicslab.components import Spring, Transform, Velocity
+from physicslab.history import Command, Group, Remove, RemoveComponent
+from physicslab.state.joint_rows import KINDS
+from physicslab.view.controls import drawing
+from physicslab.view.controls.drawing import Drawn
+from physicslab.view.controls.joining import JOINTS, SPRING
 from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument
-from physicslab.view.controls.picking import body_at, instrument_at, spring_at
-from physicslab.view.controls.spawning import CIRCLE, SPAWNS, Spawnable
+from physicslab.view.controls.picking import body_at, instrument_at, link_at, spring_at
+from physicslab.view.controls.spawning import BODIES
 from physicslab.view.controls.tool import Tool
 from physicslab.view.picture.joints import joint_at
-from physicslab.view.window.spring_tool import local_point, pin_at, spring_between
-from physicslab.view.window.window import Action, Window
+from physicslab.view.window.spring_tool import pin_at
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 
@@ -47,7 +47,7 @@ def take_hold(world: World, window: Window) -> bool:
         return True  # it lies over what is fixed
     if entity is None:
         window.pins.dragged = pin
-        spring = spring_at(world, window.camera, window.pointer) if pin is None else pin
+        spring = link_at(world, window.camera, window.pointer) if pin is None else pin
         if spring is not None:
             window.selection.take(spring, add=window.adding)
         return spring is not None
@@ -90,6 +90,10 @@ def remove(world: World, window: Window) -> None:
         return
     entity = instrument_at(world, window.camera, window.pointer, window.measuring.rects)
     entity = body_at(world, window.camera, window.pointer) if entity is None else entity
+    joint = joint_at(world, window.camera, window.pointer, lines=True) if entity is None else None
+    if joint is not None:
+        remove_joints(world, window, joint)
+        return
     spring = spring_at(world, window.camera, window.pointer) if entity is None else None
     if spring is not None and world.has(spring, Transform):  # a body carries it
         window.edits.do(RemoveComponent(spring, Spring.__name__))
@@ -129,121 +133,47 @@ def remove_entities(world: World, window: Window, entities: Sequence[int]) -> No
     window.selection.follow(world)
 
 
-def begin_spring(world: World, window: Window) -> None:
-    """Begin a spring at the body under the cursor."""
-    entity = body_at(world, window.camera, window.pointer)
-    if entity is not None:
-        window.spring_tool.begin(world, entity, window.place)
-    elif window.tool == SPRING.name:
-        window.notify("A spring begins on a body: press on one, and drag to its end")
-    else:
-        window.notify("A spring begins on a body: put the cursor on one, hold S, and drag to its end")
-
-
-def end_spring(world: World, window: Window) -> None:
-    """End the spring at the body under the cursor, or at that point of the world."""
-    target = body_at(world, window.camera, window.pointer)
-    made = window.spring_tool.end(world, target, window.place)
-    if not isinstance(made, str):
-        window.edits.do(Spawn([made]))
-    elif made:
-        window.notify(made)
-
-
-def spawning(spawn: Spawnable) -> Tool:
-    """Return the tool that takes hold of bodies, and spawns where there is none."""
+def drawing_tool(drawn: Drawn) -> Tool:
+    """Return the tool that draws something; one that draws bodies takes hold of those that are there."""
 
     def press(world: World, window: Window) -> None:
-        if not take_hold(world, window):
+        if drawn.build is None or not take_hold(world, window):
             window.selection.clear()
-            spawn.spawn(world, window)
+            drawing.press(world, window, drawn, pygame.BUTTON_LEFT)
 
-    usage = f"{spawn.title}: click {spawn.place}. Bodies can still be dragged."
-    return Tool(spawn.name, spawn.title, usage, press, let_go, spawn=spawn)
+    def end(world: World, window: Window) -> None:
+        let_go(world, window)
+        drawing.release(world, window, drawn)
+
+    usage = f"{drawn.title}: {drawn.usage}."
+    return Tool(drawn.name, drawn.title, usage, press, end, drags=not drawn.by_click, draws=drawn)
 
 
-HAND = spawning(CIRCLE)
+def begin_by_key(world: World, window: Window) -> None:
+    """Begin a spring at the cursor."""
+    drawing.press(world, window, SPRING)
+
+
+def end_by_key(world: World, window: Window) -> None:
+    """End the spring at the cursor."""
+    drawing.release(world, window, SPRING)
+    window.sketch.cancel()
+
+
+DRAWING = {drawn.name: drawing_tool(drawn) for drawn in (*BODIES, *JOINTS)}
+"""A tool for each thing that is drawn."""
+HAND = DRAWING["circle"]
 """The tool at the start: that of a new window."""
-SPAWN_TOOLS = (HAND, *(spawning(spawn) for spawn in SPAWNS[1:]))
-"""A tool for each thing there is to spawn."""
-SPRING = Tool(
-    "spring", "Spring", "Spring: press on a body, drag, let go.", begin_spring, end_spring, drags=True
-)
 REMOVE = Tool(
     "remove", "Erase", "Erase: click a body to remove it with its springs, or a spring.", remove, _nothing
 )
 _USAGE = "Select: click a body to see its numbers; drag to move or throw it."
 SELECT = Tool("select", "Select", _USAGE, select, end_select)
 PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True, drags=True)
-_IN_PALETTE = ("circle", "box", "block", "pendulum", "chain")
-_SPAWNING = (tool for tool in SPAWN_TOOLS if tool.name in _IN_PALETTE)
-PALETTE = (SELECT, *_SPAWNING, SPRING, *MEASURING_TOOLS, REMOVE, PAN)
+_IN_SIGHT = ("circle", "box", "block", "pendulum", "spring", "pin")
+PALETTE = (SELECT, *(DRAWING[name] for name in _IN_SIGHT), *MEASURING_TOOLS, REMOVE, PAN)
 """The tools that are in sight, in their order."""
-MORE_TOOLS = tuple(tool for tool in SPAWN_TOOLS if tool.name not in _IN_PALETTE)
+MORE_TOOLS = tuple(tool for tool in DRAWING.values() if tool.name not in _IN_SIGHT)
 """Those behind one more button."""
 TOOLS = {tool.name: tool for tool in (*PALETTE, *MORE_TOOLS)}
 """Every tool, by the name that ``Window.tool`` holds."""
-
-
-# ---- springs made from a list ------------------------------------------------------------------------------
-
-
-_ABOVE = 1.5
-"""How far above a body the point is that it is hung from [m]."""
-_WAYS = {"spring": False, "rod": True}
-"""Ways to join two ends, and whether each is stiff."""
-
-
-def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, Action]]:
-    """Return how the selection can be attached: the words on a button, its tip, and what it does."""
-    if not entities or len(entities) > 2 or not all(world.has(entity, Transform) for entity in entities):
-        return {}
-    if len(entities) == 2:
-        words, tip = "Join by a {}", "A {} between these two, its rest length their present distance"
-    else:
-        words, tip = "Hang on a {}", "A {} to a point above it, which can be dragged"
-    found: dict[str, tuple[str, Action]] = {
-        words.format(way): (tip.format(way), partial(_attach, bodies=tuple(entities), stiff=stiff))
-        for way, stiff in _WAYS.items()
-    }
-    pin = partial(_pin, bodies=tuple(entities))
-    if len(entities) == 2:
-        found["Join by a pin"] = "A pin half way between the middles of these two, about which they turn", pin
-    else:
-        found["Pin"] = "A pin through its middle, about which it turns", pin
-    return found
-
-
-def _pin(world: World, window: Window, bodies: Sequence[int]) -> None:
-    places = [world.component(body, Transform).position for body in bodies]
-    one, other = (*bodies, None)[:2]
-    if not any(world.has(body, Velocity) for body in bodies):
-        window.notify("No pin: neither of its ends could move")
-        return
-    middle = 0.5 * (places[0] + places[-1])
-    anchors = [local_point(world, body, middle) for body in (one, other)]
-    try:
-        window.edits.do(Spawn([Pin(a=one, b=other, anchor_a=anchors[0], anchor_b=anchors[1])]))
-    except InvalidValue as error:
-        window.notify(f"No pin: {error.field} must be {error.allowed}", 6.0, failed=True)
-
-
-def _within(world: World, place: Vector2) -> Vector2:
-    """Return the point above a place that a body is hung from: not beyond the walls."""
-    top, bounds = place.y + _ABOVE, world.physics.bounds
-    return Vector2(place.x, top if bounds is None else max(min(top, bounds[3]), place.y))
-
-
-def _attach(world: World, window: Window, bodies: Sequence[int], stiff: bool) -> None:
-    """Put a spring between two bodies, or between one and a point above it."""
-    one, other = bodies[0], bodies[1] if len(bodies) > 1 else None
-    place = world.component(one, Transform).position
-    end = _within(world, place) if other is None else world.component(other, Transform).position
-    made = spring_between(world, one, other, (place, end), stiff=stiff)
-    if isinstance(made, str):
-        window.notify(made)
-        return
-    (spring,) = window.edits.do(Spawn([made]))
-    give = gives_way(world, spring) if stiff else None
-    if give is not None:
-        window.notify(f"This rod is a stiff spring: weight makes it give way {quantity(1e3 * give, 'mm')}")

@@ -8,13 +8,13 @@ import pygame
 from physicslab.components import Held, Shape, Transform
 from physicslab.contacts.outlines import Outlines
 from physicslab.ecs.vector import Vector2
-from physicslab.view.controls import actions
+from physicslab.view.controls import actions, drawing
 from physicslab.view.controls.controls import KEYS, RELEASES, open_menu
 from physicslab.view.controls.file_actions import open_scene
 from physicslab.view.controls.impact_actions import clicked_impact, close_up
 from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
 from physicslab.view.controls.picking import body_at
-from physicslab.view.controls.spawning import spawn_box
+from physicslab.view.controls.spawning import BOX
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.window.changing import set_end
@@ -119,10 +119,25 @@ class WindowEvents:
         held = ("ctrl+" if mod & pygame.KMOD_CTRL else "") + ("shift+" if mod & pygame.KMOD_SHIFT else "")
         printed = getattr(event, "unicode", "")
         name = printed if printed in _BY_PRINT else pygame.key.name(event.key).lower()
+        if self._types(name, printed, held):
+            return
         action = KEYS.get(held + name) or KEYS.get(held.replace("shift+", "") + name)
         other_use = mod & _OTHER_USE and name not in _BY_PRINT
         if action is not None and not other_use:
             self._do(action, world)
+
+    def _types(self, name: str, printed: str, held: str) -> bool:
+        """Take a key for the numbers of what is being drawn; return whether it is one of these."""
+        sketch = self._window.sketch
+        if not (sketch.grips and sketch.held) or "ctrl" in held:
+            return False
+        letter = {"backspace": "\b", "tab": "\t"}.get(name, printed)
+        if not letter or (letter not in "\b\t" and not letter.isprintable()):
+            return False
+        if not sketch.typed and not (letter.isdigit() or letter in ".-("):
+            return False  # a number begins so: other keys stay what they are
+        sketch.write(letter)
+        return True
 
     def _follow_alt(self, world: World, event: pygame.Event) -> None:
         """Open the menus where Alt is pressed and let go alone: with other keys it is for the desktop."""
@@ -156,7 +171,7 @@ class WindowEvents:
             self._tool = TOOLS[self._window.tool]
             self._tool.press(world, self._window)
         elif event.button == pygame.BUTTON_RIGHT:
-            spawn_box(world, self._window)
+            drawing.press(world, self._window, BOX, pygame.BUTTON_RIGHT)
         by_tool = event.button == pygame.BUTTON_LEFT and self._tool is not None and self._tool.pans
         if event.button == pygame.BUTTON_MIDDLE or by_tool:
             self._panning = event.button
@@ -180,6 +195,8 @@ class WindowEvents:
         if event.button == pygame.BUTTON_LEFT and self._tool is not None:
             self._tool.release(world, self._window)
             self._tool = None
+        if event.button == pygame.BUTTON_RIGHT == self._window.sketch.held:
+            drawing.release(world, self._window, BOX)
         if event.button == self._panning:
             self._panning = 0
 
@@ -191,9 +208,9 @@ class WindowEvents:
             window.handles.release(window.edits)
             window.pins.release(window.edits)
             let_instrument_go(world, window)
-            if self._tool is not None:
-                window.spring_tool.cancel()
-                self._tool = None
+            self._tool = None
+        if window.sketch.held and not event.buttons[window.sketch.held - 1]:
+            window.sketch.cancel()
         if self._panning and not event.buttons[self._panning - 1]:
             self._panning = 0
         if self._panning:
@@ -212,7 +229,7 @@ class WindowEvents:
         """Let go of everything while another window has the focus."""
         self._window.hand.drop(world)
         self._window.pins.release(self._window.edits)
-        self._window.spring_tool.cancel()
+        self._window.sketch.cancel()
         let_instrument_go(world, self._window)
         self._panning, self._tool = 0, None
 
@@ -234,8 +251,9 @@ def follow_snapping(world: World, window: Window) -> None:
             snapping.follow(world, camera, cursor, cursor, None, window.selection.entities)
     elif window.pins.dragged is not None:
         snapping.follow(world, camera, cursor, cursor, None, ())
-    elif (spawn := TOOLS[window.tool].spawn) is not None:
-        snapping.follow(world, camera, cursor, cursor, spawn.about(window), ())
+    elif (drawn := TOOLS[window.tool].draws) is not None:
+        whole = drawn.build is not None and drawn.by_click and not window.sketch.grips
+        snapping.follow(world, camera, cursor, cursor, drawing.about(drawn, window) if whole else None, ())
 
 
 def _about(world: World, entity: int) -> Outlines | None:

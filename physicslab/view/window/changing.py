@@ -4,17 +4,24 @@ import contextlib
 from collections.abc import Callable, Iterator, Sequence
 
 from physicslab.components import (
+    Charge,
     Drag,
     Held,
     Mass,
     Material,
     Name,
+    Pin,
+    Rod,
+    Rope,
     Shape,
+    Slot,
     Spring,
     Strobe,
+    Thrust,
     Trail,
     Transform,
     Velocity,
+    Weld,
 )
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
@@ -22,7 +29,7 @@ from physicslab.ecs.text import in_words
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, RemoveComponent, SetField
 from physicslab.state.attached import local_point as in_frame
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.spring_tool import local_point, point_of
 from physicslab.view.window.window import Window
@@ -126,8 +133,13 @@ def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable
     if kind is Spring:
         yield plain_kind(kind), lambda entity: _spring_above(world, entity)
         return
-    if kind in KINDS:
+    if kind in (Pin, Slot, Weld):
         yield plain_kind(kind), lambda entity: kind(anchor_b=world.component(entity, Transform).position)
+        return
+    if kind in (Rod, Rope):
+        yield plain_kind(kind), lambda entity: kind(anchor_b=_above(world, entity))
+        return
+    if kind in KINDS:  # which need two ends
         return
     given = {spec.name: _first(spec) for spec in kind.FIELDS if spec.default is REQUIRED}
     with contextlib.suppress(InvalidValue, TypeError):
@@ -146,8 +158,11 @@ def _first(spec: Field) -> object:
 
 
 def _spring_above(world: World, entity: int) -> Spring:
-    place = world.component(entity, Transform).position
-    return Spring(anchor_b=place + Vector2(0.0, _ABOVE), rest_length=_ABOVE)
+    return Spring(anchor_b=_above(world, entity), rest_length=_ABOVE)
+
+
+def _above(world: World, entity: int) -> Vector2:
+    return world.component(entity, Transform).position + Vector2(0.0, _ABOVE)
 
 
 _PLAIN: dict[type[Component], str] = {
@@ -160,8 +175,10 @@ _MEANINGS: dict[type[Component], str] = {
     Mass: "forces move it; without mass, a moving body is infinitely heavy",
     Shape: "it can touch others",
     Material: "its restitution and friction",
+    Charge: "it acts on other charges, and electric and magnetic fields on it",
     Drag: "a medium slows it, as air does",
     Spring: "it hangs from a point that can be dragged",
+    Thrust: "it is pushed and turned from within, as by a rocket or a motor",
     Strobe: "it leaves pictures of its past positions",
     Trail: "its past path is shown",
 }

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import LENGTH_LIMIT, Field, InvalidValue
 from physicslab.history import Command, Group, History, SetField
+from physicslab.prefabs import BodyOptions
 from physicslab.world import World
 
 
@@ -142,6 +143,12 @@ class Recipe:
     density: float = 5.0
     restitution: float = 0.4
     friction: float = 0.5
+
+    def body(self, area: float) -> BodyOptions:
+        """Return the options of a body of an area [m^2]."""
+        return {
+            "mass": self.density * area, "restitution": self.restitution, "friction": self.friction,
+        }  # fmt: skip
 
     FIELDS: ClassVar[tuple[Field, ...]] = (
         Field("size", "number", unit="m", minimum=0.0, limit=LENGTH_LIMIT,

@@ -203,6 +203,11 @@ def snapped(
     return Snapped(Vector2(*found), tuple(marks))
 
 
+def snapped_point(world: World, camera: Camera, place: Vector2) -> Vector2:
+    """Return the place near to one [m] at which a point snaps."""
+    return snapped(world, camera, place, np.zeros(2), np.zeros(2)).place
+
+
 class Snapping:
     """Whether places snap, and where the cursor's place has snapped to.
 

@@ -1,4 +1,4 @@
-"""Springs by hand: drawn from a body to another or to a point of the world, and dragged by their pins."""
+"""Springs by hand: between a body and another or a point of the world, and dragged by their pins."""
 
 import math
 
@@ -11,10 +11,8 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetField
 from physicslab.state.attached import local_point as in_frame
-from physicslab.view.canvas.camera import Camera, Drawing
-from physicslab.view.canvas.canvas import Look
+from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.overlay.arrows import even_dashes
 from physicslab.view.window.edits import Edits
 from physicslab.world import World
 
@@ -41,7 +39,7 @@ def local_point(world: World, body: int | None, place: Vector2) -> Vector2:
     return local if inside else Vector2()
 
 
-# ---- drawing -----------------------------------------------------------------------------------------------
+# ---- springs -----------------------------------------------------------------------------------------------
 
 
 _FREQUENCY = 2.0
@@ -49,65 +47,6 @@ _FREQUENCY = 2.0
 _DAMPING_RATIO = 0.05
 _ROD_STRETCH, _EARTH = 1e-4, 9.81
 """Share of its length by which the weight of the heavier body on the Earth [m/s^2] stretches a rod."""
-_DASH = 9.0
-"""Length of a dash of the preview [px]."""
-_END = 4.0
-"""Radius of the discs at the ends of the preview [px]."""
-
-
-class SpringTool:
-    """A spring in the making: it is begun on a body, and ended on another or in empty space.
-
-    Attributes
-    ----------
-    entity : int, optional
-        The body it was begun on; ``None`` while there is none.
-    """
-
-    def __init__(self) -> None:
-        self.entity: int | None = None
-        self._anchor = Vector2()
-
-    def begin(self, world: World, entity: int, place: Vector2) -> None:
-        """Begin a spring on a body, where a point of the world [m] is on it."""
-        self.entity, self._anchor = entity, local_point(world, entity, place)
-
-    def cancel(self) -> None:
-        """Forget what was begun."""
-        self.entity = None
-
-    def end(self, world: World, target: int | None, place: Vector2) -> Spring | str:
-        """Return the spring, as long at rest as it is now, or why there is none.
-
-        Parameters
-        ----------
-        target : int, optional
-            The body at the other end; a fixed point of the world where there is none.
-        place : Vector2
-            Where the other end is [m].
-        """
-        start = self._start(world)
-        entity, self.entity = self.entity, None
-        if entity is None or start is None or target == entity:
-            return ""
-        return spring_between(world, entity, target, (start, place))
-
-    def draw(self, world: World, on: Drawing, pointer: tuple[float, float]) -> None:
-        """Draw where the spring would be: a dashed line from the body to the cursor [px]."""
-        start = self._start(world)
-        if start is None:
-            return
-        ends = np.array([on.camera.to_screen(start), pointer])
-        if not (np.abs(ends) < 1e6).all():
-            return
-        on.canvas.lines(*even_dashes(ends[0], ends[1], _DASH), on.theme.accent, 2.0)
-        on.canvas.discs(ends, np.full(2, _END), np.zeros(2), Look.plain(on.theme.accent, on.theme.accent, 2))
-
-    def _start(self, world: World) -> Vector2 | None:
-        """Return where the spring begins [m]; nowhere if its body is gone."""
-        if self.entity is not None and not world.has(self.entity, Transform):
-            self.entity = None
-        return None if self.entity is None else point_of(world, self.entity, self._anchor)
 
 
 def spring_between(

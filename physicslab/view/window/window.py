@@ -31,7 +31,8 @@ from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.pace import Pace
 from physicslab.view.window.placing import Snapping
 from physicslab.view.window.recent import RecentFiles, Recovery
-from physicslab.view.window.spring_tool import Pins, SpringTool
+from physicslab.view.window.sketch import Sketch
+from physicslab.view.window.spring_tool import Pins
 from physicslab.view.window.trust_watch import TrustWatch
 from physicslab.world import World
 
@@ -192,8 +193,8 @@ class Window:
         The built-in scene or the file that is shown; restarting opens it again.
     room : callable
         Returns which part of the canvas is left for the world [px].
-    spring_tool : SpringTool
-        The spring that is being drawn with the mouse.
+    sketch : Sketch
+        What is being drawn with the mouse.
     error_study : ErrorStudy
         Error against run time of the scene, measured when its key is pressed.
     trust : TrustWatch
@@ -263,7 +264,7 @@ class Window:
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
         self.error_study = ErrorStudy()
         self.trust = TrustWatch()
-        self.spring_tool = SpringTool()
+        self.sketch = Sketch()
         self.scene_file: Path | None = None
         self.unchanged = 0
         self.next_world: World | None = None

@@ -13,7 +13,7 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetField
-from physicslab.state.joints import KINDS
+from physicslab.state.joint_rows import KINDS
 from physicslab.view.canvas.quantities import without_rounding
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.changing import change_fields, set_end

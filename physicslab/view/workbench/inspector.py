@@ -18,7 +18,8 @@ from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, vector_quantity, without_rounding
 from physicslab.view.controls.actions import duplicate_selected
 from physicslab.view.controls.dashboard_actions import plot_selected
-from physicslab.view.controls.tools import attachments, remove_selected
+from physicslab.view.controls.joining import attachments
+from physicslab.view.controls.tools import remove_selected
 from physicslab.view.overlay.forces import Measured
 from physicslab.view.overlay.instruments import readings_of
 from physicslab.view.toolkit.ui import Ui
@@ -98,7 +99,9 @@ def _build_joint(ui: Ui, joint: JointState) -> None:
     ui.rule(0.2)
     name = joint.kind.__name__
     ui.row(f"{name} force", quantity(joint.force.magnitude, "N"), vector_quantity(joint.force, "N"))
-    tip = "How far the points are apart that it holds together: the error of the method"
+    if joint.torque:
+        ui.row(f"{name} torque", quantity(joint.torque, "N m"))
+    tip = "How far lengths and places are from what it holds: the error of the method"
     ui.row("Stretch left", quantity(without_rounding(joint.stretch, 1.0), "m"), tip)
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from physicslab.components import Transform
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import is_within
+from physicslab.view.controls import drawing
 from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.tools import TOOLS
@@ -16,7 +17,6 @@ from physicslab.view.overlay.forces import draw_free_body, draw_vectors
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.instruments import draw_instruments, instruments_of
 from physicslab.view.picture.picture import draw_world
-from physicslab.view.window.placing import refused_place
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -58,7 +58,7 @@ class WorldView:
             self._draw_snapping(on)
             if window.points_by_key:
                 marks.draw_cursor(window.pointer, theme.accent, canvas)
-        window.spring_tool.draw(world, on, window.pointer)
+        self._draw_sketch(world, on)
 
     def _draw_snapping(self, on: Drawing) -> None:
         """Draw where what is dragged snaps, and the length of a spring whose pin is dragged."""
@@ -97,8 +97,11 @@ class WorldView:
         if state.hovered is not None:
             marks.draw_selection(world, (state.hovered,), on)
         idle = not (window.pointer_on_panel or window.filming.running)
-        if tool.prompts and idle and state.dragged is None and state.writing is None:
-            words = tool.prompts[min(len(state.spots), len(tool.prompts) - 1)]
+        words = tool.prompts[min(len(state.spots), len(tool.prompts) - 1)] if tool.prompts else ""
+        if window.sketch.name or not words:
+            drawn = TOOLS[window.sketch.name or tool.name].draws
+            words = "" if drawn is None else drawing.reading(world, drawn, window)
+        if words and idle and state.dragged is None and state.writing is None:
             marks.draw_reading(words, window.pointer, on, window.room())
 
     def _draw_handles(self, world: World, on: Drawing) -> None:
@@ -113,14 +116,29 @@ class WorldView:
             marks.draw_reading(window.handles.words, window.pointer, on)
 
     def _draw_ghost(self, world: World, on: Drawing) -> None:
-        """Show at the cursor what a click would make, in the colour of errors where there is no room."""
-        window, spawn = self._window, TOOLS[self._window.tool].spawn
-        held = window.hand.entity, window.handles.dragged, window.spring_tool.entity
-        idle = held == (None, None, None) and not window.pointer_on_panel and window.has_pointed
-        if spawn is None or not idle or not is_within(window.pointer, window.room()):
+        """Show what a click or letting go makes, in the colour of errors where there is no room."""
+        window = self._window
+        drawn = TOOLS[window.sketch.name or window.tool].draws
+        idle = (window.hand.entity, window.handles.dragged) == (None, None) and not window.pointer_on_panel
+        if drawn is None or drawn.build is None or not idle or not window.has_pointed:
             return
-        if body_at(world, on.camera, window.pointer) is not None:
+        if not window.sketch.grips and (
+            body_at(world, on.camera, window.pointer) is not None
+            or not is_within(window.pointer, window.room())
+        ):
             return
-        ghost = spawn.outlines(window)
-        colour = on.theme.error if refused_place(world, ghost) else on.theme.accent
-        marks.draw_ghost(ghost, colour, on)
+        shown = drawing.ghost(world, drawn, window)
+        if shown is not None:
+            marks.draw_ghost(shown[0], on.theme.accent if shown[1] else on.theme.error, on)
+
+    def _draw_sketch(self, world: World, on: Drawing) -> None:
+        """Draw a joint in the making as a dashed line, and a line around the body that it would hold next."""
+        window, drawn = self._window, TOOLS[self._window.sketch.name or self._window.tool].draws
+        window.sketch.follow(world)
+        if drawn is None or drawn.join is None or window.pointer_on_panel or window.filming.running:
+            return
+        body = drawing.hovered(world, drawn, window)
+        if body is not None:
+            marks.draw_selection(world, (body,), on)
+        if window.sketch.grips:
+            marks.draw_dashes(drawing.lines(world, drawn, window), on)

@@ -1,0 +1,32 @@
+"""A gear, which couples two joints."""
+
+from physicslab.components.joint_ends import as_placed, breaks_at, collides
+from physicslab.ecs.component import Component, Derived, InvalidValue, component, field
+
+COUPLED = "an entity with a Pin or a Slot, and not both"
+"""The allowed ends."""
+OTHER_JOINT = "another entity than first"
+"""The allowed ``second``."""
+
+
+@component
+class Gear(Component):
+    """Couples the coordinates of two joints, the angle of a Pin [rad] or the way of a Slot [m].
+
+    That of the second changes by ``ratio`` times as much as that of the first: the other way below zero.
+    """
+
+    first: int | None = field(fixed=True, meaning="entity with the first Pin or Slot")
+    second: int | None = field(fixed=True, meaning="entity with the second Pin or Slot")
+    ratio: float = field(default=-1.0, meaning="change of the second coordinate by that of the first")
+    offset: Derived = as_placed("1", "the second coordinate less ratio times the first")
+    collide: bool = collides()
+    breaks: Derived = breaks_at()
+
+    def validate(self) -> None:
+        """Check that there are two joints, and that they are coupled."""
+        for name in ("first", "second"):
+            if getattr(self, name) is None:
+                raise InvalidValue("Gear", name, None, COUPLED)
+        if self.ratio == 0.0:
+            raise InvalidValue("Gear", "ratio", self.ratio, "a finite number other than 0")

@@ -1,0 +1,312 @@
+"""Drawing with the mouse: points are put down by presses and drags, and make a body, a joint or a group."""
+
+import copy
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache, partial
+
+import pygame
+
+from physicslab.components import Spring, Transform
+from physicslab.contacts.outlines import Outlines
+from physicslab.ecs.component import Component
+from physicslab.ecs.fields import InvalidValue
+from physicslab.ecs.quantity_text import InvalidText
+from physicslab.ecs.vector import Vector2
+from physicslab.history import Command, Group, Spawn
+from physicslab.state.joint_rows import KINDS
+from physicslab.view.controls.measure import LENGTH, Measure
+from physicslab.view.controls.picking import body_at
+from physicslab.view.window.edits import Recipe
+from physicslab.view.window.placing import outlines_of, refused_place, snapped_point
+from physicslab.view.window.sketch import Grip
+from physicslab.view.window.spring_tool import local_point
+from physicslab.view.window.window import Window
+from physicslab.world import World
+
+_CLICK = 8.0
+"""How far apart a press and a release are at most that are a click [px]."""
+_MIDDLE = 10.0
+"""How near to the middle of a body a joint is put at the middle [px]."""
+_LEAST = 3.0
+"""The least side of a box that is drawn [px]."""
+
+type Build = Callable[[World, Sequence[Vector2], Recipe], None]
+"""Makes bodies in a world of their own, through points [m]."""
+type Join = Callable[[World, Window, Sequence[Grip]], Component | str]
+"""Returns the joint of points that were put down, or why there is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drawn:
+    """Something that is drawn: how many points it has, and what they make.
+
+    Attributes
+    ----------
+    name, title : str
+        Its icon, and what it is called.
+    usage : str
+        How it is drawn.
+    points : int
+        How many points make it.
+    build, join : callable, optional
+        Makes bodies; or returns the joint of what lies at the points.
+    measure : Measure
+        How its second point follows from numbers.
+    ways : tuple of Vector2
+        From the first point to the second where there was only a click, in turn [m]; none: there must be two.
+    per_size : Vector2
+        That way for each metre of the size that is chosen for the next body.
+    is_centred : bool
+        Whether a click is at the middle between both points, and not at the first.
+    prompts : tuple of str
+        What to do next, by the number of points that were put down; shown beside the cursor.
+    remark : str
+        What to say where gravity does not act between bodies.
+    """
+
+    name: str
+    title: str
+    usage: str
+    points: int = 2
+    build: Build | None = None
+    join: Join | None = None
+    measure: Measure = LENGTH
+    ways: tuple[Vector2, ...] = ()
+    per_size: Vector2 = Vector2()
+    is_centred: bool = False
+    prompts: tuple[str, ...] = ()
+    remark: str = ""
+
+    @property
+    def by_click(self) -> bool:
+        """Whether a click makes it."""
+        return self.points == 1 or bool(self.ways)
+
+
+# ---- points ------------------------------------------------------------------------------------------------
+
+
+def _clicked(drawn: Drawn, window: Window, place: Vector2) -> list[Vector2]:
+    """Return the points of what a click makes at a place [m]: as large as the last one drawn."""
+    if drawn.points == 1:
+        return [place]
+    way = window.sketch.ways.get(drawn.name) or drawn.ways[(window.spawned + 1) % len(drawn.ways)]
+    if window.recipe.size and drawn.per_size:
+        way = drawn.per_size * window.recipe.size
+    return [place - way * 0.5, place + way * 0.5] if drawn.is_centred else [place, place + way]
+
+
+def _at_cursor(world: World, drawn: Drawn, window: Window) -> Vector2:
+    """Return where the next point would be put down now [m]: by the cursor, and by what was typed."""
+    sketch, place = window.sketch, window.target
+    if not sketch.grips or len(sketch.grips) % 2 == 0:
+        return place
+    first = sketch.grips[-1].place(world)
+    way = place - first
+    if pygame.key.get_mods() & pygame.KMOD_SHIFT:
+        way = drawn.measure.rounded(way)
+    if sketch.typed:
+        try:
+            way = drawn.measure.written(sketch.typed, way)
+        except InvalidText:
+            return first + way  # it is not written to its end
+    elif drawn.measure.units == ("m", "m"):
+        least = _LEAST / window.camera.scale
+        way = Vector2(*(math.copysign(max(abs(part), least), part) for part in way))
+    return first + way
+
+
+def _grip(world: World, drawn: Drawn, window: Window, place: Vector2) -> Grip:
+    """Return the point of what lies at a place, near its middle that itself; of bodies to be the place."""
+    if drawn.build is not None:
+        return Grip(None, place)
+    pixel = window.camera.to_screen(place)
+    body = body_at(world, window.camera, pixel)
+    if body is None:
+        return Grip(None, place)
+    middle = world.component(body, Transform).position
+    is_near = (middle - place).magnitude * window.camera.scale <= _MIDDLE
+    return Grip(body, Vector2() if is_near else local_point(world, body, place))
+
+
+def hovered(world: World, drawn: Drawn, window: Window) -> int | None:
+    """Return the body that the next point of a joint would be one of."""
+    return _grip(world, drawn, window, _at_cursor(world, drawn, window)).body
+
+
+def _is_dragged(window: Window) -> bool:
+    """Whether the cursor is far from where the last point was put down, or numbers stand in its place."""
+    (x, y), (at_x, at_y) = window.sketch.begin, window.pointer
+    return bool(window.sketch.typed) or math.hypot(x - at_x, y - at_y) > _CLICK
+
+
+# ---- presses and releases ----------------------------------------------------------------------------------
+
+
+def press(world: World, window: Window, drawn: Drawn, button: int = 0) -> None:
+    """Put down the next point of what is drawn, or the first one."""
+    sketch = window.sketch
+    if sketch.name != drawn.name:
+        sketch.cancel()
+        sketch.name, sketch.spot = drawn.name, window.target
+    sketch.held, place = button, _at_cursor(world, drawn, window)
+    if window.snapping.active and drawn.ways:
+        place = snapped_point(world, window.camera, window.place)
+    _put(world, window, drawn, place)
+
+
+def release(world: World, window: Window, drawn: Drawn) -> None:
+    """Put down a point where a drag ends; a click makes one of the last size, or waits for the next point."""
+    sketch = window.sketch
+    sketch.follow(world)
+    if sketch.name != drawn.name:
+        return
+    sketch.held = 0
+    if _is_dragged(window):
+        _put(world, window, drawn, _at_cursor(world, drawn, window))
+    elif drawn.ways:
+        places = _clicked(drawn, window, sketch.spot)
+        sketch.cancel()
+        _build(world, window, drawn, places)
+
+
+def _put(world: World, window: Window, drawn: Drawn, place: Vector2) -> None:
+    sketch = window.sketch
+    sketch.grips.append(_grip(world, drawn, window, place))
+    sketch.begin, sketch.typed = window.pointer, ""
+    if len(sketch.grips) < drawn.points:
+        return
+    grips = list(sketch.grips)
+    sketch.cancel()
+    if drawn.join is not None:
+        join(world, window, drawn.title, partial(drawn.join, world, window, grips))
+        return
+    places = [grip.anchor for grip in grips]
+    if _build(world, window, drawn, places) and len(places) == 2:
+        sketch.ways[drawn.name] = places[1] - places[0]
+
+
+def join(world: World, window: Window, title: str, make: Callable[[], Component | str]) -> tuple[int, ...]:
+    """Make a joint as one edit and return its entity; or say why there is none."""
+    try:
+        made = make()
+    except InvalidValue as error:
+        made = f"No {title.lower()}: {error.field} must be {error.allowed}"
+    if not isinstance(made, str):
+        return window.edits.do(Spawn([made]))
+    if made:
+        window.notify(made, 5.0, failed=True)
+    return ()
+
+
+# ---- bodies: they are made in a world of their own, and shown as outlines before that ----------------------
+
+
+def click(world: World, window: Window, drawn: Drawn) -> None:
+    """Make something where the cursor is, as by a click."""
+    _build(world, window, drawn, _clicked(drawn, window, window.target))
+
+
+def _build(world: World, window: Window, drawn: Drawn, places: Sequence[Vector2]) -> bool:
+    """Make bodies through points; where they would overlap, say so instead. Return whether they were made."""
+    try:
+        refused = refused_place(world, _outlines(drawn, places, window.recipe))
+        made = [] if refused else _commands(drawn, places, window)
+    except InvalidValue as error:
+        refused = f"{error.field} must be {error.allowed}"
+    if refused:
+        window.notify(f"{drawn.title}: {refused}")
+        return False
+    window.spawned += 1
+    window.edits.do(Group(f"made: {drawn.title.lower()}", made))
+    if drawn.remark and world.physics.gravity_mode != "planet":
+        window.notify(drawn.remark, 5.0)
+    return True
+
+
+def _commands(drawn: Drawn, places: Sequence[Vector2], window: Window) -> list[Command]:
+    """Return the commands that make bodies through points."""
+    scratch, first = _built(drawn, places, window.recipe), window.edits.history.next_entity
+    entities = scratch.entities()
+    number = {entity: first + n for n, entity in enumerate(entities)}
+    commands: list[Command] = []
+    for entity in entities:
+        parts = [copy.copy(part) for part in scratch.components(entity) if isinstance(part, Component)]
+        for part in parts:
+            if isinstance(part, (Spring, *KINDS)):
+                parts[parts.index(part)] = _renumbered(part, number)
+        commands.append(Spawn(parts))
+    return commands
+
+
+def _built(drawn: Drawn, places: Sequence[Vector2], recipe: Recipe) -> World:
+    scratch = World()
+    if drawn.build is not None:
+        drawn.build(scratch, places, recipe)
+    return scratch
+
+
+def _renumbered[C: Component](part: C, number: dict[int, int]) -> C:
+    """Return a spring or a joint between the same bodies under other numbers."""
+    ends = {
+        spec.name: number[getattr(part, spec.name)]
+        for spec in part.FIELDS
+        if spec.kind == "entity" and getattr(part, spec.name) is not None
+    }
+    return type(part)(**{**part.values(), **ends})
+
+
+def _outlines(drawn: Drawn, places: Sequence[Vector2], recipe: Recipe) -> Outlines:
+    origin = places[0]
+    return _outlines_about(drawn, tuple(place - origin for place in places), recipe).moved(origin)
+
+
+@lru_cache(maxsize=32)
+def _outlines_about(drawn: Drawn, places: tuple[Vector2, ...], recipe: Recipe) -> Outlines:
+    """Return the outlines of bodies through points, of which the first is the origin."""
+    return outlines_of(_built(drawn, places, recipe))
+
+
+def about(drawn: Drawn, window: Window) -> Outlines:
+    """Return the outlines of what a click makes, as if the cursor were at the origin."""
+    return _outlines(drawn, _clicked(drawn, window, Vector2()), window.recipe)
+
+
+# ---- what is shown while something is drawn ----------------------------------------------------------------
+
+
+def ghost(world: World, drawn: Drawn, window: Window) -> tuple[Outlines, bool] | None:
+    """Return the outlines of what a click, or letting go, makes now, and whether there is room for it."""
+    sketch = window.sketch
+    if sketch.name == drawn.name and sketch.grips:
+        places = [grip.anchor for grip in sketch.grips]
+        is_drag = _is_dragged(window)
+        places = (
+            [*places, _at_cursor(world, drawn, window)] if is_drag else _clicked(drawn, window, sketch.spot)
+        )
+    else:
+        places = _clicked(drawn, window, window.target)
+    try:
+        outlines = _outlines(drawn, places, window.recipe)
+    except InvalidValue:  # larger than anything may be
+        return None
+    return outlines, not refused_place(world, outlines)
+
+
+def lines(world: World, drawn: Drawn, window: Window) -> list[Vector2]:
+    """Return the points of a joint in the making, the one at the cursor included [m]."""
+    places = [grip.place(world) for grip in window.sketch.grips]
+    return [*places, _grip(world, drawn, window, _at_cursor(world, drawn, window)).place(world)]
+
+
+def reading(world: World, drawn: Drawn, window: Window) -> str:
+    """Return what stands beside the cursor: the size of what is drawn, what is typed, or what to do next."""
+    sketch = window.sketch
+    begun = len(sketch.grips) if sketch.name == drawn.name else 0
+    if begun % 2 and drawn.points > 1 and _is_dragged(window):
+        first, place = sketch.grips[-1].place(world), _at_cursor(world, drawn, window)
+        size = drawn.measure.said(place - first)
+        return f"{sketch.typed}_   {size}" if sketch.typed else size
+    return drawn.prompts[min(begun, len(drawn.prompts) - 1)] if drawn.prompts else ""

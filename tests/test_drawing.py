@@ -1,0 +1,188 @@
+"""Bodies and joints that are drawn: by a drag, by clicks, and by numbers that are typed beside the cursor."""
+
+import math
+
+import pygame
+import pytest
+from desk import Desk, empty_world
+
+from physicslab.components import Mass, Pin, Shape, Spring, Transform, Velocity
+from physicslab.ecs.quantity_text import InvalidText
+from physicslab.ecs.vector import Vector2
+from physicslab.prefabs import box, circle
+from physicslab.view.controls import drawing, measure
+from physicslab.view.controls.tools import DRAWING, TOOLS
+from physicslab.world import World
+
+type Place = tuple[float, float]
+
+
+@pytest.fixture
+def desk() -> Desk:
+    made = Desk(empty_world(gravity=(0, 0)))
+    made.key("space")
+    made.frames()
+    return made
+
+
+def draw(desk: Desk, tool: str, start: Place, end: Place, typed: str = "") -> None:
+    desk.window.tool = tool
+    desk.press(*start)
+    desk.frames()
+    desk.move(*end)
+    for letter in typed:
+        pygame.event.post(
+            pygame.Event(pygame.KEYDOWN, key=pygame.K_UNKNOWN, mod=0, unicode=letter, scancode=0)
+        )
+    desk.frames()
+    desk.release(*end)
+    desk.frames()
+
+
+def only(world: World, kind: type) -> object:
+    (entity,) = world.batch(kind).entities.tolist()
+    return world.component(entity, kind)
+
+
+def words(desk: Desk) -> str:
+    return drawing.reading(desk.world, DRAWING[desk.window.tool].draws, desk.window)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("tool", "end", "place", "angle", "sizes"),
+    [
+        ("circle", (1.0, 0.0), (0.0, 0.0), 0.0, {"radius": 1.0}),
+        ("box", (2.0, -1.0), (1.0, -0.5), 0.0, {"width": 2.0, "height": 1.0}),
+        ("block", (0.0, 2.0), (0.0, 1.0), 0.5 * math.pi, {"width": 2.0, "height": 0.2}),
+        ("beam", (-2.0, -2.0), (-1.0, -1.0), 0.25 * math.pi, {"width": math.sqrt(8.0), "height": 0.2}),
+        ("capsule", (2.0, 0.0), (1.0, 0.0), 0.0, {"length": 1.6, "radius": 0.2}),
+    ],
+)
+def test_a_body_is_as_large_and_lies_as_it_was_drawn(
+    desk: Desk, tool: str, end: Place, place: Place, angle: float, sizes: dict[str, float]
+) -> None:
+    draw(desk, tool, (0.0, 0.0), end)
+    shape, body = only(desk.world, Shape), only(desk.world, Transform)
+    assert {name: getattr(shape, name) for name in sizes} == pytest.approx(sizes, abs=0.01)
+    assert tuple(body.position) == pytest.approx(place, abs=0.01)  # type: ignore[attr-defined]
+    assert math.remainder(body.angle - angle, math.pi) == pytest.approx(0.0, abs=1e-9)  # type: ignore[attr-defined]
+    assert bool(desk.world.batch(Mass).entities.tolist()) == (tool != "block")
+    desk.window.edits.history.undo()
+    assert desk.world.entities() == [], "one undo"
+
+
+def test_a_pendulum_is_drawn_from_its_pin_to_its_bob(desk: Desk) -> None:
+    draw(desk, "pendulum", (0.0, 1.0), (1.0, 0.0))
+    (bob,) = desk.world.batch(Velocity).entities.tolist()
+    assert tuple(desk.world.component(bob, Transform).position) == pytest.approx((1.0, 0.0), abs=1e-9)
+
+
+def test_a_click_makes_one_of_the_last_size_and_a_short_drag_is_a_click(desk: Desk) -> None:
+    draw(desk, "circle", (0.0, 0.0), (0.5, 0.0))
+    draw(desk, "circle", (2.0, 0.0), (2.05, 0.0))
+    desk.window.tool = "box"
+    draw(desk, "circle", (-2.0, 0.0), (-2.0, 0.0))
+    assert desk.world.table(Shape)["radius"][desk.world.batch(Shape).rows] == pytest.approx(0.5)
+
+
+def test_the_size_stands_at_the_cursor_and_numbers_typed_take_its_place(desk: Desk) -> None:
+    desk.window.tool = "beam"
+    desk.press(0.0, 0.0)
+    desk.move(1.0, 1.0)
+    desk.frames()
+    assert words(desk) == "1.41 m, 45.0°"
+    desk.release(1.0, 1.0)
+    desk.frames()
+    desk.window.edits.history.undo()
+    draw(desk, "beam", (0.0, 0.0), (1.0, 1.0), "2 m, 30 deg")
+    shape, body = only(desk.world, Shape), only(desk.world, Transform)
+    assert shape.width == pytest.approx(2.0, rel=1e-12)  # type: ignore[attr-defined]
+    assert body.angle == pytest.approx(math.pi / 6.0, rel=1e-12)  # type: ignore[attr-defined]
+
+
+def test_numbers_of_each_measure_lead_to_a_way_and_back() -> None:
+    way = Vector2(-3.0, -4.0)
+    assert tuple(measure.LENGTH.written("10", way)) == pytest.approx((-6.0, -8.0))
+    assert tuple(measure.LENGTH.written("; 90", way)) == pytest.approx((0.0, 5.0))
+    assert tuple(measure.HANGING.written("200 cm; 0.5 rad", way)) == pytest.approx(
+        (2.0 * math.sin(0.5), -2.0 * math.cos(0.5))
+    )
+    assert tuple(measure.RADIUS.written("1,5", way)) == pytest.approx((-0.9, -1.2))
+    assert tuple(measure.CORNERS.written("2 x 0.5", way)) == pytest.approx((-2.0, -0.5))
+    for refused in ("0", "-1", "two", "1; 2; 3", "1 kg"):
+        with pytest.raises(InvalidText):
+            measure.LENGTH.written(refused, way)
+    assert measure.HANGING.said(Vector2(0.0, -2.0)) == "2.00 m, 0.0°"
+
+
+@pytest.mark.parametrize("how", ["escape", "focus", "button"])
+def test_what_is_being_drawn_is_given_up(desk: Desk, how: str) -> None:
+    desk.press(0.0, 0.0)
+    desk.move(1.0, 0.0)
+    desk.frames()
+    if how == "escape":
+        desk.key("escape")
+    elif how == "focus":
+        pygame.event.post(pygame.Event(pygame.WINDOWFOCUSLOST))
+    else:
+        desk._held.clear()
+        desk.move(1.5, 0.0)
+    desk.frames()
+    desk.release(2.0, 0.0)
+    desk.frames()
+    assert desk.world.entities() == [] and desk.window.tool == "circle"
+
+
+def test_nothing_is_drawn_where_there_is_no_room(desk: Desk) -> None:
+    rock = box(desk.world, (2.0, 0.0), static=True)
+    draw(desk, "circle", (0.0, 0.0), (3.0, 0.0))
+    assert desk.world.entities() == [rock] and "no room" in desk.window.notice
+
+
+def test_the_right_button_draws_a_box_whatever_tool_is_in_hand(desk: Desk) -> None:
+    desk.window.tool = "select"
+    desk.press(0.0, 0.0, "right")
+    desk.move(1.0, 1.0)
+    desk.frames()
+    desk.release(1.0, 1.0, "right")
+    desk.frames()
+    assert only(desk.world, Shape).kind == "box"  # type: ignore[attr-defined]
+
+
+def test_a_spring_is_drawn_by_two_clicks_as_well(desk: Desk) -> None:
+    ball = circle(desk.world, (0.0, 0.0))
+    draw(desk, "spring", (2.0, 0.0), (2.0, 0.0))
+    assert words(desk) == "... to the other end"
+    draw(desk, "spring", (0.02, 0.0), (0.02, 0.0))
+    spring = only(desk.world, Spring)
+    assert spring.a == ball and not spring.anchor_a, "near the middle it is the middle"  # type: ignore[attr-defined]
+    assert not desk.window.sketch.grips
+
+
+def test_a_pin_joins_the_two_bodies_under_it_or_one_with_the_world(desk: Desk) -> None:
+    one, other = box(desk.world, (0.0, 0.0), width=2.0), box(desk.world, (1.5, 0.0), width=2.0)
+    draw(desk, "pin", (0.75, 0.1), (0.75, 0.1))
+    pin = only(desk.world, Pin)
+    assert {pin.a, pin.b} == {one, other}  # type: ignore[attr-defined]
+    assert tuple(pin.anchor_a + pin.anchor_b) == pytest.approx((0.0, 0.2), abs=0.01)  # type: ignore[attr-defined]
+    draw(desk, "pin", (-0.8, 0.0), (-0.8, 0.0))
+    pin = desk.world.component(desk.world.batch(Pin).entities.tolist()[-1], Pin)
+    assert (pin.a, pin.b) == (one, None)
+    draw(desk, "pin", (0.0, 2.0), (0.0, 2.0))
+    assert "holds a body" in desk.window.notice
+
+
+@pytest.mark.parametrize("tool", DRAWING)
+def test_what_is_drawn_has_a_ghost_or_a_line_and_is_named(desk: Desk, tool: str) -> None:
+    circle(desk.world, (0.0, 0.0))
+    desk.window.tool = tool
+    drawn = TOOLS[tool].draws
+    assert drawn is not None and (drawn.build is None) != (drawn.join is None)
+    for place in ((0.0, 0.0), (2.0, 1.0)):
+        desk.move(*place)
+        desk.frames()
+    if drawn.build is not None:
+        shown = drawing.ghost(desk.world, drawn, desk.window)
+        assert shown is not None and shown[1] and (len(shown[0].place) or drawn.name == "binary")
+    else:
+        assert words(desk) == drawn.prompts[0]
