@@ -6,6 +6,7 @@ status or raises :class:`CommandError`. To add one, write its file and name it h
 
 from argparse import ArgumentParser, Namespace
 from importlib import import_module
+from keyword import iskeyword
 from typing import Protocol, cast
 
 FAILED = 1
@@ -38,10 +39,10 @@ class Command(Protocol):
         """Do it, and return the exit status."""
 
 
-COMMANDS = ("run", "replay", "accuracy", "stability", "bench", "scenes", "export", "kernels")
-"""Every command, by the name of its module."""
+COMMANDS = ("run", "replay", "accuracy", "stability", "bench", "scenes", "import", "export", "kernels")
+"""Every command, by the name of its module, which has an underscore behind a keyword of Python."""
 
 
 def command(name: str) -> Command:
     """Return a command by name; only now is it imported, and the physics with it."""
-    return cast(Command, import_module(f"{__name__}.{name}"))
+    return cast(Command, import_module(f"{__name__}.{name}{'_' * iskeyword(name)}"))

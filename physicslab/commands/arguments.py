@@ -2,12 +2,15 @@
 
 import argparse
 import math
+import sys
 from argparse import Namespace
+from collections.abc import Iterable
 from pathlib import Path
 
 from physicslab.commands import CommandError
 from physicslab.commands.assignments import assign
 from physicslab.commands.output import Output
+from physicslab.ecs.text import printable
 from physicslab.files.scene import load_scene
 from physicslab.scenes import SCENES
 from physicslab.world import World
@@ -70,11 +73,20 @@ def _whole(text: str, least: int) -> int:
     return number
 
 
-def opened(arguments: Namespace) -> World:
-    """Return the scene that was named, with the fields that were set."""
-    world = load_scene(arguments.scene)
+def opened(arguments: Namespace, *, again: bool = False) -> World:
+    """Return the scene that was named, with the fields that were set; say once what of it is not taken."""
+    losses: list[str] = []
+    world = load_scene(arguments.scene, losses)
+    if not again:
+        tell_losses(losses)
     assign(world, arguments.set)
     return world
+
+
+def tell_losses(losses: Iterable[str]) -> None:
+    """Name on stderr what of a file has no place in a scene, a line each."""
+    for loss in losses:
+        print(f"not taken: {printable(loss)}", file=sys.stderr)
 
 
 def name_of(world: World, arguments: Namespace) -> str:

@@ -132,7 +132,7 @@ def _trust(arguments: Namespace, label: str, seconds: float) -> dict[str, object
     from physicslab.lab.jobs import result_of
 
     def load() -> World:
-        world = opened(arguments)
+        world = opened(arguments, again=True)
         _configure(world, arguments)
         return world
 

@@ -8,6 +8,7 @@ from physicslab.components.material import Material
 from physicslab.components.meter import CORNERS
 from physicslab.components.shape import Shape
 from physicslab.components.spring import Spring
+from physicslab.components.thrust import Thrust
 from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 from physicslab.ecs.component import Component, InvalidValue, component, field
@@ -18,7 +19,7 @@ GRAVITY = "gravity"
 
 SLIDER_FIELDS: dict[str, tuple[type[Component], Field]] = {
     f"{kind.__name__}.{spec.name}": (kind, spec)
-    for kind in (Mass, Material, Shape, Spring, Drag, Transform, Velocity)
+    for kind in (Mass, Material, Shape, Spring, Drag, Thrust, Transform, Velocity)
     for spec in kind.FIELDS
     if spec.kind == "number" and not spec.fixed
 }

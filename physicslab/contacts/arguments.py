@@ -13,7 +13,7 @@ from physicslab.kernels.arguments import (
     SoftnessTuple,
 )
 from physicslab.kernels.geometry.shapes import ShapesTuple
-from physicslab.kernels.joints.envelope import MEASURED, JointsTuple
+from physicslab.kernels.joints.blocks import MEASURED, JointsTuple
 from physicslab.kernels.solver import soft
 from physicslab.state.state import State
 

@@ -35,14 +35,16 @@ VALUE_LIMIT = 8_000_000
 """Values that it may hold, counted by the brackets and commas before them, those within texts included."""
 
 
-def load_scene(name_or_path: str | bytes | os.PathLike[str]) -> World:
+def load_scene(name_or_path: str | bytes | os.PathLike[str], losses: list[str] | None = None) -> World:
     """Return a new world: a built-in scene, or one from a file, with the systems that it needs.
 
     Parameters
     ----------
     name_or_path : str or path
         A built-in scene's name, or a path, as text or bytes. Where there is a file of that name too,
-        ``./drop`` is the file.
+        ``./drop`` is the file. One that ends in ``.step`` is a world of KDE Step.
+    losses : list of str, optional
+        Gets what of such a world has no place in a scene, a line each.
 
     Returns
     -------
@@ -65,6 +67,12 @@ def load_scene(name_or_path: str | bytes | os.PathLike[str]) -> World:
     path = _path(name_or_path)
     source = printable(path)
     try:
+        if is_step(path):
+            from physicslab.files.kde_step.world import read_step  # for such files alone
+
+            name, left_out = file_stem(Path(path).stem), [] if losses is None else losses
+            with _uncollected():
+                return read_step(read_content(path, source), source, name, left_out)
         text = read_text(path, source)
     except SceneError as error:
         if not isinstance(error.__cause__, FileNotFoundError):
@@ -73,6 +81,11 @@ def load_scene(name_or_path: str | bytes | os.PathLike[str]) -> World:
         raise SceneError(f"{source}: no such file, and no built-in scene{likely}") from error.__cause__
     with _uncollected():
         return read_scene(parse_json(text, source), source)
+
+
+def is_step(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is a world of KDE Step, by its ending."""
+    return os.fspath(path).lower().endswith(".step")
 
 
 def save_scene(world: World, path: str | bytes | os.PathLike[str]) -> None:
@@ -119,6 +132,8 @@ def scene_bytes(world: World, source: str) -> bytes:
     SceneError
         If the world holds what no scene may.
     """
+    if is_step(source):
+        raise SceneError(f"{printable(source)}: is the name of a world of KDE Step; a scene is JSON")
     try:
         document = write_scene(world)
     except InvalidValue as error:  # written to a column
@@ -145,11 +160,17 @@ def _uncollected() -> Iterator[None]:
 def read_text(path: str | os.PathLike[str], source: str) -> str:
     """Read a file of JSON, called ``source`` in messages; one that cannot be read is a SceneError."""
     try:
-        return read_bytes(path, source).decode("utf-8-sig")
+        return read_content(path, source).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise SceneError(
             f"{source}: is not UTF-8: byte {error.start} cannot be read; must be JSON in UTF-8"
         ) from error
+
+
+def read_content(path: str | os.PathLike[str], source: str) -> bytes:
+    """Read a scene file, called ``source`` in messages; one that cannot be read is a SceneError."""
+    try:
+        return read_bytes(path, source)
     except OSError as error:
         raise SceneError(f"{source}: cannot be read: {error.strerror}") from error
     except SceneError:

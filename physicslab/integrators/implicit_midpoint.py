@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from physicslab.integrators.integrator import Integrator, StepTooSmall
 from physicslab.kernels.ode.implicit import implicit_midpoint
 from physicslab.ode.system import OdeSystem
+from physicslab.state.ordering import cuthill_mckee
 from physicslab.state.state import State
 
 
@@ -48,36 +49,13 @@ def _banded(state: State, ode: OdeSystem) -> tuple[NDArray[np.int64], int]:
             if a in neighbours and b in neighbours:
                 neighbours[a].add(b)
                 neighbours[b].add(a)
-    chain = _cuthill_mckee(neighbours)
+    chain = cuthill_mckee(neighbours)
     parts = [[layout.place[row], layout.place[row] + 1, layout.turn[row]] for row in chain]
     order = [int(part) for body in parts for part in body if part >= 0]
     number = {row: n for n, row in enumerate(chain)}
     reach = max((abs(number[a] - number[b]) for a in chain for b in neighbours[a]), default=0)
     width = 3 if len(layout.turning) else 2
     return np.array(order, np.int64), min((reach + 1) * width - 1, max(len(order) - 1, 0))
-
-
-def _cuthill_mckee(neighbours: dict[int, set[int]]) -> list[int]:
-    """Return the nodes in breadth-first order from a node of few neighbours.
-
-    Cuthill & McKee, Proc. 24th National Conference of the ACM, 1969, 157.
-    """
-    chain: list[int] = []
-    seen: set[int] = set()
-    for start in sorted(neighbours, key=lambda node: (len(neighbours[node]), node)):
-        if start in seen:
-            continue
-        seen.add(start)
-        layer = [start]
-        while layer:
-            chain += layer
-            following: list[int] = []
-            for node in layer:
-                fresh = neighbours[node] - seen
-                following += sorted(fresh, key=lambda other: (len(neighbours[other]), other))
-                seen |= fresh
-            layer = following
-    return chain
 
 
 IMPLICIT_MIDPOINT = Integrator(

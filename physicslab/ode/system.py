@@ -13,7 +13,8 @@ from physicslab.kernels.accounts import DAMPING, ENERGY, SPIN
 from physicslab.kernels.forces.bookings import ACCOUNTS, END
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import PLAIN_LIMIT
-from physicslab.kernels.joints.rows import FIRST, RANK, constrain, forces_of, project
+from physicslab.kernels.joints.layout import FIRST, RANK
+from physicslab.kernels.joints.rows import constrain, forces_of, project, set_going
 from physicslab.ode.bookings import BookKeeper, book_in_python
 from physicslab.state.packed import StateLayout
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
@@ -207,6 +208,11 @@ class OdeSystem:
             velocity["angular"][steady] = np.where(free, spin * np.exp(-c * span), spin)
             self._book_steady(state, spin, c * span)
 
+    def set_going(self) -> None:
+        """Change speeds that joints do not allow, and bring motors to theirs, by impulses."""
+        if self._joints is not None:
+            set_going(self.q, self.v, *self.joints)
+
     def hold_together(self) -> None:
         """Put together again what joints hold together, where there are any."""
         if self._joints is not None:
@@ -218,7 +224,7 @@ class OdeSystem:
         """Find the forces of joints in the present state of motion, where nothing touches."""
         if self._joints is not None:
             add_forces(self.q, self.v, np.zeros(len(self.q)), self.calls)
-            state.joints.force[:] = forces_of(*self.joints)
+            state.joints.force[:] = forces_of(*self.joints, len(state.joints))
             state.joints.rank = int(self._joints.indices[RANK])
 
     @property
@@ -300,7 +306,7 @@ class OdeSystem:
         booked = [call for system, force in packed if force for call in book.around(system, force)]
         self._kept: list[Any] = [*booked, *resisting, damping]  # while C may read them
         kernels = [force.kernel for force in (*booked, *damping)]
-        joining = (project, add_forces) if self._joints is not None else ()
+        joining = (project, set_going, add_forces) if self._joints is not None else ()
         state.compile([*kernels, *(kernel for kernel, _, _ in resisting), *joining])
         last = [force.call for force in booked if force is self._joints]  # they follow from all others
         rows = [force.call for force in booked if force is not self._joints]

@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.state.ordering import cuthill_mckee
+
 _LARGEST = 2_000_000
 """The squared widths of the rows of a block, added up, from which on its joints are solved one by one: more
 takes milliseconds in each substep."""
@@ -41,8 +43,8 @@ class Blocks(NamedTuple):
 def order_rows(bodies: Sequence[Set[int]], joints: Sequence[range]) -> Blocks:
     """Return the blocks for rows between moving ``bodies`` (n sets), which are those of ``joints``.
 
-    Joints that share a moving body are one block, in the order of Cuthill and McKee (1969), reversed: rows
-    that share a body stand near each other. A block that would cost too much is one for each joint instead.
+    Joints that share a moving body are one block, in an order in which rows that share a body stand near each
+    other. A block that would cost too much is one for each joint instead.
     """
     order: list[int] = []
     low: list[int] = []
@@ -74,28 +76,18 @@ def _lowest(rows: Sequence[int], bodies: Sequence[Set[int]]) -> list[int]:
 def _groups(bodies: Sequence[Set[int]], joints: Sequence[range]) -> list[list[int]]:
     """Return the joints that hold on to each other, each group in an order in which neighbours are near."""
     held = [set[int]().union(*(bodies[row] for row in rows)) for rows in joints]
-    of: dict[int, list[int]] = defaultdict(list)
+    of: dict[int, set[int]] = defaultdict(set)
     for joint, own in enumerate(held):
-        for body in sorted(own):
-            of[body].append(joint)
-    degree = [sum(len(of[body]) for body in own) for own in held]
-
-    def spread(start: int, seen: set[int]) -> list[int]:
-        found, met = [start], set[int]()
-        seen.add(start)
-        for joint in found:
-            new = {other for body in held[joint] - met for other in of[body]} - seen
-            met |= held[joint]
-            seen |= new
-            found += sorted(new, key=lambda other: (degree[other], other))
-        return found
-
+        for body in own:
+            of[body].add(joint)
+    beside = {joint: set[int]().union(*(of[body] for body in own)) for joint, own in enumerate(held)}
+    groups: list[list[int]] = []
     seen: set[int] = set()
-    groups = []
-    for joint in range(len(joints)):
-        if joint not in seen:
-            far = spread(joint, set())[-1]
-            groups.append(spread(far, seen)[::-1])
+    for joint in cuthill_mckee(beside):
+        if seen.isdisjoint(beside[joint]):
+            groups.append([])
+        groups[-1].append(joint)
+        seen.add(joint)
     return groups
 
 

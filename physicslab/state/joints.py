@@ -65,7 +65,7 @@ class Joints:
         The largest error so far, as far as soft constraints solved it [m or rad].
     measured, matrix : float64 arrays (m, k), (l,)
         Room for what soft constraints measure of a term, and for the matrices of blocks
-        (:mod:`physicslab.kernels.joints.envelope`).
+        (:mod:`physicslab.kernels.joints.blocks`).
     beside_contacts : bool
         Whether contacts are solved at all, and joints with them.
     rank : int
@@ -171,6 +171,19 @@ class Joints:
             return False
         self.rebuild(index)
         return True
+
+    @property
+    def solved(self) -> NDArray[np.bool_]:
+        """Which rows (n,) are equations of smooth motion: what holds, and motors of any strength."""
+        solved: NDArray[np.bool_] = (self.role == Role.HOLD) | (
+            (self.role == Role.MOTOR) & np.isinf(self.strongest)
+        )
+        return solved
+
+    def why_not_smooth(self) -> str | None:
+        """Return which joint has other rows, or ``None``."""
+        left = (joint.kind.__name__ for joint in self.joints if not self.solved[joint.own].all())
+        return next((f"a {kind} has a limit, or a motor that may stall" for kind in left), None)
 
     def why_not(self, roles: Collection[Role], measures: Collection[Measure], terms: int = 2) -> str | None:
         """Return which joint has rows of others than these, or of more terms, or ``None``."""

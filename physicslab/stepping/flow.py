@@ -79,6 +79,7 @@ class Flow:
     def _flow(self, state: State, h: float, steps: int) -> None:
         method, ode = self._method, self._ode
         ode.gather(state)
+        ode.set_going()
         parts = 1 if method.chooses_steps else self._plan.substeps
         span, count = (h * steps, 1) if method.chooses_steps else (h / parts, parts * steps)
         start = time.perf_counter_ns()

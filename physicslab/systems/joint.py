@@ -12,14 +12,11 @@ from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.contacts.arguments import do_stage
 from physicslab.contacts.islands import wake_all
 from physicslab.ecs.component import InvalidValue
-from physicslab.ecs.vector import rotated
-from physicslab.kernels import accounts
-from physicslab.kernels.joints import rows as joint_rows
 from physicslab.kernels.solver import soft
 from physicslab.state.joint_rows import KINDS, ends_of
-from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
-from physicslab.systems.system import ForceSystem, Stage, System, at
+from physicslab.systems.joint_forces import JointForces
+from physicslab.systems.system import Stage, System, at
 
 
 def remove_lost(state: State, kind: type[Any], a: NDArray[np.int64], b: NDArray[np.int64]) -> None:
@@ -95,69 +92,6 @@ def _refuse_gears(state: State, rows: NDArray[np.int64]) -> None:
             raise InvalidValue(f"{label}: Gear", "second", ends[1], f"another joint than {other} couples")
 
 
-class JointForces(ForceSystem):
-    """The forces of all joints in smooth motion: those with which the equations of the joints hold.
-
-    They follow from all other forces, and so come after them.
-    """
-
-    account = accounts.JOINTS
-    turns = True
-
-    @property
-    def name(self) -> str:
-        """That of the system of joints, with which its evaluations are counted."""
-        return JointSystem.__name__
-
-    def packed(self, state: State, layout: StateLayout) -> PackedForce:
-        """Return the rows for compiled integrators, behind which is their room."""
-        joints, bodies, physics = state.joints, state.bodies, state.physics
-        joints.refresh(state.entity_index)
-        moving, turning, n, m = layout.moving, layout.turning, len(joints), layout.moving_count
-        count, whole_count = joint_rows.room_of(n, m)
-        numbers, whole = np.zeros(count), np.zeros(whole_count, np.int64)
-        rows, angle = numbers[: n * joint_rows.GIVEN].reshape(n, -1), state.table(Transform)["angle"]
-        ends = whole[joint_rows.FIRST :][: n * joint_rows.ENDS].reshape(n, -1)
-        at_a = joints.a, joints.anchor_a, joint_rows.ARM_A
-        at_b = joints.b, joints.anchor_b, joint_rows.ARM_B
-        for place, (end, anchor, arm) in ((0, at_a), (2, at_b)):
-            ends[:, place], ends[:, place + 1] = layout.place[end], layout.turn[end]
-            rows[:, arm : arm + 2] = rotated(anchor, np.where(layout.turn[end] < 0, angle[end], 0.0))
-        rows[:, joint_rows.AXIS : joint_rows.AXIS + 2] = joints.axis
-        inverse = np.concatenate((np.repeat(bodies.inverse_mass[moving], 2), bodies.inverse_inertia[turning]))
-        rates = np.repeat((physics.linear_damping, physics.angular_damping), (2 * len(moving), len(turning)))
-        moved = np.concatenate((np.repeat(moving, 2), turning))
-        first = n * joint_rows.GIVEN
-        numbers[first : first + m] = inverse
-        numbers[first + m : first + 2 * m] = rates * (bodies.inverse_mass[moved] > 0.0)
-        whole[joint_rows.ROWS], whole[joint_rows.COORDINATES] = n, m
-        books = ((accounts.JOINTS, joint_rows.BOOKED), (accounts.HAND, joint_rows.DRIVEN))
-        return PackedForce(joint_rows.constrain, numbers, whole, books=books)
-
-    def inputs(self, state: State, layout: StateLayout) -> bytes:
-        """Return the numbers of all joints, and the angles of bodies that no force turns."""
-        joints, steady = state.joints, []
-        for end in (joints.a, joints.b):
-            steady.append(state.table(Transform)["angle"][end[layout.turn[end] < 0]].tobytes())
-        return joints.settings(state.entity_index) + b"".join(steady)
-
-    def settings(self, state: State) -> bytes:
-        """Return the numbers of all joints."""
-        return state.joints.settings(state.entity_index)
-
-    def couples(self, state: State) -> NDArray[np.int64]:
-        """Return the bodies that joints hold together (n, 2)."""
-        return state.joints.edges
-
-    def turned(self, state: State) -> NDArray[np.int64]:
-        """Return the bodies that joints hold."""
-        return state.joints.edges.ravel()
-
-    def sees_velocity(self, state: State) -> bool:
-        """Return that it does: what turns faster about a pin is held with more force."""
-        return True
-
-
 class JointSystem(System):
     """Holds together what joints join: Pin, Slot, Weld, Rod, Rope, Pulley and Gear.
 
@@ -169,7 +103,7 @@ class JointSystem(System):
     kernels = (soft.advance,)
 
     def __init__(self) -> None:
-        self.smooth = JointForces()
+        self.smooth = JointForces(type(self).__name__)
 
     def attach(self, state: State) -> None:
         """Find the bodies at both ends of every joint; a joint whose body was removed goes with it.

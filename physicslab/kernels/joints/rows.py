@@ -1,98 +1,89 @@
-"""Rows of equality constraints between two bodies: what a row measures, and the forces that keep it at zero.
+"""Rows of equations between bodies: the forces with which joints hold, and how errors of theirs are removed.
 
-A row measures g, how far a point of B is from one of A along an axis [m]. J is its gradient by the
-coordinates of both bodies, so that J v is how fast it grows, and its force acts by J^T. The constrained
-motion solves [M J^T; J 0] [a; -lambda] = [f; -Jdot v]: with A = J M^-1 J^T, A lambda = -(J M^-1 f + Jdot v).
+A row's quantity g is the sum of one or two terms (:mod:`physicslab.kernels.joints.terms`) less its offset; J
+is its gradient, and its force acts by J^T. ``HOLD`` keeps g at zero, ``MOTOR`` J v at its target. The motion
+solves [M J^T; J 0] [a; -lambda] = [f; -Jdot v]: with A = J M^-1 J^T, A lambda = -(J M^-1 f + Jdot v);
+:mod:`physicslab.kernels.joints.envelope` solves that.
 
 Rows are packed like forces (:mod:`physicslab.kernels.forces.force_calls`), in an array of numbers and one of
-whole numbers, which kernels get as arrays or by pointers. Dependent rows, as those of two equal pins, get no
-force: the motion is the same. A is factorised within its envelope, so that a chain costs as much as it has
-links.
+whole numbers, which kernels get as arrays or by pointers.
 """
 
-import math
 from typing import Any
 
+import numpy as np
+
 from physicslab.kernels import Numbers, Rows, always_inlined, kernel
-from physicslab.kernels.accounts import ENERGY, PX, PY, SPIN
+from physicslab.kernels.accounts import ENERGY, book
 from physicslab.kernels.forces.force_calls import force_kernel
-from physicslab.kernels.joints.terms import ALONG, TermEnd, measure_term
+from physicslab.kernels.joints import layout as L
+from physicslab.kernels.joints.envelope import factorise, solve, substitute
+from physicslab.kernels.joints.terms import TermEnd, measure_term
 from physicslab.kernels.ode.compensated import add
 
-ROWS, COORDINATES, BOOKED, DRIVEN, RANK, FIRST = range(6)
-"""The whole numbers: how many rows; how many coordinates move; the accounts of joints and of what drives
-bodies, or -1; how many rows are independent, as it was found last. Then ``ENDS`` numbers a row, and where the
-envelope of each begins."""
-ENDS = 4
-"""Where x and the angle of A are, and of B, as the packed coordinates have them; an angle of -1 never
-changes."""
-ARM_A, ARM_B, AXIS, GIVEN = 0, 2, 4, 6
-"""The numbers of a row: the anchors at A and B in the body's own directions, or in the world's where the
-angle never changes [m]; the axis, a unit vector of the world. Behind all rows are the inverse masses
-of the coordinates, then their rates of damping [1/s], ``STATE`` numbers a row, and the matrix."""
-JA, JB, ERROR, RATE, LAMBDA, RIGHT, DIAGONAL, CHANGE, STATE = 0, 3, 6, 7, 8, 9, 10, 11, 12
-"""The state of a row: its gradient by x, y and the angle of A, and of B; the error g [m]; Jdot v [m/s^2]; the
-force [N]; the right side; the diagonal of A; how the force changes."""
-_DEPENDENT = 1e-12
-"""Share of its diagonal below which a pivot of A is rounding: the row depends on those before it."""
 _ROUNDING = 4e-16
 """Share of the largest coordinate, and of the largest speed, below which an error is rounding."""
+_JUMP = 1e-9
+"""Share of the largest speed above which a speed that joints do not allow is no error of a method."""
+_MOST = 24
+"""How often errors are measured while bodies are put together; three times do unless they were far apart."""
+_FAR, _HALVED = 1e-6, 1 / 64
+"""Share of the largest coordinate above which errors may not grow by a correction; it is halved where they
+do, down to this share of it."""
 
 
-def room_of(rows: int, coordinates: int) -> tuple[int, int]:
-    """Return how many numbers and how many whole numbers so many rows and coordinates take."""
-    return (GIVEN + STATE) * rows + 2 * coordinates + rows * rows, FIRST + (ENDS + 1) * rows
-
-
-def forces_of(numbers: Numbers, whole: Rows) -> Numbers:
-    """Return the forces (n,) [N] of the rows, as they were found last."""
-    n, states = int(whole[ROWS]), GIVEN * int(whole[ROWS]) + 2 * int(whole[COORDINATES])
-    return numbers[states : states + STATE * n].reshape(n, STATE)[:, LAMBDA]
-
-
-@always_inlined
-def first_state(whole: Any) -> Any:
-    """Return where the states of the rows begin."""
-    return GIVEN * whole[ROWS] + 2 * whole[COORDINATES]
-
-
-@always_inlined
-def _inverse(numbers: Any, whole: Any, place: Any) -> float:
-    """Return the inverse mass of a coordinate; zero of what is fixed, and of an angle that never changes."""
-    if 0 <= place < whole[COORDINATES]:
-        return numbers[GIVEN * whole[ROWS] + place]  # type: ignore[no-any-return]
-    return 0.0
+def forces_of(numbers: Numbers, whole: Rows, count: int) -> Numbers:
+    """Return the forces (count,) [N or N m] of rows by their numbers, as found last; zero for others."""
+    n, forces = int(whole[L.ROWS]), np.zeros(count)
+    states = L.GIVEN * n + 2 * int(whole[L.COORDINATES])
+    found = numbers[states : states + L.STATE * n].reshape(n, L.STATE)[:, L.LAMBDA]
+    forces[whole[L.FIRST : L.FIRST + L.PLACES * n].reshape(n, L.PLACES)[:, L.NUMBER]] = found
+    return forces
 
 
 @always_inlined
-def _end(q: Any, v: Any, numbers: Any, whole: Any, end: int, arm: int) -> TermEnd:
-    """Return a body at an end of a row, from where its places and its anchor are."""
-    x, turn = whole[end], whole[end + 1]
-    angle, spin = (q[turn], v[turn]) if turn >= 0 else (0.0, 0.0)
-    return TermEnd(q[x], q[x + 1], angle, v[x], v[x + 1], spin, numbers[arm], numbers[arm + 1])
+def _end(q: Any, v: Any, numbers: Any, place: Any, turn: Any, anchor: int, steady: int) -> TermEnd:
+    """Return a body at an end of a term, from where its places and its anchor are."""
+    angle, spin = (q[turn], v[turn]) if turn >= 0 else (numbers[steady], 0.0)
+    return TermEnd(
+        q[place], q[place + 1], angle, v[place], v[place + 1], spin, numbers[anchor], numbers[anchor + 1]
+    )
 
 
 @always_inlined
 def measure_rows(q: Any, v: Any, numbers: Any, whole: Any) -> None:
-    """Find gradient, error and Jdot v of every row in a state."""
-    for i in range(whole[ROWS]):
-        r, w, s = GIVEN * i, FIRST + ENDS * i, first_state(whole) + STATE * i
-        one = measure_term(
-            ALONG, _end(q, v, numbers, whole, w, r + ARM_A), _end(q, v, numbers, whole, w + 2, r + ARM_B),
-            numbers[r + AXIS], numbers[r + AXIS + 1],
-        )  # fmt: skip
-        numbers[s + JA], numbers[s + JA + 1], numbers[s + JA + 2] = one.ax, one.ay, one.turn_a
-        numbers[s + JB], numbers[s + JB + 1], numbers[s + JB + 2] = one.bx, one.by, one.turn_b
-        numbers[s + ERROR], numbers[s + RATE] = one.value, one.rate
+    """Find gradient, error and Jdot v of every row in a state. A motor has no error: it holds no place."""
+    for i in range(whole[L.ROWS]):
+        w, s = L.FIRST + L.PLACES * i, L.first_state(whole) + L.STATE * i
+        error, rate = 0.0, 0.0
+        for term in range(2):
+            if whole[w + L.MEASURE + term] < 0:
+                break
+            r, e, j = L.GIVEN * i + L.TERM * term, w + 4 * term, s + 6 * term
+            one = measure_term(
+                whole[w + L.MEASURE + term],
+                _end(q, v, numbers, whole[e], whole[e + 1], r + L.ANCHOR_A, r + L.ANGLE_A),
+                _end(q, v, numbers, whole[e + 2], whole[e + 3], r + L.ANCHOR_B, r + L.ANGLE_A + 1),
+                numbers[r + L.AXIS], numbers[r + L.AXIS + 1],
+            )  # fmt: skip
+            scale = numbers[r + L.SCALE]
+            numbers[j], numbers[j + 1], numbers[j + 2] = scale * one.ax, scale * one.ay, scale * one.turn_a
+            numbers[j + 3], numbers[j + 4] = scale * one.bx, scale * one.by
+            numbers[j + 5] = scale * one.turn_b
+            error += scale * one.value
+            rate += scale * one.rate
+        numbers[s + L.ERROR] = error - numbers[L.GIVEN * i + L.OFFSET] if whole[w + L.ROLE] == L.HOLD else 0.0
+        numbers[s + L.RATE] = rate
 
 
 @always_inlined
-def _along(values: Any, numbers: Any, whole: Any, i: int) -> float:
-    """Return the product of the gradient of row i with packed values."""
-    w, s = FIRST + ENDS * i, first_state(whole) + STATE * i
-    total = 0.0
-    for end in range(2):
-        x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + JA + (JB - JA) * end
+def along_row(values: Any, numbers: Any, whole: Any, i: int) -> float:
+    """Return the product of the gradient of row i with packed values: of speeds, how fast g grows."""
+    w, s, total = L.FIRST + L.PLACES * i, L.first_state(whole) + L.STATE * i, 0.0
+    for end in range(L.ENDS):
+        x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + 3 * end
+        if x < 0:
+            break
         total += numbers[j] * values[x] + numbers[j + 1] * values[x + 1]
         if turn >= 0:
             total += numbers[j + 2] * values[turn]
@@ -100,151 +91,70 @@ def _along(values: Any, numbers: Any, whole: Any, i: int) -> float:
 
 
 @always_inlined
-def _response(numbers: Any, whole: Any, i: int, j: int) -> float:
-    """Return how a unit force of row j accelerates row i [1/kg]: an element of A."""
-    total, states = 0.0, first_state(whole)
-    for one in range(2):
-        x, turn = whole[FIRST + ENDS * i + 2 * one], whole[FIRST + ENDS * i + 2 * one + 1]
-        mass, inertia = _inverse(numbers, whole, x), _inverse(numbers, whole, turn)
-        if mass == 0.0 and inertia == 0.0:
+def given_by_rows(
+    q: Any, v: Any, numbers: Any, whole: Any, role: int
+) -> tuple[float, float, float, float, float]:
+    """Return the power of the forces of rows of a role, and momentum and angular momentum that they give.
+
+    All of that in a second, momenta to what they move; last, the power with which they act on what they do
+    not move, which is part of the first.
+    """
+    power, px, py, spin, driven, states = 0.0, 0.0, 0.0, 0.0, 0.0, L.first_state(whole)
+    for i in range(whole[L.ROWS]):
+        s, w = states + L.STATE * i, L.FIRST + L.PLACES * i
+        if whole[w + L.ROLE] != role:
             continue
-        p = states + STATE * i + JA + (JB - JA) * one
-        for other in range(2):
-            if whole[FIRST + ENDS * j + 2 * other] == x:
-                k = states + STATE * j + JA + (JB - JA) * other
-                total += mass * (numbers[p] * numbers[k] + numbers[p + 1] * numbers[k + 1])
-                total += inertia * numbers[p + 2] * numbers[k + 2]
-    return total
-
-
-@always_inlined
-def factorise(numbers: Any, whole: Any) -> None:
-    """Write A above the diagonal, and its factor L, A = L L^T, from the diagonal down."""
-    n, states, rank = whole[ROWS], first_state(whole), 0
-    matrix, begin = states + STATE * n, FIRST + ENDS * n
-    for i in range(n):
-        first = i
-        for j in range(i + 1):
-            response = _response(numbers, whole, i, j)
-            numbers[matrix + n * j + i] = response
-            numbers[matrix + n * i + j] = response
-            if response != 0.0 and j < first:
-                first = j
-        whole[begin + i] = first
-        numbers[states + STATE * i + DIAGONAL] = numbers[matrix + n * i + i]
-    for i in range(n):
-        for j in range(whole[begin + i], i + 1):
-            left = numbers[matrix + n * i + j]
-            for k in range(max(whole[begin + i], whole[begin + j]), j):
-                left -= numbers[matrix + n * i + k] * numbers[matrix + n * j + k]
-            if j < i:
-                pivot = numbers[matrix + n * j + j]
-                numbers[matrix + n * i + j] = left / pivot if pivot > 0.0 else 0.0
-            elif left > _DEPENDENT * numbers[states + STATE * i + DIAGONAL]:
-                numbers[matrix + n * i + i] = math.sqrt(left)
-                rank += 1
-            else:
-                numbers[matrix + n * i + i] = 0.0
-    whole[RANK] = rank
-
-
-@always_inlined
-def substitute(numbers: Any, whole: Any) -> None:
-    """Find how the forces change from the right side; none for a dependent row."""
-    n, states = whole[ROWS], first_state(whole)
-    matrix, begin = states + STATE * n, FIRST + ENDS * n
-    for i in range(n):
-        left, pivot = numbers[states + STATE * i + RIGHT], numbers[matrix + n * i + i]
-        for k in range(whole[begin + i], i):
-            left -= numbers[matrix + n * i + k] * numbers[states + STATE * k + CHANGE]
-        numbers[states + STATE * i + CHANGE] = left / pivot if pivot > 0.0 else 0.0
-    for down in range(n):
-        i = n - 1 - down
-        pivot = numbers[matrix + n * i + i]
-        solved = numbers[states + STATE * i + CHANGE] / pivot if pivot > 0.0 else 0.0
-        numbers[states + STATE * i + CHANGE] = solved
-        for k in range(whole[begin + i], i):
-            numbers[states + STATE * k + CHANGE] -= numbers[matrix + n * i + k] * solved
-
-
-@always_inlined
-def solve(numbers: Any, whole: Any) -> None:
-    """Find the forces of all rows from the right side, which is used up; refined once.
-
-    What is light between heavy bodies gets the difference of large forces.
-    """
-    n, states = whole[ROWS], first_state(whole)
-    matrix, begin = states + STATE * n, FIRST + ENDS * n
-    for i in range(n):
-        numbers[states + STATE * i + LAMBDA] = numbers[states + STATE * i + RIGHT]
-    substitute(numbers, whole)
-    for i in range(n):
-        left = numbers[states + STATE * i + LAMBDA]
-        left -= numbers[states + STATE * i + DIAGONAL] * numbers[states + STATE * i + CHANGE]
-        for j in range(whole[begin + i], i):
-            left -= numbers[matrix + n * j + i] * numbers[states + STATE * j + CHANGE]
-        for j in range(i + 1, n):
-            left -= numbers[matrix + n * i + j] * numbers[states + STATE * j + CHANGE]
-        numbers[states + STATE * i + RIGHT] = left
-    for i in range(n):
-        numbers[states + STATE * i + LAMBDA] = numbers[states + STATE * i + CHANGE]
-    substitute(numbers, whole)
-    for i in range(n):
-        numbers[states + STATE * i + LAMBDA] += numbers[states + STATE * i + CHANGE]
-
-
-@always_inlined
-def given_by_rows(q: Any, v: Any, numbers: Any, whole: Any) -> tuple[float, float, float, float]:
-    """Return momentum and angular momentum that the forces of rows give in a second to what they move.
-
-    Last, the power with which they act on what they do not move.
-    """
-    px, py, spin, driven, states = 0.0, 0.0, 0.0, 0.0, first_state(whole)
-    for i in range(whole[ROWS]):
-        s, w = states + STATE * i, FIRST + ENDS * i
-        pull = numbers[s + LAMBDA]
-        for end in range(2):
-            x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + JA + (JB - JA) * end
+        pull = numbers[s + L.LAMBDA]
+        power += pull * along_row(v, numbers, whole, i)
+        for end in range(L.ENDS):
+            x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + 3 * end
+            if x < 0:
+                break
             fx, fy, torque = pull * numbers[j], pull * numbers[j + 1], pull * numbers[j + 2]
-            if _inverse(numbers, whole, x) > 0.0:
+            if L.inverse_of(numbers, whole, x) > 0.0:
                 px += fx
                 py += fy
                 spin += q[x] * fy - q[x + 1] * fx
             else:
                 driven += fx * v[x] + fy * v[x + 1]
-            if _inverse(numbers, whole, turn) > 0.0:
+            if L.inverse_of(numbers, whole, turn) > 0.0:
                 spin += torque
             elif turn >= 0:
                 driven += torque * v[turn]
-    return px, py, spin, driven
+    return power, px, py, spin, driven
 
 
 @always_inlined
 def book_rows(q: Any, v: Any, given: Any, numbers: Any, whole: Any) -> None:
-    """Add what the forces of rows give in a second to the accounts behind the clock."""
-    px, py, spin, driven = given_by_rows(q, v, numbers, whole)
-    account, hand = whole[BOOKED], whole[DRIVEN]
-    if account >= 0:
-        given[account + PX] += px
-        given[account + PY] += py
-        given[account + SPIN] += spin
-    if hand >= 0:
-        given[hand + ENERGY] -= driven
+    """Add what the forces of rows give in a second to the accounts behind the clock.
+
+    What holds does no work but on what is driven; what little it does by rounding is an error.
+    """
+    for role in (L.HOLD, L.MOTOR):
+        account = whole[L.HOLDING] if role == L.HOLD else whole[L.POWERED]
+        if account < 0:
+            continue
+        power, px, py, spin, driven = given_by_rows(q, v, numbers, whole, role)
+        book(given, account, power if role == L.MOTOR else 0.0, px, py, spin)
+        if whole[L.DRIVEN] >= 0:
+            given[whole[L.DRIVEN] + ENERGY] -= driven
 
 
 @always_inlined
 def push_by_rows(target: Any, numbers: Any, whole: Any) -> None:
     """Add to velocities what the impulses of rows cause, or to accelerations what their forces do."""
-    states = first_state(whole)
-    for i in range(whole[ROWS]):
-        s, w = states + STATE * i, FIRST + ENDS * i
-        for end in range(2):
-            x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + JA + (JB - JA) * end
-            pull = numbers[s + LAMBDA]
-            target[x] += _inverse(numbers, whole, x) * numbers[j] * pull
-            target[x + 1] += _inverse(numbers, whole, x) * numbers[j + 1] * pull
+    states = L.first_state(whole)
+    for i in range(whole[L.ROWS]):
+        s, w = states + L.STATE * i, L.FIRST + L.PLACES * i
+        for end in range(L.ENDS):
+            x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + 3 * end
+            if x < 0:
+                break
+            pull = numbers[s + L.LAMBDA]
+            target[x] += L.inverse_of(numbers, whole, x) * numbers[j] * pull
+            target[x + 1] += L.inverse_of(numbers, whole, x) * numbers[j + 1] * pull
             if turn >= 0:
-                target[turn] += _inverse(numbers, whole, turn) * numbers[j + 2] * pull
+                target[turn] += L.inverse_of(numbers, whole, turn) * numbers[j + 2] * pull
 
 
 @force_kernel
@@ -253,29 +163,33 @@ def constrain(q, v, span, force, parameters, indices):  # type: ignore[no-untype
 
     So it is the last of all forces. ``parameters`` and ``indices`` are the rows, as the module has them.
     """
-    n, m = indices[ROWS], indices[COORDINATES]
-    inverse, states = GIVEN * n, first_state(indices)
+    n, m = indices[L.ROWS], indices[L.COORDINATES]
+    inverse, states = L.GIVEN * n, L.first_state(indices)
     damping = inverse + m
     measure_rows(q, v, parameters, indices)
     factorise(parameters, indices)
     for turn in range(2):  # what is light between heavy bodies is left with the difference of large forces
         for i in range(n):
-            s, w, change = states + STATE * i, FIRST + ENDS * i, 0.0
-            for end in range(2):
-                x, angle, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + JA + (JB - JA) * end
+            s, w, change = states + L.STATE * i, L.FIRST + L.PLACES * i, 0.0
+            for end in range(L.ENDS):
+                x, angle, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + 3 * end
+                if x < 0:
+                    break
                 for k in range(3):
                     place = x + k if k < 2 else angle
                     if 0 <= place < m:
                         gained = parameters[inverse + place] * force[place]
                         change += parameters[j + k] * (gained - parameters[damping + place] * v[place])
-            parameters[s + RIGHT] = -(change + parameters[s + RATE])
+            parameters[s + L.RIGHT] = -(change + parameters[s + L.RATE])
         substitute(parameters, indices)
         for i in range(n):
-            s, w = states + STATE * i, FIRST + ENDS * i
-            pull = parameters[s + CHANGE]
-            parameters[s + LAMBDA] = pull + (parameters[s + LAMBDA] if turn > 0 else 0.0)
-            for end in range(2):
-                x, angle, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + JA + (JB - JA) * end
+            s, w = states + L.STATE * i, L.FIRST + L.PLACES * i
+            pull = parameters[s + L.CHANGE]
+            parameters[s + L.LAMBDA] = pull + (parameters[s + L.LAMBDA] if turn > 0 else 0.0)
+            for end in range(L.ENDS):
+                x, angle, j = indices[w + 2 * end], indices[w + 2 * end + 1], s + 3 * end
+                if x < 0:
+                    break
                 force[x] += pull * parameters[j]
                 force[x + 1] += pull * parameters[j + 1]
                 if angle >= 0:
@@ -283,39 +197,110 @@ def constrain(q, v, span, force, parameters, indices):  # type: ignore[no-untype
     book_rows(q, v, force, parameters, indices)
 
 
+@always_inlined
+def _errors(numbers: Numbers, whole: Rows) -> float:
+    """Return the largest error, and leave those to be undone as right sides."""
+    largest = 0.0
+    for i in range(whole[L.ROWS]):
+        s = L.first_state(whole) + L.STATE * i
+        largest = max(largest, abs(numbers[s + L.ERROR]))
+        numbers[s + L.RIGHT] = -numbers[s + L.ERROR]
+    return largest
+
+
+@always_inlined
+def _rates(v: Numbers, numbers: Numbers, whole: Rows) -> float:
+    """Return by how much speeds miss at most what rows demand, and leave that as right sides."""
+    fastest = 0.0
+    for i in range(whole[L.ROWS]):
+        rate = along_row(v, numbers, whole, i) - numbers[L.GIVEN * i + L.TARGET]
+        fastest = max(fastest, abs(rate))
+        numbers[L.first_state(whole) + L.STATE * i + L.RIGHT] = -rate
+    return fastest
+
+
+@always_inlined
+def _solved_changes(numbers: Numbers, whole: Rows) -> None:
+    """Leave in the room how coordinates change by the least that makes up for the right sides."""
+    room, m = L.first_room(whole), whole[L.COORDINATES]
+    factorise(numbers, whole)
+    solve(numbers, whole)
+    for place in range(m):
+        numbers[room + place] = 0.0
+    for i in range(whole[L.ROWS]):
+        s, w = L.first_state(whole) + L.STATE * i, L.FIRST + L.PLACES * i
+        for end in range(L.ENDS):
+            x, angle, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + 3 * end
+            if x < 0:
+                break
+            for k in range(3):
+                place = x + k if k < 2 else angle
+                if 0 <= place < m:
+                    numbers[room + place] += (
+                        L.inverse_of(numbers, whole, place) * numbers[j + k] * numbers[s + L.LAMBDA]
+                    )
+
+
+@always_inlined
+def _size(values: Numbers, count: int) -> float:
+    largest = 0.0
+    for i in range(count):
+        largest = max(largest, abs(values[i]))
+    return largest
+
+
 @kernel
 def project(q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, numbers: Numbers, whole: Rows) -> float:
-    """Move bodies by the least that closes what joints hold together, and remove their speeds apart.
+    """Move bodies by the least that closes what joints hold together, and remove speeds that they forbid.
 
-    ``q_low`` and ``v_low`` (n,) are the remainders of what moves. Returns the largest error left [m]. What
-    this changes of energy and momentum is an error of the method.
+    ``q_low`` and ``v_low`` (n,) are the remainders of what moves. Returns the largest error left [m or rad]:
+    more than rounding where joints contradict each other. What this changes of energy and momentum is an
+    error of the method.
     """
-    n, m, states, largest = whole[ROWS], whole[COORDINATES], first_state(whole), 0.0
-    size, speed = 0.0, 0.0
-    for i in range(m):
-        size, speed = max(size, abs(q[i])), max(speed, abs(v[i]))
-    for turn in range(4):
+    m, room, share, before = whole[L.COORDINATES], L.first_room(whole), 1.0, 0.0
+    largest, size = 0.0, _size(q, m)
+    for turn in range(_MOST):
         measure_rows(q, v, numbers, whole)
-        largest, fastest = 0.0, 0.0
-        for i in range(n):
-            error, rate = numbers[states + STATE * i + ERROR], _along(v, numbers, whole, i)
-            largest, fastest = max(largest, abs(error)), max(fastest, abs(rate))
-            numbers[states + STATE * i + RIGHT] = -error if turn < 3 else -rate
-        limit = size if turn < 3 else speed
-        if (largest if turn < 3 else fastest) <= _ROUNDING * limit:
+        largest = _errors(numbers, whole)
+        if turn > 0 and largest > max(before, _FAR * size):
+            back = 0.5 * share if share > _HALVED else share
+            share -= back
+            for i in range(m):
+                q[i] -= back * numbers[room + i]
             continue
-        factorise(numbers, whole)
-        solve(numbers, whole)
-        for i in range(n):
-            s, w = states + STATE * i, FIRST + ENDS * i
-            for end in range(2):
-                x, angle, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + JA + (JB - JA) * end
-                for k in range(3):
-                    place = x + k if k < 2 else angle
-                    if 0 <= place < m:
-                        change = numbers[GIVEN * n + place] * numbers[j + k] * numbers[s + LAMBDA]
-                        if turn < 3:
-                            q[place], q_low[place] = add(q[place], q_low[place], change)
-                        else:
-                            v[place], v_low[place] = add(v[place], v_low[place], change)
+        if share == 0.0 or largest <= _ROUNDING * size or (turn > 2 and largest > 0.5 * before):
+            break
+        _solved_changes(numbers, whole)
+        for i in range(m):
+            q[i], q_low[i] = add(q[i], q_low[i], numbers[room + i])
+        before, share = largest, 1.0
+    if _rates(v, numbers, whole) > _ROUNDING * _size(v, m):
+        _solved_changes(numbers, whole)
+        for i in range(m):
+            v[i], v_low[i] = add(v[i], v_low[i], numbers[room + i])
     return largest
+
+
+@kernel
+def set_going(q: Numbers, v: Numbers, numbers: Numbers, whole: Rows) -> bool:
+    """Change speeds that joints do not allow, by their impulses; return whether there were any.
+
+    Such as were given, or a motor's other speed. The work of the impulses, by the mean of the speeds before
+    and after, and the momenta that they give are booked behind the clock.
+    """
+    measure_rows(q, v, numbers, whole)
+    if _rates(v, numbers, whole) <= _JUMP * _size(v, whole[L.COORDINATES]):
+        return False
+    _solved_changes(numbers, whole)
+    for turn in range(2):
+        for role in (L.HOLD, L.MOTOR):
+            account = whole[L.HOLDING] if role == L.HOLD else whole[L.POWERED]
+            if account >= 0:
+                power, px, py, spin, driven = given_by_rows(q, v, numbers, whole, role)
+                book(v, account, 0.5 * power, 0.5 * px, 0.5 * py, 0.5 * spin)
+                if whole[L.DRIVEN] >= 0:
+                    v[whole[L.DRIVEN] + ENERGY] -= 0.5 * driven
+        if turn == 0:
+            for i in range(whole[L.COORDINATES]):
+                v[i] += numbers[L.first_room(whole) + i]
+    return True

@@ -2,7 +2,7 @@
 
 Errors of places are corrected like those of a spring of 60 Hz with twice the critical damping, at most as
 fast as substeps can follow (Catto, Soft Constraints, GDC 2011; Solver2D, 2024); impulses of a block of rows
-are solved at once (:mod:`physicslab.kernels.joints.envelope`), and with contacts in turn. A limit that is not
+are solved at once (:mod:`physicslab.kernels.joints.blocks`), and with contacts in turn. A limit that is not
 reached yet may be approached up to it within the substep. Which limits act and which motors are at their
 strongest is found by trying: an impulse beyond its bound is set to it, and the others are solved again.
 """
@@ -13,7 +13,7 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, MOTORS, PX, PY, SPIN
 from physicslab.kernels.arguments import Acting, Inverse, Motion
-from physicslab.kernels.joints.envelope import (
+from physicslab.kernels.joints.blocks import (
     A_TURN,
     A_X,
     A_Y,
@@ -153,7 +153,7 @@ def _bounded(joints: Joints, i: int, impulse: float, h: float) -> float:
     if joints.role[i] == HOLD:
         return impulse
     cap = h * joints.strongest[i]
-    return max(0.0 if joints.role[i] == LIMIT else -cap, min(cap, impulse))
+    return max(0.0 if joints.role[i] == LIMIT else -cap, min(cap, impulse))  # type: ignore[no-any-return]
 
 
 @inlined

@@ -7,7 +7,7 @@ Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653). In that limit no body moves, s
 """
 
 from physicslab.kernels import Numbers, fused
-from physicslab.kernels.joints.rows import ROWS
+from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.rigid.bookings import book_contacts
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, measure_all

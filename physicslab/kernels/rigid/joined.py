@@ -7,24 +7,21 @@ for smooth motion (:mod:`physicslab.kernels.joints.rows`), whose force is part o
 """
 
 from physicslab.kernels import Numbers, Vectors, inlined, kernel
-from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, PX, PY, SPIN
-from physicslab.kernels.joints.rows import (
+from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, MOTORS, PX, PY, SPIN
+from physicslab.kernels.joints.envelope import factorise, solve
+from physicslab.kernels.joints.layout import (
     ENDS,
     FIRST,
-    JA,
-    JB,
+    HOLD,
     LAMBDA,
+    MOTOR,
+    PLACES,
     RIGHT,
     ROWS,
     STATE,
-    book_rows,
-    factorise,
     first_state,
-    given_by_rows,
-    measure_rows,
-    push_by_rows,
-    solve,
 )
+from physicslab.kernels.joints.rows import book_rows, given_by_rows, measure_rows, push_by_rows
 from physicslab.kernels.rigid.features import NORMAL, ONE, TANGENT, Points, Scene, SceneTuple, named_scene
 
 _IMMOVABLE = 1e-12
@@ -46,10 +43,10 @@ def _at_row(scene: Scene, points: Points, measures: Vectors, i: int, r: int) -> 
         body = points[i, ONE + side]
         mass, inertia = scene.inverse_mass[2 * body], scene.inverse_mass[2 * scene.rows + body]
         n, t = NORMAL + 3 * side, TANGENT + 3 * side
-        for end in range(2):
-            if scene.joints[FIRST + ENDS * r + 2 * end] != 2 * body:
+        for end in range(ENDS):
+            if scene.joints[FIRST + PLACES * r + 2 * end] != 2 * body:
                 continue
-            j = states + STATE * r + (JB if end == 1 else JA)
+            j = states + STATE * r + 3 * end
             jx, jy = scene.joint_numbers[j], scene.joint_numbers[j + 1]
             turn = inertia * scene.joint_numbers[j + 2]
             along += mass * (jx * measures[i, n] + jy * measures[i, n + 1]) + turn * measures[i, n + 2]
@@ -123,11 +120,14 @@ def book_impulses(
 ) -> None:  # fmt: skip
     """Book what joints give as they answer ``impulses`` (2 count,) at points, at a moment."""
     answer(scene, points, measures, impulses, count)
-    px, py, spin, driven = given_by_rows(q, v, scene.joint_numbers, scene.joints)
-    account[JOINTS, PX] += px
-    account[JOINTS, PY] += py
-    account[JOINTS, SPIN] += spin
-    account[HAND, ENERGY] -= driven
+    for role in (HOLD, MOTOR):
+        cause = JOINTS if role == HOLD else MOTORS
+        power, px, py, spin, driven = given_by_rows(q, v, scene.joint_numbers, scene.joints, role)
+        account[cause, ENERGY] += power if role == MOTOR else 0.0
+        account[cause, PX] += px
+        account[cause, PY] += py
+        account[cause, SPIN] += spin
+        account[HAND, ENERGY] -= driven
 
 
 @inlined
@@ -136,8 +136,10 @@ def strongest_joint(scene: Scene) -> float:
     strongest, states = 0.0, first_state(scene.joints)
     for r in range(scene.joints[ROWS]):
         force = abs(scene.joint_numbers[states + STATE * r + LAMBDA])
-        for end in range(2):
-            place = scene.joints[FIRST + ENDS * r + 2 * end]
+        for end in range(ENDS):
+            place = scene.joints[FIRST + PLACES * r + 2 * end]
+            if place < 0:
+                break
             strongest = max(strongest, scene.inverse_mass[place] * force)
     return strongest
 

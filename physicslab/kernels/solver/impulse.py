@@ -13,7 +13,7 @@ from physicslab.kernels.constraint.pair import (
     put_velocity,
     velocity_of,
 )
-from physicslab.kernels.joints.envelope import Joints
+from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.joints.soft import (
     JointSoftness,
     begin_joints,

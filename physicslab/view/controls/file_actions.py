@@ -9,7 +9,15 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable
 from physicslab.export.film import ENDINGS
 from physicslab.files.replace import create_file
-from physicslab.files.scene import SceneError, file_stem, load_scene, open_plain, save_new_scene, save_scene
+from physicslab.files.scene import (
+    SceneError,
+    file_stem,
+    is_step,
+    load_scene,
+    open_plain,
+    save_new_scene,
+    save_scene,
+)
 from physicslab.view.window.filming import FROM_NOW
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -19,6 +27,8 @@ from physicslab.world import World
 
 _MARK = b"physicslab-scene/"
 """The beginning of the format of a scene file."""
+_STEP_MARK = b"StepCoreXML"
+"""In the head of a world of KDE Step."""
 _HEAD = 4096
 """Bytes at the beginning of a file in which it says what it is."""
 _RECORDING = b"physicslab-recording/"
@@ -50,7 +60,7 @@ def scene_files(directory: Path) -> list[Path]:
         except (OSError, SceneError):
             return True
 
-    return [path for path in reversed(_by_age(directory)) if offered(path)]
+    return [path for path in reversed(_by_age(directory, "json", "step")) if offered(path)]
 
 
 def newest_scene(directory: Path) -> Path | None:
@@ -63,7 +73,7 @@ def newest_scene(directory: Path) -> Path | None:
     OSError
         If a file cannot be read.
     """
-    files = _by_age(directory)
+    files = _by_age(directory, "json")
     scenes = [path for path in files if _is_marked(path)]
     candidates = scenes or files
     return candidates[-1] if candidates else None
@@ -77,13 +87,14 @@ def is_recording(path: Path) -> bool:
         return False
 
 
-def _by_age(directory: Path) -> list[Path]:
-    return sorted(filter(Path.is_file, directory.glob("*.json")), key=lambda path: path.stat().st_mtime_ns)
+def _by_age(directory: Path, *endings: str) -> list[Path]:
+    files = (path for ending in endings for path in directory.glob(f"*.{ending}") if path.is_file())
+    return sorted(files, key=lambda path: path.stat().st_mtime_ns)
 
 
 def _is_marked(path: Path) -> bool:
     head = _head(path)
-    return _MARK in head and _RECORDING not in head
+    return (_MARK in head and _RECORDING not in head) or (is_step(path) and _STEP_MARK in head)
 
 
 def _head(path: Path) -> bytes:
@@ -176,8 +187,9 @@ def open_named(world: World, window: Window, text: str) -> None:
 
 def open_scene(window: Window, source: str | Path) -> str:
     """Open a built-in scene by name, or a file; where that fails, all stays as it is. Return why it did."""
+    losses: list[str] = []
     try:
-        opened = load_scene(source)
+        opened = load_scene(source, losses)
         opened.synchronise()
     except (SceneError, InvalidValue, OSError) as error:
         reason = f"Not opened: {error}"
@@ -190,7 +202,9 @@ def open_scene(window: Window, source: str | Path) -> str:
     if isinstance(source, Path):
         window.scene_file = source
         window.recent.note(source)
-    window.notify(f"Opened {printable(str(source)) if isinstance(source, Path) else opened.title}")
+    what = printable(str(source)) if isinstance(source, Path) else opened.title
+    more = f"; not taken: {len(losses)} (listed in the panel at the right)" if losses else ""
+    window.notify(f"Opened {what}{more}", 8.0 if losses else 3.0)
     return ""
 
 
