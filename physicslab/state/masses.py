@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Material, Medium, Shape, Spring, Transform, Velocity
 from physicslab.components.shape import kind_of
 from physicslab.ecs.component import InvalidValue
 from physicslab.kernels import direct_entry, motion, ranges
@@ -67,10 +67,16 @@ def _columns(state: State) -> tuple[Any, ...]:
     return (
         velocity.present, mass.present, state.table(Held).present,
         mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
-        shape["kind"], sizes_in(shape), KINDS, EXTENTS, bodies.plain_shapes, velocity["angular"],
+        _solid_kinds(state), sizes_in(shape), KINDS, EXTENTS, bodies.plain_shapes, velocity["angular"],
         bodies.inverse_mass, bodies.inverse_inertia,
         bodies.awake_inverse_mass, bodies.awake_inverse_inertia, state.sleep.asleep,
     )  # fmt: skip
+
+
+def _solid_kinds(state: State) -> NDArray[np.int64]:
+    """Return the kind of shape of each row (rows,); 0 where a medium fills it, so that nothing touches it."""
+    kinds, filled = state.table(Shape)["kind"], state.table(Medium).present
+    return np.where(filled, 0, kinds) if filled.any() else kinds
 
 
 def _checked(state: State) -> tuple[NDArray[Any], ...]:
