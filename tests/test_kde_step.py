@@ -12,6 +12,7 @@ from desk import SETTLED, Desk, empty_world, tap, write
 
 from physicslab import World, cli
 from physicslab.components import (
+    Charge,
     Graph,
     GraphLine,
     Mass,
@@ -224,6 +225,13 @@ def test_attraction_pulls_anchored_masses_too(file: Path) -> None:
     assert (world.physics.gravity_mode, world.physics.G) == ("planet", 2.0)
     assert world.component(world.entity("Particle5"), Mass).mass == 100.0
     assert len(losses) == 1 and losses[0].startswith('WeightForce "WeightForce4"')
+
+
+def test_charges_act_on_each_other(file: Path) -> None:
+    charges = [item(n, "ChargedParticle", position=f"({n},0)", charge=c) for n, c in ((2, 1e-3), (3, -2e-3))]
+    world, losses = opened(file, *charges, item(4, "CoulombForce", coulombConst=9e9))
+    assert world.component(world.entity("ChargedParticle3"), Charge).charge == -2e-3
+    assert measure_energy(world).total == pytest.approx(-9e9 * 2e-6) and losses == []
 
 
 def test_groups_are_flat_here(file: Path) -> None:

@@ -291,3 +291,16 @@ def test_a_scene_without_what_moves_in_it_leaves_it_out() -> None:
     reasons = {left.name: left.reason for left in world.schedule.left_out}
     assert reasons["MediumSystem"] == "nothing that has a Shape moves in the medium"
     assert reasons["ContactSystem"] == "no Shape in the scene"
+
+
+def test_sizes_are_followed_where_there_is_a_medium_and_a_polygon_can_hold_one() -> None:
+    world = World(*standard_systems())
+    triangle = Shape("polygon", vertices=((-3.0, -1.0), (3.0, -1.0), (0.0, 2.0)))
+    world.spawn(Transform(), triangle, Medium(WATER))
+    ball = float_in(world, Shape.circle(0.2), -0.5, 1.0)
+    world.step()
+    world.component(ball, Shape).radius = 0.4
+    world.step()
+    assert world.bodies.shapes.reach[world.entity_index.row_of[ball]] == 0.4
+    assert world.bodies.shapes.vertices.tolist() == [0, 0, 1]
+    assert not len(world.contacts.impacts) and world.component(ball, Velocity).linear.y > 0.0

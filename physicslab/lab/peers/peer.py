@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Drag, Mass, Material, Shape, Spring, Thrust, Transform, Velocity
+from physicslab.components import Charge, Drag, Mass, Material, Shape, Spring, Thrust, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.state.joint_rows import KINDS
 from physicslab.state.masses import Diverged
@@ -134,7 +134,9 @@ class Peer(ABC):
             self.engine: Any = importlib.import_module(self.module)  # here: most users have no peers
         world.synchronise()
         self.world = world
-        if world.physics.gravity_mode == "planet" or any(len(world.batch(force)) for force in (Drag, Thrust)):
+        if world.physics.gravity_mode == "planet" or any(
+            len(world.batch(force)) for force in (Charge, Drag, Thrust)
+        ):
             raise CannotBuild("no such force")
         self.gravity = world.physics.gravity if world.physics.gravity_mode == "linear" else Vector2()
         self.make_space()
