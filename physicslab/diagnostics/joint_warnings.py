@@ -18,9 +18,10 @@ STRETCH_LIMIT = 0.01
 
 def joint_warnings(world: World) -> Iterator[ModelWarning]:
     """Yield the joint that is farthest apart, with the reason; and which are redundant."""
-    states, dependent = joint_states(world), _dependent(world)
+    states = joint_states(world)
     if not states:
         return
+    dependent = _dependent(world)
     worst = max(states, key=lambda joint: joint.stretch / joint.size)
     limit = STRETCH_LIMIT * worst.size
     if worst.stretch > limit:
@@ -36,7 +37,7 @@ def _dependent(world: World) -> int:
     """Return how many rows of joints depend on others, as far as the last stepper found that."""
     joints = world.joints
     if isinstance(world.stepper, Soft):
-        known = len(joints.measured) == len(joints.scale)
+        known = len(joints.measured) == len(joints.scale)  # not before the first step
         return int(np.count_nonzero(joints.measured[: len(joints), GIVES])) if known else 0
     held = int(np.count_nonzero(joints.role == Role.HOLD))
     return max(0, held - joints.rank) if joints.rank >= 0 else 0

@@ -44,11 +44,11 @@ class BreakSystem(System):
         self.broken: tuple[Break, ...] = ()
 
     def keep(self) -> tuple[NDArray[Any], ...]:
-        """Return how many joints were broken."""
+        """Return how many joints were broken, an array (1,)."""
         return (np.array([len(self.broken)]),)
 
     def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
-        """Forget what broke later."""
+        """Forget what broke later than the number ``kept`` says, an array (1,)."""
         self.broken = self.broken[: int(kept[0][0])]
 
     def why_left_out(self, state: State) -> str | None:
