@@ -1,17 +1,32 @@
 """Bodies and joints that are drawn: by a drag, by clicks, and by numbers that are typed beside the cursor."""
 
 import math
+from typing import Any
 
 import pygame
 import pytest
 from desk import Desk, empty_world
 
-from physicslab.components import Mass, Pin, Shape, Spring, Transform, Velocity
+from physicslab.components import (
+    Gear,
+    Mass,
+    Pin,
+    Pulley,
+    Rod,
+    Rope,
+    Shape,
+    Slot,
+    Spring,
+    Transform,
+    Velocity,
+    Weld,
+)
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
 from physicslab.view.controls import drawing, measure
-from physicslab.view.controls.tools import DRAWING, TOOLS
+from physicslab.view.controls.joining import attachments
+from physicslab.view.controls.tools import DIGITS, DRAWING, TOOLS, key_of
 from physicslab.world import World
 
 type Place = tuple[float, float]
@@ -167,9 +182,107 @@ def test_a_pin_joins_the_two_bodies_under_it_or_one_with_the_world(desk: Desk) -
     assert tuple(pin.anchor_a + pin.anchor_b) == pytest.approx((0.0, 0.2), abs=0.01)  # type: ignore[attr-defined]
     draw(desk, "pin", (-0.8, 0.0), (-0.8, 0.0))
     pin = desk.world.component(desk.world.batch(Pin).entities.tolist()[-1], Pin)
-    assert (pin.a, pin.b) == (one, None)
+    assert (pin.a, pin.b) == (None, one)
     draw(desk, "pin", (0.0, 2.0), (0.0, 2.0))
     assert "holds a body" in desk.window.notice
+
+
+def clicks(desk: Desk, tool: str, *places: Place) -> None:
+    for place in places:
+        draw(desk, tool, place, place)
+
+
+def made(desk: Desk, kind: type) -> Any:
+    return desk.world.component(desk.world.batch(kind).entities.tolist()[-1], kind)
+
+
+def test_rods_and_ropes_are_drawn_between_bodies_and_points(desk: Desk) -> None:
+    one, other = circle(desk.world, (0.0, 0.0)), circle(desk.world, (2.0, 0.0))
+    draw(desk, "rod", (0.0, 0.0), (2.0, 0.0))
+    rod = made(desk, Rod)
+    assert (rod.a, rod.b, rod.length) == (one, other, 2.0)
+    draw(desk, "rope", (0.0, 2.0), (0.0, 0.08))
+    rope = made(desk, Rope)
+    assert (rope.a, rope.b) == (one, None) and rope.length == pytest.approx(2.0, abs=0.01)
+    assert tuple(rope.anchor_a) == (0.0, 0.0), "near the middle it is the middle"
+    for tool, ends in (("rod", ((3.0, 2.0), (4.0, 2.0))), ("rope", ((3.0, 2.0), (4.0, 2.0)))):
+        draw(desk, tool, *ends)
+        assert "holds a body" in desk.window.notice
+    assert len(desk.window.edits.history.entries) == 2, "one entry for each"
+
+
+def test_a_slot_goes_the_way_that_was_drawn_in_the_frame_of_what_is_below() -> None:
+    world = empty_world(gravity=(0, 0))
+    table = box(world, (0.0, 0.0), width=3.0, height=1.0, angle=0.5 * math.pi)
+    top = circle(world, (0.0, 0.5), radius=0.2)
+    desk = Desk(world)
+    desk.key("space")
+    draw(desk, "slot", (0.0, 0.5), (0.0, 1.5))
+    slot = made(desk, Slot)
+    assert (slot.a, slot.b) == (table, top)
+    assert tuple(slot.axis) == pytest.approx((1.0, 0.0), abs=1e-9)
+
+
+def test_motors_and_welds_are_put_down_by_a_click(desk: Desk) -> None:
+    wheel = circle(desk.world, (0.0, 0.0), radius=0.5)
+    clicks(desk, "motor", (0.0, 0.0))
+    motor = made(desk, Pin)
+    assert (motor.a, motor.b, motor.motor_speed) == (None, wheel, 3.0)
+    one, other = box(desk.world, (2.0, 0.0), width=1.0), box(desk.world, (3.02, 0.0), width=1.0)
+    clicks(desk, "weld", (2.51, 0.0))
+    weld = made(desk, Weld)
+    assert {weld.a, weld.b} == {one, other}
+    rock = box(desk.world, (-3.0, 0.0), static=True)
+    clicks(desk, "weld", (-3.0, 0.0))
+    assert "neither of its ends" in desk.window.notice and desk.world.has(rock, Transform)
+
+
+def test_a_pulley_is_drawn_by_two_drags_or_four_clicks(desk: Desk) -> None:
+    for n in range(2):
+        one, other = box(desk.world, (0.0, 0.0)), box(desk.world, (2.0, 0.5))
+        if n:
+            clicks(desk, "pulley", (0.0, 0.0), (0.0, 2.0), (2.0, 0.5), (2.0, 2.0))
+        else:
+            draw(desk, "pulley", (0.0, 0.0), (0.0, 2.0))
+            assert words(desk) == "Drag from the other body to its wheel"
+            draw(desk, "pulley", (2.0, 0.5), (2.0, 2.0))
+        pulley = made(desk, Pulley)
+        assert (pulley.a, pulley.b) == (one, other) and pulley.length == pytest.approx(3.5, abs=0.01)
+        assert tuple(pulley.wheel_a + pulley.wheel_b) == pytest.approx((2.0, 4.0), abs=0.01)
+        for entity in desk.world.entities():
+            desk.world.remove(entity)
+
+
+def test_a_gear_couples_two_pinned_wheels_by_their_radii(desk: Desk) -> None:
+    for x, radius in ((0.0, 0.8), (1.2, 0.4)):
+        circle(desk.world, (x, 0.0), radius=radius)
+        clicks(desk, "pin", (x, 0.0))
+    clicks(desk, "gear", (0.3, 0.1), (1.3, 0.1))
+    gear = made(desk, Gear)
+    assert (gear.first, gear.second) == tuple(desk.world.batch(Pin).entities.tolist())
+    assert gear.ratio == pytest.approx(-2.0)
+    circle(desk.world, (-3.0, 0.0))
+    clicks(desk, "gear", (0.3, 0.1), (-3.0, 0.0))
+    assert "pin them first" in desk.window.notice
+
+
+def test_two_that_are_selected_are_joined_in_every_way(desk: Desk) -> None:
+    one, other = circle(desk.world, (0.0, 0.0)), circle(desk.world, (2.0, 0.0))
+    for bodies in ((one,), (one, other)):
+        for label, (tip, act) in attachments(desk.world, bodies).items():
+            before = len(desk.world.entities())
+            act(desk.world, desk.window)
+            count = len(desk.world.entities()) - before
+            assert tip and count == (0 if label == "Couple by a gear" else 1), (label, desk.window.notice)
+            for entity in desk.world.entities()[before:]:
+                desk.world.remove(entity)
+
+
+def test_digits_take_up_the_tools(desk: Desk) -> None:
+    for key, name in DIGITS.items():
+        desk.key(key.removeprefix("shift+"), pygame.KMOD_SHIFT if "shift" in key else 0)
+        desk.frames()
+        assert desk.window.tool == name and key_of(TOOLS[name]) == key.capitalize()
 
 
 @pytest.mark.parametrize("tool", DRAWING)

@@ -10,7 +10,6 @@ from physicslab.prefabs import binary, box, capsule, chain, circle, container, p
 from physicslab.view.controls.drawing import Drawn
 from physicslab.view.controls.measure import CORNERS, HANGING, RADIUS
 from physicslab.view.window.edits import Recipe
-from physicslab.view.window.spring_tool import rod_stiffness
 from physicslab.world import World
 
 _RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
@@ -68,9 +67,7 @@ def _pendulum(world: World, places: Places, recipe: Recipe) -> None:
     way = places[1] - places[0]
     length, angle = way.magnitude, math.remainder(way.angle + 0.5 * math.pi, 2.0 * math.pi)
     radius = min(_THICKNESS, 0.25 * length)
-    pendulum(
-        world, places[0], length=length, angle=angle, radius=radius, stiffness=rod_stiffness(1.0, length)
-    )
+    pendulum(world, places[0], length=length, angle=angle, radius=radius)
 
 
 def _chain(world: World, places: Places, recipe: Recipe) -> None:
@@ -125,6 +122,9 @@ BODIES = (
     PENDULUM,
     Drawn("chain", "Chain", "drag from its upper end to its lower one, or click", build=_chain,
           ways=(Vector2(1.2, -1.2),)),
+)  # fmt: skip
+"""Bodies, in the order of the tools."""
+GROUPS = (
     Drawn("stack", "Stack", "click at its foot", 1, build=_stack),
     Drawn("pyramid", "Pyramid", "click at its foot", 1, build=_pyramid),
     Drawn("heap", "Heap of discs", "click where it is to fall", 1, build=_heap),
@@ -132,4 +132,4 @@ BODIES = (
     Drawn("binary", "Planets", "click at the centre of their orbit", 1, build=_binary,
           remark="These two circle each other in planet mode: O turns it on"),
 )  # fmt: skip
-"""All bodies that are drawn, in the order of the tools."""
+"""Groups of bodies."""
