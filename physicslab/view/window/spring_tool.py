@@ -165,5 +165,5 @@ class Pins:
 
 def _gap(world: World, entity: int, part: Any) -> float:
     """Return the distance of the ends of a spring, a rod or a rope whose second end is fixed [m]."""
-    start: Vector2 = point_of(world, part.a or entity, part.anchor_a)
-    return (start - part.anchor_b).magnitude
+    end: Vector2 = part.anchor_b
+    return (end - point_of(world, part.a or entity, part.anchor_a)).magnitude
