@@ -43,7 +43,7 @@ def is_stroke(places: Places) -> bool:
 
 
 def hull(places: Places) -> list[Vector2]:
-    """Return the corners of the convex hull of points, counter-clockwise (Andrew, Inf. Proc. Lett. 9, 1979)."""
+    """Return the corners of the convex hull of points, counter-clockwise (Andrew, IPL 9, 1979)."""
     ordered = sorted(set(places), key=tuple)
     found: list[Vector2] = []
     for way in (ordered, ordered[::-1]):

@@ -9,6 +9,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import binary, box, capsule, chain, circle, container, pendulum, pile, pyramid, stack
 from physicslab.view.controls.drawing import Drawn
 from physicslab.view.controls.measure import CORNERS, HANGING, RADIUS
+from physicslab.view.controls.polygons import build_polygon, build_ramp
 from physicslab.view.window.edits import Recipe
 from physicslab.world import World
 
@@ -119,6 +120,11 @@ BODIES = (
     Drawn("capsule", "Capsule", "drag from end to end, or click", build=_capsule,
           ways=tuple(Vector2(size[0] + size[1], 0.0) for size in _SIZES), per_size=Vector2(3.0, 0.0),
           is_centred=True),
+    Drawn("polygon", "Polygon", "click its corners, the first one again to close it; or draw around it",
+          0, build=build_polygon, prompts=("Click a corner, or draw around it", "Click the next corner",
+                                           "Click the next corner", "... the first one closes it")),
+    Drawn("ramp", "Ramp", "drag from its foot to its top, or click; it is fixed", build=build_ramp,
+          ways=(Vector2(2.0, 0.8),)),
     PENDULUM,
     Drawn("chain", "Chain", "drag from its upper end to its lower one, or click", build=_chain,
           ways=(Vector2(1.2, -1.2),)),

@@ -170,7 +170,7 @@ REMOVE = Tool(
 _USAGE = "Select: click a body to see its numbers; drag to move or throw it."
 SELECT = Tool("select", "Select", _USAGE, select, end_select)
 PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True, drags=True)
-_IN_SIGHT = ("circle", "box", "block", "pendulum", "spring", "rod", "rope", "pin")
+_IN_SIGHT = ("circle", "box", "polygon", "block", "pendulum", "spring", "rod", "rope", "pin")
 PALETTE = (SELECT, *(DRAWING[name] for name in _IN_SIGHT), *MEASURING_TOOLS, REMOVE, PAN)
 """The tools that are in sight, in their order."""
 MORE_TOOLS = tuple(tool for tool in DRAWING.values() if tool.name not in _IN_SIGHT)
@@ -178,7 +178,7 @@ MORE_TOOLS = tuple(tool for tool in DRAWING.values() if tool.name not in _IN_SIG
 TOOLS = {tool.name: tool for tool in (*PALETTE, *MORE_TOOLS)}
 """Every tool, by the name that ``Window.tool`` holds."""
 _BY_DIGITS = ("circle", "box", "block", "beam", "capsule", "pendulum", "spring", "rod", "rope", "pin")
-_WITH_SHIFT = ("motor", "slot", "weld", "pulley", "gear", "chain")
+_WITH_SHIFT = ("motor", "slot", "weld", "pulley", "gear", "polygon", "ramp", "chain")
 DIGITS = {
     held + str((n + 1) % 10): name
     for held, names in (("", _BY_DIGITS), ("shift+", _WITH_SHIFT))

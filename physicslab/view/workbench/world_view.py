@@ -132,7 +132,7 @@ class WorldView:
             marks.draw_ghost(shown[0], on.theme.accent if shown[1] else on.theme.error, on)
 
     def _draw_sketch(self, world: World, on: Drawing) -> None:
-        """Draw a joint or a polygon in the making, and a line around the body that a joint would hold next."""
+        """Draw a joint or a polygon in the making, and a line around the body that a joint holds next."""
         window, drawn = self._window, TOOLS[self._window.sketch.name or self._window.tool].draws
         window.sketch.follow(world)
         if drawn is None or window.pointer_on_panel or window.filming.running:
