@@ -4,6 +4,7 @@ import itertools
 import math
 from typing import Any
 
+import numpy as np
 import pygame
 import pytest
 from desk import Desk, empty_world
@@ -374,8 +375,6 @@ def test_a_straight_stroke_is_an_edge_and_eight_corners_are_a_polygon(desk: Desk
 def test_a_ramp_has_the_length_and_the_angle_of_its_slope(desk: Desk) -> None:
     draw(desk, "ramp", (0.0, 0.0), (1.0, 0.2), "2 m, 20 deg")
     shape = only(desk.world, Shape)
-    width, height = (
-        max(v[axis] for v in shape.vertices) - min(v[axis] for v in shape.vertices) for axis in (0, 1)
-    )
+    width, height = np.ptp(np.array([tuple(vertex) for vertex in shape.vertices]), axis=0)
     assert (width, height) == pytest.approx((2 * math.cos(math.pi / 9), 2 * math.sin(math.pi / 9)))
     assert not len(desk.world.batch(Velocity))
