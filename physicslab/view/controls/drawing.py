@@ -17,7 +17,7 @@ from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Spawn
 from physicslab.state.joint_rows import KINDS
-from physicslab.view.controls.measure import LENGTH, Measure
+from physicslab.view.controls.measure import HANGING, LENGTH, Measure
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.polygons import MOST, NotConvex, is_stroke
 from physicslab.view.window.edits import Recipe
@@ -92,6 +92,11 @@ class Drawn:
     def is_open(self) -> bool:
         """Whether it has any number of points."""
         return self.points == 0
+
+    @property
+    def hangs(self) -> bool:
+        """Whether it hangs from its first point."""
+        return self.measure is HANGING
 
 
 # ---- points ------------------------------------------------------------------------------------------------
@@ -336,6 +341,8 @@ def ghost(world: World, drawn: Drawn, window: Window) -> tuple[Outlines, bool] |
 def lines(world: World, drawn: Drawn, window: Window) -> list[tuple[Vector2, Vector2]]:
     """Return the lines of a joint or a polygon in the making, to the point at the cursor [m]."""
     places = [grip.place(world) for grip in window.sketch.grips]
+    if drawn.hangs and not _is_dragged(window):
+        return []
     if is_stroke(window.sketch.stroke):
         return list(pairwise(window.sketch.stroke))
     places.append(_grip(world, drawn, window, _at_cursor(world, drawn, window)).place(world))
@@ -346,6 +353,8 @@ def reading(world: World, drawn: Drawn, window: Window) -> str:
     """Return what stands beside the cursor: the size of what is drawn, what is typed, or what to do next."""
     sketch = window.sketch
     begun = len(sketch.grips) if sketch.name == drawn.name else 0
+    if is_stroke(sketch.stroke):
+        return "Let go to close it"
     if (begun % 2 or drawn.is_open) and begun and drawn.points != 1 and _is_dragged(window):
         first, place = sketch.grips[-1].place(world), _at_cursor(world, drawn, window)
         size = drawn.measure.said(place - first)

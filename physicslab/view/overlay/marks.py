@@ -128,13 +128,14 @@ _DASH, _END, _MAX_ENDS = 9.0, 4.0, 9
 
 
 def draw_dashes(lines: Sequence[tuple[Vector2, Vector2]], on: Drawing) -> None:
-    """Draw dashed lines between points of the world [m], with a disc at each end of the first ones."""
+    """Draw dashed lines between points of the world [m], with discs at their ends where they are few."""
     spots = on.camera.project(np.array([tuple(place) for line in lines for place in line]).reshape(-1, 2))
     if not len(spots) or not (np.abs(spots) < _FAR).all():
         return
     for start, end in zip(spots[::2], spots[1::2], strict=True):
         on.canvas.lines(*even_dashes(start, end, _DASH), on.theme.accent, 2.0)
-    spots = spots[: 2 * _MAX_ENDS]
+    if len(lines) > _MAX_ENDS:  # a stroke
+        return
     look = Look.plain(on.theme.accent, on.theme.accent, len(spots))
     on.canvas.discs(spots, np.full(len(spots), _END), np.zeros(len(spots)), look)
 

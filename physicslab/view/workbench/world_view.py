@@ -137,7 +137,7 @@ class WorldView:
         window.sketch.follow(world)
         if drawn is None or window.pointer_on_panel or window.filming.running:
             return
-        if drawn.join is None and not drawn.is_open:
+        if drawn.join is None and not (drawn.is_open or drawn.hangs):
             return
         body = drawing.hovered(world, drawn, window)
         if body is not None:
