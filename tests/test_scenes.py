@@ -7,8 +7,10 @@ import pytest
 
 from physicslab import World, load_scene
 from physicslab.components import Mass, Shape, Transform, Velocity
-from physicslab.diagnostics.energy import Audit, measure_energy, measure_momentum
+from physicslab.diagnostics.energy import Audit, measure_account, measure_energy, measure_momentum
+from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.text import printable
+from physicslab.ecs.vector import Vector2
 from physicslab.scenes import SCENES
 
 
@@ -170,3 +172,26 @@ def test_the_gas_keeps_its_energy() -> None:
     world.run(seconds=1.0)
     assert world.collisions > 1000
     assert measure_energy(world).kinetic == pytest.approx(before, rel=1e-9)
+
+
+def test_two_double_pendulums_part_though_they_begin_alike() -> None:
+    world = load_scene("double_pendulum")
+
+    def apart() -> float:
+        left, right = (world.component(world.entity(f"{side} lower"), Transform) for side in ("left", "right"))
+        return (right.position - left.position - Vector2(4.4, 0.0)).magnitude
+
+    world.run(seconds=1.0)
+    assert apart() < 0.02
+    world.run(seconds=9.0)
+    assert apart() > 0.5
+    assert abs(measure_account(world).energy["numerical"]) < 1e-9
+
+
+def test_the_bridge_carries_what_falls_on_it() -> None:
+    world = load_scene("bridge")
+    world.run(seconds=4.0)
+    heights = [world.component(world.entity(f"{mass} kg"), Transform).position.y for mass in (5, 20, 60)]
+    assert min(heights) > -1.5
+    world.synchronise()
+    assert max(joint.stretch for joint in joint_states(world)) < 0.002

@@ -29,6 +29,8 @@ _NAMES = (
     "billiards",
     "newtons_cradle",
     "pendulum",
+    "double_pendulum",
+    "bridge",
     "spring_chain",
     "resonance",
     "rocket",
