@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 from physicslab.ecs.text import printable, shortened
 
-type Dimension = tuple[int, int, int]
-"""Powers of metre, kilogram and second; an angle has none."""
+type Dimension = tuple[int, ...]
+"""Powers of metre, kilogram, second and coulomb; an angle has none."""
 
 _SHOWN_LIMIT = 40
 _POWER_LIMIT = 1000.0
@@ -29,12 +29,13 @@ class _Quantity:
     """A value, the powers of its unit, and whether a unit is named: what a function returns has none."""
 
     value: float
-    dimension: Dimension = (0, 0, 0)
+    dimension: Dimension = (0, 0, 0, 0)
     has_unit: bool = False
 
 
-_L, _M, _T, _ONE = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
-_V, _N, _J, _W, _PA, _HZ = (1, 0, -1), (1, 1, -2), (2, 1, -2), (2, 1, -3), (-1, 1, -2), (0, 0, -1)
+_L, _M, _T, _Q, _ONE = (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1), (0, 0, 0, 0)
+_V, _N, _J, _W = (1, 0, -1, 0), (1, 1, -2, 0), (2, 1, -2, 0), (2, 1, -3, 0)
+_PA, _HZ, _VOLT, _TESLA = (-1, 1, -2, 0), (0, 0, -1, 0), (2, 1, -2, -1), (0, 1, -1, -1)
 _UNITS: dict[str, _Quantity] = {
     name: _Quantity(value, dimension, has_unit=True)
     for value, dimension, names in (
@@ -50,6 +51,8 @@ _UNITS: dict[str, _Quantity] = {
         (1.0 / 3.6, _V, "kmh kph"), (0.44704, _V, "mph"), (1852.0 / 3600.0, _V, "knot kn"),
         (1.0, _N, "N"), (1e3, _N, "kN"), (1e-3, _N, "mN"),
         (1.0, _J, "J"), (1e3, _J, "kJ"), (1e-3, _J, "mJ"), (3.6e6, _J, "kWh"),
+        (1.0, _Q, "C"), (1e-3, _Q, "mC"), (1e-6, _Q, "uC µC"), (1e-9, _Q, "nC"), (1.0, _VOLT, "V"),
+        (1e3, _VOLT, "kV"), (1.0, _TESLA, "T"), (1e-3, _TESLA, "mT"),
         (1.0, _W, "W"), (1e3, _W, "kW"), (1.0, _PA, "Pa"), (1e3, _PA, "kPa"), (1e5, _PA, "bar"),
     )
     for name in names.split()
@@ -176,8 +179,8 @@ def _combined(kind: ast.operator, left: _Quantity, right: _Quantity, shown: str)
         case ast.Mult() | ast.Div():
             sign = 1 if isinstance(kind, ast.Mult) else -1
             deed = operator.mul if sign == 1 else operator.truediv
-            a, b, c = (p + sign * q for p, q in zip(left.dimension, right.dimension, strict=True))
-            return _Quantity(deed(left.value, right.value), (a, b, c), has_unit)
+            powers = tuple(p + sign * q for p, q in zip(left.dimension, right.dimension, strict=True))
+            return _Quantity(deed(left.value, right.value), powers, has_unit)
         case ast.Add() | ast.Sub():
             if left.dimension != right.dimension:
                 words = f"{_in_words(left.dimension)} and {_in_words(right.dimension)}"
@@ -191,8 +194,7 @@ def _combined(kind: ast.operator, left: _Quantity, right: _Quantity, shown: str)
             raised = left.value**right.value
             if isinstance(raised, complex):
                 raise InvalidText(f"'{shown}' is no real number")
-            a, b, c = map(int, raised_to)
-            return _Quantity(raised, (a, b, c), has_unit)
+            return _Quantity(raised, tuple(map(int, raised_to)), has_unit)
     raise InvalidText(f"'{shown}' is no number")
 
 
@@ -201,7 +203,7 @@ def _in_words(dimension: Dimension) -> str:
         return "no unit"
     parts = [
         name if power == 1 else f"{name}^{power}"
-        for name, power in zip(("m", "kg", "s"), dimension, strict=True)
+        for name, power in zip(("m", "kg", "s", "C"), dimension, strict=True)
         if power
     ]
     return " ".join(parts)

@@ -34,6 +34,9 @@ _NAMES = (
     "spring_chain",
     "resonance",
     "rocket",
+    "rutherford",
+    "crossed_fields",
+    "cyclotron",
     "two_planets",
     "solar_system",
 )

@@ -235,6 +235,9 @@ def _mover(state: State, schedule: Schedule) -> StepPlan:
     choice = default_plan(simulation)
     method = choice.integrator
     if obstacle is not None:
+        if method.substep and any(force.gyration(state) is not None for force in schedule.forces):
+            stages, own = LEAPFROG_WITH_SPLIT_FORCES, method
+            return replace(choice, obstacle=obstacle, stages=stages, split_forces=own, split_steps=1)
         if method.substep:
             return replace(choice, obstacle=obstacle)
         reason = f"{method.name} was asked for, which advances bodies under forces alone, and {obstacle}"
@@ -311,7 +314,8 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     if python and not followed:
         return replace(kicks, reason=f"{obstacle}, and the force of {python[0]} has no compiled kernel")
     attractors = max((force.attractors for force in forces), default=0)
-    if attractors >= _SAMPLED_LIMIT:
+    turned = any(force.gyration(state) is not None for force in forces)
+    if attractors >= _SAMPLED_LIMIT and not turned:
         return kicks
     rate, half = fastest_rate(state, forces), 0.5 * state.simulation.dt / substeps
     needed = _steps(rate, half)
@@ -322,11 +326,15 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     elif why_no_spring_flow(state, forces) is None:
         method, needed = SPRING_SPLITTING, _steps(rate, half, _RESOLVED_BESIDE_CONTACTS)
         how = f"steps of omega h = {rate * half / needed:.2g}, and {DOP853.name} where springs turn fast"
+    elif turned and not _sees_velocity(state, [force for force in forces if force.gyration(state) is None]):
+        method = BLANES_MOAN if attractors < _SAMPLED_LIMIT else LEAPFROG
+        how = f"the magnetic field turns velocities exactly; steps of omega h = {rate * half / needed:.2g}"
     elif attractors > 1 or _sees_velocity(state, forces) or _why_singular(state, forces):
         method, needed, how = DOP853, 1, "the step follows the motion"
     else:
         method, how = BLANES_MOAN, f"steps of omega h = {rate * half / needed:.2g}"
     moved_by = "all bodies" if followed else "bodies with springs or drag"
+    moved_by = "charges" if turned and not python else moved_by
     reason = f"{obstacle}; between contacts {moved_by} move by {method.name}: {how}"
     return replace(
         kicks, reason=reason, stages=LEAPFROG_WITH_SPLIT_FORCES, split_forces=method, split_steps=needed

@@ -4,6 +4,7 @@ import contextlib
 from collections.abc import Callable, Iterator, Sequence
 
 from physicslab.components import (
+    Charge,
     Drag,
     Held,
     Mass,
@@ -174,6 +175,7 @@ _MEANINGS: dict[type[Component], str] = {
     Mass: "forces move it; without mass, a moving body is infinitely heavy",
     Shape: "it can touch others",
     Material: "its restitution and friction",
+    Charge: "it acts on other charges, and electric and magnetic fields on it",
     Drag: "a medium slows it, as air does",
     Spring: "it hangs from a point that can be dragged",
     Thrust: "it is pushed and turned from within, as by a rocket or a motor",
