@@ -178,7 +178,9 @@ def test_two_double_pendulums_part_though_they_begin_alike() -> None:
     world = load_scene("double_pendulum")
 
     def apart() -> float:
-        left, right = (world.component(world.entity(f"{side} lower"), Transform) for side in ("left", "right"))
+        left, right = (
+            world.component(world.entity(f"{side} lower"), Transform) for side in ("left", "right")
+        )
         return (right.position - left.position - Vector2(4.4, 0.0)).magnitude
 
     world.run(seconds=1.0)

@@ -8,7 +8,7 @@ from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
 _LENGTH, _START, _APART = 1.0, math.radians(120.0), 1e-3
-"""Of each bar [m]; its first angle from hanging down, and how much farther the second's lower bar is [rad]."""
+"""The length of a bar [m], the angle at first [rad], and how much farther the second lower bar is."""
 
 
 def _fill(world: World) -> None:
