@@ -197,3 +197,19 @@ def test_the_bridge_carries_what_falls_on_it() -> None:
     assert min(heights) > -1.5
     world.synchronise()
     assert max(joint.stretch for joint in joint_states(world)) < 0.002
+
+
+def test_the_piston_keeps_to_the_kinematics_of_its_crank() -> None:
+    world = load_scene("piston")
+    world.run(seconds=1.3)
+    turned = math.radians(60.0) + 1.3 * math.pi
+    way = 0.5 * math.cos(turned) + math.sqrt(1.4**2 - (0.5 * math.sin(turned)) ** 2)
+    assert x(world, "piston") == pytest.approx(way, abs=1e-10)
+
+
+def test_weights_on_pulleys_fall_as_slowly_as_their_scene_says() -> None:
+    world = load_scene("pulleys")
+    world.run(seconds=1.0)
+    for name, start, acceleration in (("right 1", 1.4, 0.2 / 2.2), ("right 2", 0.8, 0.4 / 6.4)):
+        fallen = start - world.component(world.entity(name), Transform).position.y
+        assert fallen == pytest.approx(0.5 * acceleration * 9.81, abs=1e-11)

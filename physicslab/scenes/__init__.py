@@ -30,6 +30,8 @@ _NAMES = (
     "newtons_cradle",
     "pendulum",
     "double_pendulum",
+    "piston",
+    "pulleys",
     "bridge",
     "spring_chain",
     "resonance",
