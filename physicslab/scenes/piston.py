@@ -8,7 +8,7 @@ from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
 _CRANK, _ROD, _SPEED, _START = 0.5, 1.4, math.pi, math.radians(60.0)
-"""The lengths of crank and connecting rod [m]; the speed of the motor [rad/s], and its angle at first [rad]."""
+"""The lengths of crank and connecting rod [m], the speed of the motor [rad/s], its angle at first [rad]."""
 
 
 def _fill(world: World) -> None:
