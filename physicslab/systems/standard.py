@@ -1,5 +1,6 @@
 """The physics systems, in the order in which they run within a stage. A new system is added here."""
 
+from physicslab.systems.breaking import BreakSystem
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.charged import ElectricFieldSystem, MagneticFieldSystem
 from physicslab.systems.contact import ContactSystem
@@ -34,6 +35,7 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     TrailSystem,
     StrobeSystem,
     GateSystem,
+    BreakSystem,
 )
 
 
