@@ -16,8 +16,8 @@ def _fill(world: World) -> None:
         left, right = x - 0.6, x + 0.6
         a = box(world, (left, 0.5), width=0.4, height=0.4, mass=1.0, name=f"left {n}")
         b = box(world, (right, y), width=0.5, height=0.5, mass=second, name=f"right {n}")
-        wheels = {"wheel_a": (left, _HEIGHT), "wheel_b": (right, _HEIGHT)}
-        world.spawn(Pulley(a, b, (0.0, 0.2), (0.0, 0.25), **wheels, ratio=ratio), name=f"rope {n}")
+        rope = Pulley(a, b, (0.0, 0.2), (0.0, 0.25), (left, _HEIGHT), (right, _HEIGHT), ratio)
+        world.spawn(rope, name=f"rope {n}")
         world.spawn(Meter("velocity y", b))
 
 
