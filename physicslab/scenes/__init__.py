@@ -36,6 +36,7 @@ _NAMES = (
     "spring_chain",
     "resonance",
     "rocket",
+    "floating",
     "rutherford",
     "crossed_fields",
     "cyclotron",

@@ -10,6 +10,7 @@ from physicslab.systems.gate import GateSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.joint import JointSystem
+from physicslab.systems.medium import MediumSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.spring import SpringSystem
@@ -26,6 +27,7 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     CoulombSystem,
     ElectricFieldSystem,
     MagneticFieldSystem,
+    MediumSystem,
     IntegrateSystem,
     JointSystem,
     BroadPhaseSystem,
