@@ -15,9 +15,9 @@ def attraction(
 ) -> NDArray[np.float64]:
     """Return the force [N] on each of n bodies (n, 2) at ``position`` (n, 2) [m]."""
     n, force = len(mass), np.zeros(position.shape)
-    parameters = np.concatenate(((G, softening), mass, (0.0,)))
-    indices = np.concatenate(((n, plummer), 2 * np.arange(n))).astype(np.int64)
-    compile_kernels((packed_forces.planet_gravity, add_forces))
-    call = packed_forces.planet_gravity.address, parameters.ctypes.data, indices.ctypes.data
+    parameters = np.concatenate(((G, softening), mass, mass, np.ones(n), (0.0,)))
+    indices = np.concatenate(((n, plummer, 2 + 3 * n), 2 * np.arange(n))).astype(np.int64)
+    compile_kernels((packed_forces.inverse_square, add_forces))
+    call = packed_forces.inverse_square.address, parameters.ctypes.data, indices.ctypes.data
     add_forces(position.ravel(), np.zeros(2 * n), force.reshape(-1), np.array([call]))
     return force

@@ -71,9 +71,14 @@ def test_what_was_lost_since_the_start_is_a_change_with_its_causes_and_no_error(
     assert abs(measure_account(world).energy["numerical"]) < 1e-9
 
 
+def clicked(desk: Desk, button: str) -> None:
+    desk.press(3, 3, button)
+    desk.release(3, 3, button)
+
+
 EDITS: dict[str, Callable[[Desk], None]] = {
-    "a body is made": lambda desk: desk.press(3, 3),
-    "a box is made": lambda desk: desk.press(3, 3, "right"),
+    "a body is made": lambda desk: clicked(desk, "left"),
+    "a box is made": lambda desk: clicked(desk, "right"),
     "a pendulum is made": lambda desk: desk.key("p"),
     "gravity is turned off": lambda desk: desk.key("g"),
     "planets": lambda desk: desk.key("o"),

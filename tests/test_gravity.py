@@ -11,7 +11,7 @@ from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum, summation
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels.forces.gravity import TREE_THRESHOLD
+from physicslab.kernels.forces.inverse_square import TREE_THRESHOLD
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.world import World
@@ -200,5 +200,5 @@ def test_no_kernel_of_the_other_mode_is_waited_for(mode: str) -> None:
     world = World(GravitySystem(), physics=PhysicsConfig(gravity_mode=mode))
     [system] = (each for each in world.schedule.systems if isinstance(each, GravitySystem))
     names = [kernel.__name__ for kernel in system.kernels_for(world)]
-    assert ("planet_gravity" in names) == (mode == "planet")
+    assert ("inverse_square" in names) == (mode == "planet")
     assert ("uniform_gravity" in names) == (mode == "linear")

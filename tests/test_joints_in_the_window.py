@@ -36,10 +36,11 @@ def test_pins_are_made_from_the_list_drawn_selected_removed_and_undone() -> None
     joined, fixed = joint_states(world)
     assert tuple(joined.place) == pytest.approx((1.0, 0.0))
     assert (joined.is_fixed, fixed.is_fixed) == (False, True)
-    slots = next(lines for lines in reversed(canvas.called("lines")) if len(lines["start"]) == 2)
-    centre = (np.array(slots["start"]) + np.array(slots["end"])) / 2
-    assert centre == pytest.approx(np.array([desk.pixel(1.0, 0.0), desk.pixel(0.5, 0.0)]), abs=1.0)
-    assert len(canvas.called("boxes")[-1]["centre"]) == 1, "a bracket behind the one that is fixed"
+    drawn = canvas.called("strokes")[-1]
+    slots = np.array(drawn["start"])[-2:] + np.array(drawn["end"])[-2:]
+    assert slots / 2 == pytest.approx(np.array([desk.pixel(1.0, 0.0), desk.pixel(0.5, 0.0)]), abs=1.0)
+    plates = (np.array(drawn["colour"]) == window.theme.static).all(axis=1)
+    assert plates.sum() == 1, "a bracket behind the one that is fixed"
 
     window.pointer = desk.pixel(1.0, 0.0)
     assert take_hold(world, window)

@@ -12,6 +12,7 @@ from desk import SETTLED, Desk, empty_world, tap, write
 
 from physicslab import World, cli
 from physicslab.components import (
+    Charge,
     Graph,
     GraphLine,
     Mass,
@@ -19,6 +20,8 @@ from physicslab.components import (
     Meter,
     Note,
     Pin,
+    Rod,
+    Rope,
     Shape,
     Slider,
     Spring,
@@ -121,6 +124,37 @@ def test_a_spring_to_the_world_has_its_body_first(file: Path) -> None:
     assert tuple(made.anchor_a) == (0.0, 1.0) and tuple(made.anchor_b) == (7.0, 8.0)
 
 
+def test_a_pendulum_on_a_stick_has_the_period_that_it_means(file: Path) -> None:
+    hook = item(3, "Particle", position="(0,0)", mass="inf")
+    stick = item(5, "Stick", restLength=2.0, body1=2, body2=3)
+    ball = item(2, "Particle", position="(1.2,-1.6)")
+    world, losses = opened(file, ball, hook, stick, WEIGHT)
+    # Half a period is 2 sqrt(l/g) K(sin(a/2)), K by the arithmetic-geometric mean.
+    mean, other = 1.0, math.cos(0.5 * math.asin(0.6))
+    for _ in range(6):
+        mean, other = 0.5 * (mean + other), math.sqrt(mean * other)
+    world.run(seconds=2.0 * math.sqrt(2.0 / 9.8) * math.pi / (2.0 * mean))
+    place = world.component(world.entity("Particle2"), Transform).position
+    assert (place.x, place.y) == pytest.approx((-1.2, -1.6), abs=1e-9) and losses == []
+
+
+def test_sticks_and_ropes_are_as_long_as_files_of_six_digits_say(file: Path) -> None:
+    ends = {"body1": 2, "body2": 0, "localPosition2": "(1,5)"}
+    items = [
+        item(5, "Stick", restLength=3.00001, **ends),
+        item(6, "Rope", restLength=2.99999, **ends),
+        item(7, "Rope", restLength=4, **ends | {"localPosition2": "(1,6)"}),
+        item(8, "Stick", restLength=0, body1=2, body2=3, localPosition1="(-1,3)"),
+    ]
+    world, losses = opened(file, PARTICLE, DISK, *items)
+    world.synchronise()
+    assert [world.component(world.entity(f"Rope{n}"), Rope).length for n in (6, 7)] == [3.0, 4.0]
+    assert world.component(world.entity("Stick5"), Rod).length == 3.0
+    assert tuple(world.component(world.entity("Stick8"), Pin).anchor_a) == (-1.0, 3.0)
+    world, losses = opened(file, PARTICLE, item(5, "Stick", restLength=2, **ends))
+    assert losses == ['Stick "Stick5" (line 10): it is 3 m long as placed, and 2 m as it should be']
+
+
 def test_pins_and_anchors_hold(file: Path) -> None:
     pin = item(5, "Pin", body=3, localPosition="(0.1,0)", position="(0.1,5)")
     anchor = item(6, "Anchor", body=2, position="(1,2)")
@@ -191,6 +225,13 @@ def test_attraction_pulls_anchored_masses_too(file: Path) -> None:
     assert (world.physics.gravity_mode, world.physics.G) == ("planet", 2.0)
     assert world.component(world.entity("Particle5"), Mass).mass == 100.0
     assert len(losses) == 1 and losses[0].startswith('WeightForce "WeightForce4"')
+
+
+def test_charges_act_on_each_other(file: Path) -> None:
+    charges = [item(n, "ChargedParticle", position=f"({n},0)", charge=c) for n, c in ((2, 1e-3), (3, -2e-3))]
+    world, losses = opened(file, *charges, item(4, "CoulombForce", coulombConst=9e9))
+    assert world.component(world.entity("ChargedParticle3"), Charge).charge == -2e-3
+    assert measure_energy(world).total == pytest.approx(-9e9 * 2e-6) and losses == []
 
 
 def test_groups_are_flat_here(file: Path) -> None:

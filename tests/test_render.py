@@ -9,9 +9,9 @@ import pytest
 from desk import FRAME, Desk, bits, empty_world
 from recording import RecordingCanvas
 
-from physicslab.components import Held, Mass, Spring, Transform, Velocity
+from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.files.scene import load_scene
-from physicslab.prefabs import box, circle, pendulum
+from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
@@ -19,7 +19,6 @@ from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.picture.backdrop import grid_spacing
 from physicslab.view.picture.extent import extent_of
-from physicslab.view.picture.springs import coil
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.world_view import WorldView
 from physicslab.world import World
@@ -117,53 +116,6 @@ def test_lost_bodies_are_left_out() -> None:
     for given in canvas.called("discs") + canvas.called("boxes"):
         assert np.isfinite(given["centre"]).all() and np.isfinite(given["angle"]).all()
     assert len(only(canvas, "discs")["centre"]) == 2
-
-
-def test_a_spring_is_a_coil_with_a_pin() -> None:
-    world = empty_world()
-    pendulum(world, (0, 1), length=2.0, angle=0.0, stiffness=30.0)  # a stiff one is a line
-    canvas = drawn(world)
-    path = [call for call in canvas.called("lines") if call["colour"] == DARK.spring]
-    assert np.allclose(path[0]["start"][0], (640, 460)) and np.allclose(path[0]["end"][-1], (640, 260))
-    assert len(path[0]["start"]) > 10
-    pin = canvas.called("discs")[-1]
-    assert np.allclose(pin["centre"], [[640, 260]]) and tuple(pin["look"].rim[0]) == DARK.pin
-
-
-def test_a_spring_that_hardly_gives_is_a_string() -> None:
-    world = empty_world()
-    pendulum(world, (0, 1), length=2.0, angle=0.0, stiffness=50_000.0)
-    (path,) = [call for call in drawn(world).called("lines") if call["colour"] == DARK.spring]
-    assert len(path["start"]) == 1
-
-
-def test_springs_hold_where_they_are_fastened() -> None:
-    world = empty_world()
-    bar = box(world, (0, 0), width=2, height=0.2, angle=math.pi / 2)
-    other = circle(world, (0, 3))
-    world.spawn(Spring(a=bar, b=other, anchor_a=(1, 0), rest_length=1.0))
-    canvas = drawn(world)
-    (path,) = [call for call in canvas.called("lines") if call["colour"] == DARK.spring]
-    assert np.allclose(path["start"][0], (640, 260)) and np.allclose(path["end"][-1], (640, 60))
-
-
-def test_the_wire_of_a_coil_keeps_its_length() -> None:
-    start = np.zeros((2, 2))
-    end = np.array([[200.0, 0.0], [230.0, 0.0]])
-    path = coil(start, end, np.array([200.0, 200.0]))
-    length = np.hypot(*np.diff(path, axis=1).reshape(-1, 2).T).reshape(2, -1)
-    zigzag = length[:, 2:-2].sum(axis=1)
-    assert zigzag[1] == pytest.approx(zigzag[0], rel=0.01)
-    assert np.abs(path[1, :, 1]).max() < np.abs(path[0, :, 1]).max()
-
-
-def test_many_springs_are_plain_lines() -> None:
-    world = empty_world()
-    for n in range(600):
-        bob = circle(world, (0.01 * n, 0))
-        world.add(bob, Spring(anchor_b=(0.01 * n, 2)))
-    (lines,) = [call for call in drawn(world).called("lines") if call["colour"] == DARK.spring]
-    assert len(lines["start"]) == 600
 
 
 def test_walls_of_the_world_are_drawn() -> None:

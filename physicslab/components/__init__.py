@@ -1,5 +1,6 @@
 """The components of bodies and of what is measured with, one file each. Presence decides what a thing is."""
 
+from physicslab.components.charge import Charge
 from physicslab.components.drag import Drag
 from physicslab.components.gate import Gate
 from physicslab.components.gear import Gear
@@ -28,7 +29,7 @@ from physicslab.components.velocity import Velocity
 from physicslab.components.weld import Weld
 
 __all__ = [
-    "Drag", "Gate", "Gear", "Graph", "GraphLine", "Held", "Mass", "Material", "Meter", "Name", "Note",
-    "Pin", "Protractor", "Pulley", "Rod", "Rope", "Ruler", "Shape", "Slider", "Slot", "Spring", "Strobe",
-    "Thrust", "Trail", "Transform", "Velocity", "Weld",
+    "Charge", "Drag", "Gate", "Gear", "Graph", "GraphLine", "Held", "Mass", "Material", "Meter", "Name",
+    "Note", "Pin", "Protractor", "Pulley", "Rod", "Rope", "Ruler", "Shape", "Slider", "Slot", "Spring",
+    "Strobe", "Thrust", "Trail", "Transform", "Velocity", "Weld",
 ]  # fmt: skip

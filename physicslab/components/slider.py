@@ -2,6 +2,7 @@
 
 from typing import ClassVar
 
+from physicslab.components.charge import Charge
 from physicslab.components.drag import Drag
 from physicslab.components.mass import Mass
 from physicslab.components.material import Material
@@ -19,7 +20,7 @@ GRAVITY = "gravity"
 
 SLIDER_FIELDS: dict[str, tuple[type[Component], Field]] = {
     f"{kind.__name__}.{spec.name}": (kind, spec)
-    for kind in (Mass, Material, Shape, Spring, Drag, Thrust, Transform, Velocity)
+    for kind in (Mass, Material, Shape, Spring, Drag, Thrust, Charge, Transform, Velocity)
     for spec in kind.FIELDS
     if spec.kind == "number" and not spec.fixed
 }

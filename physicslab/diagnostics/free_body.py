@@ -18,7 +18,10 @@ from physicslab.world import World
 type Kind = Literal["field", "normal", "friction"]
 
 _DAMPING = "damping"
-_NAMES = {"GravitySystem": "weight", "SpringSystem": "springs", "DragSystem": "air"}
+_NAMES = {
+    "GravitySystem": "weight", "SpringSystem": "springs", "DragSystem": "air", "CoulombSystem": "charges",
+    "ElectricFieldSystem": "electric field", "MagneticFieldSystem": "magnetic field",
+}  # fmt: skip
 """Names of forces, by their system."""
 _LONGEST = 1.5
 """How long the last step may have been, in steps of the scene: what is longer was not one step."""

@@ -215,7 +215,8 @@ def _order(world: World) -> Iterator[ModelWarning]:
     method = plan.integrator if plan.smooth else plan.stages
     if world.simulation.integrator == "auto" or plan.collisions == "exact" or not method.positions_only:
         return
-    seeing = next((force for force in world.schedule.smooth_forces if force.sees_velocity(world)), None)
+    forces = [force for force in world.schedule.smooth_forces if force.gyration(world) is None]
+    seeing = next((force for force in forces if force.sees_velocity(world)), None)
     if seeing is not None:
         name = seeing.name.removesuffix("System")
         what = f"{name}: {method.name} has order 1 where a force depends on velocities"

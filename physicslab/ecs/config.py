@@ -62,6 +62,10 @@ class PhysicsConfig:
         Constant of the planet mode [N m^2/kg^2].
     softening, softening_law : float, str
         Length [m] below which the inverse square law is softened, and how: ``"clamp"`` or ``"plummer"``.
+    coulomb_constant : float
+        Of the force of charges on each other [N m^2/C^2].
+    electric_field, magnetic_field : Vector2, float
+        The same everywhere [N/C], [T]; the magnetic one points out of the plane.
     linear_damping, angular_damping : float
         Rates [1/s] at which velocities decay.
     bounds : tuple of four floats, optional
@@ -77,6 +81,9 @@ class PhysicsConfig:
     G: float = _setting(1.0, "number", "constant of the planet mode", unit="N m^2/kg^2")
     softening: float = _setting(0.0, "number", "where the inverse square is softened", unit="m", minimum=0.0)
     softening_law: str = _setting("clamp", "choice", "how it is softened", choices=SOFTENING_LAWS)
+    coulomb_constant: float = _setting(0.0, "number", "constant of Coulomb's law", unit="N m^2/C^2")
+    electric_field: Vector2 = _setting(Vector2(), "vector", "force on a unit charge", unit="N/C")
+    magnetic_field: float = _setting(0.0, "number", "magnetic field, out of the plane", unit="T")
     linear_damping: float = _setting(0.0, "number", "rate at which velocities decay", unit="1/s", minimum=0.0)
     angular_damping: float = _setting(0.0, "number", "rate at which spins decay", unit="1/s", minimum=0.0)
     bounds: tuple[float, float, float, float] | None = None

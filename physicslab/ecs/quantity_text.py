@@ -5,13 +5,14 @@ import math
 import operator
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from physicslab.ecs.text import printable, shortened
+from physicslab.ecs.vector import Vector2
 
-type Dimension = tuple[int, int, int]
-"""Powers of metre, kilogram and second; an angle has none."""
+type Dimension = tuple[int, ...]
+"""Powers of metre, kilogram, second and coulomb; an angle has none."""
 
 _SHOWN_LIMIT = 40
 _POWER_LIMIT = 1000.0
@@ -29,12 +30,13 @@ class _Quantity:
     """A value, the powers of its unit, and whether a unit is named: what a function returns has none."""
 
     value: float
-    dimension: Dimension = (0, 0, 0)
+    dimension: Dimension = (0, 0, 0, 0)
     has_unit: bool = False
 
 
-_L, _M, _T, _ONE = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
-_V, _N, _J, _W, _PA, _HZ = (1, 0, -1), (1, 1, -2), (2, 1, -2), (2, 1, -3), (-1, 1, -2), (0, 0, -1)
+_L, _M, _T, _Q, _ONE = (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1), (0, 0, 0, 0)
+_V, _N, _J, _W = (1, 0, -1, 0), (1, 1, -2, 0), (2, 1, -2, 0), (2, 1, -3, 0)
+_PA, _HZ, _VOLT, _TESLA = (-1, 1, -2, 0), (0, 0, -1, 0), (2, 1, -2, -1), (0, 1, -1, -1)
 _UNITS: dict[str, _Quantity] = {
     name: _Quantity(value, dimension, has_unit=True)
     for value, dimension, names in (
@@ -50,6 +52,8 @@ _UNITS: dict[str, _Quantity] = {
         (1.0 / 3.6, _V, "kmh kph"), (0.44704, _V, "mph"), (1852.0 / 3600.0, _V, "knot kn"),
         (1.0, _N, "N"), (1e3, _N, "kN"), (1e-3, _N, "mN"),
         (1.0, _J, "J"), (1e3, _J, "kJ"), (1e-3, _J, "mJ"), (3.6e6, _J, "kWh"),
+        (1.0, _Q, "C"), (1e-3, _Q, "mC"), (1e-6, _Q, "uC µC"), (1e-9, _Q, "nC"), (1.0, _VOLT, "V"),
+        (1e3, _VOLT, "kV"), (1.0, _TESLA, "T"), (1e-3, _TESLA, "mT"),
         (1.0, _W, "W"), (1e3, _W, "kW"), (1.0, _PA, "Pa"), (1e3, _PA, "kPa"), (1e5, _PA, "bar"),
     )
     for name in names.split()
@@ -72,6 +76,9 @@ _UNCLEAR = (
 )  # fmt: skip
 """Texts that can be read as different numbers."""
 _SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
+
+_PAIR = re.compile(r"\s*\[(?P<x>[^],]+),(?P<y>[^],]+)\](?P<unit>[^][]*)")
+_POINTS = re.compile(r"\s*\[(?P<points>\s*(?:\[[^][]*\]\s*,?\s*)*)\](?P<unit>[^][]*)")
 
 
 def evaluate(text: str, unit: str = "1") -> float:
@@ -126,6 +133,43 @@ def evaluate(text: str, unit: str = "1") -> float:
     return value
 
 
+def evaluate_pair(text: str, unit: str = "1") -> tuple[float, float]:
+    """Return two numbers in an SI unit; a unit behind the brackets is that of both.
+
+    >>> evaluate_pair("[1 + 1, 3] cm", "m"), evaluate_pair("[20 mm, 0.5]", "m")
+    ((0.02, 0.03), (0.02, 0.5))
+    """
+    pair = _PAIR.fullmatch(text)
+    if pair is None:
+        raise InvalidText(f"'{shortened(printable(text.strip()), _SHOWN_LIMIT)}' is no pair")
+    own = pair["unit"].strip()
+    x, y = (evaluate(f"({part.strip()}) {own}" if own else part, unit) for part in (pair["x"], pair["y"]))
+    return x, y
+
+
+def evaluate_points(text: str, unit: str = "1") -> list[tuple[float, float]]:
+    """Return a list of pairs of numbers in an SI unit; a unit behind the brackets is that of all.
+
+    >>> evaluate_points("[[0, 0], [3, 0], [0, 1/2]] cm", "m")
+    [(0.0, 0.0), (0.03, 0.0), (0.0, 0.005)]
+    """
+    points = _POINTS.fullmatch(text)
+    if points is None:
+        shown = shortened(printable(text.strip()), _SHOWN_LIMIT)
+        raise InvalidText(f"'{shown}' is no list of points [[x, y], ...]")
+    own = points["unit"]
+    return [evaluate_pair(f"[{one}]{own}", unit) for one in re.findall(r"\[([^][]*)\]", points["points"])]
+
+
+def points_text(points: Iterable[Vector2]) -> str:
+    """Return points as :func:`evaluate_points` takes them, to all figures.
+
+    >>> points_text([Vector2(0.5, -1.0), Vector2(0.1, 2.0)])
+    '[[0.5, -1], [0.1, 2]]'
+    """
+    return repr([[int(x) if x == round(x) and abs(x) < 1e15 else x for x in point] for point in points])
+
+
 def _evaluated(text: str, shown: str) -> _Quantity:
     prepared = re.sub(r"(?<=\d),(?=\d)", ".", text.strip())
     prepared = re.sub(r"[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda found: f"^{found.group().translate(_SUPERSCRIPTS)}", prepared)
@@ -176,8 +220,8 @@ def _combined(kind: ast.operator, left: _Quantity, right: _Quantity, shown: str)
         case ast.Mult() | ast.Div():
             sign = 1 if isinstance(kind, ast.Mult) else -1
             deed = operator.mul if sign == 1 else operator.truediv
-            a, b, c = (p + sign * q for p, q in zip(left.dimension, right.dimension, strict=True))
-            return _Quantity(deed(left.value, right.value), (a, b, c), has_unit)
+            powers = tuple(p + sign * q for p, q in zip(left.dimension, right.dimension, strict=True))
+            return _Quantity(deed(left.value, right.value), powers, has_unit)
         case ast.Add() | ast.Sub():
             if left.dimension != right.dimension:
                 words = f"{_in_words(left.dimension)} and {_in_words(right.dimension)}"
@@ -191,8 +235,7 @@ def _combined(kind: ast.operator, left: _Quantity, right: _Quantity, shown: str)
             raised = left.value**right.value
             if isinstance(raised, complex):
                 raise InvalidText(f"'{shown}' is no real number")
-            a, b, c = map(int, raised_to)
-            return _Quantity(raised, (a, b, c), has_unit)
+            return _Quantity(raised, tuple(map(int, raised_to)), has_unit)
     raise InvalidText(f"'{shown}' is no number")
 
 
@@ -201,7 +244,7 @@ def _in_words(dimension: Dimension) -> str:
         return "no unit"
     parts = [
         name if power == 1 else f"{name}^{power}"
-        for name, power in zip(("m", "kg", "s"), dimension, strict=True)
+        for name, power in zip(("m", "kg", "s", "C"), dimension, strict=True)
         if power
     ]
     return " ".join(parts)

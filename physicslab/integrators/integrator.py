@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.ode.splitting import split
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
@@ -41,7 +42,7 @@ class Splitting:
         q_low, v_low = ode.remainders(state)
         return split(
             ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.calls, *self.shares, ode.places,
-            h, steps,
+            ode.gyration, ode.slots.get(FIELDS, -1), h, steps,
         )  # fmt: skip
 
 

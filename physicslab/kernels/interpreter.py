@@ -3,7 +3,7 @@
 Every kernel has a twin: the same code, in which every kernel and inner function that it calls is a twin too,
 literals are np.float64, and what Python has not is stood in for (:mod:`physicslab.kernels.stand_ins`). Each
 operation is rounded as in compiled code, so both give the same bits, but for what ``@inlined_loosely`` sums
-in any order: gravity of more bodies than :data:`physicslab.kernels.forces.gravity.PLAIN_LIMIT`.
+in any order: gravity of more bodies than :data:`physicslab.kernels.forces.inverse_square.PLAIN_LIMIT`.
 
 With the environment variable ``PHYSICSLAB_INTERPRET=1`` nothing is compiled, and breakpoints in kernels hold;
 :func:`interpreted` does the same within a ``with`` block.

@@ -130,3 +130,37 @@ def driven(
     free = complex(x, (own.real * x - v) / own.imag) * cmath.exp(own * t)
     swing = steady * cmath.exp(1j * rate * t)
     return free.real + swing.real, (own * free).real - rate * swing.imag
+
+
+def crossed(
+    pull: complex, rate: float, start: complex, velocity: complex, t: float
+) -> tuple[complex, complex]:
+    """Return place [m] and velocity [m/s], as complex numbers, of z'' = pull - i rate z' after a time [s].
+
+    Parameters
+    ----------
+    pull : complex
+        The acceleration by a uniform field [m/s^2].
+    rate : float
+        The rate q B / m at which a magnetic field turns velocities clockwise [rad/s].
+    start, velocity : complex
+        At t = 0 [m], [m/s].
+    """
+    drift = pull / (1j * rate)
+    circling = (velocity - drift) * cmath.exp(-1j * rate * t)
+    return start + drift * t + (velocity - drift - circling) / (1j * rate), drift + circling
+
+
+def repelled(strength: float, axis: float, excess: float, t: float) -> tuple[complex, complex]:
+    """Return r [m] and r' [m/s], as complex numbers, of r'' = strength r / |r|^3, nearest at t = 0.
+
+    It goes along the branch of a hyperbola that is turned away from the origin, with a half axis ``axis`` [m]
+    and the eccentricity ``excess``; r = a (1 + e cosh F), where t = sqrt(a^3 / strength) (F + e sinh F).
+    """
+    mean, found = t * math.sqrt(strength / axis**3), math.asinh(t * math.sqrt(strength / axis**3) / excess)
+    for _ in range(50):
+        found -= (found + excess * math.sinh(found) - mean) / (1.0 + excess * math.cosh(found))
+    narrow, goes = math.sqrt(excess * excess - 1.0), math.sqrt(strength / axis)
+    goes /= 1.0 + excess * math.cosh(found)
+    place = complex(excess + math.cosh(found), narrow * math.sinh(found))
+    return axis * place, goes * complex(math.sinh(found), narrow * math.cosh(found))

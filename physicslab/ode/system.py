@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
-from physicslab.kernels.accounts import DAMPING, ENERGY, SPIN
+from physicslab.kernels.accounts import DAMPING, ENERGY, FIELDS, SPIN
 from physicslab.kernels.forces.bookings import ACCOUNTS, END
 from physicslab.kernels.forces.force_calls import add_forces
-from physicslab.kernels.forces.gravity import PLAIN_LIMIT
+from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT
 from physicslab.kernels.joints.layout import FIRST, RANK
 from physicslab.kernels.joints.rows import constrain, forces_of, project, set_going
 from physicslab.ode.bookings import BookKeeper, book_in_python
-from physicslab.state.packed import StateLayout
+from physicslab.state.packed import StateLayout, share_steepness
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem, Stage
@@ -49,6 +49,9 @@ class OdeSystem:
         Rates of damping [1/s]; empty where nothing is damped.
     calls, resistances : int64 arrays (n, 3)
         What kernels call for the forces, and for their resistance to motion.
+    gyration : float64 array (bodies,)
+        Where a splitting method advances it and fields turn velocities, the rate of each body [rad/s],
+        clockwise; else empty.
     damped_calls : int64 array (n, 3)
         ``calls``, and what books the damping, for methods that do not book it themselves.
     slots : dict of int to int
@@ -249,10 +252,10 @@ class OdeSystem:
 
     def _note_rates(self, state: State) -> None:
         """Note the fastest rates that forces met, wherever within the steps that was."""
-        for system, force in self._measured:
-            rate = math.sqrt(force.parameters[force.steepest])
-            force.parameters[force.steepest] = 0.0
+        for system in self._measured:
+            rate = math.sqrt(self.steepness[0])
             state.fastest_rates[system.name] = max(rate, state.fastest_rates.get(system.name, 0.0))
+        self.steepness[0] = 0.0
 
     def undo(self, state: State) -> bool:
         """Write back the state from which a method that failed began; return whether Python had changed it.
@@ -282,11 +285,16 @@ class OdeSystem:
         velocity["angular"][layout.turning] = v[n:d]
 
     def _calls(self, state: State) -> None:
-        packed = [
+        turned = [rates for force in self.forces if (rates := force.gyration(state)) is not None]
+        drifts = self._kicked and bool(turned)  # a splitting turns velocities exactly, within its drifts
+        self.gyration = np.sum(turned, axis=0)[self.layout.moving] if drifts else np.zeros(0)
+        packed = share_steepness(
             (system, system.packed(state, system.seen(self.layout)) if type(system).packs() else None)
             for system in self.forces
-        ]
-        book = BookKeeper(state, self.layout, packed, self.damping, self._also, kicked=self._kicked)
+            if not (drifts and system.gyration(state) is not None)
+        )
+        also = (*self._also, FIELDS) if drifts else self._also
+        book = BookKeeper(state, self.layout, packed, self.damping, also, kicked=self._kicked)
         self.slots, self.places, self._causes = book.slots, book.places, np.array([*book.slots], np.int64)
         self._behind = self._clock, np.zeros(book.count)
         self._still = np.zeros(2 * len(self.layout.fixed) + 1 + book.count)
@@ -299,9 +307,9 @@ class OdeSystem:
             if force.resistance is not None
         ]
         self._joints = next((force for force in forces if force.kernel is constrain), None)
-        self._measured = [(system, force) for system, force in packed if force and force.steepest is not None]
-        noted = [force.parameters[force.steepest :][:1] for _, force in self._measured]
-        self.steepness = noted[0] if noted else np.zeros(1)
+        measured = [(system, force) for system, force in packed if force and force.steepest is not None]
+        self._measured = [system for system, _ in measured]
+        self.steepness = measured[-1][1].parameters[-1:] if measured else np.zeros(1)
         damping = book.damping(self.damping, self.inverse_mass)
         booked = [call for system, force in packed if force for call in book.around(system, force)]
         self._kept: list[Any] = [*booked, *resisting, damping]  # while C may read them

@@ -32,6 +32,9 @@ _NAMES = (
     "spring_chain",
     "resonance",
     "rocket",
+    "rutherford",
+    "crossed_fields",
+    "cyclotron",
     "two_planets",
     "solar_system",
 )

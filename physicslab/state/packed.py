@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,8 @@ class PackedForce:
         The response of the force to a velocity other than the present one, where it resists motion (see
         :mod:`physicslab.kernels.forces.resistance`).
     steepest : int, optional
-        Where in ``parameters`` the kernel leaves the square of the fastest rate that it met [1/s^2].
+        Where in ``indices`` the kernel looks for the place, the last of its ``parameters``, at which it
+        leaves the square of the fastest rate that it met [1/s^2].
     books : tuple of (int, int), optional
         The accounts to which the kernel itself adds what it gives, each with where in ``indices`` the kernel
         looks for its place (-1: it books nothing). ``None`` where it does not: what it gives is then measured
@@ -57,6 +58,22 @@ class PackedForce:
     def call(self) -> tuple[int, int, int]:
         """The addresses of the kernel and of its numbers: a row of :data:`Calls`."""
         return self.kernel.address, self.parameters.ctypes.data, self.indices.ctypes.data
+
+
+def share_steepness[S](packed: Iterable[tuple[S, PackedForce | None]]) -> list[tuple[S, PackedForce | None]]:
+    """Return forces of which all that note their fastest rate do so at one place, the last of a parameter."""
+    found = list(packed)
+    noting = [i for i, (_, force) in enumerate(found) if force is not None and force.steepest is not None]
+    if noting:
+        parts = [force.parameters for _, force in (found[i] for i in noting) if force is not None]
+        joint, start = np.concatenate(parts), 0
+        for i, part in zip(noting, parts, strict=True):
+            system, force = found[i]
+            assert force is not None and force.steepest is not None
+            force.indices[force.steepest] = len(joint) - 1 - start
+            found[i] = system, replace(force, parameters=joint[start:])
+            start += len(part)
+    return found
 
 
 class StateLayout:

@@ -1,10 +1,11 @@
-"""Which worlds can have rigid contacts."""
+"""Which worlds can have rigid contacts, and limits and motors with a largest force beside them or alone."""
 
 from physicslab.components import Mass, Shape, Transform, Velocity
-from physicslab.state.joint_rows import Measure, Role
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
 from physicslab.stepping.forces import fastest_rate
+from physicslab.stepping.rigid_rows import why_not_points
+from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
 
@@ -34,7 +35,10 @@ def choose_contacts(state: State, schedule: Schedule, kept: str | None = None) -
     if obstacle is None and kept != "rigid":
         before = "soft contacts were chosen before the scene was saved"
         obstacle = before if kept == "step" else _why_too_fast(state, schedule)
-    return ("rigid", "few bodies touch") if obstacle is None else ("soft", obstacle)
+    if obstacle is not None:
+        return "soft", obstacle
+    joint = state.joints.why_not_smooth()
+    return "rigid", "few bodies touch" if joint is None else f"{joint}: its events are located in time"
 
 
 def _why_not_worthwhile(state: State) -> str | None:
@@ -49,6 +53,8 @@ def _why_not_worthwhile(state: State) -> str | None:
     # A body that is held counts: the model must not change when it is let go.
     if len(state.batch(Shape, Transform, Velocity, Mass)) > _MAX_BODIES:
         return f"more than {_MAX_BODIES} bodies can touch"
+    if state.joints.why_not_smooth() and len(state.batch(Transform, Velocity, Mass)) > _MAX_BODIES:
+        return f"more than {_MAX_BODIES} bodies move"
     return None
 
 
@@ -64,7 +70,7 @@ def why_not_rigid(state: State, schedule: Schedule) -> str | None:
     """Return why contacts cannot be rigid, or ``None``."""
     if state.simulation.integrator not in ("auto", "dop853"):
         return f"{state.simulation.integrator} was asked for, and rigid contacts go by dop853"
-    for needed in CONTACT_STEP:
+    for needed in CONTACT_STEP if schedule.runs(Stage.CONTACT) else (IntegrateSystem,):
         if schedule.find(needed) is None:
             return f"{needed.__name__} is not among the systems"
     for system in schedule.running:
@@ -76,4 +82,4 @@ def why_not_rigid(state: State, schedule: Schedule) -> str | None:
         return "something moves that is nowhere"
     if count_pairs(state) > _MAX_PAIRS:
         return f"more than {_MAX_PAIRS} pairs may meet"
-    return state.joints.why_not({Role.HOLD}, {Measure.ALONG}, terms=1)
+    return why_not_points(state)

@@ -111,7 +111,7 @@ class StepPlan:
     @property
     def kept(self) -> tuple[str, str, int]:
         """What a file keeps: how collisions are found, what follows the forces, and in how many steps."""
-        collisions = "rigid" if self.contacts == "rigid" and self.collisions == "step" else self.collisions
+        collisions = "rigid" if self.contacts == "rigid" and self.collisions != "exact" else self.collisions
         if self.split_forces is not None:
             return collisions, self.split_forces.name, self.split_steps
         return collisions, self.integrator.name, self.substeps
@@ -140,7 +140,8 @@ def choose_plan(state: State, schedule: Schedule, kept: str | None = None) -> St
     ``kept`` is how collisions were found when ``auto`` chose for an earlier state of motion, if it did.
     """
     if not schedule.runs(Stage.CONTACT):
-        return _mover(state, schedule)
+        joint = state.joints.why_not_smooth()
+        return _mover(state, schedule) if joint is None else _bounded(state, schedule, kept)
     contacts, reason = choose_contacts(state, schedule, kept)
     plan = _plan_of_collisions(state, schedule, "step" if kept == "rigid" else kept)
     if contacts == "rigid" and (state.simulation.contacts == "rigid" or plan.collisions == "step"):
@@ -152,6 +153,15 @@ def choose_plan(state: State, schedule: Schedule, kept: str | None = None) -> St
             collisions="step", collision_reason=f"{plan.collision_reason}; {own}" if bounced else own,
         )  # fmt: skip
     return replace(plan, contacts=contacts, contact_reason=reason)
+
+
+def _bounded(state: State, schedule: Schedule, kept: str | None) -> StepPlan:
+    """Return the method where nothing can touch, and joints have limits or motors that may stall."""
+    contacts, reason = choose_contacts(state, schedule, kept)
+    plan = replace(_mover(state, schedule), contacts=contacts, contact_reason=reason)
+    if contacts == "soft":
+        return plan
+    return replace(plan, integrator=DOP853, reason="joints have limits: the step follows events")
 
 
 def _plan_of_collisions(state: State, schedule: Schedule, kept: str | None) -> StepPlan:
@@ -225,6 +235,9 @@ def _mover(state: State, schedule: Schedule) -> StepPlan:
     choice = default_plan(simulation)
     method = choice.integrator
     if obstacle is not None:
+        if method.substep and any(force.gyration(state) is not None for force in schedule.forces):
+            stages, own = LEAPFROG_WITH_SPLIT_FORCES, method
+            return replace(choice, obstacle=obstacle, stages=stages, split_forces=own, split_steps=1)
         if method.substep:
             return replace(choice, obstacle=obstacle)
         reason = f"{method.name} was asked for, which advances bodies under forces alone, and {obstacle}"
@@ -301,7 +314,8 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     if python and not followed:
         return replace(kicks, reason=f"{obstacle}, and the force of {python[0]} has no compiled kernel")
     attractors = max((force.attractors for force in forces), default=0)
-    if attractors >= _SAMPLED_LIMIT:
+    turned = any(force.gyration(state) is not None for force in forces)
+    if attractors >= _SAMPLED_LIMIT and not turned:
         return kicks
     rate, half = fastest_rate(state, forces), 0.5 * state.simulation.dt / substeps
     needed = _steps(rate, half)
@@ -312,11 +326,15 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     elif why_no_spring_flow(state, forces) is None:
         method, needed = SPRING_SPLITTING, _steps(rate, half, _RESOLVED_BESIDE_CONTACTS)
         how = f"steps of omega h = {rate * half / needed:.2g}, and {DOP853.name} where springs turn fast"
+    elif turned and not _sees_velocity(state, [force for force in forces if force.gyration(state) is None]):
+        method = BLANES_MOAN if attractors < _SAMPLED_LIMIT else LEAPFROG
+        how = f"the magnetic field turns velocities exactly; steps of omega h = {rate * half / needed:.2g}"
     elif attractors > 1 or _sees_velocity(state, forces) or _why_singular(state, forces):
         method, needed, how = DOP853, 1, "the step follows the motion"
     else:
         method, how = BLANES_MOAN, f"steps of omega h = {rate * half / needed:.2g}"
     moved_by = "all bodies" if followed else "bodies with springs or drag"
+    moved_by = "charges" if turned and not python else moved_by
     reason = f"{obstacle}; between contacts {moved_by} move by {method.name}: {how}"
     return replace(
         kicks, reason=reason, stages=LEAPFROG_WITH_SPLIT_FORCES, split_forces=method, split_steps=needed

@@ -1,4 +1,4 @@
-"""Few bodies that touch: rigid contacts, their laws solved to rounding, events located in time."""
+"""Few bodies that touch or have limits: laws of contacts solved to rounding, events located in time."""
 
 import time
 from typing import Any
@@ -8,10 +8,12 @@ from numpy.typing import NDArray
 
 from physicslab.components import Material, Velocity
 from physicslab.contacts.arguments import shapes_of
-from physicslab.kernels.accounts import CONTACT, FRICTION, HAND
+from physicslab.kernels.accounts import CONTACT, FRICTION, HAND, JOINTS, MOTORS
 from physicslab.kernels.broad import near_pairs
+from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.kernels.joints.rows import forces_of
 from physicslab.kernels.rigid import joined, motion, time_stepping
+from physicslab.kernels.rigid.features import PAIR
 from physicslab.kernels.wide import slots
 from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import check_finite
@@ -20,6 +22,7 @@ from physicslab.stepping.ballistic import pairs_that_may_meet
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.rigid_motion import MadeStep, RigidMotion
 from physicslab.stepping.rigid_records import RigidRecords
+from physicslab.stepping.rigid_rows import RigidRows
 from physicslab.stepping.stepper import Advance, divisions
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
@@ -58,24 +61,28 @@ class Rigid:
     leaves_forces: bool = False
     kernels: tuple[Any, ...] = (
         motion.touch, motion.collide, motion.advance_piece, motion.begin_motion,
-        time_stepping.drift, time_stepping.kick, time_stepping.separate, time_stepping.take_work,
+        time_stepping.drift, time_stepping.drive, time_stepping.kick, time_stepping.separate,
+        time_stepping.take_work,
         near_pairs.carry_over, slots.list_scalar,
     )  # fmt: skip
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule = schedule
         self.reason = plan.contact_reason
-        causes = (FRICTION, CONTACT, HAND) if _is_anything_driven(state) else (FRICTION, CONTACT)
-        self._ode = OdeSystem(state, schedule.smooth_forces, every_row=True, also=causes)
-        self._pairs = pairs_that_may_meet(state)
-        self._records = RigidRecords(self._pairs)
+        self._rows = rows = RigidRows(state)
+        causes = [FRICTION, CONTACT, *([HAND] if _is_anything_driven(state) else [])]
+        causes += [JOINTS, MOTORS] if len(rows) else []
+        self._ode = OdeSystem(state, schedule.smooth_forces, every_row=True, also=tuple(causes))
+        contacts = pairs_that_may_meet(state)
+        self._pairs = np.concatenate((contacts, rows.pairs))
+        self._records = RigidRecords(contacts)
         self._refused, self.left_to_soft, self.why_soft = -1, 0, ""
         self.energetic_impacts = self.restitutions_lowered = self.by_impulses = 0
         self.why_impulses, self.energy_added = "", 0.0
         within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
         self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
         steady = not any(force.sees_time(state) for force in schedule.smooth_forces)
-        self._motion = RigidMotion(self._ode, len(self._pairs), steady)
+        self._motion = RigidMotion(self._ode, len(self._pairs), steady, driven=rows.driven)
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
@@ -94,6 +101,7 @@ class Rigid:
         """Make the steps, or those before the first that it cannot make and is not ready for."""
         began, parts = time.perf_counter_ns(), divisions(state, h)
         self._ode.gather(state)
+        self._ode.set_going()
         scene = self._scene(state)
         last, made = None, 0
         while made < steps:
@@ -143,9 +151,8 @@ class Rigid:
         material, physics = state.table(Material), state.physics
         present = np.concatenate((np.repeat(state.table(Velocity).present, 2), state.table(Velocity).present))
         self._ode.v[: len(present)][~present] = 0.0
-        of = state.bodies.shapes
-        size = 2.0 * (np.minimum(of.half_x, of.half_y) + of.radius)
-        a, b, wall = self._pairs.T
+        size = 2.0 * state.bodies.shapes.thin
+        a, b, wall = self._pairs[: len(self._pairs) - len(self._rows)].T
         walled = wall >= 0
         coefficients = np.empty((len(a), 3))
         friction, restitution = material["friction"], material["restitution"]
@@ -156,11 +163,22 @@ class Rigid:
         coefficients[:, 2] = np.where(walled, size[b], np.minimum(size[a], size[b]))
         walls: NDArray[np.float64] = np.array(physics.bounds or (0.0, 0.0, 0.0, 0.0))
         ode = self._ode
-        accounts = np.array([ode.slots.get(cause, -1) for cause in (FRICTION, CONTACT, HAND)])
+        accounts = np.array([ode.slots.get(cause, -1) for cause in (FRICTION, CONTACT, HAND, JOINTS, MOTORS)])
         return (
-            len(size), ode.inverse_mass, ode.damping, ode.damped_calls, shapes_of(state), walls, self._pairs,
-            coefficients, accounts, *ode.joints,
+            len(size), ode.inverse_mass, ode.damping, ode.damped_calls, self._shapes(state), walls,
+            self._pairs, np.concatenate((coefficients, self._rows.coefficients)), accounts, *ode.joints,
+            self._rows.numbers, self._rows.ends,
         )  # fmt: skip
+
+    def _shapes(self, state: State) -> ShapesTuple:
+        """Return the table of shapes, where what has none reaches as far as its radius of gyration."""
+        plain, bodies = shapes_of(state), state.bodies
+        bare = (plain[0][0] == 0) & (bodies.inverse_inertia > 0.0)
+        if not bare.any():
+            return plain
+        lengths = plain[1].copy()
+        lengths[3, bare] = np.sqrt(bodies.inverse_mass[bare] / bodies.inverse_inertia[bare])
+        return plain[0], lengths, plain[2]
 
     def _find_joint_forces(self, scene: tuple[Any, ...], state: State, made: MadeStep) -> None:
         """Find the forces of joints at the end of a step, their answer to those of contacts among them."""
@@ -169,6 +187,12 @@ class Rigid:
             ode.find_joint_forces(state)
             joined.find_answer(scene, made.points, made.measures, made.forces, made.closed, ode.q, ode.v)
             joints.force += forces_of(*ode.joints, len(joints))
+            contacts = len(self._pairs) - len(self._rows)
+            for i in range(made.closed):
+                number = int(made.points[i, PAIR]) - contacts
+                if number >= 0:
+                    row, force = self._rows.force_of(number, *made.forces[2 * i : 2 * i + 2])
+                    joints.force[row] = force
             joints.impulse[:] = joints.force * state.contacts.impulse_dt  # should soft contacts have to go on
 
     def _note(self, began: int, steps: int) -> None:

@@ -116,10 +116,12 @@ class RigidMotion:
         How many pairs may touch.
     steady : bool
         Whether forces depend on the state of motion alone.
+    driven : bool
+        Whether there are motors with a largest force.
     """
 
-    def __init__(self, ode: OdeSystem, pairs: int, steady: bool) -> None:
-        self._ode, self._steady, self._pairs = ode, steady, pairs
+    def __init__(self, ode: OdeSystem, pairs: int, steady: bool, *, driven: bool) -> None:
+        self._ode, self._steady, self._pairs, self._driven = ode, steady, pairs, driven
         m = 2 * MAX_POINTS
         self._equations, self._room = (
             (
@@ -220,6 +222,9 @@ class RigidMotion:
             time_stepping.drift(q, v, 0.5 * h)
             gained = h * time_stepping.kick(scene, self._stages[-1], q, v, h)
             tolerance = _SLOW * gained
+            if self._driven:
+                stages, account = self._stages, state.account.sums
+                time_stepping.drive(scene, self._equations, stages[-1], stages[3], q, v, h, account)
             made.evaluations, made.closed = made.evaluations + 1, 0
             why = self._resist(scene, state, end - left + 0.5 * h, h, tolerance, made)
             if why != motion.DONE:

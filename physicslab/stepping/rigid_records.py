@@ -25,7 +25,7 @@ class RigidRecords:
     """
 
     def __init__(self, pairs: NDArray[np.int64]) -> None:
-        self._pairs = pairs
+        self._pairs = pairs  # rows of joints, which are points as well, come behind them
 
     def write(self, state: State, made: MadeStep, h: float) -> None:
         """Write the closed points and the impacts of a step of ``h`` seconds."""
@@ -42,6 +42,8 @@ class RigidRecords:
         touching: list[int] = []
         for i in range(made.closed):
             p = int(of[i, PAIR])
+            if p >= len(self._pairs):
+                continue
             record = records[p]
             a, b = record["a"], record["b"]
             k = int(record["count"])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.contacts.arguments import inverse_in
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels.accounts import DAMPING, ENERGY, GRAVITY, HAND, OVERLAP, SPRINGS
+from physicslab.kernels.accounts import DAMPING, ENERGY, GRAVITY, HAND, OVERLAP
 from physicslab.kernels.solver import work
 from physicslab.state.packed import spring_ends, turned_anchors
 from physicslab.state.state import State
@@ -48,8 +48,11 @@ class StageAccounts:
         others = [force for force, g in zip(forces, uniform, strict=True) if g is None]
         free = [force for force in others if force.potential is None]
         springs = any(isinstance(force, SpringSystem) for force in others)
-        self.other = free[0].account if free else (SPRINGS if springs else GRAVITY)
-        self._pulls = {force: np.zeros_like(state.bodies.pull) for force in free}
+        self.other = next((force.account for force in (*free, *others)), GRAVITY)
+        # Momentum is booked to one cause by kernels: what is another's is then noted by itself.
+        self._apart = [force for force in others if force.account != self.other]
+        self._free = free
+        self._pulls = {force: np.zeros_like(state.bodies.pull) for force in (*free, *self._apart)}
         self._storing = [force for force in others if force.potential is not None]
         self._damps = springs and _has_dampers(state)
         self._dampers = np.zeros_like(state.bodies.pull)
@@ -76,11 +79,25 @@ class StageAccounts:
         self._start = transform["position"].copy(), transform["angle"].copy()
 
     def note_force(self, system: System, before: NDArray[np.float64], state: State) -> None:
-        """Note the pull of a force that stores no energy; ``before`` (3 rows,) is that of those before it."""
+        """Note the pull of a force that is booked by itself; ``before`` (3 rows,) is that of those before."""
         if system in self._pulls:
             np.subtract(state.bodies.pull, before, out=self._pulls[system])
         elif self._damps and isinstance(system, SpringSystem):
             self._dampers = _pull_of_dampers(state)
+
+    def book_causes(self, state: State, h: float) -> None:
+        """Book the impulses within ``h`` seconds of forces that kernels book to the cause of others."""
+        kicked = (state.bodies.awake_inverse_mass > 0.0) & ~state.bodies.sub_integrated
+        turned, position = kicked & (state.bodies.awake_inverse_inertia > 0.0), None
+        for force in self._apart:
+            position = state.table(Transform)["position"] if position is None else position
+            n, pull = len(kicked), h * self._pulls[force]
+            push, torque = pull[: 2 * n].reshape(n, 2)[kicked], pull[2 * n :][turned]
+            at = position[kicked]
+            spin = (at[:, 0] * push[:, 1] - at[:, 1] * push[:, 0]).sum() + torque.sum()
+            given = np.array((0.0, *push.sum(axis=0), spin))
+            state.account.sums[self.other] -= given
+            state.account.sums[force.account] += given
 
     def book_kick(self, state: State, h: float, later: float) -> None:
         """Book the impulses of forces and of damping in a kick of ``h`` seconds that no kernel makes.
@@ -131,7 +148,7 @@ class StageAccounts:
         )
         kicked = (bodies.awake_inverse_mass > 0.0) & ~bodies.sub_integrated
         rows = np.concatenate((np.repeat(kicked, 2), kicked & (bodies.awake_inverse_inertia > 0.0)))
-        worked = [(force.account, float(pull[rows] @ way[rows])) for force, pull in self._pulls.items()]
+        worked = [(force.account, float(self._pulls[force][rows] @ way[rows])) for force in self._free]
         if self._damps:
             worked.append((DAMPING, float(self._dampers[rows] @ way[rows])))
         for account, energy in worked:

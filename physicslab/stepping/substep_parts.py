@@ -65,6 +65,8 @@ class SubstepParts:
         Whether the loop does what engine systems do.
     split : SplitForces, optional
         What moves bodies on springs and in drag, if not kicks.
+    forces : list of ForceSystem
+        Those that kick bodies, or that contacts reckon with.
     accounts : StageAccounts
         The bookings of parts that Python does.
     uniform, packs : bool
@@ -76,7 +78,10 @@ class SubstepParts:
         self.split: SplitForces | None = None
         if plan.split_forces is not None:
             self.split = SplitForces(state, schedule.forces, plan.split_forces, plan.split_steps)
-        self.accounts = StageAccounts(state, schedule.forces)
+        # What turns velocities is left to what moves bodies: a contact has no speed to expect from it.
+        turned = [f for f in schedule.forces if f.gyration(state) is not None] if self.split else []
+        self.forces = [force for force in schedule.forces if force not in turned]
+        self.accounts = StageAccounts(state, self.forces)
         self._run: Callable[[Stage, State, float], None] = schedule.run
         # Where a system of one's own moves the bodies itself, its error is that of the method.
         if schedule.find(IntegrateSystem) is not None and any(map(acts_unbooked, schedule.running)):
@@ -169,6 +174,7 @@ class SubstepParts:
             return ""
         plain = [force for force in forces if isinstance(force, ForceSystem)]
         same = engine and len(plain) == len(forces)
+        plain = [force for force in plain if force in self.forces]
         self.uniform = same and all(
             force.is_engine and force.uniform_acceleration(state) is not None for force in plain
         )
@@ -183,6 +189,7 @@ class SubstepParts:
         accounts, schedule, run = self.accounts, self._schedule, self._run
         if accounts.notes_forces:
             self._hook(lambda state, h: schedule.run_forces(state, share * h, accounts.note_force), share)
+            self._hook(lambda state, h: accounts.book_causes(state, share * h))
         else:
             self._hook(lambda state, h: run(Stage.FORCE, state, share * h), share)
         if not self.compiled:

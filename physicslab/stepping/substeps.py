@@ -103,7 +103,7 @@ class Substeps:
         self._evaluates = state.has_forces and not {soft.UNIFORM, soft.PACKED}.isdisjoint(self._parts)
         compiled = _KERNELS if made.compiled else self._accounts.kernels
         self.kernels: tuple[Any, ...] = (*compiled, *(schedule.kernels(state) if made.reasons else ()))
-        self._cost, self._forces = np.zeros(soft.COSTS, np.int64), len(schedule.forces)
+        self._cost, self._forces = np.zeros(soft.COSTS, np.int64), made.forces
         self._h = 0.0
         self._columns: object = None
         springs = None if self.split is None else self.split.springs
@@ -235,7 +235,9 @@ class Substeps:
 
     def _addresses(self, state: State) -> NDArray[np.int64]:
         """Return the addresses (n, 3) of the forces that are compiled."""
-        calls, known = [force.calls(state) for force in self._schedule.forces], self._packed[0]
+        calls, known = [force.calls(state) for force in self._forces], self._packed[0]
+        if not calls:
+            return self._packed[1]
         if not known or any(new is not old for new, old in zip(calls, known, strict=True)):
             self._packed = calls, np.concatenate(calls)
         return self._packed[1]
@@ -267,7 +269,7 @@ class Substeps:
         for system, calls in self._calls.items():
             timing, shared = timings[system.name], 1
             if isinstance(system, ForceSystem):
-                place, shared = soft.GRAVITY, self._forces
+                place, shared = soft.GRAVITY, max(1, len(self._forces))
             else:
                 place = _COSTS[type(system)]
                 shared = 2 if place == soft.RESOLVE and self._joined else 1

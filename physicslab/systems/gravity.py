@@ -7,12 +7,13 @@ from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels import accounts
-from physicslab.kernels.forces import gravity, packed_forces
-from physicslab.kernels.forces.tree_pull import MAX_ERROR, RMS_ERROR, THETA
+from physicslab.kernels.accounts import GRAVITY
+from physicslab.kernels.forces import packed_forces
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
+from physicslab.systems.inverse_square import InverseSquare
 from physicslab.systems.system import ForceSystem
+from physicslab.systems.uniform_field import field_energy, packed_field
 
 
 class GravitySystem(ForceSystem):
@@ -23,6 +24,7 @@ class GravitySystem(ForceSystem):
     """
 
     engine = True
+    account = GRAVITY
     potential = "gravity"
 
     def __init__(self) -> None:
@@ -53,7 +55,12 @@ class GravitySystem(ForceSystem):
     def kernels_for(self, state: State) -> tuple[Any, ...]:
         """Return the kernel of the law that holds."""
         linear = state.physics.gravity_mode == "linear"
-        return (packed_forces.uniform_gravity if linear else packed_forces.planet_gravity,)
+        return (packed_forces.uniform_gravity if linear else packed_forces.inverse_square,)
+
+    def _attraction(self, state: State) -> InverseSquare:
+        """Return the law between planets: a mass pulls, and yields to a pull, in proportion to itself."""
+        mass = state.table(Mass)["mass"]
+        return InverseSquare(self._attracting, state.physics.G, mass, mass, np.ones(len(mass)))
 
     def uniform_acceleration(self, state: State) -> Vector2 | None:
         """Return g; planets attract each other differently from place to place."""
@@ -61,22 +68,11 @@ class GravitySystem(ForceSystem):
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
         """Return the pull for compiled integrators."""
-        physics, mass = state.physics, state.table(Mass)["mass"]
+        physics = state.physics
         if physics.gravity_mode == "linear":
-            rows = np.flatnonzero((state.bodies.inverse_mass > 0.0) & (layout.place >= 0))
-            indices = np.concatenate(([len(rows)], layout.place[rows], (-1,)))
-            total = mass[rows].sum()
-            parameters = np.concatenate(((physics.gravity.x, physics.gravity.y), mass[rows], (total,)))
-            books = ((accounts.GRAVITY, len(indices) - 1),) if len(rows) else ()
-            return PackedForce(packed_forces.uniform_gravity, parameters, indices, books=books)
-        rows = self._attracting
-        indices = np.concatenate(([len(rows), physics.softening_law == "plummer"], layout.place[rows]))
-        parameters = np.concatenate(((physics.G, physics.softening), mass[rows], (0.0,)))
-        anchors = layout.place[rows[state.bodies.inverse_mass[rows] == 0.0]]
-        return PackedForce(
-            packed_forces.planet_gravity, parameters, indices, steepest=2 + len(rows), books=(),
-            anchors=anchors if len(anchors) else None, cause=accounts.GRAVITY,
-        )  # fmt: skip
+            every, mass = np.arange(len(state.entity_index)), state.table(Mass)["mass"]
+            return packed_field(state, layout, every, mass, physics.gravity, GRAVITY)
+        return self._attraction(state).packed(state, layout, GRAVITY)
 
     def needs_origin(self, state: State) -> bool:
         """Only the pull of bodies that stay where they are depends on it."""
@@ -88,14 +84,7 @@ class GravitySystem(ForceSystem):
 
     def strongest_rate(self, state: State) -> float:
         """Return the largest sqrt(G (m_a + m_b) / d^3) of any pair at present; 0 for uniform gravity."""
-        physics = state.physics
-        if physics.gravity_mode == "linear":
-            return 0.0
-        state.compile((gravity.fastest_fall,))
-        return gravity.fastest_fall(
-            state.table(Transform)["position"], state.table(Mass)["mass"], self._attracting,
-            physics.G, physics.softening, physics.softening_law == "plummer",
-        )  # fmt: skip
+        return self._attraction(state).strongest_rate(state) if self._pairwise else 0.0
 
     def couples(self, state: State) -> NDArray[np.int64] | None:
         """Uniform gravity couples nothing, that of planets every body with every other."""
@@ -111,27 +100,12 @@ class GravitySystem(ForceSystem):
         return len(self._attracting) if self._pairwise else 0
 
     def summation(self, state: State) -> str:
-        """Return how pairs are summed, as :mod:`physicslab.kernels.forces.gravity` decides by number."""
-        n = self.attractors
-        if state.physics.gravity_mode != "planet" or n <= gravity.PLAIN_LIMIT:
-            return ""
-        if n < gravity.TREE_THRESHOLD:
-            return f"each pair of {n} bodies, in vectors"
-        return (
-            f"Barnes-Hut tree of {n} bodies, theta {THETA:g}: forces within {RMS_ERROR:g} of the mean one by "
-            f"root mean square, {MAX_ERROR:g} at most; momentum is kept as well as they are right"
-        )
+        """Return how pairs are summed."""
+        return self._attraction(state).summation() if self._pairwise else ""
 
     def potential_energy(self, state: State) -> float:
         """Return the sum of -m g . x [J], zero at the origin, or the pairs' energy, zero at infinity."""
-        physics, mass = state.physics, state.table(Mass)["mass"]
-        position = state.table(Transform)["position"]
+        physics = state.physics
         if physics.gravity_mode == "linear":
-            g = physics.gravity
-            state.compile((gravity.uniform_potential,))
-            return gravity.uniform_potential(position, mass, state.bodies.inverse_mass, g.x, g.y)
-        state.compile((gravity.planet_potential,))
-        return gravity.planet_potential(
-            position, mass, self._attracting,
-            physics.G, physics.softening, physics.softening_law == "plummer",
-        )  # fmt: skip
+            return field_energy(state, state.table(Mass)["mass"], physics.gravity)
+        return self._attraction(state).potential_energy(state)

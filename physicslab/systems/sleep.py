@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.components import Charge, Mass, Shape, Transform, Velocity
 from physicslab.contacts.arguments import do_stage, near_in
 from physicslab.contacts.islands import check_edits, fall_asleep, keep_places, wake, wake_all
 from physicslab.kernels import motion, near_counts
@@ -55,6 +55,8 @@ class SleepSystem(System):
             return "sleeping is switched off"
         if state.physics.gravity_mode == "planet":
             return "planets attract each other"
+        if state.physics.coulomb_constant and len(state.batch(Charge)) > 1:
+            return "charges act on each other"
         if state.event_driven or state.rigid_contacts:
             return "impacts are located exactly"
         if wish == "auto" and len(state.batch(Shape, Transform, Velocity, Mass)) <= _AWAKE_LIMIT:

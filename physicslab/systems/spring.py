@@ -23,6 +23,7 @@ class SpringSystem(ForceSystem):
     """Pulls the ends of every Spring together by F = k (length - rest_length) + c (rate of lengthening)."""
 
     needs = (Spring,)
+    account = accounts.SPRINGS
     kernels = (packed_forces.springs,)
     potential = "spring"
     turns = True

@@ -1,7 +1,9 @@
 """The physics systems, in the order in which they run within a stage. A new system is added here."""
 
 from physicslab.systems.broad_phase import BroadPhaseSystem
+from physicslab.systems.charged import ElectricFieldSystem, MagneticFieldSystem
 from physicslab.systems.contact import ContactSystem
+from physicslab.systems.coulomb import CoulombSystem
 from physicslab.systems.drag import DragSystem
 from physicslab.systems.gate import GateSystem
 from physicslab.systems.gravity import GravitySystem
@@ -20,6 +22,9 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     SpringSystem,
     DragSystem,
     ThrustSystem,
+    CoulombSystem,
+    ElectricFieldSystem,
+    MagneticFieldSystem,
     IntegrateSystem,
     JointSystem,
     BroadPhaseSystem,

@@ -178,7 +178,8 @@ class ForceSystem(System):
     """
 
     account: ClassVar[int] = FIELDS
-    """The account of the work of a force that stores no energy (:mod:`physicslab.kernels.accounts`)."""
+    """The account of the momentum that the force gives, and of its work where it stores no energy
+    (:mod:`physicslab.kernels.accounts`)."""
     potential: ClassVar[str | None] = None
     """The name under which the energy is reported; ``None`` for a force that stores none."""
     turns: ClassVar[bool] = False
@@ -219,6 +220,14 @@ class ForceSystem(System):
         What rests may then begin to move by itself.
         """
         return not type(self).packs()
+
+    def gyration(self, state: State) -> NDArray[np.float64] | None:
+        """Return for each row the rate [rad/s] at which the force turns its velocity clockwise.
+
+        For a force that does nothing else, as a magnetic field: a splitting method then turns velocities
+        exactly while bodies drift, keeps its order, and the force does no work. ``None`` for others.
+        """
+        return None
 
     def why_singular(self, state: State) -> str | None:
         """Return why bodies may come where the force is not smooth, which fixed steps miss; or ``None``."""

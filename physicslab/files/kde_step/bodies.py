@@ -18,7 +18,7 @@ def take_particle(item: Item, draft: Draft) -> None:
     """Take a particle: a body without a shape."""
     _take(item, draft, {}, is_point=True)
     if item.kind == "ChargedParticle":
-        draft.lose(item, "there is no charge")
+        draft.bodies[item.number].entity["Charge"] = {"charge": item.number_of("charge", 0.0)}
 
 
 def take_disc(item: Item, draft: Draft) -> None:

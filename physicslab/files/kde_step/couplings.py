@@ -8,8 +8,8 @@ from physicslab.files.kde_step.item import Item, Pair
 
 _ROUNDED = 1e-4
 """Share of a length by which Step's files, of six digits, may be off: the length is then as placed."""
-_WEIGHT, _GRAVITATION = 9.80665, 6.67428e-11
-"""Step's constants where a file has none [m/s^2], [N m^2/kg^2]."""
+_WEIGHT, _GRAVITATION, _COULOMB = 9.80665, 6.67428e-11, 8.987551787e9
+"""Step's constants where a file has none [m/s^2], [N m^2/kg^2], [N m^2/C^2]."""
 
 
 def take_spring(item: Item, draft: Draft) -> None:
@@ -41,7 +41,7 @@ def take_stick(item: Item, draft: Draft) -> None:
     elif abs(distance - length) > _ROUNDED * length:
         values["length"] = length
         draft.lose(item, f"it is {distance:g} m long as placed, and {length:g} m as it should be")
-    draft.joins(item, kind, values | {"collide": True})
+    draft.place(item, {kind: values | {"collide": True}})
 
 
 def take_pin(item: Item, draft: Draft) -> None:
@@ -56,9 +56,9 @@ def take_pin(item: Item, draft: Draft) -> None:
     point = item.pair("localPosition")
     values: dict[str, Any] = {"a": body.id, "anchor_b": list(place)}
     if not body.is_point:
-        draft.joins(item, "Pin", values | {"anchor_a": body.anchor(point)})
+        draft.place(item, {"Pin": values | {"anchor_a": body.anchor(point)}})
     elif point != (0.0, 0.0):
-        draft.joins(item, "Rod", values)
+        draft.place(item, {"Rod": values})
     else:
         _hold(body)
 
@@ -133,6 +133,12 @@ def take_gravitation(item: Item, draft: Draft) -> None:
         draft.lose(item, f"here it pulls {solid[0]} too" + (f" and {len(solid) - 1} more" * (len(solid) > 1)))
 
 
+def take_coulomb(item: Item, draft: Draft) -> None:
+    """Take the force of charges."""
+    strength = item.number_of("coulombConst", _COULOMB)
+    draft.physics["coulomb_constant"] = draft.physics.get("coulomb_constant", 0.0) + strength
+
+
 HOLDS: Mapping[str, Callable[[Item, Draft], None]] = {"Pin": take_pin, "Anchor": take_anchor}
 """The classes of what holds one body to the world."""
 COUPLINGS: Mapping[str, Callable[[Item, Draft], None]] = {
@@ -144,6 +150,7 @@ COUPLINGS: Mapping[str, Callable[[Item, Draft], None]] = {
     "CircularMotor": take_motor,
     "WeightForce": take_weight,
     "GravitationForce": take_gravitation,
+    "CoulombForce": take_coulomb,
 }
 """The classes of what else acts on bodies."""
 

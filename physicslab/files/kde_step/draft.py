@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.text import is_line, unique_name
 from physicslab.files.kde_step.item import Item, Pair
 
@@ -113,13 +112,6 @@ class Draft:
         self.entities.append(entity)
         self.placed[item.number] = entity
         return entity
-
-    def joins(self, item: Item, kind: str, values: Mapping[str, Any]) -> None:
-        """Add an entity with one component; named as not taken where there is no such component."""
-        if kind in COMPONENTS:
-            self.place(item, {kind: values})
-        else:
-            self.lose(item, f"there is no {kind}")
 
     def end(self, item: Item, name: str) -> Body | None:
         """Return the body of a property, ``None`` for the world or what is not a body here."""

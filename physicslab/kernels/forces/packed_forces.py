@@ -14,13 +14,13 @@ from physicslab.kernels.accounts import book
 from physicslab.kernels.forces.bookings import book_open_spring, keep_pull
 from physicslab.kernels.forces.drag import drag_factor
 from physicslab.kernels.forces.force_calls import force_kernel
-from physicslab.kernels.forces.gravity import PLAIN_LIMIT, attract, inverse_cube
+from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT, attract, inverse_cube
 from physicslab.kernels.forces.springs import mean_spring_pull, spring_pull, turn_over, turned
 
 
 @force_kernel
 def uniform_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
-    """Add m g. ``parameters``: gx, gy, the masses, and their sum.
+    """Add m g, or q E. ``parameters``: gx, gy, the masses, and their sum.
 
     ``indices``: how many, where x of each is, and the account of gravity.
     """
@@ -52,41 +52,45 @@ def uniform_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-
 
 @allocating
 def _attract_packed(q, force, parameters, indices):  # type: ignore[no-untyped-def]
-    """Add the attraction of more than a few, as :func:`planet_gravity` has it, by columns of them."""
+    """Add the attraction of more than a few, as :func:`inverse_square` has it, by columns of them."""
     n = indices[0]
-    x, y, mass, ax, ay = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    x, y, weight, ax, ay = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     for p in range(n):
-        i = indices[2 + p]
-        x[p], y[p], mass[p] = q[i], q[i + 1], parameters[2 + p]
-    attract(x, y, mass, parameters[1], indices[1] != 0, ax, ay)
+        i = indices[3 + p]
+        x[p], y[p], weight[p] = q[i], q[i + 1], parameters[2 + p]
+    attract(x, y, weight, parameters[1], indices[1] != 0, ax, ay)
     for p in range(n):
-        i = indices[2 + p]
-        force[i] += parameters[0] * mass[p] * ax[p]
-        force[i + 1] += parameters[0] * mass[p] * ay[p]
+        i = indices[3 + p]
+        force[i] += parameters[0] * weight[p] * ax[p]
+        force[i + 1] += parameters[0] * weight[p] * ay[p]
 
 
 @force_kernel
-def planet_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
-    """Add the attraction of every pair.
+def inverse_square(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-def]
+    """Add the force C w_a w_b / d^2 of every pair, an attraction where that is positive.
 
-    ``parameters``: G, softening, the masses, and then the largest |G| (m_a + m_b) / d^3 that any call found,
-    where bodies are few; ``indices``: how many, whether Plummer's law holds, then where x of each is.
+    ``parameters``: C, softening, the weights, then of each y and p as of
+    :func:`physicslab.kernels.forces.inverse_square.fastest_fall`. ``indices``: how many; whether Plummer's
+    law holds; where among the parameters the square of the fastest rate is that any call found, where bodies
+    are few; then where x of each is.
     """
     n, plummer = indices[0], indices[1] != 0
-    G, softening = parameters[0], parameters[1]
+    constant, softening = parameters[0], parameters[1]
     if n > PLAIN_LIMIT:
         _attract_packed(q, force, parameters, indices)  # type: ignore[no-untyped-call]
         return
     softening2, steepest = softening * softening, 0.0
     for p in range(n):
-        i = indices[2 + p]
-        x, y, weight = q[i], q[i + 1], G * parameters[2 + p]
+        i = indices[3 + p]
+        x, y, weight = q[i], q[i + 1], constant * parameters[2 + p]
+        yields, pulls = parameters[2 + n + p], parameters[2 + 2 * n + p]
         fx, fy = 0.0, 0.0
         for other in range(p + 1, n):
-            j = indices[2 + other]
+            j = indices[3 + other]
             dx, dy = q[j] - x, q[j + 1] - y
             pull = inverse_cube(dx * dx + dy * dy, softening2, plummer)
-            steepest = max(steepest, (parameters[2 + p] + parameters[2 + other]) * pull)
+            rate2 = yields * parameters[2 + 2 * n + other] + parameters[2 + n + other] * pulls
+            steepest = max(steepest, rate2 * pull)
             f = weight * parameters[2 + other] * pull
             fx += f * dx
             fy += f * dy
@@ -94,7 +98,8 @@ def planet_gravity(q, v, span, force, parameters, indices):  # type: ignore[no-u
             force[j + 1] -= f * dy
         force[i] += fx
         force[i + 1] += fy
-    parameters[2 + n] = max(parameters[2 + n], abs(G) * steepest)
+    place = indices[2]
+    parameters[place] = max(parameters[place], abs(constant) * steepest)
 
 
 @always_inlined

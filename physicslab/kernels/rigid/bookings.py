@@ -1,11 +1,15 @@
 """What contact forces give in a second, and impulses at once, by account."""
 
 from physicslab.kernels import Numbers, inlined
-from physicslab.kernels.accounts import ENERGY, SPIN, book
+from physicslab.kernels.accounts import ENERGY, PX, SPIN, book
 from physicslab.kernels.rigid.equations import STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     CONTACTS,
     DRIVEN,
+    FEATURE,
+    JOINED,
+    JOINT,
+    MOTORS,
     NORMAL,
     ONE,
     RUBBING,
@@ -14,8 +18,9 @@ from physicslab.kernels.rigid.features import (
     VT,
     Scene,
 )
+from physicslab.kernels.rigid.joint_points import is_motor, motor_rate
 
-__all__ = ["book_contacts", "book_speeds"]
+__all__ = ["book_contacts", "book_row", "book_speeds"]
 
 
 @inlined
@@ -26,6 +31,7 @@ def book_contacts(
 
     What friction takes, force times sliding speed, and the momentum that comes in from what no force moves,
     with the work of what moves all the same. Normal forces do no work: what they hold together does not part.
+    Motors do, with the speed at which they turn.
     """
     rows, points, measures, contacts = (
         scene.rows,
@@ -36,7 +42,14 @@ def book_contacts(
     rubbed, work = 0.0, 0.0
     for i in range(count):
         along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
-        rubbed += across * measures[i, VT] if points[i, STATUS] != STICKS else 0.0
+        account = contacts
+        if points[i, FEATURE] >= JOINT:
+            account = scene.accounts[JOINED]
+            if is_motor(scene, points, i):
+                account = scene.accounts[MOTORS]
+                given[account + ENERGY] += across * motor_rate(scene, points, measures, i)
+        elif points[i, STATUS] != STICKS:
+            rubbed += across * measures[i, VT]
         for side in range(2):
             body = points[i, ONE + side]
             n, t = NORMAL + 3 * side, TANGENT + 3 * side
@@ -45,16 +58,43 @@ def book_contacts(
             fy = along * measures[i, n + 1] + across * measures[i, t + 1]
             torque = along * measures[i, n + 2] + across * measures[i, t + 2]
             if scene.inverse_mass[x] > 0.0:
-                book(given, contacts, 0.0, fx, fy, q[x] * fy - q[y] * fx)
+                book(given, account, 0.0, fx, fy, q[x] * fy - q[y] * fx)
             else:
                 work -= fx * v[x] + fy * v[y]
             if scene.inverse_mass[turning] > 0.0:
-                given[contacts + SPIN] += torque
+                given[account + SPIN] += torque
             else:
                 work -= torque * v[turning]
     given[scene.accounts[RUBBING] + ENERGY] += rubbed
     if scene.accounts[DRIVEN] >= 0:
         given[scene.accounts[DRIVEN] + ENERGY] += work
+
+
+@inlined
+def book_row(
+    scene: Scene, equations: Equations, i: int, q: Numbers, old: Numbers, v: Numbers, late: float,
+    acceleration: Numbers, account: Numbers, driven: Numbers,
+) -> None:  # fmt: skip
+    """Book the impulse of a row that has changed the speeds ``old`` to v: its work, and and momentum.
+
+    Forces have acted for ``late`` seconds beyond its moment.
+    """
+    points, measures = equations.points, equations.measures
+    along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
+    for side in range(2):
+        body, n, t = points[i, ONE + side], NORMAL + 3 * side, TANGENT + 3 * side
+        for k in range(3):
+            place = 2 * body + k if k < 2 else 2 * scene.rows + body
+            push = along * measures[i, n + k] + across * measures[i, t + k]
+            work = push * (0.5 * (old[place] + v[place]) - late * acceleration[place])
+            account[ENERGY] += work
+            if scene.inverse_mass[place] == 0.0:
+                driven[ENERGY] -= work
+            elif k < 2:
+                account[PX + k] += push
+                account[SPIN] += q[2 * body] * push if k == 1 else -q[2 * body + 1] * push
+            else:
+                account[SPIN] += push
 
 
 @inlined

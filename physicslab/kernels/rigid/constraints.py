@@ -10,17 +10,19 @@ from physicslab.kernels.rigid.equations import CHANGE, FREE, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     BIAS_N,
     BIAS_T,
+    FEATURE,
     GAP,
+    JOINT,
     NORMAL,
     ONE,
     TANGENT,
     VN,
     VT,
     Scene,
-    measure,
     rate_along,
 )
 from physicslab.kernels.rigid.joined import book_answer, lessen, measure_joints, pass_on
+from physicslab.kernels.rigid.joint_points import OWN, is_motor, measure
 from physicslab.kernels.rigid.least_norm import (
     REFINEMENTS,
     begin_equations,
@@ -68,12 +70,22 @@ def _coupling(scene: Scene, equations: Equations, i: int, j: int) -> tuple[float
 
 
 @inlined
+def _own_response(scene: Scene, equations: Equations, i: int, nn: float, tt: float) -> tuple[float, float]:
+    """Return what unit forces cause at the row of a joint, and what stands for that where it has none."""
+    if is_motor(scene, equations.points, i):
+        nn = scene.row_numbers[equations.points[i, FEATURE] - JOINT, OWN]
+    return nn if nn > 0.0 else 1.0, tt if tt > 0.0 else 1.0
+
+
+@inlined
 def assemble(scene: Scene, equations: Equations, count: int) -> None:
     """Fill the matrix with what each unit force causes at each point."""
     a = equations.a
     for i in range(count):
         for j in range(i + 1):
             nn, nt, tn, tt = _coupling(scene, equations, i, j)
+            if i == j and equations.points[i, FEATURE] >= JOINT:
+                nn, tt = _own_response(scene, equations, i, nn, tt)
             a[2 * i, 2 * j], a[2 * i, 2 * j + 1], a[2 * i + 1, 2 * j], a[2 * i + 1, 2 * j + 1] = (
                 nn,
                 nt,
@@ -135,10 +147,14 @@ def rates_without_forces(
 
 
 @inlined
-def find_free_rates(scene: Scene, equations: Equations, count: int, acceleration: Numbers) -> None:
-    """Find how the speeds of points would change without contact forces."""
+def find_free_rates(
+    scene: Scene, equations: Equations, count: int, acceleration: Numbers, share: float
+) -> None:
+    """Find how the speeds of points change at accelerations, of which ``share`` of the forces are part."""
     for i in range(count):
         opening, sliding = rates_without_forces(scene, equations, i, acceleration)
+        if is_motor(scene, equations.points, i):  # nothing moves by what presses on it
+            opening += share * equations.a[2 * i, 2 * i] * equations.vectors[UNKNOWN, 2 * i]
         equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = opening, sliding
 
 
@@ -159,7 +175,7 @@ def constrained_acceleration(
         assemble(scene, equations, count)
         n, largest, residual, rank = begin_equations(equations, count, 1.0), 0.0, math.inf, 0
         for _ in range(REFINEMENTS):
-            find_free_rates(scene, equations, count, acceleration)
+            find_free_rates(scene, equations, count, acceleration, 1.0)
             for i in range(2 * count if residual == math.inf else 0):
                 largest = max(largest, abs(equations.vectors[FREE, i]))
             residual, rank = refine(equations, count, n, 1.0, FREE, largest, residual, rank)

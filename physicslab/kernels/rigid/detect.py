@@ -8,6 +8,7 @@ from physicslab.kernels.geometry.vertex_cone import beside_vertex
 from physicslab.kernels.rigid.features import (
     CORNER,
     FEATURE,
+    FIRST_ROW,
     ONE,
     OTHER,
     PAIR,
@@ -264,6 +265,8 @@ def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points) ->
     """
     shapes, tie = scene.shapes, TIE * scene.coefficients[p, 2]
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
+    if wall >= FIRST_ROW:
+        return _write(points, 0, p, a, WALL + wall, b, 0), math.inf
     if wall >= 0:
         return _to_wall(points, p, q, scene, b, wall), math.inf
     if shapes.vertices[a] == 1:

@@ -23,16 +23,54 @@ from physicslab.kernels.geometry.vertex_cone import beside_vertex
 from physicslab.kernels.records import Pairs
 
 __all__ = [
-    "BIAS_N", "BIAS_T", "CONTACTS", "CORNER", "DRIVEN", "FEATURE", "GAP", "GIVEN", "MARGIN", "MEASURES", "MU",
-    "NORMAL", "NX", "NY", "ONE", "OTHER", "PAIR", "POINT_FIELDS", "PX", "PY", "RESTITUTION", "RUBBING",
-    "STATUS", "TANGENT", "VERTEX", "VN", "VT", "WALL", "Points", "Scene", "SceneTuple",
-    "measure", "named_scene", "rate_along", "turned_by",
+    "BIAS_N",
+    "BIAS_T",
+    "CONTACTS",
+    "CORNER",
+    "DRIVEN",
+    "FEATURE",
+    "FIRST_ROW",
+    "GAP",
+    "GIVEN",
+    "JOINED",
+    "JOINT",
+    "MARGIN",
+    "MEASURES",
+    "MOTORS",
+    "MU",
+    "NORMAL",
+    "NX",
+    "NY",
+    "ONE",
+    "OTHER",
+    "PAIR",
+    "POINT_FIELDS",
+    "PX",
+    "PY",
+    "RESTITUTION",
+    "RUBBING",
+    "STATUS",
+    "TANGENT",
+    "VERTEX",
+    "VN",
+    "VT",
+    "WALL",
+    "Points",
+    "Scene",
+    "SceneTuple",
+    "measure_contact",
+    "named_scene",
+    "rate_along",
+    "turned_by",
 ]  # fmt: skip
 
 PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)
 """The columns of a point: its pair; bodies and features; what it may do, and what it does."""
-CORNER, WALL = MOST_VERTICES, 2 * MOST_VERTICES
-"""Where features of vertices and walls begin; those before are faces, from the vertex of that number on."""
+CORNER, WALL, JOINT = MOST_VERTICES, 2 * MOST_VERTICES, 2 * MOST_VERTICES + 4
+"""Where features of vertices, walls and rows of joints begin; those before are faces, from the vertex of that
+number on."""
+FIRST_ROW = JOINT - WALL
+"""From which number on the third column of a pair is a row of a joint, and no wall."""
 NORMAL, TANGENT, NX, NY = 0, 6, 3, 4
 """The columns of measures of a point that hold the gradients of its gap and of its way along the surface, by
 x, y and angle of ONE, then of OTHER. By OTHER's x and y that of the gap is the normal."""
@@ -40,9 +78,9 @@ GAP, VN, VT, BIAS_N, BIAS_T, MARGIN, PX, PY, MU, RESTITUTION, MEASURES = range(1
 """The columns behind them: gap [m]; speeds along normal and tangent [m/s]; their rates at no acceleration
 [m/s^2]; how far it is from the end of its feature [m]; where it is [m]; coefficients of friction and
 restitution."""
-RUBBING, CONTACTS, DRIVEN = range(3)
-"""What ``accounts`` of a scene hold: where those of friction, of contacts and of what is driven begin behind
-the clock (:mod:`physicslab.kernels.forces.bookings`); -1 where nothing is driven."""
+RUBBING, CONTACTS, DRIVEN, JOINED, MOTORS = range(5)
+"""What ``accounts`` of a scene hold: where those of friction, of contacts, of what is driven, of joints and
+of motors begin behind the clock (:mod:`physicslab.kernels.forces.bookings`); -1 where there is none."""
 
 Points = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, POINT_FIELDS)."""
@@ -53,7 +91,9 @@ class Scene(NamedTuple):
 
     The number of rows; inverse masses (3 rows,), damping, forces; shapes, walls of the bounds (4,) [m];
     pairs (n, 3), and of each the friction, restitution and smaller size [m] (n, 3); where accounts are (3,);
-    the rows of joints, their numbers and whole numbers (:mod:`physicslab.kernels.joints.rows`).
+    the rows that joints keep in any case, their numbers and whole numbers
+    (:mod:`physicslab.kernels.joints.rows`); those that are points (n, NUMBERS) and (n, WHOLE)
+    (:mod:`physicslab.kernels.rigid.joint_points`).
     """
 
     rows: int
@@ -67,9 +107,13 @@ class Scene(NamedTuple):
     accounts: Rows
     joint_numbers: Numbers
     joints: Rows
+    row_numbers: Vectors
+    row_ends: Pairs
 
 
-SceneTuple = tuple[int, Numbers, Numbers, Calls, ShapesTuple, Numbers, Pairs, Vectors, Rows, Numbers, Rows]
+SceneTuple = tuple[
+    int, Numbers, Numbers, Calls, ShapesTuple, Numbers, Pairs, Vectors, Rows, Numbers, Rows, Vectors, Pairs
+]  # fmt: skip
 
 
 @fused
@@ -77,7 +121,7 @@ def named_scene(plain: SceneTuple) -> Scene:
     """Give names to a tuple."""
     return Scene(
         plain[0], plain[1], plain[2], plain[3], named_shapes(plain[4]), plain[5], plain[6], plain[7],
-        plain[8], plain[9], plain[10],
+        plain[8], plain[9], plain[10], plain[11], plain[12],
     )  # fmt: skip
 
 
@@ -100,15 +144,18 @@ def rate_along(rows: int, points: Points, measures: Vectors, i: int, gradient: i
     rate: float = measures[i, end] * dx + measures[i, end + 1] * dy
     rate += values[2 * rows + other] * measures[i, end + 2]
     rate += values[2 * rows + one] * measures[i, at + 2]
+    if points[i, FEATURE] >= JOINT:  # a row of two terms pulls at its bodies in directions of their own
+        rate += (measures[i, at] + measures[i, end]) * values[2 * one]
+        rate += (measures[i, at + 1] + measures[i, end + 1]) * values[2 * one + 1]
     return rate
 
 
 @inlined
-def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
-    """Measure point number i in a state: where it is, how it moves, and how that changes at no acceleration.
+def measure_contact(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
+    """Measure point number i, which is of a contact: where it is, how it moves, and how that changes.
 
-    The rates follow by differentiating the gap twice, and the sliding speed of the material points once; the
-    point itself moves over both bodies.
+    By itself, at no acceleration. The rates follow by differentiating the gap twice, and the sliding speed
+    of the material points once; the point itself moves over both bodies.
     """
     rows, shapes = scene.rows, scene.shapes
     one, other, feature = points[i, ONE], points[i, OTHER], points[i, FEATURE]

@@ -11,7 +11,7 @@ and, where Newton's law would make energy, by the same search for a lower restit
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
-from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION, IMPACTS
+from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION, HAND, IMPACTS, JOINTS
 from physicslab.kernels.constraint.impact_law import (
     ENERGETIC,
     LOWERED,
@@ -25,10 +25,12 @@ from physicslab.kernels.constraint.impact_law import (
 from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.records import Impacts
+from physicslab.kernels.rigid.bookings import book_row
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
+    FIRST_ROW,
     GAP,
     GIVEN,
     MEASURES,
@@ -47,6 +49,7 @@ from physicslab.kernels.rigid.features import (
     Scene,
 )
 from physicslab.kernels.rigid.joined import book_impulses
+from physicslab.kernels.rigid.joint_points import is_motor
 from physicslab.kernels.solver.impact_log import (
     ImpactPoints,
     Pair,
@@ -94,15 +97,17 @@ def _closing_speed(equations: Equations, i: int, rate: float) -> float:
 
 @inlined
 def _gather(
-    equations: Equations, count: int, impact: Equations, rest: float, rate: float, last: bool
+    scene: Scene, equations: Equations, count: int, impact: Equations, rest: float, rate: float, last: bool
 ) -> tuple[int, bool]:
-    """Take the points that approach, and inelastic ones that rest.
+    """Take the points that approach, and inelastic ones that rest; a motor with a cap has no impulse.
 
     Returns how many they are, and whether any approaches.
     """
     n, approaching = 0, False
     for i in range(count):
         e, speed = equations.measures[i, RESTITUTION], equations.measures[i, VN]
+        if is_motor(scene, equations.points, i):
+            continue
         bounces = -e * speed > rest and not last
         # One that bounces in a short step does so before half of the next would take it below the surface.
         closing = _closing_speed(equations, i, rate / (2.0 - e) if bounces else rate)
@@ -272,6 +277,10 @@ def _note_round(
                 approach, restitution = speed, impact.measures[end, RESTITUTION]
             end += 1
         a, b, wall = scene.pairs[pair, 0], scene.pairs[pair, 1], scene.pairs[pair, 2]
+        if wall >= FIRST_ROW:
+            book_row(scene, impact, i, q, old, v, late, acceleration, account[JOINTS], account[HAND])
+            i = end
+            continue
         ra, rb, inverse = 2 * scene.rows + a, 2 * scene.rows + b, scene.inverse_mass
         mass = PairInverseMass(inverse[2 * a], inverse[ra], inverse[2 * b], inverse[rb])
         pose = Pose(q[2 * a], q[2 * a + 1], q[ra], q[2 * b], q[2 * b + 1], q[rb])
@@ -317,7 +326,7 @@ def resolve_simultaneous_impacts(
     most = _SHORT_ROUNDS if rate > 0.0 else _MAX_ROUNDS
     for turn in range(most + 2):
         measure_all(scene, equations, count, q, v)
-        n, approaching = _gather(equations, count, impact, rest, rate, turn >= most)
+        n, approaching = _gather(scene, equations, count, impact, rest, rate, turn >= most)
         if not approaching:
             return impacts, True, energetic, lowered, last, turn
         assemble(scene, impact, n)

@@ -42,8 +42,16 @@ from physicslab.kernels.rigid.features import (
 from physicslab.kernels.rigid.impacts import approaches, resolve_simultaneous_impacts
 from physicslab.kernels.rigid.jammed import stop_sliding
 from physicslab.kernels.rigid.joined import book_answer
+from physicslab.kernels.rigid.joint_points import is_motor
 from physicslab.kernels.rigid.passing import longest_piece, share_of_ways
-from physicslab.kernels.rigid.piece_end import ALLOWED, HOLDS, PRESSES, cut_at_first_event, note_start
+from physicslab.kernels.rigid.piece_end import (
+    ALLOWED,
+    HOLDS,
+    PRESSES,
+    SLIDES,
+    cut_at_first_event,
+    note_start,
+)
 from physicslab.kernels.rigid.pieces import (
     SHORT_LAST,
     Stages,
@@ -54,6 +62,7 @@ from physicslab.kernels.rigid.pieces import (
     named_stages,
 )
 from physicslab.kernels.rigid.touching import (
+    NO_PUSH,
     SLOW,
     find_touching,
     hold_closed,
@@ -94,20 +103,24 @@ _SHORT = 0.1
 
 @inlined
 def _note_changes(
-    kind: int, index: int, equations: Equations, count: int, changed: Points, rest: float
+    kind: int, index: int, scene: Scene, equations: Equations, count: int, changed: Points, rest: float
 ) -> None:
     """Note what points do from now on, where the laws alone would leave that to rounding.
 
     Several can reach the same limit in one moment, as the corners of a box do that begins to slide; and what
-    has just begun to slide goes on.
+    has just begun to slide goes on. A motor that has reached its speed keeps it, if it can.
     """
     n, forces = 0, equations.vectors
     limit = _SAME_MOMENT * abs(forces[UNKNOWN, 2 * index]) if kind <= HOLDS else 0.0
-    for i in range(count if kind <= HOLDS else 0):
+    for i in range(count if kind <= SLIDES else 0):
+        if kind == SLIDES and not (i == index and is_motor(scene, equations.points, i)):
+            continue
         pressing, rubbing = forces[UNKNOWN, 2 * i], forces[UNKNOWN, 2 * i + 1]
         left = equations.measures[i, MU] * pressing - abs(rubbing)
         status = -1
-        if kind == PRESSES and i == index:
+        if kind == SLIDES:
+            status = STICKS
+        elif kind == PRESSES and i == index:
             status = OPEN
         elif kind == HOLDS and (i == index or (equations.points[i, STATUS] == STICKS and left <= limit)):
             status = SLIDES_ON if rubbing < 0.0 else SLIDES_BACK
@@ -165,8 +178,8 @@ def touch(
     """
     of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
     accelerate(place, v, acceleration, of.inverse_mass, of.damping, of.calls)
-    rest, _ = rest_limits(of, acceleration, v)
-    count, deepest = find_touching(of, points, scratch, place, v, within)
+    rest, least = rest_limits(of, acceleration, v)
+    count, deepest = find_touching(of, points, scratch, place, v, within, least / NO_PUSH)
     if count > len(points.points):
         return TOO_MANY, 0, rest, deepest, False
     return DONE, count, rest, deepest, _any_approaches(of, points, count, place, v, rest)
@@ -258,7 +271,7 @@ def advance_piece(
         if passed >= 0.0:
             break
         short = False
-    _note_changes(kind, index, points, count if kind >= 0 else 0, changed, rest)
+    _note_changes(kind, index, of, points, count if kind >= 0 else 0, changed, rest)
     for i in range(len(q)):
         q[i], v[i] = at.q[i], at.v[i]
     return passed, evaluations, kind >= 0

@@ -4,7 +4,8 @@ import math
 
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.ode.dop853_tableau import LAST
-from physicslab.kernels.rigid.features import Scene
+from physicslab.kernels.rigid.features import FIRST_ROW, Scene
+from physicslab.kernels.rigid.joint_points import fastest_change
 from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages
 from physicslab.kernels.rigid.touching import far_apart, length_of
 
@@ -35,9 +36,12 @@ def _turning_reach(scene: Scene, row: int) -> float:
 
 
 @inlined
-def _relative(scene: Scene, a: int, b: int, rates: Numbers) -> float:
-    """Return the largest rate at which points of two bodies come together, of speeds or accelerations."""
-    rows = scene.rows
+def _relative(scene: Scene, p: int, q: Numbers, rates: Numbers) -> float:
+    """Return the largest rate at which points of a pair come together, of speeds or accelerations."""
+    rows, a, b, wall = scene.rows, scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
+    if wall >= FIRST_ROW:
+        change: float = fastest_change(scene, wall - FIRST_ROW, q, rates)
+        return change
     rate: float = length_of(rates[2 * b] - rates[2 * a], rates[2 * b + 1] - rates[2 * a + 1])
     rate += abs(rates[2 * rows + a]) * _turning_reach(scene, a)
     rate += abs(rates[2 * rows + b]) * _turning_reach(scene, b)
@@ -52,8 +56,7 @@ def longest_piece(scene: Scene, q: Numbers, v: Numbers, acceleration: Numbers, a
     """
     longest = math.inf
     for p in range(len(scene.pairs)):
-        a, b = scene.pairs[p, 0], scene.pairs[p, 1]
-        speed, push = _relative(scene, a, b, v), _relative(scene, a, b, acceleration)
+        speed, push = _relative(scene, p, q, v), _relative(scene, p, q, acceleration)
         allowed[p] = math.inf
         if speed > 0.0 or push > 0.0:
             allowed[p] = max(far_apart(scene, p, q, math.inf), 0.0) + _STRIDE * scene.coefficients[p, 2]
@@ -89,6 +92,6 @@ def share_of_ways(scene: Scene, v: Numbers, h: float, short: bool, stages: Stage
         strays[row] = h * (math.sqrt(2.0) * off + turned * _turning_reach(scene, row))
     for p in range(len(scene.pairs)):
         a, b = scene.pairs[p, 0], scene.pairs[p, 1]
-        way = 0.5 * h * (_relative(scene, a, b, v) + _relative(scene, a, b, stages.v))
+        way = 0.5 * h * (_relative(scene, p, stages.q, v) + _relative(scene, p, stages.q, stages.v))
         worst = max(worst, (way + strays[a] + strays[b]) / allowed[p])
     return worst

@@ -18,8 +18,8 @@ from physicslab.kernels.rigid.features import (
     VN,
     VT,
     Scene,
-    measure,
 )
+from physicslab.kernels.rigid.joint_points import measure
 from physicslab.kernels.rigid.pieces import Stages, make_piece
 from physicslab.kernels.rigid.touching import NO_SPEED, SLOW, find_open, moved_closer
 

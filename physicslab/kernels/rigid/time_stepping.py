@@ -9,28 +9,43 @@ of order one.
 
 import math
 
-from physicslab.kernels import Numbers, inlined, kernel
+from physicslab.kernels import Numbers, Vectors, inlined, kernel
+from physicslab.kernels.accounts import HAND, MOTORS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ENDS, FIRST, PLACES, ROWS
+from physicslab.kernels.rigid.bookings import book_row
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
-from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, Equations, EquationsTuple, named_equations
+from physicslab.kernels.rigid.detect import find_points
+from physicslab.kernels.rigid.equations import (
+    FREE,
+    SLIDES_ON,
+    UNKNOWN,
+    Equations,
+    EquationsTuple,
+    named_equations,
+)
 from physicslab.kernels.rigid.features import (
     FEATURE,
+    FIRST_ROW,
     GAP,
     GIVEN,
+    JOINT,
     MU,
     ONE,
     OTHER,
+    VT,
     WALL,
     Scene,
     SceneTuple,
     named_scene,
 )
+from physicslab.kernels.rigid.joined import book_impulses
+from physicslab.kernels.rigid.joint_points import MOTOR, ROLE
 from physicslab.kernels.rigid.pieces import StagesTuple, named_stages
 from physicslab.kernels.rigid.touching import length_of
 
-__all__ = ["drift", "kick", "separate", "take_work"]
+__all__ = ["drift", "drive", "kick", "separate", "take_work"]
 
 _SEPARATIONS = 2
 """How often bodies that overlap are moved apart: gaps are not linear in angles."""
@@ -58,6 +73,34 @@ def kick(scene: SceneTuple, acceleration: Numbers, q: Numbers, v: Numbers, h: fl
         if of.inverse_mass[2 * row] > 0.0:
             largest = max(largest, length_of(acceleration[2 * row], acceleration[2 * row + 1]))
     return largest
+
+
+@kernel
+def drive(
+    scene: SceneTuple, equations: EquationsTuple, acceleration: Numbers, old: Numbers, q: Numbers, v: Numbers,
+    h: float, account: Vectors,
+) -> None:  # fmt: skip
+    """Let motors with a cap act for ``h`` seconds, one after the other, each by what it takes or its cap.
+
+    ``acceleration`` is what forces have caused in that time, ``old`` room for speeds.
+    """
+    of, points = named_scene(scene), named_equations(equations)
+    for p in range(len(of.pairs)):
+        row = of.pairs[p, 2] - FIRST_ROW
+        if row < 0 or of.row_ends[row, ROLE] != MOTOR:
+            continue
+        find_points(of, p, q, v, points.points)
+        measure_all(of, points, 1, q, v)
+        assemble(of, points, 1)
+        most = h * of.coefficients[p, 0]
+        points.vectors[UNKNOWN, 0] = 0.0
+        points.vectors[UNKNOWN, 1] = max(-most, min(most, -points.measures[0, VT] / points.a[1, 1]))
+        for i in range(len(v)):
+            old[i] = v[i]
+        apply(of, points, 1, v)
+        book_row(of, points, 0, q, old, v, 0.5 * h, acceleration, account[MOTORS], account[HAND])
+        if of.joints[ROWS] > 0:
+            book_impulses(of, points.points, points.measures, points.vectors[UNKNOWN], 1, q, v, account)
 
 
 @kernel
@@ -103,7 +146,8 @@ def _find_islands(scene: Scene, equations: Equations, count: int, island: Number
         for i in range(count):
             one, other = equations.points[i, ONE], equations.points[i, OTHER]
             moving = scene.inverse_mass[2 * one] > 0.0 and scene.inverse_mass[2 * other] > 0.0
-            if moving and equations.points[i, FEATURE] < WALL and island[one] != island[other]:
+            wall = WALL <= equations.points[i, FEATURE] < JOINT
+            if moving and not wall and island[one] != island[other]:
                 island[one] = island[other] = min(island[one], island[other])
                 changed = True
 

@@ -18,8 +18,10 @@ from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_O
 from physicslab.kernels.rigid.features import (
     CORNER,
     FEATURE,
+    FIRST_ROW,
     GAP,
     GIVEN,
+    JOINT,
     MEASURES,
     MU,
     ONE,
@@ -28,18 +30,20 @@ from physicslab.kernels.rigid.features import (
     POINT_FIELDS,
     RESTITUTION,
     STATUS,
+    TANGENT,
     VERTEX,
     VN,
     VT,
     WALL,
     Points,
     Scene,
-    measure,
 )
 from physicslab.kernels.rigid.joined import strongest_joint
+from physicslab.kernels.rigid.joint_points import OWN, UNIT, gap_of_row, is_motor, measure
 from physicslab.kernels.rigid.least_norm import solve_equations
 
 __all__ = [
+    "NO_PUSH",
     "NO_SPEED",
     "SLOW",
     "far_apart",
@@ -60,6 +64,8 @@ _REST = 1e-6
 """Tolerance of speeds, in shares of the speed of a fall over the smallest size."""
 SLOW = 1e-3
 """Share of that speed below which a point does not slide: what is slower comes to rest before it should."""
+NO_PUSH = 1e-12
+"""Share of the largest acceleration that is rounding."""
 NO_SPEED = 1e-8
 """Share of that speed that is rounding."""
 
@@ -87,6 +93,9 @@ def far_apart(scene: Scene, p: int, q: Numbers, enough: float) -> float:
     """
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
     shapes = scene.shapes
+    if wall >= FIRST_ROW:
+        left: float = gap_of_row(scene, wall - FIRST_ROW, q)
+        return left
     reach = shapes.reach[b]
     if wall >= 0:
         place = q[2 * b] if wall == 0 or wall == 2 else q[2 * b + 1]
@@ -167,8 +176,13 @@ def find_open(
 
 @inlined
 def moved_closer(scene: Scene, p: int, q: Numbers, later: Numbers) -> float:
-    """Return by how much the distance of a pair can have changed from one state to a later one [m]."""
+    """Return by how much the distance of a pair can have changed from one state to a later one [m].
+
+    That of a limit changes by more than bodies move: it is not estimated.
+    """
     rows, a, b = scene.rows, scene.pairs[p, 0], scene.pairs[p, 1]
+    if scene.pairs[p, 2] >= FIRST_ROW:
+        return math.inf
     x, y = later[2 * b] - q[2 * b], later[2 * b + 1] - q[2 * b + 1]
     turned = abs(later[2 * rows + b] - q[2 * rows + b]) * scene.shapes.reach[b]
     if scene.pairs[p, 2] < 0:
@@ -179,10 +193,27 @@ def moved_closer(scene: Scene, p: int, q: Numbers, later: Numbers) -> float:
 
 
 @inlined
+def _find_unit(scene: Scene, scratch: Equations, i: int, most: float, strongest: float) -> float:
+    """Find what a force at a motor causes, and a unit of force of the size of those there are [N]."""
+    own, rows, r = 0.0, scene.rows, scratch.points[i, FEATURE] - JOINT
+    for side in range(2):
+        body, t = scratch.points[i, ONE + side], TANGENT + 3 * side
+        for k in range(3):
+            place = 2 * body + k if k < 2 else 2 * rows + body
+            own += scene.inverse_mass[place] * scratch.measures[i, t + k] * scratch.measures[i, t + k]
+    unit: float = strongest / own if strongest > 0.0 else most
+    scene.row_numbers[r, OWN], scene.row_numbers[r, UNIT] = own, unit
+    return unit
+
+
+@inlined
 def find_touching(
-    scene: Scene, equations: Equations, scratch: Equations, q: Numbers, v: Numbers, within: float
-) -> tuple[int, float]:
+    scene: Scene, equations: Equations, scratch: Equations, q: Numbers, v: Numbers, within: float,
+    strongest: float,
+) -> tuple[int, float]:  # fmt: skip
     """List the points that touch, or are ``within`` a share of the size of that.
+
+    ``strongest`` is the largest acceleration there is, for which motors get their units of force.
 
     Returns how many there are, and the deepest overlap as a share of a size. Only as many as there is room
     for are listed.
@@ -204,6 +235,9 @@ def find_touching(
                 for column in range(GIVEN):
                     equations.points[count, column] = scratch.points[k, column]
                 equations.measures[count, MU] = scene.coefficients[p, 0]
+                if is_motor(scene, scratch.points, k):
+                    unit = _find_unit(scene, scratch, k, scene.coefficients[p, 0], strongest)
+                    equations.measures[count, MU] /= unit
                 equations.measures[count, RESTITUTION] = scene.coefficients[p, 1]
             count += 1
     return count, deepest
@@ -211,7 +245,10 @@ def find_touching(
 
 @inlined
 def rest_limits(scene: Scene, acceleration: Numbers, v: Numbers) -> tuple[float, float]:
-    """Return the tolerances of speeds [m/s] and of accelerations [m/s^2], below which all is zero."""
+    """Return the tolerances of speeds [m/s] and of accelerations [m/s^2], below which all is zero.
+
+    The latter is ``NO_PUSH`` times the largest acceleration.
+    """
     strongest, fastest, smallest = 0.0, 0.0, math.inf
     for row in range(scene.rows):
         if scene.inverse_mass[2 * row] > 0.0:
@@ -225,7 +262,7 @@ def rest_limits(scene: Scene, acceleration: Numbers, v: Numbers) -> tuple[float,
     if smallest == math.inf:
         return 0.0, 0.0
     strongest += fastest * fastest / smallest  # what moves round a corner, or spins, accelerates towards it
-    return _REST * math.sqrt(strongest * smallest), 1e-12 * strongest
+    return _REST * math.sqrt(strongest * smallest), NO_PUSH * strongest
 
 
 @inlined
@@ -291,6 +328,8 @@ def _note_given(equations: Equations, count: int, changed: Points, rest: float) 
             given = SLIDES_BACK
         elif changed_to > STICKS:
             given = changed_to
+        if changed_to == STICKS:  # a motor has its speed, however small the speeds are that are rounding
+            given = STICKS
         equations.points[i, GIVEN] = given
 
 
@@ -312,7 +351,7 @@ def hold_closed(
         if not leaves:
             _stop_across(scene, equations, count, q, v)
         accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
-        find_free_rates(scene, equations, count, acceleration)
+        find_free_rates(scene, equations, count, acceleration, 0.0)
         _note_given(equations, count, changed, rest)
         found = solve_complementarity(equations, count, least, True)
         solved = found == SETTLED or (found == FITTING and settle_at_an_edge(equations, count, least))
@@ -347,11 +386,12 @@ def hold_evenly(
         inverse_mass[i], pulled[i] = share * scene.inverse_mass[i], share * acceleration[i]
     even = Scene(
         scene.rows, inverse_mass, scene.damping, scene.calls, scene.shapes, scene.walls, scene.pairs,
-        scene.coefficients, scene.accounts, scene.joint_numbers, scene.joints,
+        scene.coefficients, scene.accounts, scene.joint_numbers, scene.joints, scene.row_numbers,
+        scene.row_ends,
     )  # fmt: skip
     _note_given(equations, count, changed, rest)
     assemble(even, equations, count)
-    find_free_rates(even, equations, count, pulled)
+    find_free_rates(even, equations, count, pulled, 0.0)
     found: int = solve_complementarity(equations, count, least, True)
     return found
 

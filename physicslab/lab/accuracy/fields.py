@@ -1,11 +1,13 @@
 """Bodies that are driven, and charges in fields, whose motion has a closed form."""
 
 import math
+from functools import partial
 
-from physicslab.components import Drag, Spring, Thrust
-from physicslab.ecs.config import SimulationConfig
-from physicslab.lab.accuracy.problem import Ladder, Problem, state_error
-from physicslab.lab.closed_forms import driven
+from physicslab.components import Charge, Drag, Spring, Thrust
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.lab.accuracy.problem import Ladder, Problem, distance, state_error
+from physicslab.lab.closed_forms import crossed, driven, repelled
 from physicslab.lab.worlds import empty_world, spawn_point
 from physicslab.world import World
 
@@ -34,9 +36,87 @@ def _driven(share: float, title: str) -> Problem:
     )  # fmt: skip
 
 
+# ---- charges -----------------------------------------------------------------------------------------------
+
+_START, _SPEED = complex(0.3, 0.1), complex(1.0, 0.5)
+_charged = partial(Problem, group="charges", good=1e-6, excellent=1e-11, ladder=Ladder(512))
+
+
+def _in_fields(name: str, title: str, mass: float, charge: float, laws: PhysicsConfig) -> Problem:
+    """Return the problem of one charge in uniform fields."""
+    rate, share = charge * laws.magnetic_field / mass, charge / mass
+    pull = complex(*laws.electric_field) * share
+
+    def build(simulation: SimulationConfig) -> World:
+        world, where, how = (
+            empty_world(simulation, laws),
+            (_START.real, _START.imag),
+            (_SPEED.real, _SPEED.imag),
+        )
+        spawn_point(world, where, how, Charge(charge), mass=mass, name="body")
+        return world
+
+    def error(world: World, i: int) -> float:
+        z, speed = crossed(pull, rate, _START, _SPEED, (1.0, 100.0)[i])
+        return state_error(world, "body", (z.real, z.imag), (speed.real, speed.imag), rate)
+
+    return _charged(
+        name=name, title=title, build=build, error=error, times=(1.0, 100.0),
+        compared="x, y, vx, vy after 1 and 100 s",
+        measure="largest error of x, y and of vx, vy over q B / m [m]",
+    )  # fmt: skip
+
+
+_AXIS, _EXCESS, _REPULSION, _BEFORE = 0.2, 1.5, 6.0, -1.0
+"""Of the hyperbola of two charges that meet [m]; k q q (1/m + 1/m) [m^3/s^2]; the start before the nearest
+point [s]."""
+
+
+def _two_charges(simulation: SimulationConfig) -> World:
+    laws = PhysicsConfig(gravity_mode="none", coulomb_constant=1.0)
+    world, (z, speed) = empty_world(simulation, laws), repelled(_REPULSION, _AXIS, _EXCESS, _BEFORE)
+    for name, share in (("light", 0.75), ("heavy", -0.25)):  # 1 kg and 3 kg, with 1 C and 4.5 C
+        mass, charge = (1.0, 1.0) if share > 0.0 else (3.0, 4.5)
+        where, how = share * z, share * speed
+        parts = (where.real, where.imag), (how.real, how.imag), Charge(charge)
+        spawn_point(world, *parts, mass=mass, name=name)
+    return world
+
+
+def _rutherford_error(world: World, i: int) -> float:
+    z, _ = repelled(_REPULSION, _AXIS, _EXCESS, _BEFORE + (1.0, 3.0)[i])
+    return distance(
+        world, {"light": (0.75 * z.real, 0.75 * z.imag), "heavy": (-0.25 * z.real, -0.25 * z.imag)}
+    )
+
+
 FIELDS = (
     _driven(0.5, "A damped mass on a spring, driven at half its own frequency"),
     _driven(1.0, "The same at resonance"),
     _driven(2.0, "The same at twice its own frequency"),
+    _in_fields(
+        "cyclotron",
+        "A charge that circles in a magnetic field, 19 times",
+        2.0,
+        3.0,
+        PhysicsConfig(gravity_mode="none", magnetic_field=0.8),
+    ),
+    _in_fields(
+        "crossed_fields",
+        "A charge on a cycloid, in an electric and a magnetic field",
+        2.0,
+        3.0,
+        PhysicsConfig(gravity_mode="none", electric_field=Vector2(0.5, -1.0), magnetic_field=0.8),
+    ),
+    _charged(
+        name="rutherford",
+        title="Two charges of one sign meet, and scatter",
+        build=_two_charges,
+        error=_rutherford_error,
+        times=(1.0, 3.0),
+        compared="places when they are nearest, and 2 s later",
+        measure="largest distance from the true place [m]",
+        keeps={"energy", "momentum", "angular_momentum"},
+    ),
 )
 """Every problem with forces of this kind."""

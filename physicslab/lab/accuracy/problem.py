@@ -235,7 +235,8 @@ def ladder(problem: Problem, method: Integrator) -> Iterator[Setting]:
 
 
 def sees_velocity(problem: Problem) -> bool:
-    """Whether forces in a problem depend on velocities."""
+    """Whether forces in a problem depend on velocities, other than by turning them."""
     world = problem.build(SimulationConfig(dt=problem.dt))
     world.synchronise()
-    return any(force.sees_velocity(world) for force in world.schedule.smooth_forces)
+    forces = [force for force in world.schedule.smooth_forces if force.gyration(world) is None]
+    return any(force.sees_velocity(world) for force in forces)

@@ -79,11 +79,25 @@ void scene_disc( Scene* scene, int body, double radius, double friction, double 
 	b2CreateCircleShape( scene->bodies[body], &def, &disc );
 }
 
-void scene_box( Scene* scene, int body, double width, double height, double friction, double restitution )
+/* core: x, y of each of count vertices */
+void scene_polygon( Scene* scene, int body, const double* core, int count, double radius, double friction,
+					double restitution )
 {
 	b2ShapeDef def = surface( friction, restitution );
-	b2Polygon box = b2MakeBox( 0.5f * (float)width, 0.5f * (float)height );
-	b2CreatePolygonShape( scene->bodies[body], &def, &box );
+	b2Vec2 points[B2_MAX_POLYGON_VERTICES];
+	for ( int i = 0; i < count; ++i )
+	{
+		points[i] = (b2Vec2){ (float)core[2 * i], (float)core[2 * i + 1] };
+	}
+	if ( count == 2 )
+	{
+		b2Capsule capsule = { points[0], points[1], (float)radius };
+		b2CreateCapsuleShape( scene->bodies[body], &def, &capsule );
+		return;
+	}
+	b2Hull hull = b2ComputeHull( points, count );
+	b2Polygon polygon = b2MakePolygon( &hull, (float)radius );
+	b2CreatePolygonShape( scene->bodies[body], &def, &polygon );
 }
 
 /* ends: x, y of one, x, y of the other */
@@ -114,6 +128,52 @@ void scene_spring( Scene* scene, int a, int b, const double* anchors, double len
 	def.hertz = (float)hertz;
 	def.dampingRatio = (float)damping;
 	b2CreateDistanceJoint( scene->world, &def );
+}
+
+/* kind: 0 rod, 1 rope, 2 pin, 3 slot, 4 weld. numbers: x, y of the anchors; angles of the frames, in which the
+   bodies are one, and whose x axis is that of a slot; length; lower and upper limit; speed and strength of the motor */
+void scene_joint( Scene* scene, int kind, int a, int b, int collide, int limited, const double* numbers )
+{
+	b2JointDef base = b2DefaultWeldJointDef().base;
+	base.bodyIdA = scene->bodies[a], base.bodyIdB = scene->bodies[b];
+	base.localFrameA.p = (b2Vec2){ (float)numbers[0], (float)numbers[1] };
+	base.localFrameB.p = (b2Vec2){ (float)numbers[2], (float)numbers[3] };
+	base.localFrameA.q = (b2Rot){ (float)cos( numbers[4] ), (float)sin( numbers[4] ) };
+	base.localFrameB.q = (b2Rot){ (float)cos( numbers[5] ), (float)sin( numbers[5] ) };
+	base.collideConnected = collide != 0;
+	float length = (float)numbers[6], lower = (float)numbers[7], upper = (float)numbers[8];
+	float speed = (float)numbers[9], strongest = (float)numbers[10];
+	if ( kind < 2 )
+	{
+		b2DistanceJointDef def = b2DefaultDistanceJointDef();
+		def.base = base;
+		def.length = length;
+		def.enableSpring = def.enableLimit = kind == 1; /* without stiffness: it stops at its limit */
+		def.hertz = 0.0f, def.minLength = 0.0f, def.maxLength = length;
+		b2CreateDistanceJoint( scene->world, &def );
+	}
+	else if ( kind == 2 )
+	{
+		b2RevoluteJointDef def = b2DefaultRevoluteJointDef();
+		def.base = base;
+		def.enableLimit = limited != 0, def.lowerAngle = lower, def.upperAngle = upper;
+		def.enableMotor = strongest > 0.0f, def.motorSpeed = speed, def.maxMotorTorque = strongest;
+		b2CreateRevoluteJoint( scene->world, &def );
+	}
+	else if ( kind == 3 )
+	{
+		b2PrismaticJointDef def = b2DefaultPrismaticJointDef();
+		def.base = base;
+		def.enableLimit = limited != 0, def.lowerTranslation = lower, def.upperTranslation = upper;
+		def.enableMotor = strongest > 0.0f, def.motorSpeed = speed, def.maxMotorForce = strongest;
+		b2CreatePrismaticJoint( scene->world, &def );
+	}
+	else
+	{
+		b2WeldJointDef def = b2DefaultWeldJointDef();
+		def.base = base;
+		b2CreateWeldJoint( scene->world, &def );
+	}
 }
 
 void scene_step( Scene* scene, double dt, int substeps, int steps )

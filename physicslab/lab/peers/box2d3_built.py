@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from physicslab.components import Material, Shape, Spring
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.peers.peer import Peer, PeerBody
+from physicslab.lab.peers.mirrors import STRONG
+from physicslab.lab.peers.peer import CannotBuild, Peer, PeerBody, PeerJoint
 
 SUBSTEPS = 4
 _DRIVER = Path(__file__).with_name("box2d3.c")
@@ -24,6 +25,7 @@ _OPTIONS = ("-std=c17", "-O3", "-DNDEBUG", "-ffp-contract=off", "-w", "-shared",
 """Those of Box2D's own release build, for a library."""
 _WIDE = ("-mavx2", "-DBOX2D_AVX2")
 _KINDS = ("static", "kinematic", "dynamic")
+_JOINTS = ("rod", "rope", "pin", "slot", "weld")
 """By the numbers that the driver has for them."""
 _Numbers = ctypes.POINTER(ctypes.c_double)
 
@@ -65,7 +67,10 @@ class BuiltBox2D(Peer):
         if shape.kind == "circle":
             self.library.scene_disc(self.space, body, shape.radius, *surface)
         else:
-            self.library.scene_box(self.space, body, shape.width, shape.height, *surface)
+            core = [float(part) for vertex in shape.core for part in vertex]
+            self.library.scene_polygon(
+                self.space, body, _array(core), len(core) // 2, shape.rounding, *surface
+            )
 
     @override
     def weigh(self, body: int, mass: float, inertia: float) -> None:
@@ -76,6 +81,20 @@ class BuiltBox2D(Peer):
         anchors = _array((*spring.anchor_a, *spring.anchor_b))
         numbers = spring.rest_length, *self.frequency(entity, spring)
         self.library.scene_spring(self.space, *ends, anchors, *numbers)
+
+    @override
+    def add_joint(self, joint: PeerJoint) -> None:
+        if joint.kind == "slot" and joint.angle is None:
+            raise CannotBuild("no slot in which a body turns")
+        axis = math.atan2(joint.axis[1], joint.axis[0])
+        frames = (0.0, 0.0) if joint.angle is None else (axis, axis - joint.angle)
+        most = 0.99 * math.pi if joint.kind == "pin" else STRONG
+        numbers = (
+            *joint.anchors[0], *joint.anchors[1], *frames, joint.length, max(joint.lower, -most),
+            min(joint.upper, most), joint.speed, min(joint.strongest, STRONG),
+        )  # fmt: skip
+        flags = joint.collide, joint.is_limited
+        self.library.scene_joint(self.space, _JOINTS.index(joint.kind), *joint.ends, *flags, _array(numbers))
 
     @property
     @override
@@ -159,7 +178,8 @@ def _loaded(library: Path) -> ctypes.CDLL:
     number, whole, scene = ctypes.c_double, ctypes.c_int, ctypes.c_void_p
     for name, types in {
         "close": (), "gravity": (number,) * 2, "body": (whole, _Numbers), "disc": (whole, *(number,) * 3),
-        "box": (whole, *(number,) * 4), "wall": (whole, _Numbers, number, number),
+        "polygon": (whole, _Numbers, whole, *(number,) * 3), "joint": (*(whole,) * 5, _Numbers),
+        "wall": (whole, _Numbers, number, number),
         "mass": (whole, number, number), "spring": (whole, whole, _Numbers, *(number,) * 3),
         "step": (number, whole, whole), "state": (_Numbers,),
     }.items():  # fmt: skip

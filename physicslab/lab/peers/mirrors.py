@@ -5,8 +5,10 @@ from collections.abc import Sequence
 from typing import Any, override
 
 from physicslab.components import Material, Shape, Spring
-from physicslab.lab.peers.peer import CannotBuild, Peer, PeerBody
+from physicslab.lab.peers.peer import CannotBuild, Peer, PeerBody, PeerJoint
 
+STRONG = 1e30
+"""The force of a motor that takes as much as it needs [N], [N m]: floats of Box2D are of 32 bits."""
 FAST = 20.0
 """A body that starts faster [m/s] is one of Box2D's bullets, which do not pass through moving bodies."""
 
@@ -55,7 +57,7 @@ class PymunkMirror(Peer):
         if shape.kind == "circle":
             made = self.engine.Circle(body, shape.radius)
         else:
-            made = self.engine.Poly.create_box(body, (shape.width, shape.height))
+            made = self.engine.Poly(body, list(map(tuple, shape.core)), radius=shape.rounding)
         e = material.restitution
         made.elasticity = math.sqrt(e) if self._one_restitution else e
         made.friction = math.sqrt(material.friction)
@@ -66,6 +68,37 @@ class PymunkMirror(Peer):
         anchors = tuple(spring.anchor_a), tuple(spring.anchor_b)
         numbers = spring.rest_length, spring.stiffness, spring.damping
         self.space.add(self.engine.DampedSpring(*ends, *anchors, *numbers))
+
+    @override
+    def add_joint(self, joint: PeerJoint) -> None:
+        engine, ends = self.engine, joint.ends
+        held = (*ends, *joint.anchors)
+        match joint.kind:
+            case "rod":
+                made = [engine.PinJoint(*held)]
+                made[0].distance = joint.length
+            case "rope":
+                made = [engine.SlideJoint(*held, 0.0, joint.length)]
+            case "pin":
+                made = [engine.PivotJoint(*held)]
+                if joint.is_limited:
+                    made.append(engine.RotaryLimitJoint(*ends, joint.lower, joint.upper))
+                if joint.strongest:
+                    made.append(engine.SimpleMotor(*ends, -joint.speed))  # of A against B
+                    made[-1].max_force = joint.strongest
+            case "slot":
+                if joint.strongest or not joint.lower < joint.upper < math.inf > -joint.lower:
+                    raise CannotBuild("no motor in a groove, and none without ends")
+                (x, y), (along, up) = joint.anchors[0], joint.axis
+                groove = ((x + way * along, y + way * up) for way in (joint.lower, joint.upper))
+                made = [engine.GrooveJoint(*ends, *groove, joint.anchors[1])]
+            case "weld":
+                made = [engine.PivotJoint(*held)]
+        if joint.angle is not None:
+            made.append(engine.GearJoint(*ends, joint.angle, 1.0))
+        for part in made:
+            part.collide_bodies = joint.collide
+        self.space.add(*made)
 
     @override
     def positions(self) -> list[tuple[float, float]]:
@@ -126,8 +159,10 @@ class Box2DMirror(Peer):
     def add_shape(self, body: Any, shape: Shape, material: Material) -> None:
         if shape.kind == "circle":
             made = self.engine.b2CircleShape(radius=shape.radius)
+        elif shape.rounding:
+            raise CannotBuild("no rounded corners")
         else:
-            made = self.engine.b2PolygonShape(box=(0.5 * shape.width, 0.5 * shape.height))
+            made = self.engine.b2PolygonShape(vertices=list(map(tuple, shape.core)))
         body.CreateFixture(
             shape=made, density=1.0, friction=material.friction, restitution=material.restitution
         )
@@ -144,6 +179,44 @@ class Box2DMirror(Peer):
             localAnchorB=tuple(spring.anchor_b), length=spring.rest_length, frequencyHz=hertz,
             dampingRatio=damping, collideConnected=True,
         )  # fmt: skip
+
+    @override
+    def add_joint(self, joint: PeerJoint) -> None:
+        held = {
+            "bodyA": joint.ends[0], "bodyB": joint.ends[1], "localAnchorA": joint.anchors[0],
+            "localAnchorB": joint.anchors[1], "collideConnected": joint.collide,
+        }  # fmt: skip
+        bounds = {
+            "enableLimit": joint.is_limited, "enableMotor": joint.strongest > 0.0, "motorSpeed": joint.speed,
+        }  # fmt: skip
+        lower, upper, strongest = (
+            max(joint.lower, -STRONG),
+            min(joint.upper, STRONG),
+            min(joint.strongest, STRONG),
+        )
+        match joint.kind:
+            case "rod":
+                self.space.CreateDistanceJoint(length=joint.length, frequencyHz=0.0, **held)
+            case "rope":
+                self.space.CreateRopeJoint(maxLength=joint.length, **held)
+            case "pin":
+                self.space.CreateRevoluteJoint(
+                    referenceAngle=0.0,
+                    lowerAngle=lower,
+                    upperAngle=upper,
+                    maxMotorTorque=strongest,
+                    **held,
+                    **bounds,
+                )
+            case "slot":
+                if joint.angle is None:
+                    raise CannotBuild("no slot in which a body turns")
+                self.space.CreatePrismaticJoint(
+                    localAxisA=joint.axis, referenceAngle=joint.angle, lowerTranslation=lower,
+                    upperTranslation=upper, maxMotorForce=strongest, **held, **bounds,
+                )  # fmt: skip
+            case "weld":
+                self.space.CreateWeldJoint(referenceAngle=joint.angle, **held)
 
     @override
     def positions(self) -> list[tuple[float, float]]:
@@ -198,7 +271,7 @@ class Box2D3Mirror(Peer):
         if shape.kind == "circle":
             made = self.engine.circle(center=(0.0, 0.0), radius=shape.radius)
         else:
-            made = self.engine.box(0.5 * shape.width, 0.5 * shape.height)
+            made = self.engine.polygon(list(map(tuple, shape.core)), radius=shape.rounding)
         body.create_shape(self._surface(material.friction, material.restitution), made)
 
     @override
@@ -215,6 +288,42 @@ class Box2D3Mirror(Peer):
             local_anchor_b=tuple(spring.anchor_b), length=spring.rest_length, enable_spring=True,
             hertz=hertz, damping_ratio=damping, collide_connected=True,
         )  # fmt: skip
+
+    @override
+    def add_joint(self, joint: PeerJoint) -> None:
+        held = {
+            "body_a": joint.ends[0], "body_b": joint.ends[1], "local_anchor_a": joint.anchors[0],
+            "local_anchor_b": joint.anchors[1], "collide_connected": joint.collide,
+        }  # fmt: skip
+        bounds = {
+            "enable_limit": joint.is_limited, "enable_motor": joint.strongest > 0.0,
+            "motor_speed": joint.speed,
+        }  # fmt: skip
+        strongest = min(joint.strongest, STRONG)
+        match joint.kind:
+            case "rod":
+                self.space.create_distance_joint(length=joint.length, **held)
+            case "rope":  # a spring without stiffness, which stops at its limit
+                self.space.create_distance_joint(
+                    length=joint.length, enable_spring=True, hertz=0.0, enable_limit=True, min_length=0.0,
+                    max_length=joint.length, **held,
+                )  # fmt: skip
+            case "pin":
+                turn = 0.99 * math.pi  # the largest limit that it takes
+                self.space.create_revolute_joint(
+                    lower_angle=max(joint.lower, -turn), upper_angle=min(joint.upper, turn),
+                    max_motor_torque=strongest, **held, **bounds,
+                )  # fmt: skip
+            case "slot":
+                if joint.angle is None:
+                    raise CannotBuild("no slot in which a body turns")
+                self.space.create_prismatic_joint(
+                    local_axis_a=joint.axis, reference_angle=joint.angle, max_motor_force=strongest,
+                    lower_translation=max(joint.lower, -STRONG), upper_translation=min(joint.upper, STRONG),
+                    **held, **bounds,
+                )  # fmt: skip
+            case "weld":
+                self.space.create_weld_joint(reference_angle=joint.angle, **held)
 
     @override
     def positions(self) -> list[tuple[float, float]]:

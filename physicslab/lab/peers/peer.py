@@ -11,8 +11,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Drag, Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.components import Charge, Drag, Mass, Material, Shape, Spring, Thrust, Transform, Velocity
 from physicslab.ecs.vector import Vector2
+from physicslab.state.joint_rows import KINDS
 from physicslab.state.masses import Diverged
 from physicslab.systems.system import Stage
 from physicslab.world import World
@@ -47,10 +48,54 @@ class PeerBody:
     inertia: float = 0.0
 
 
+@dataclass(frozen=True, slots=True)
+class PeerJoint:
+    """A joint as other engines take it.
+
+    Attributes
+    ----------
+    kind : str
+        ``"rod"``, ``"rope"``, ``"pin"``, ``"slot"`` or ``"weld"``.
+    ends : pair
+        The engine's own bodies.
+    anchors : pair of pairs of floats
+        Where it holds them, each in its body's frame [m].
+    collide : bool
+        Whether the two touch each other.
+    length : float
+        Of a rod or a rope [m].
+    angle : float, optional
+        That of B less that of A [rad] of a weld, and of a slot in which B does not turn.
+    axis : pair of floats
+        The direction of a slot in A's frame, of length 1.
+    lower, upper : float
+        The limits of a pin [rad] or a slot [m], infinite where there are none.
+    speed, strongest : float, float
+        The motor of a pin [rad/s], [N m] or a slot [m/s], [N]; the second is 0 where there is none.
+    """
+
+    kind: Literal["rod", "rope", "pin", "slot", "weld"]
+    ends: tuple[Any, Any]
+    anchors: tuple[tuple[float, float], tuple[float, float]]
+    collide: bool
+    length: float = 0.0
+    angle: float | None = None
+    axis: tuple[float, float] = (1.0, 0.0)
+    lower: float = -math.inf
+    upper: float = math.inf
+    speed: float = 0.0
+    strongest: float = 0.0
+
+    @property
+    def is_limited(self) -> bool:
+        """Whether it has a limit."""
+        return self.lower > -math.inf or self.upper < math.inf
+
+
 class Peer(ABC):
     """A world's bodies, as they are when this is made, in another engine.
 
-    Masses, moments of inertia, outlines, springs, friction and restitution are the world's.
+    Masses, moments of inertia, outlines, springs, joints, friction and restitution are the world's.
 
     Attributes
     ----------
@@ -89,7 +134,9 @@ class Peer(ABC):
             self.engine: Any = importlib.import_module(self.module)  # here: most users have no peers
         world.synchronise()
         self.world = world
-        if world.physics.gravity_mode == "planet" or world.batch(Drag).entities.size:
+        if world.physics.gravity_mode == "planet" or any(
+            len(world.batch(force)) for force in (Charge, Drag, Thrust)
+        ):
             raise CannotBuild("no such force")
         self.gravity = world.physics.gravity if world.physics.gravity_mode == "linear" else Vector2()
         self.make_space()
@@ -98,13 +145,17 @@ class Peer(ABC):
             body = self._body(entity)
             made = self._bodies[entity] = self.add_body(body)
             if world.has(entity, Shape):
-                self.add_shape(made, world.component(entity, Shape), world.component(entity, Material))
+                surface = world.component(entity, Material) if world.has(entity, Material) else Material()
+                self.add_shape(made, world.component(entity, Shape), surface)
             if body.kind == "dynamic":  # after its shape, which changes its mass
                 self.weigh(made, body.mass, body.inertia)
         for entity in world.batch(Spring).entities.tolist():
             spring = world.component(entity, Spring)
             ends = [self._bodies[end] if end else self.ground for end in (spring.a or entity, spring.b)]
             self.add_spring(spring, ends, entity)
+        for kind in KINDS:
+            for entity in world.batch(kind).entities.tolist():
+                self.add_joint(self._joint(entity, world.component(entity, kind)))
         moving = world.batch(Transform, Velocity)
         self._rows, self.moving = moving.rows.copy(), moving.entities.tolist()
 
@@ -122,6 +173,32 @@ class Peer(ABC):
         mass = world.component(entity, Mass)
         turns = world.has(entity, Shape) and not mass.fixed_rotation
         return PeerBody("dynamic", *place, *motion, mass.mass, float(mass.inertia or 0.0) if turns else 0.0)
+
+    def _joint(self, entity: int, joint: Any) -> PeerJoint:
+        """Return a joint of the world, which an entity carries."""
+        kind: Any = type(joint).__name__.lower()
+        if kind not in ("rod", "rope", "pin", "slot", "weld"):
+            raise CannotBuild(f"no {kind}")
+        carrier = entity if self.world.has(entity, Transform) else 0
+        numbers: dict[str, Any] = {}
+        if kind in ("rod", "rope"):
+            numbers["length"] = joint.length
+        elif kind == "weld" or (kind == "slot" and not joint.turns):
+            numbers["angle"] = joint.angle
+        if kind in ("pin", "slot"):
+            numbers |= {name: getattr(joint, name) for name in ("lower", "upper") if joint.is_given(name)}
+            if joint.is_given("motor_speed"):
+                most = "max_torque" if kind == "pin" else "max_force"
+                strongest = getattr(joint, most) if joint.is_given(most) else math.inf
+                numbers |= {"speed": joint.motor_speed, "strongest": strongest}
+        if kind == "slot":
+            axis = joint.axis.normalized
+            numbers["axis"] = (axis.x, axis.y)
+        if any(joint.is_given(name) for name in ("breaks", "breaks_torque") if hasattr(joint, name)):
+            raise CannotBuild("no joint that breaks")
+        first, second = (self._bodies[end] if end else self.ground for end in (joint.a or carrier, joint.b))
+        anchors = (joint.anchor_a.x, joint.anchor_a.y), (joint.anchor_b.x, joint.anchor_b.y)
+        return PeerJoint(kind, (first, second), anchors, joint.collide, **numbers)
 
     @abstractmethod
     def make_space(self) -> None:
@@ -145,6 +222,10 @@ class Peer(ABC):
     @abstractmethod
     def add_spring(self, spring: Spring, ends: Sequence[Any], entity: int) -> None:
         """Add a spring between two bodies, which an entity carries."""
+
+    @abstractmethod
+    def add_joint(self, joint: PeerJoint) -> None:
+        """Add a joint."""
 
     @property
     def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:

@@ -81,7 +81,10 @@ def draw_strokes(
         if share > 0.0:
             first, second = (float(start[i, 0]), float(start[i, 1])), (float(end[i, 0]), float(end[i, 1]))
             red, green, blue = colour[i].tolist()
-            _stroke(surface, first, second, (red, green, blue), max(1, round(float(width[i]))), share)
+            if first == second:  # a disc
+                pygame.draw.circle(surface, (red, green, blue), first, 0.5 * float(width[i]))
+            else:
+                _stroke(surface, first, second, (red, green, blue), max(1, round(float(width[i]))), share)
 
 
 def _colours(look: Look) -> Iterator[tuple[_Colour, _Colour]]:

@@ -35,8 +35,10 @@ class Theme:
         How much of the rim's colour is in a body's fill, the rest being background.
     static, kinematic, held : Colour
         The rims of static bodies, of kinematic ones, and of the one in the hand.
-    spring, pin, bounds : Colour
-        Springs, the fixed points that hold them, the walls of the world.
+    spring, rod, rope, pin, bounds : Colour
+        Springs, rods and rails, ropes, screws, the walls of the world.
+    shine : Colour
+        The light on rods and ropes.
     spark : Colour
         Sparks at impacts.
     panel, panel_opacity, outline : Colour, float, Colour
@@ -63,6 +65,9 @@ class Theme:
     kinematic: Colour
     held: Colour
     spring: Colour
+    rod: Colour
+    rope: Colour
+    shine: Colour
     pin: Colour
     bounds: Colour
     spark: Colour
@@ -114,7 +119,10 @@ _OF_ALL: dict[str, tuple[Any, Any, Any]] = {
     "static": ((112, 121, 140), (190, 190, 190), (92, 99, 114)),
     "kinematic": ((200, 206, 220), (230, 230, 230), (58, 63, 76)),
     "held": ((255, 255, 255), (255, 255, 255), (10, 12, 18)),
-    "spring": ((160, 168, 186), (225, 225, 225), (88, 95, 112)),
+    "spring": ((226, 190, 92), (255, 225, 110), (146, 104, 8)),
+    "rod": ((150, 168, 214), (205, 218, 255), (78, 92, 134)),
+    "rope": ((208, 158, 98), (255, 190, 110), (140, 88, 36)),
+    "shine": ((255, 255, 255), (255, 255, 255), (255, 255, 255)),
     "pin": ((214, 219, 230), (255, 255, 255), (40, 44, 54)),
     "bounds": ((98, 108, 130), (175, 175, 175), (105, 113, 132)),
     "spark": ((255, 220, 150), (255, 240, 170), (205, 95, 0)),

@@ -13,6 +13,7 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Rect, is_within
 from physicslab.view.overlay.instruments import Instrument, instruments_of
 from physicslab.view.picture.bodies import POINT_RADIUS, body_rows
+from physicslab.view.picture.joints import gaps_to, joint_at
 from physicslab.view.picture.springs import ends_of
 from physicslab.world import World
 
@@ -60,16 +61,17 @@ def spring_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int |
     if not len(world.batch(Spring).rows):
         return None
     start, end = (camera.project(place) for place in ends_of(world))
-    with np.errstate(all="ignore"):
-        along, offset = end - start, np.array(pixel) - start
-        length = np.maximum((along**2).sum(axis=1), 1e-12)
-        share = np.clip((along * offset).sum(axis=1) / length, 0.0, 1.0)[:, None]
-        distance = np.hypot(*(offset - share * along).T)
-    distance[~np.isfinite(distance)] = np.inf
+    distance = gaps_to(start, end, pixel)
     nearest = int(np.argmin(distance))
     if distance[nearest] > _MAX_FROM_SPRING:
         return None
     return int(world.batch(Spring).entities[nearest])
+
+
+def link_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
+    """Return the entity whose rod, rope or spring is at a place on the screen [px], or ``None``."""
+    joint = joint_at(world, camera, pixel, lines=True)
+    return spring_at(world, camera, pixel) if joint is None else joint
 
 
 def centre_near(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:

@@ -11,7 +11,7 @@ from physicslab.view.controls import drawing
 from physicslab.view.controls.drawing import Drawn
 from physicslab.view.controls.joining import JOINTS, SPRING
 from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument
-from physicslab.view.controls.picking import body_at, instrument_at, spring_at
+from physicslab.view.controls.picking import body_at, instrument_at, link_at, spring_at
 from physicslab.view.controls.spawning import BODIES
 from physicslab.view.controls.tool import Tool
 from physicslab.view.picture.joints import joint_at
@@ -47,7 +47,7 @@ def take_hold(world: World, window: Window) -> bool:
         return True  # it lies over what is fixed
     if entity is None:
         window.pins.dragged = pin
-        spring = spring_at(world, window.camera, window.pointer) if pin is None else pin
+        spring = link_at(world, window.camera, window.pointer) if pin is None else pin
         if spring is not None:
             window.selection.take(spring, add=window.adding)
         return spring is not None
@@ -90,6 +90,10 @@ def remove(world: World, window: Window) -> None:
         return
     entity = instrument_at(world, window.camera, window.pointer, window.measuring.rects)
     entity = body_at(world, window.camera, window.pointer) if entity is None else entity
+    joint = joint_at(world, window.camera, window.pointer, lines=True) if entity is None else None
+    if joint is not None:
+        remove_joints(world, window, joint)
+        return
     spring = spring_at(world, window.camera, window.pointer) if entity is None else None
     if spring is not None and world.has(spring, Transform):  # a body carries it
         window.edits.do(RemoveComponent(spring, Spring.__name__))

@@ -15,6 +15,7 @@ from physicslab.view.canvas.rim import rim_of
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.overlay.arrows import VELOCITY, draw_arrows, even_dashes
 from physicslab.view.picture.bodies import POINT_RADIUS
+from physicslab.view.picture.joints import joint_lines
 from physicslab.world import World
 
 _RADIUS = 5.0
@@ -56,8 +57,8 @@ _GAP = 4.0
 _CORNERS = 48
 """Straight lines that a circle is drawn as."""
 _WIDTH = 2.0
-_SPRING_WIDTH = 9.0
-"""Width of the band along a spring [px]."""
+_SPRING_WIDTH = 15.0
+"""Width of the band along a spring or a joint [px]."""
 _FAR = 1e6
 """Lines farther out of the picture than this are not drawn [px]."""
 
@@ -68,10 +69,12 @@ def draw_selection(world: World, entities: Sequence[int], on: Drawing, colour: C
         if world.has(entity, Transform):
             corners = on.camera.project(_outline(world, entity, _GAP / on.camera.scale))
             on.canvas.lines(corners, np.roll(corners, -1, axis=0), colour or on.theme.accent, _WIDTH)
-        elif (spring := spring_state(world, entity)) is not None:
-            ends = on.camera.project(np.array([tuple(spring.start), tuple(spring.end)]))
-            if (np.abs(ends) < _FAR).all():
-                on.canvas.lines(ends[:1], ends[1:], colour or on.theme.accent, _SPRING_WIDTH, 0.5)
+            continue
+        lines = joint_lines(world, on.camera, entity)
+        if (spring := spring_state(world, entity)) is not None:
+            lines = on.camera.project(np.array([tuple(spring.start), tuple(spring.end)]))[None]
+        if len(lines) and (np.abs(lines) < _FAR).all():
+            on.canvas.lines(lines[:, 0], lines[:, 1], colour or on.theme.accent, _SPRING_WIDTH, 0.5)
 
 
 def draw_band(corner: tuple[float, float], pointer: tuple[float, float], on: Drawing) -> None:

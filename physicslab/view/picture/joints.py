@@ -1,54 +1,298 @@
-"""Joints as the heads of screws; one that is fixed to the world has a bracket behind it."""
+"""Joints: pins with screws, limits and motors, slots as rails, welds as beads, gears with toothed rims."""
+
+import math
+from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
-from physicslab.diagnostics.joints import joint_states
+from physicslab.components import Gear, Pin, Pulley, Rod, Rope, Slot, Transform, Weld
+from physicslab.state.joint_rows import ends_of
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Canvas, Look
+from physicslab.view.canvas.canvas import Canvas, Points
 from physicslab.view.canvas.theme import Theme
+from physicslab.view.picture.links import draw_pulleys, draw_rods, draw_ropes, line_ends, link_ends
+from physicslab.view.picture.pen import Pen
 from physicslab.world import World
 
-_HEAD = 5.0
-"""Radius of the head of a screw [px]."""
-_SLOT = 3.4
-"""Half length of the slot in it [px]."""
-_BRACKET = 18.0
-"""Side of a bracket [px]."""
+_CATCH = 6.5
+"""How near to a screw, a slider or a bead a press need be [px]."""
+_NEAR_LINE = 6.0
+"""How near to a rod or a rope [px]."""
+_LIMIT, _TICK, _MOTOR = 22.0, 5.0, 12.5
+"""Radius of the arc between limits, half length of the stops at its ends, radius of the arrow of a motor."""
+_RAIL, _SLIDER = 5.5, (9.0, 6.0)
+"""Half the width of a rail, half the sides of its slider [px]."""
+_OPEN = 0.6
+"""How far beyond its slider a rail without a limit is drawn [m]."""
+_TOOTH, _PITCH = 5.5, 11.0
+"""How far teeth stand out of a rim, and about how far apart they are [px]."""
+_BEAD = 3.8
+"""Radius of the beads of a weld [px]."""
 
 
 def draw_joints(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> None:
-    """Draw the head of a screw at every joint, whose slot turns with what it holds."""
-    joints = joint_states(world)
-    if not joints:
+    """Draw all joints; nothing is done where there are none."""
+    if not world.joints.joints:
         return
-    centre = camera.project(np.array([(joint.place.x, joint.place.y) for joint in joints]))
-    with np.errstate(invalid="ignore"):
-        seen = ((centre > -_BRACKET) & (centre < np.array(camera.size) + _BRACKET)).all(axis=1)
-    centre = centre[seen]
-    if not len(centre):
-        return
-    angle = np.array([joint.angle for joint in joints])[seen]
-    fixed = np.array([joint.is_fixed for joint in joints])[seen]
-    if fixed.any():
-        count = int(fixed.sum())
-        side = np.full((count, 2), _BRACKET)
-        plate = Look.plain(theme.background, theme.pin, count)
-        plate.hatched[:] = True
-        canvas.boxes(centre[fixed], side, np.zeros(count), plate)
-    look = Look.plain(theme.background, theme.pin, len(centre))
-    canvas.discs(centre, np.full(len(centre), _HEAD), angle, look)
-    along = _SLOT * np.stack((np.cos(angle), -np.sin(angle)), axis=1)
-    canvas.lines(centre - along, centre + along, theme.pin, 2.0)
+    pen = Pen(camera, theme)
+    for kind, draw in _PICTURES.items():
+        if len(world.batch(kind)):
+            draw(world, pen)
+    pen.draw(canvas)
 
 
-def joint_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
-    """Return the entity of the joint whose screw is under a place on the screen [px], or ``None``."""
-    joints = joint_states(world)
-    if not joints:
-        return None
-    centre = camera.project(np.array([(joint.place.x, joint.place.y) for joint in joints]))
+def _angles(world: World, kind: type) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return the angles of A and B (n,) [rad]."""
+    a, b = (np.maximum(end, 0) for end in ends_of(world.entity_index, kind))
+    angle = world.table(Transform)["angle"]
+    return angle[a], angle[b]
+
+
+def _around(centre: Points, radius: float, begin: float, end: float) -> Points:
+    """Return the points of an arc (1, k, 2) [px] between two angles [rad]."""
+    turns = np.linspace(begin, end, max(round(abs(end - begin) / 0.2), 2) + 1)
+    return (centre + radius * np.stack((np.cos(turns), -np.sin(turns)), axis=1))[None]
+
+
+def _arrow_head(tip: Points, way: Points, size: float) -> Points:
+    """Return the corners (1, 3, 2) [px] of the head of an arrow that points along a unit vector."""
+    back, side = tip - size * way, np.array((-way[1], way[0])) * 0.75 * size
+    return np.stack((back + side, tip, back - side))[None]
+
+
+# ---- pins --------------------------------------------------------------------------------------------------
+
+
+def _draw_pins(world: World, pen: Pen) -> None:
+    at_a, _, *fixed = link_ends(world, Pin)
+    table, rows = world.table(Pin), world.batch(Pin).rows
+    centre, (angle_a, angle_b) = pen.camera.project(at_a), _angles(world, Pin)
+    to_world, turning = fixed[0] | fixed[1], np.where(fixed[1], angle_a, angle_b)
+    pen.brackets(centre[to_world], -1.0)
+    limited = table["lower_given"][rows] | table["upper_given"][rows]
+    if limited.any():
+        arms = _arms(world, at_a)
+        for n in np.flatnonzero(limited).tolist():
+            _draw_limits(pen, centre[n], arms[n], float(angle_b[n] - angle_a[n]), table, int(rows[n]))
+    pen.screws(centre, turning)
+    for n in np.flatnonzero(table["motor_speed_given"][rows]).tolist():
+        _draw_motor(pen, centre[n], float(table["motor_speed"][rows[n]]), bool(fixed[1][n]))
+
+
+def _arms(world: World, place: Points) -> NDArray[np.float64]:
+    """Return in which directions the bodies lie that pins turn (n,) [rad]: B, or A where B is the world."""
+    a, b = (np.maximum(end, 0) for end in ends_of(world.entity_index, Pin))
+    body, transform = np.where(b == 0, a, b), world.table(Transform)
+    way = transform["position"][body] - place
+    arms: NDArray[np.float64] = np.where(
+        np.hypot(way[:, 0], way[:, 1]) > 1e-9, np.arctan2(way[:, 1], way[:, 0]), transform["angle"][body]
+    )
+    return arms
+
+
+def _draw_limits(pen: Pen, centre: Points, arm: float, now: float, table: object, row: int) -> None:
+    """Add the arc through which the body beyond a pin can turn, with stops where that ends."""
+    radius, colour = _LIMIT * pen.unit, pen.theme.accent
+    found = [table[name][row] - now for name in ("lower", "upper") if table[f"{name}_given"][row]]  # type: ignore[index]
+    stops = [float(arm + part) for part in found]
+    low = stops[0] if table["lower_given"][row] else stops[-1] - 0.5 * math.pi  # type: ignore[index]
+    high = stops[-1] if table["upper_given"][row] else stops[0] + 0.5 * math.pi  # type: ignore[index]
+    if high - low > 2.0 * math.pi:
+        low, high = high - 2.0 * math.pi, high
+    edge = pen.dark(colour, 0.85)
+    for shade, width in ((edge, 3.6), (colour, 1.6)):
+        pen.paths(_around(centre, radius, low, high), shade, width)
+        for stop in stops:
+            way = np.array((math.cos(stop), -math.sin(stop)))
+            tick, at = _TICK * pen.unit * way, (centre + radius * way)[None]
+            pen.lines(at - tick, at + tick, shade, width + 1.2)
+
+
+def _draw_motor(pen: Pen, centre: Points, speed: float, turns_a: bool) -> None:
+    """Add an arrow around a pin in the direction in which its motor turns what it holds."""
+    sign = math.copysign(1.0, -speed if turns_a else speed)
+    begin, radius, colour = -0.25 * math.pi, _MOTOR * pen.unit, pen.theme.accent
+    end = begin + sign * 1.5 * math.pi
+    arc = _around(centre, radius, begin, end)
+    pen.paths(arc, pen.dark(pen.theme.accent, 0.85), 4.6)
+    pen.paths(arc, colour, 2.4)
+    way = sign * np.array((-math.sin(end), -math.cos(end)))
+    pen.paths(_arrow_head(arc[0, -1] + 3.5 * pen.unit * way, way, 6.0 * pen.unit), colour, 2.4)
+
+
+# ---- slots -------------------------------------------------------------------------------------------------
+
+
+def _draw_slots(world: World, pen: Pen) -> None:
+    at_a, at_b, *fixed = link_ends(world, Slot)
+    table, (angle_a, angle_b) = world.table(Slot), _angles(world, Slot)
+    for n, row in enumerate(world.batch(Slot).rows.tolist()):
+        x, y = table["axis"][row]
+        turn = math.atan2(y, x) + float(angle_a[n])
+        axis = np.array((math.cos(turn), math.sin(turn)))
+        now = float((at_b[n] - at_a[n]) @ axis)
+        lower, upper = (
+            float(table[name][row]) if table[f"{name}_given"][row] else None for name in ("lower", "upper")
+        )
+        low = lower if lower is not None else min(now, 0.0) - _OPEN
+        high = upper if upper is not None else max(now, 0.0) + _OPEN
+        rail = pen.camera.project(np.stack((at_a[n] + low * axis, at_a[n] + high * axis)))
+        slider = pen.camera.project(at_b[n][None])
+        if np.isfinite(rail).all() and np.isfinite(slider).all():
+            _draw_slot(pen, rail, slider, (lower, upper), turn)
+            if fixed[0][n]:
+                pen.discs(rail, 2.2, pen.theme.pin)
+            if table["turns"][row]:
+                pen.screws(slider, angle_b[n : n + 1])
+            if table["motor_speed_given"][row]:
+                _draw_drive(pen, slider[0], turn, float(table["motor_speed"][row]))
+
+
+def _draw_slot(
+    pen: Pen, rail: Points, slider: Points, limits: tuple[float | None, float | None], turn: float
+) -> None:
+    """Add a rail of two bars, with stops where it has limits, and the block that slides between them."""
+    ahead = np.array((math.cos(turn), -math.sin(turn)))
+    aside, colour = _RAIL * pen.unit * np.array((ahead[1], -ahead[0])), pen.theme.rod
+    inset = _RAIL * pen.unit * ahead
+    pen.lines(rail[:1] + inset, rail[1:] - inset, pen.dark(colour, 0.8), 2.0 * _RAIL)
+    for side in (aside, -aside):
+        pen.lines(rail[:1] + side, rail[1:] + side, pen.dark(colour), 3.6)
+        pen.lines(rail[:1] + side, rail[1:] + side, colour, 2.0)
+    for spot, limit in zip(rail, limits, strict=True):
+        if limit is not None:
+            pen.lines((spot - 1.7 * aside)[None], (spot + 1.7 * aside)[None], pen.theme.pin, 3.4)
+    along, across = _SLIDER
+    for grown, shade in ((1.2, pen.dark(pen.theme.pin)), (0.0, pen.dark(pen.theme.pin, 0.15))):
+        reach = (along - across) * pen.unit * ahead
+        pen.lines(slider - reach, slider + reach, shade, 2.0 * (across + grown))
+
+
+def _draw_drive(pen: Pen, slider: Points, turn: float, speed: float) -> None:
+    """Add an arrow on a slider in the direction in which its motor moves it."""
+    way = math.copysign(1.0, speed) * np.array((math.cos(turn), -math.sin(turn)))
+    for n in (16.0, 21.0):
+        tip = slider + n * pen.unit * way
+        pen.paths(_arrow_head(tip, way, 4.0 * pen.unit), pen.theme.accent, 1.8)
+
+
+# ---- welds and gears ---------------------------------------------------------------------------------------
+
+
+def _draw_welds(world: World, pen: Pen) -> None:
+    """Add three beads in a row at each weld, across the line between the middles of what it joins."""
+    at_a, _, *fixed = link_ends(world, Weld)
+    a, b = (np.maximum(end, 0) for end in ends_of(world.entity_index, Weld))
+    position, centre = world.table(Transform)["position"], pen.camera.project(at_a)
+    way = np.where((b == 0)[:, None], at_a, position[b]) - np.where((a == 0)[:, None], at_a, position[a])
+    size = np.hypot(way[:, 0], way[:, 1])[:, None]
+    way = np.where(size > 1e-9, way, (1.0, 0.0)) / np.where(size > 1e-9, size, 1.0)
+    across = np.stack((way[:, 1], way[:, 0]), axis=1) * 1.35 * _BEAD * pen.unit
+    pen.brackets(centre[fixed[0] | fixed[1]], -1.0)
+    for n in (-1.6, -0.8, 0.0, 0.8, 1.6):
+        pen.rings(centre + n * across, _BEAD, pen.dark(pen.theme.pin, 0.6), pen.dark(pen.theme.pin, 0.2), 1.0)
+
+
+def _draw_gears(world: World, pen: Pen) -> None:
+    """Add toothed rims to two pinned wheels that a gear couples, and a dashed line between other joints."""
+    table, known = world.table(Gear), _wheels(world)
+    for row in world.batch(Gear).rows.tolist():
+        ends = [int(table[name][row]) for name in ("first", "second")]
+        if not all(end in known for end in ends):
+            continue
+        (one, first), (other, second) = (known[end] for end in ends)
+        gap, ratio = float(np.hypot(*(other - one))), abs(float(table["ratio"][row]))
+        spots = pen.camera.project(np.stack((one, other)))
+        if not np.isfinite(spots).all():
+            continue
+        if math.isnan(first) or math.isnan(second):
+            pen.lines(spots[:1], spots[1:], pen.dark(pen.theme.rod), 2.0)
+            continue
+        radii = np.array((gap * ratio, gap)) / (1.0 + ratio) * pen.camera.scale
+        teeth = np.maximum(np.round(2.0 * math.pi * radii / (_PITCH * pen.unit)), 6.0)
+        teeth[1] = max(round(teeth[0] / ratio), 6)  # as many go by on both
+        way = math.atan2(float(other[1] - one[1]), float(other[0] - one[0]))
+        for n, angle in enumerate((first, second)):
+            _draw_rim(pen, spots[n], float(radii[n]), int(teeth[n]), angle, way + n * math.pi, n)
+
+
+def _wheels(world: World) -> dict[int, tuple[Points, float]]:
+    """Return by entity where each joint is that a gear can couple [m], and the angle of a pin [rad]."""
+    found: dict[int, tuple[Points, float]] = {}
+    for kind in (Pin, Slot):
+        at_a, at_b, _, fixed = link_ends(world, kind)
+        angle = np.where(fixed, *_angles(world, kind)).tolist()
+        for n, entity in enumerate(world.batch(kind).entities.tolist()):
+            found[entity] = (at_a[n], angle[n]) if kind is Pin else (at_b[n], math.nan)
+    return found
+
+
+def _draw_rim(
+    pen: Pen, centre: Points, radius: float, teeth: int, angle: float, meets: float, n: int
+) -> None:
+    """Add a rim with teeth that turn with its wheel; the second one has gaps where the first has teeth."""
+    colour, step = pen.theme.rod, 2.0 * math.pi / teeth
+    turns = angle + step * np.arange(teeth) + (0.5 * step if n else 0.0)
+    out = np.stack((np.cos(turns), -np.sin(turns)), axis=1)
+    inner, outer = radius - 0.5 * _TOOTH * pen.unit, radius + 0.4 * _TOOTH * pen.unit
+    width = max(0.42 * radius * step / pen.unit, 1.0)
+    rim = _around(centre, inner - 1.5 * pen.unit, 0.0, 2.0 * math.pi)
+    for grown, shade in ((1.8, pen.dark(colour, 0.65)), (0.0, colour)):
+        pen.lines(centre + inner * out, centre + outer * out, shade, width + grown)
+        pen.paths(rim, shade, 3.4 + grown)
+
+
+_PICTURES: dict[type, Callable[[World, Pen], None]] = {
+    Gear: _draw_gears, Slot: _draw_slots, Weld: _draw_welds, Pulley: draw_pulleys, Rope: draw_ropes,
+    Rod: draw_rods, Pin: _draw_pins,
+}  # fmt: skip
+"""What draws each kind of joint, the lowest first."""
+
+
+# ---- what is under the cursor ------------------------------------------------------------------------------
+
+
+def joint_at(world: World, camera: Camera, pixel: tuple[float, float], *, lines: bool = False) -> int | None:
+    """Return the entity of the joint at a place on the screen [px], or ``None``.
+
+    By its screw, slider, bead or wheel; with ``lines`` by its bar or rope, which bodies lie before.
+    """
+    best, found = math.inf, None
+    for kind in _PICTURES:
+        if kind is Gear or not len(world.batch(kind)) or lines != (kind in (Rod, Rope)):
+            continue
+        start, end = line_ends(world, camera, kind)
+        if kind is Pulley:
+            table, rows = world.table(kind), world.batch(kind).rows
+            start, end = (camera.project(table[name][rows]) for name in ("wheel_a", "wheel_b"))
+        elif not lines:
+            start = end = end if kind is Slot else start
+        gaps = gaps_to(start, end, pixel)
+        nearest = int(np.argmin(gaps))
+        if gaps[nearest] < best:
+            best, found = float(gaps[nearest]), int(world.batch(kind).entities[nearest])
+    return found if best <= (_NEAR_LINE if lines else _CATCH) else None
+
+
+def gaps_to(start: Points, end: Points, pixel: tuple[float, float]) -> NDArray[np.float64]:
+    """Return how far a place is from lines (n,) [px]; infinite for those that are not finite."""
     with np.errstate(all="ignore"):
-        distance = np.hypot(centre[:, 0] - pixel[0], centre[:, 1] - pixel[1])
-    distance[~np.isfinite(distance)] = np.inf
-    nearest = int(np.argmin(distance))
-    return joints[nearest].entity if distance[nearest] <= _HEAD + 1.0 else None
+        along, offset = end - start, np.array(pixel) - start
+        size = np.maximum((along**2).sum(axis=1), 1e-12)
+        share = np.clip((along * offset).sum(axis=1) / size, 0.0, 1.0)[:, None]
+        gaps: NDArray[np.float64] = np.hypot(*(offset - share * along).T)
+    gaps[~np.isfinite(gaps)] = np.inf
+    return gaps
+
+
+def joint_lines(world: World, camera: Camera, entity: int) -> Points:
+    """Return the line along each joint of an entity (n, 2, 2) [px], which a selection marks."""
+    found = []
+    for kind in _PICTURES:
+        entities = world.batch(kind).entities.tolist() if kind is not Gear else []
+        if entity in entities:
+            n = entities.index(entity)
+            start, end = line_ends(world, camera, kind)
+            found.append((start[n], end[n]))
+    return np.array(found).reshape(-1, 2, 2)

@@ -13,6 +13,7 @@ from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.picture.backdrop import draw_bounds, draw_grid
 from physicslab.view.picture.bodies import draw_bodies
 from physicslab.view.picture.extent import extent_of
+from physicslab.view.picture.fields import draw_fields, draw_flames
 from physicslab.view.picture.joints import draw_joints
 from physicslab.view.picture.springs import draw_springs
 from physicslab.view.picture.trails import draw_strobes, draw_trails
@@ -81,9 +82,11 @@ def draw_world(world: World, camera: Camera, theme: Theme, canvas: Canvas, *, gr
     canvas.clear(theme.background)
     if grid:
         draw_grid(camera, theme, canvas)
+    draw_fields(world, camera, theme, canvas)
     draw_bounds(world.physics.bounds, camera, theme, canvas)
     draw_strobes(world, camera, theme, canvas)
     draw_trails(world, camera, theme, canvas)
+    draw_flames(world, camera, theme, canvas)
     draw_bodies(world, camera, theme, canvas)
     draw_springs(world, camera, theme, canvas)
     draw_joints(world, camera, theme, canvas)

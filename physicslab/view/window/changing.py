@@ -4,6 +4,7 @@ import contextlib
 from collections.abc import Callable, Iterator, Sequence
 
 from physicslab.components import (
+    Charge,
     Drag,
     Held,
     Mass,
@@ -22,6 +23,7 @@ from physicslab.components import (
     Velocity,
     Weld,
 )
+from physicslab.components.vertices import regular
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
 from physicslab.ecs.text import in_words
@@ -128,6 +130,7 @@ def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable
         yield "Shape: circle", lambda entity: Shape.circle(_SIZE)
         yield "Shape: box", lambda entity: Shape.box(2.0 * _SIZE, 2.0 * _SIZE)
         yield "Shape: capsule", lambda entity: Shape.capsule(2.0 * _SIZE, _SIZE)
+        yield "Shape: polygon", lambda entity: Shape.polygon(regular(3, 1.5 * _SIZE))
         return
     if kind is Spring:
         yield plain_kind(kind), lambda entity: _spring_above(world, entity)
@@ -174,6 +177,7 @@ _MEANINGS: dict[type[Component], str] = {
     Mass: "forces move it; without mass, a moving body is infinitely heavy",
     Shape: "it can touch others",
     Material: "its restitution and friction",
+    Charge: "it acts on other charges, and electric and magnetic fields on it",
     Drag: "a medium slows it, as air does",
     Spring: "it hangs from a point that can be dragged",
     Thrust: "it is pushed and turned from within, as by a rocket or a motor",

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from imgui_bundle import imgui
 from imgui_bundle.imgui import ImVec2
 
+from physicslab.components import Charge
 from physicslab.diagnostics.energy import ACCOUNT_WORDS, flows
 from physicslab.ecs.config import COLLISIONS, CONTACTS, INTEGRATORS, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
@@ -274,20 +275,25 @@ _NUMBERS = {
     "dt": ("Step", "Length of a step; the error falls with it"), "substeps": ("Substeps", "Parts of a step"),
     "linear_damping": ("Damping", "Share of the velocity that is lost a second"),
     "angular_damping": ("Damping of turns", "Share of the spin that is lost a second"),
+    "coulomb_constant": ("Coulomb's constant", "How strongly charges act on each other"),
+    "magnetic_field": ("Magnetic field", "Out of the plane where positive"),
 }  # fmt: skip
 _CHOICES = {
     "integrator": ("Method", INTEGRATORS), "collisions": ("Collisions", COLLISIONS),
     "contacts": ("Contacts", CONTACTS), "sleeping": ("Sleep", tuple(_SLEEPING)),
 }  # fmt: skip
 _ROWS = ("dt", "substeps", *_CHOICES, "linear_damping", "angular_damping")
+_OF_CHARGES = ("coulomb_constant", "magnetic_field")
+"""What is added where anything is charged; the electric field, a vector, comes after it."""
 
 
 def build_settings(ui: Ui, numbers: NumberFields, world: World, window: Window) -> None:
     """Build a row for each of the step, the method, collisions, contacts, sleep and damping."""
     ui.gap(0.2)
     ui.heading("Settings")
-    for name in _ROWS:
-        held = world.physics if name.endswith("damping") else world.simulation
+    charged = bool(len(world.batch(Charge)))
+    for name in (*_ROWS, *(_OF_CHARGES if charged else ())):
+        held = world.simulation if hasattr(world.simulation, name) else world.physics
         now = getattr(held, name)
         if name in _NUMBERS:
             _build_number(ui, numbers, window, held, name)
@@ -299,7 +305,24 @@ def build_settings(ui: Ui, numbers: NumberFields, world: World, window: Window) 
         if chosen != now:
             window.do_next(_change, held, name, _SLEEPING[chosen] if name == "sleeping" else chosen)
         if name == "integrator" and now == "auto":
-            ui.faint(f"auto takes {world.plan.integrator.name}: {world.plan.reason}")
+            for plan in dict.fromkeys(world.plans):
+                ui.faint(f"auto takes {plan.integrator.name}: {plan.reason}")
+    if charged:
+        _build_electric_field(ui, numbers, world, window)
+
+
+def _build_electric_field(ui: Ui, numbers: NumberFields, world: World, window: Window) -> None:
+    held, name = world.physics, "electric_field"
+    spec = next(field for field in held.FIELDS if field.name == name)
+
+    def commit(axis: int, new: float) -> None:
+        spec.check((new, new))
+        x, y = held.electric_field
+        window.do_next(_change, held, name, Vector2(new, y) if axis == 0 else Vector2(x, new))
+
+    numbers.vector_row(
+        ui, name, "Electric field", spec, (held.electric_field.x, held.electric_field.y), commit
+    )
 
 
 def _build_number(
