@@ -285,4 +285,4 @@ if __name__ == "__main__":
         if name in sys.argv[1:] or len(sys.argv) == 1:
             print(json.dumps({name: compute()}, indent=1), flush=True)
     if "andrews" in sys.argv[1:] or len(sys.argv) == 1:
-        print(json.dumps({"andrews": andrews_figures(80)}, indent=1))
+        print(json.dumps({"andrews": andrews_figures(60)}, indent=1))
