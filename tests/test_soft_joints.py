@@ -26,6 +26,7 @@ from physicslab.components import (
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.diagnostics.joints import JointState, joint_states
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.kernels.accounts import ENERGY, JOINTS, MOTORS, SPIN
 from physicslab.prefabs import box, circle
 from physicslab.state.joint_order import order_rows
@@ -36,7 +37,7 @@ G = 9.81
 def bench(*, gravity: float = G) -> World:
     """Return a world with soft contacts, and a rock far away."""
     world = World(
-        physics=PhysicsConfig(gravity=(0.0, -gravity)), simulation=SimulationConfig(contacts="soft")
+        physics=PhysicsConfig(gravity=Vector2(0.0, -gravity)), simulation=SimulationConfig(contacts="soft")
     )
     box(world, (0.0, -500.0), width=1.0, height=1.0, static=True)
     return world

@@ -32,6 +32,7 @@ _NAMES = (
     "spring_chain",
     "resonance",
     "rocket",
+    "floating",
     "rutherford",
     "crossed_fields",
     "cyclotron",

@@ -51,10 +51,15 @@ def remove_lost(state: State, kind: type[Any], a: NDArray[np.int64], b: NDArray[
         if not gone and (entity, kind) not in coupled:
             owner = f"{state.label(entity)}: {kind.__name__}"
             raise InvalidValue(owner, name, end, needed)
-        esper.remove_component(entity, kind)
-        left: tuple[object, ...] = esper.components_for_entity(entity)
-        if all(isinstance(component, Name) for component in left):
-            esper.delete_entity(entity, immediate=True)
+        remove_joint(entity, kind)
+
+
+def remove_joint(entity: int, kind: type[Any]) -> None:
+    """Remove a component that joins bodies, and its entity where that was nothing else."""
+    esper.remove_component(entity, kind)
+    left: tuple[object, ...] = esper.components_for_entity(entity)
+    if all(isinstance(component, Name) for component in left):
+        esper.delete_entity(entity, immediate=True)
 
 
 def _refuse_equal(
