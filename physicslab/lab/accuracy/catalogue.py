@@ -5,11 +5,12 @@ from physicslab.lab.accuracy.fields import FIELDS
 from physicslab.lab.accuracy.friction import FRICTION
 from physicslab.lab.accuracy.impacts import IMPACTS
 from physicslab.lab.accuracy.joints import JOINED
+from physicslab.lab.accuracy.limits import LIMITED
 from physicslab.lab.accuracy.planets import ATTRACTED
 from physicslab.lab.accuracy.points import POINTS
 from physicslab.lab.case import Catalogue
 
-PROBLEMS = Catalogue((*POINTS, *FIELDS, *JOINED, ANDREWS, *ATTRACTED, *IMPACTS, *FRICTION))
+PROBLEMS = Catalogue((*POINTS, *FIELDS, *JOINED, ANDREWS, *LIMITED, *ATTRACTED, *IMPACTS, *FRICTION))
 """Every problem by name, from the simplest on; families are those of one source."""
 
 LEFT_OUT = {
