@@ -13,6 +13,7 @@ from physicslab.components import (
     Held,
     Mass,
     Material,
+    Medium,
     Pin,
     Shape,
     Slot,
@@ -35,7 +36,7 @@ UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""
 
 type _Expected = tuple[tuple[str, ...], tuple[str, ...], str]
-_NEED_TRANSFORM = (Velocity, Mass, Shape, Material, Trail)
+_NEED_TRANSFORM = (Velocity, Mass, Shape, Material, Medium, Trail)
 _PLACED = "the id of an entity with a Transform"
 _MAY_REST = (Velocity, Mass, Shape)
 
@@ -207,6 +208,9 @@ def _check_together(components: Sequence[Component], entity: Mapping[str, Any], 
                 f"{where}: {name} = {checks.shown(entity[name])}: must have a Transform beside it"
             )
     of: dict[type[Any], Any] = {type(component): component for component in components}
+    if Medium in of and (Shape not in of or Velocity in of):
+        allowed = "on an entity with a Shape and without a Velocity: a medium stays where it is"
+        raise checks.refusal(f"{where}: Medium", entity[Medium.__name__], allowed)
     if Mass in of and Shape in of:
         _check_inertia(of[Mass], of[Shape], where)
     fixed = Mass in of and of[Mass].fixed_rotation
@@ -221,11 +225,14 @@ def _check_inertia(mass: Mass, shape: Shape, where: str) -> None:
     """Refuse a body so large and heavy that its moment of inertia is not finite, by its largest size."""
     if mass.is_given("inertia"):
         return
-    sizes = {name: float(getattr(shape, name)) for name in shape.SIZES[shape.kind]}
+    sizes = {name: getattr(shape, name) for name in shape.HAS[shape.kind]}
+    if sizes.pop("vertices", None) is not None:
+        sizes["reach"] = shape.reach
     largest = max(sizes, key=lambda name: sizes[name])
     if not math.isfinite(mass.mass * sum(size * size for size in sizes.values())):
         allowed = f"smaller: the moment of inertia is not finite with Mass.mass = {mass.mass:g} kg"
-        raise checks.refusal(f"{where}: Shape.{largest}", sizes[largest], allowed)
+        name = "vertices, which reach" if largest == "reach" else largest
+        raise checks.refusal(f"{where}: Shape.{name}", sizes[largest], allowed)
 
 
 def _check_references(component: Component, entities: Sequence[Mapping[str, Any]], where: str) -> None:

@@ -4,7 +4,7 @@ They give no more than components; what they make can be changed like anything e
 take a ``seed``, and give the same things for the same seed.
 """
 
-from physicslab.prefabs.body import BodyOptions, body, box, capsule, circle
+from physicslab.prefabs.body import BodyOptions, body, box, capsule, circle, polygon
 from physicslab.prefabs.chain import chain, pendulum
 from physicslab.prefabs.container import container
 from physicslab.prefabs.gas import gas
@@ -13,5 +13,5 @@ from physicslab.prefabs.planets import Planet, binary, planets
 
 __all__ = [
     "BodyOptions", "Planet", "binary", "body", "box", "capsule", "chain", "circle", "container", "gas",
-    "pendulum", "pile", "planets", "pyramid", "stack",
+    "pendulum", "pile", "planets", "polygon", "pyramid", "stack",
 ]  # fmt: skip

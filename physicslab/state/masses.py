@@ -6,12 +6,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Material, Medium, Shape, Spring, Transform, Velocity
 from physicslab.components.shape import kind_of
 from physicslab.ecs.component import InvalidValue
 from physicslab.kernels import direct_entry, motion, ranges
 from physicslab.kernels.solver import impulse
-from physicslab.state.shapes import EXTENTS, KINDS, sizes_in
+from physicslab.state.shapes import REGISTER, sizes_in, with_names
 from physicslab.state.state import State
 
 _INERTIA = next(spec for spec in Mass.FIELDS if spec.name == "inertia")
@@ -38,6 +38,10 @@ def derive_masses(state: State) -> None:
     if len(bodies.torque) != len(state.entity_index):
         bodies.resize(len(state.entity_index))
         state.compile((motion.derive_masses, ranges.find_outside))
+    if REGISTER.arrays() is not bodies.register:
+        bodies.register, bodies.columns = REGISTER.arrays(), (None, ())
+        bodies.plain_shapes = (*bodies.plain_shapes[:2], REGISTER.pool)
+        bodies.shapes = with_names(bodies.plain_shapes)
     revision, columns = bodies.columns
     if revision == state.entity_index.revision and columns[-1] is state.sleep.asleep:
         outside = direct_entry(ranges.find_outside)(*bodies.checked)
@@ -51,7 +55,8 @@ def derive_masses(state: State) -> None:
             _refuse_number(state, outside)
         columns = _columns(state)
         ratio, infinite, sizeless, bodies.smallest = motion.derive_masses(*columns)
-        bodies.columns = state.entity_index.revision, columns
+        if not len(state.batch(Medium)):  # else some are copies, which do not follow edits
+            bodies.columns = state.entity_index.revision, columns
     if sizeless >= 0:
         _refuse_size(state, sizeless)
     if infinite >= 0:
@@ -67,10 +72,18 @@ def _columns(state: State) -> tuple[Any, ...]:
     return (
         velocity.present, mass.present, state.table(Held).present,
         mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
-        shape["kind"], sizes_in(shape), KINDS, EXTENTS, bodies.plain_shapes, velocity["angular"],
+        *_solid(state), sizes_in(shape), REGISTER.kinds, REGISTER.extents,
+        bodies.plain_shapes, velocity["angular"],
         bodies.inverse_mass, bodies.inverse_inertia,
         bodies.awake_inverse_mass, bodies.awake_inverse_inertia, state.sleep.asleep,
     )  # fmt: skip
+
+
+def _solid(state: State) -> tuple[NDArray[np.int64], ...]:
+    """Return kind and vertices of each row (rows,); 0 where a medium fills it: nothing touches it."""
+    shape, filled = state.table(Shape), state.table(Medium).present
+    columns = shape["kind"], shape["vertices"]
+    return tuple(np.where(filled, 0, column) for column in columns) if filled.any() else columns
 
 
 def _checked(state: State) -> tuple[NDArray[Any], ...]:
@@ -102,11 +115,13 @@ def _refuse_number(state: State, row: int) -> None:
 def _refuse_size(state: State, row: int) -> None:
     """Refuse a size that was written to a column and would keep a kernel from ever returning."""
     shape = state.table(Shape)
-    needed = kind_of(int(shape["kind"][row])).sizes
+    label, has = state.label_of_row(row), kind_of(int(shape["kind"][row])).fields
     for spec in Shape.FIELDS:
-        size = float(shape[spec.name][row]) if spec.name in needed else 1.0
-        if not 0.0 < size < math.inf:
-            raise InvalidValue(f"{state.label_of_row(row)}: Shape", spec.name, size, spec.allowed)
+        size = float(shape[spec.name][row]) if spec.name in has and spec.kind == "number" else 1.0
+        if not 0.0 < size < math.inf and not (size == 0.0 and "vertices" in has):
+            raise InvalidValue(f"{label}: Shape", spec.name, size, spec.allowed)
+    code = int(shape["vertices"][row])
+    raise InvalidValue(f"{label}: Shape", "vertices", code, "a code of vertices that a Shape has been given")
 
 
 def check_finite(state: State, time: float) -> None:

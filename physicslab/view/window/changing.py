@@ -9,6 +9,7 @@ from physicslab.components import (
     Held,
     Mass,
     Material,
+    Medium,
     Name,
     Pin,
     Rod,
@@ -23,6 +24,7 @@ from physicslab.components import (
     Velocity,
     Weld,
 )
+from physicslab.components.vertices import regular
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
 from physicslab.ecs.text import in_words
@@ -129,6 +131,7 @@ def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable
         yield "Shape: circle", lambda entity: Shape.circle(_SIZE)
         yield "Shape: box", lambda entity: Shape.box(2.0 * _SIZE, 2.0 * _SIZE)
         yield "Shape: capsule", lambda entity: Shape.capsule(2.0 * _SIZE, _SIZE)
+        yield "Shape: polygon", lambda entity: Shape.polygon(regular(3, 1.5 * _SIZE))
         return
     if kind is Spring:
         yield plain_kind(kind), lambda entity: _spring_above(world, entity)
@@ -177,6 +180,7 @@ _MEANINGS: dict[type[Component], str] = {
     Material: "its restitution and friction",
     Charge: "it acts on other charges, and electric and magnetic fields on it",
     Drag: "a medium slows it, as air does",
+    Medium: "it is filled with a fluid: bodies pass through, float and are slowed",
     Spring: "it hangs from a point that can be dragged",
     Thrust: "it is pushed and turned from within, as by a rocket or a motor",
     Strobe: "it leaves pictures of its past positions",
