@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform
+from physicslab.components.shape import CHAIN
 from physicslab.ecs.vector import Vector2
 from physicslab.state.shapes import cores_of, lengths_of
 from physicslab.state.state import State
@@ -82,6 +83,7 @@ def outlines_at(state: State, rows: Rows, place: Numbers, angle: Numbers) -> Out
     """Return outlines of the shapes in some rows, at places (n, 2) [m] and turned by angles (n,) [rad]."""
     half, radius = lengths_of(state.table(Shape), rows)
     corners, vertices, _ = cores_of(state.table(Shape), rows)
+    half[state.table(Shape)["kind"][rows] == CHAIN] = np.hypot(*np.abs(half).max(axis=0, initial=0.0))
     c, s = np.cos(angle), np.sin(angle)
     turned = np.stack((c, s, -s, c), axis=1).reshape(-1, 2, 2)
     return Outlines(place, corners @ turned, vertices, radius, 2.0 * (half.min(axis=1) + radius))
