@@ -41,7 +41,7 @@ type Numbers = NDArray[np.float64]
 
 
 def bring_back(state: State, schedule: Schedule) -> int:
-    """Put bodies that a fixed one keeps beyond the bounds, or in another, where they have room; return how many.
+    """Put every body where it has room that a fixed one keeps beyond the bounds or in itself; count them.
 
     To be called at the end of a step in which the contact stages have found one beyond them, or wedged.
 
