@@ -48,9 +48,11 @@ class Register:
         """Return kinds, extents and pool with all lists of points: another tuple where one is new."""
         for code in range(self._known, len(POINTS)):
             points = np.array([(point.x, point.y) for point in POINTS.value_of(code)])
-            closed = len(points) > 3 and bool((points[0] == points[-1]).all())
-            before, behind = points[[-2 if closed else 1]], points[[1 if closed else -2]]
-            self._add(np.concatenate((before, points, behind)), -1, -1, 0, beside=1)
+            if len(points) > 1:  # a component with fewer has been refused
+                closed = bool((points[0] == points[-1]).all())
+                before, behind = points[[-2 if closed else 1]], points[[1 if closed else -2]]
+                points = np.concatenate((before, points, behind))
+            self._add(points.reshape(-1, 2), -1, -1, 0, beside=1)
             self._known = code + 1
         present = self.kinds, self.extents, self.pool
         if len(self._arrays) == 0 or any(a is not b for a, b in zip(self._arrays, present, strict=True)):
@@ -63,7 +65,7 @@ class Register:
         extent = np.abs(core).max(axis=0, initial=0.0)
         self.kinds, self.extents = _with_room(self.kinds, row + 1), _with_room(self.extents, row + 1)
         self.pool = _with_room(self.pool, first + len(core))
-        self.kinds[row] = len(core) - 2 * beside, first + beside, x, y, radius
+        self.kinds[row] = max(len(core) - 2 * beside, 0), first + beside, x, y, radius
         self.extents[row] = extent
         self.pool[first : first + len(core)] = core / np.where(extent > 0.0, extent, 1.0)
         self._cores, self._vertices = row + 1, first + len(core)
