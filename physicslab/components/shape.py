@@ -74,7 +74,7 @@ class Shape(Component):
         default=(),
         unit="m",
         limit=LENGTH_LIMIT,
-        meaning="corners of a polygon, counter-clockwise, from its centre of mass; of a chain, solid on its left",
+        meaning="corners of a polygon, counter-clockwise, from its centre; of a chain, solid on its left",
     )
 
     HAS = {name: kind.fields for name, kind in KINDS.items()}  # noqa: RUF012

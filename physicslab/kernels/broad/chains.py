@@ -1,4 +1,4 @@
-"""Near pairs of bodies and segments of chains: chains are few and do not move, so each looks at all bodies."""
+"""Near pairs of bodies and segments of chains: these are few and do not move, so each looks at all bodies."""
 
 import math
 

@@ -205,7 +205,7 @@ def _flipped(point: Corner, dx: float, dy: float) -> Corner:
 
 @inlined
 def touch_outlines(way: Way, a: Outline, b: Outline, pool: Vectors, margin: float, old: int) -> Touch:
-    """Return where two outlines touch, as :func:`touch_cores` does; one of them may be a segment of a chain."""
+    """Return where two outlines touch, as :func:`touch_cores` does; one may be a segment of a chain."""
     if is_segment(a):
         return _touch_segment(way.dx, way.dy, a, b, pool, margin)
     if is_segment(b):
