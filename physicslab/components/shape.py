@@ -81,8 +81,13 @@ class Shape(Component):
 
     @property
     def core(self) -> tuple[Vector2, ...]:
-        """The vertices of its core [m], counter-clockwise: of a circle its middle, of a box its corners."""
+        """The vertices of its core [m], counter-clockwise: of a circle its middle, of a box its corners.
+
+        Those of a chain go there and back again.
+        """
         kind = KINDS[self.kind]
+        if kind.part:
+            return (*self.vertices, *self.vertices[-2:0:-1])
         if kind.own[1]:
             return self.vertices
         x, y = (float(getattr(self, name)) if name else 0.0 for name in (kind.x, kind.y))
@@ -113,6 +118,14 @@ class Shape(Component):
     def capsule(length: float, radius: float) -> Shape:
         """Return a capsule of the given radius [m], whose round ends have centres so far apart [m]."""
         return Shape("capsule", radius=radius, length=length)
+
+    @staticmethod
+    def chain(vertices: Sequence[Vector2 | tuple[float, float]]) -> Shape:
+        """Return a chain of segments between 2 to 1,000 vertices [m], solid on its left, for a fixed body.
+
+        It is a loop where the last vertex is the first one.
+        """
+        return Shape("chain", vertices=[Vector2(*vertex) for vertex in vertices])
 
     @staticmethod
     def polygon(vertices: Sequence[Vector2 | tuple[float, float]], radius: float = 0.0) -> Shape:

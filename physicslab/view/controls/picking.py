@@ -47,6 +47,7 @@ def bodies_at(world: World, camera: Camera, pixel: tuple[float, float]) -> list[
     everything = rows.all
     gap = outlines_of(world, everything).gaps(place.x, place.y)
     gap[len(gap) - len(rows.points) :] -= POINT_RADIUS / camera.scale
+    gap[: len(rows.chains)] -= POINT_RADIUS / camera.scale
     hit: list[int] = entities[everything[np.flatnonzero(gap <= 0.0)[::-1]]].tolist()
     if hit:
         return hit
