@@ -31,7 +31,7 @@ def wedge(
 def regular_polygon(
     world: World, position: Pair, *, corners: int = 6, radius: float = 0.25, **options: Unpack[BodyOptions]
 ) -> int:
-    """Spawn a polygon of 3 to 8 equal sides, in a circle of a radius [m], one side below; return its entity."""
+    """Spawn a polygon of 3 to 8 equal sides in a circle of a radius [m]; one side is below."""
     return polygon(world, position, regular(corners, radius), **options)
 
 
@@ -47,20 +47,21 @@ def ground(
     >>> world = World()
     >>> hill = ground(world, [(5, 0), (1, 0), (0, 1), (-1, 0), (-5, 0)], friction=0.8)
     """
-    return body(world, Shape.chain(vertices), position, **{**options, "static": True})
+    options["static"] = True
+    return body(world, Shape.chain(vertices), position, **options)
 
 
 def ramp(
-    world: World, position: Pair, *, length: float = 4.0, angle: float = 0.5, **options: Unpack[BodyOptions]
+    world: World, position: Pair, *, length: float = 4.0, slope: float = 0.5, **options: Unpack[BodyOptions]
 ) -> int:
-    """Spawn a fixed slope that goes down to the right from ``position`` [m], by an angle [rad].
+    """Spawn a fixed slope that goes down to the right from ``position`` [m], by ``slope`` [rad].
 
     Returns
     -------
     entity : int
         Its surface is ``length`` [m] long.
     """
-    foot = Vector2.from_angle(-angle, length)
+    foot = Vector2.from_angle(-slope, length)
     return ground(world, [foot, (0.0, 0.0)], position, **options)
 
 
@@ -79,7 +80,7 @@ def loop(
     opening : float
         Angle [rad] that the loop lacks on the left above the run, through which a body comes in.
     segments : int
-        Of a whole turn, at most 900: what slides loses about 40 / ``segments`` of its energy in one.
+        Of a whole turn, at most 900. On 200 to 1,000 what slides loses a tenth of its energy in one turn.
     """
     turns = [2.0 * math.pi - opening - 2.0 * math.pi * k / segments for k in range(segments)]
     circle = [(radius * math.sin(t), radius - radius * math.cos(t)) for t in turns if t > 1e-9]
