@@ -1,4 +1,4 @@
-"""Chains: their seams take no energy, their solid side holds what comes, and nothing else about them moves."""
+"""Chains: their seams take no energy, their solid side holds what comes, and a file keeps them."""
 
 import json
 import math

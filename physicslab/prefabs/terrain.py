@@ -38,9 +38,9 @@ def regular_polygon(
 def ground(
     world: World, vertices: Sequence[Pair], position: Pair = (0.0, 0.0), **options: Unpack[BodyOptions]
 ) -> int:
-    """Spawn fixed ground along 2 to 1,000 vertices [m] from ``position``, solid on its left; return its entity.
+    """Spawn fixed ground along 2 to 1,000 vertices [m] from ``position``; return its entity.
 
-    To have it below, go from right to left.
+    It is solid on its left: to have it below, go from right to left.
 
     Examples
     --------

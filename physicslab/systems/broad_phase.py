@@ -13,6 +13,7 @@ from physicslab.ecs.fields import POINTS
 from physicslab.kernels.broad import chains, grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes, still_holds
 from physicslab.kernels.wide import slots
+from physicslab.state.solid import solid_rows
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
 
@@ -26,7 +27,7 @@ _SPARSE = 2
 
 def nothing_to_touch(state: State) -> str | None:
     """Return why no two things in this world can ever meet, or ``None`` if they can."""
-    shapes, moving = len(state.batch(Shape, Transform)), len(state.batch(Shape, Transform, Velocity))
+    shapes, moving = len(solid_rows(state)), len(state.batch(Shape, Transform, Velocity))
     if not shapes:
         return "no Shape in the scene"
     if not moving:
@@ -42,7 +43,7 @@ def nothing_to_touch(state: State) -> str | None:
 
 def _may_any_touch(state: State) -> bool:
     """Whether any two bodies may meet that no joint keeps from touching each other."""
-    shaped = state.batch(Shape, Transform).rows
+    shaped = solid_rows(state)
     i, j = np.triu_indices(len(shaped), 1)
     a, b = shaped[i], shaped[j]
     moves = state.table(Velocity).present
@@ -217,11 +218,12 @@ class BroadPhaseSystem(System):
     def _add_chains(self, state: State, found: int, walls: int) -> int:
         """Add the pairs of bodies and segments of chains to those of the bounds; return how many both are."""
         shape, (position, angle, _, _) = state.table(Shape), motion_of(state)
-        codes = shape["vertices"][self.chains].tolist()
+        solid = self.chains[state.bodies.shapes.vertices[self.chains] > 0]
+        codes = shape["vertices"][solid].tolist()
         segments = np.array([len(POINTS.value_of(code)) - 1 for code in codes])
         while True:
             count = chains.add_chains(
-                self.chains, segments, position, angle, shapes_of(state), self.boxes, self.fat,
+                solid, segments, position, angle, shapes_of(state), self.boxes, self.fat,
                 state.bodies.inverse_mass, self._pairs, walls,
             )  # fmt: skip
             if found + count <= len(self._pairs):
