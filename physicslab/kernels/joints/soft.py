@@ -31,6 +31,7 @@ from physicslab.kernels.joints.blocks import (
     Joints,
     can_move,
     factorise,
+    response,
     substitute,
 )
 from physicslab.kernels.joints.terms import TermEnd, measure_term
@@ -167,8 +168,37 @@ def warm_start_joints(joints: Joints, motion: Motion, inverse: Inverse, scale: f
 
 
 @inlined
+def _limit_correction(joints: Joints, first: int, end: int, inverse: Inverse, soft: JointSoftness) -> None:
+    """Lessen the errors of a block where correcting them gives bodies more energy than its springs have.
+
+    A straight chain that is too long for its fixed ends can close its gaps by bending alone: the straighter
+    it is, the faster its links would have to move, without a bound.
+    """
+    at, stored, given, stiffness = joints.measured, 0.0, 0.0, soft.rate / (soft.h * soft.spring)
+    for n in range(first, end):
+        i = joints.order[n]
+        corrected = at[i, STATE] == ACTIVE and joints.role[i] != MOTOR
+        if not corrected or (joints.role[i] == LIMIT and at[i, ERROR] > 0.0):
+            at[i, CHANGE] = 0.0
+            continue
+        at[i, CHANGE] = -soft.rate * at[i, ERROR]
+        stored += stiffness * at[i, ERROR] * at[i, ERROR] / response(joints, i, i, inverse)
+    if stored == 0.0:
+        return
+    substitute(joints, first, end)
+    for n in range(first, end):
+        given -= soft.rate * at[joints.order[n], ERROR] * at[joints.order[n], CHANGE]
+    if given > stored:
+        share = math.sqrt(stored / given)
+        for n in range(first, end):
+            i = joints.order[n]
+            if joints.role[i] == HOLD or at[i, ERROR] < 0.0:
+                at[i, ERROR] *= share
+
+
+@inlined
 def factorise_joints(joints: Joints, inverse: Inverse, soft: JointSoftness) -> None:
-    """Choose the rows that act as far as is known, and factorise all blocks."""
+    """Choose the rows that act as far as is known, and factorise all blocks; limit what is corrected."""
     first, at = 0, joints.measured
     for i in range(len(joints.impulse)):
         acts = can_move(joints, i, inverse)
@@ -179,6 +209,8 @@ def factorise_joints(joints: Joints, inverse: Inverse, soft: JointSoftness) -> N
         at[i, STATE] = ACTIVE if acts else OFF
     for block in range(len(joints.ends)):
         factorise(joints, first, joints.ends[block], inverse, soft.spring)
+        if soft.rate > 0.0:
+            _limit_correction(joints, first, joints.ends[block], inverse, soft)
         first = joints.ends[block]
 
 
