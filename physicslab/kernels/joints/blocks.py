@@ -13,10 +13,10 @@ from physicslab.kernels.arguments import Inverse
 
 _DEPENDENT = 1e-13
 """Share of its diagonal below which a pivot is rounding: the row depends on those before it."""
-A_X, A_Y, A_TURN, B_X, B_Y, B_TURN, ERROR, BEFORE, NOTED, CHANGE, GIVES, STATE, MEASURED = range(13)
+A_X, A_Y, A_TURN, B_X, B_Y, B_TURN, ERROR, BEFORE, NOTED, CHANGE, DIAGONAL, GIVES, STATE, MEASURED = range(14)
 """The measures of a term: its gradient by x, y and the angle of A, and of B. Those of a row, beside its first
 term: the error [m or rad]; its speed before the impulses and its impulse then [N s]; how the impulse changes;
-how soft a dependent row is; whether it is ``ACTIVE``."""
+how a unit impulse changes its own speed; how soft a dependent row is; whether it is ``ACTIVE``."""
 OFF, ACTIVE = 0.0, 1.0
 """A row that moves nothing, or whose impulse is at its bound; one that is solved."""
 
@@ -110,6 +110,7 @@ def factorise(joints: Joints, first: int, end: int, inverse: Inverse, softness: 
                 pivot = matrix[column + n]
                 matrix[row + n] = left / pivot if pivot > 0.0 else 0.0
                 continue
+            measured[i, DIAGONAL] = diagonal
             if left <= _DEPENDENT * diagonal:
                 measured[i, GIVES] = softness * diagonal
                 left = max(left, 0.0) + softness * diagonal

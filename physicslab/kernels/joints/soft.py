@@ -23,6 +23,7 @@ from physicslab.kernels.joints.blocks import (
     B_Y,
     BEFORE,
     CHANGE,
+    DIAGONAL,
     ERROR,
     GIVES,
     NOTED,
@@ -31,7 +32,6 @@ from physicslab.kernels.joints.blocks import (
     Joints,
     can_move,
     factorise,
-    response,
     substitute,
 )
 from physicslab.kernels.joints.terms import TermEnd, measure_term
@@ -168,7 +168,7 @@ def warm_start_joints(joints: Joints, motion: Motion, inverse: Inverse, scale: f
 
 
 @inlined
-def _limit_correction(joints: Joints, first: int, end: int, inverse: Inverse, soft: JointSoftness) -> None:
+def _limit_correction(joints: Joints, first: int, end: int, soft: JointSoftness) -> None:
     """Lessen the errors of a block where correcting them gives bodies more energy than its springs have.
 
     A straight chain that is too long for its fixed ends can close its gaps by bending alone: the straighter
@@ -177,12 +177,12 @@ def _limit_correction(joints: Joints, first: int, end: int, inverse: Inverse, so
     at, stored, given, stiffness = joints.measured, 0.0, 0.0, soft.rate / (soft.h * soft.spring)
     for n in range(first, end):
         i = joints.order[n]
-        corrected = at[i, STATE] == ACTIVE and joints.role[i] != MOTOR
+        corrected = at[i, STATE] == ACTIVE and joints.role[i] != MOTOR and at[i, DIAGONAL] > 0.0
         if not corrected or (joints.role[i] == LIMIT and at[i, ERROR] > 0.0):
             at[i, CHANGE] = 0.0
             continue
         at[i, CHANGE] = -soft.rate * at[i, ERROR]
-        stored += stiffness * at[i, ERROR] * at[i, ERROR] / response(joints, i, i, inverse)
+        stored += stiffness * at[i, ERROR] * at[i, ERROR] / at[i, DIAGONAL]
     if stored == 0.0:
         return
     substitute(joints, first, end)
@@ -210,7 +210,7 @@ def factorise_joints(joints: Joints, inverse: Inverse, soft: JointSoftness) -> N
     for block in range(len(joints.ends)):
         factorise(joints, first, joints.ends[block], inverse, soft.spring)
         if soft.rate > 0.0:
-            _limit_correction(joints, first, joints.ends[block], inverse, soft)
+            _limit_correction(joints, first, joints.ends[block], soft)
         first = joints.ends[block]
 
 
