@@ -168,7 +168,7 @@ def warm_start_joints(joints: Joints, motion: Motion, inverse: Inverse, scale: f
 
 
 @inlined
-def _limit_correction(joints: Joints, first: int, end: int, soft: JointSoftness) -> None:
+def _limit_correction(joints: Joints, first: int, end: int, inverse: Inverse, soft: JointSoftness) -> None:
     """Lessen the errors of a block where correcting them gives bodies more energy than its springs have.
 
     A straight chain that is too long for its fixed ends can close its gaps by bending alone: the straighter
@@ -216,7 +216,7 @@ def factorise_joints(joints: Joints, inverse: Inverse, soft: JointSoftness) -> N
     for block in range(len(joints.ends)):
         factorise(joints, first, joints.ends[block], inverse, soft.spring)
         if soft.rate > 0.0:
-            _limit_correction(joints, first, joints.ends[block], soft)
+            _limit_correction(joints, first, joints.ends[block], inverse, soft)
         first = joints.ends[block]
 
 
