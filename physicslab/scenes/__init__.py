@@ -33,6 +33,7 @@ _NAMES = (
     "resonance",
     "rocket",
     "floating",
+    "droplets",
     "rutherford",
     "crossed_fields",
     "cyclotron",

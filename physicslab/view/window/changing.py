@@ -10,6 +10,7 @@ from physicslab.components import (
     Mass,
     Material,
     Medium,
+    Molecule,
     Name,
     Pin,
     Rod,
@@ -183,6 +184,7 @@ _MEANINGS: dict[type[Component], str] = {
     Medium: "it is filled with a fluid: bodies pass through, float and are slowed",
     Spring: "it hangs from a point that can be dragged",
     Thrust: "it is pushed and turned from within, as by a rocket or a motor",
+    Molecule: "near ones attract each other, and repel each other when they are too near",
     Strobe: "it leaves pictures of its past positions",
     Trail: "its past path is shown",
 }
