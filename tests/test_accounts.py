@@ -47,7 +47,8 @@ SMALL = ("drop", "pendulum", "slope", "stack", "newtons_cradle", "two_planets", 
 ERRORS = {"sandbox": 1e-8, "pendulum": 1e-11}
 """Where springs act that are not solved in closed form: the error of their method."""
 TWO_POINTS = {
-    "pyramid": 1e-4, "pile": 1e-4, "dominoes": 1e-5, "billiards": 1e-5, "gas": 1e-5, "sandbox": 1e-6
+    "pyramid": 1e-4, "pile": 1e-4, "bridge": 1e-4, "dominoes": 1e-5, "billiards": 1e-5, "gas": 1e-5,
+    "sandbox": 1e-6
 }  # fmt: skip
 """Scenes with soft contacts: how much the angular momentum is off."""
 EXACT = 1e-9
@@ -410,7 +411,7 @@ def test_a_ballistic_pendulum_loses_what_the_masses_say() -> None:
 
 @pytest.mark.parametrize(
     ("method", "order", "scene", "dt"),
-    [("leapfrog", 2, "two_planets", 0.05), ("blanes_moan", 6, "pendulum", 0.03)],
+    [("leapfrog", 2, "two_planets", 0.05), ("blanes_moan", 6, "two_planets", 0.5)],
 )
 def test_the_error_falls_with_the_step_at_the_order_of_the_method(
     method: str, order: int, scene: str, dt: float
