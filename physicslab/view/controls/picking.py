@@ -50,6 +50,7 @@ def bodies_at(world: World, camera: Camera, pixel: tuple[float, float], reach: f
     everything = rows.all
     gap = outlines_of(world, everything).gaps(place.x, place.y)
     gap[len(gap) - len(rows.points) :] -= POINT_RADIUS / camera.scale
+    gap[: len(rows.chains)] -= POINT_RADIUS / camera.scale
     near = np.flatnonzero(gap <= reach / camera.scale)[::-1]
     hit: list[int] = entities[everything[near]].tolist()
     if hit:
