@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from desk import empty_world
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from physicslab.components import Material, Shape, Transform, Velocity
@@ -75,6 +75,7 @@ def test_a_box_held_between_the_floor_and_the_wall_comes_back_in() -> None:
     is_box=st.booleans(),
     pulled=st.booleans(),
 )
+@example(x=-2.5, y=-1.0, size=0.75, angle=0.0, is_box=True, pulled=False)  # wedged between ramp and floor
 def test_wherever_a_body_is_put_it_is_inside_within_a_second(
     contacts: str, x: float, y: float, size: float, angle: float, is_box: bool, pulled: bool
 ) -> None:
@@ -95,6 +96,16 @@ def test_wherever_a_body_is_put_it_is_inside_within_a_second(
         assert deepest(world, body) <= DEEP + 1e-9
     fall = math.sqrt(2.0 * 9.81 * (WALLS[3] - WALLS[1])) if pulled else 0.0
     assert fastest <= fall + 2.0, "nothing is thrown"
+
+
+def test_a_body_too_large_for_a_wedge_leaves_it_without_bounds_too() -> None:
+    world = empty_world(gravity_mode="none")
+    for side in (-1.0, 1.0):
+        box(world, (0.0, 0.3 * side), width=4.0, height=0.4, angle=0.1 * side, static=True)
+    body = box(world, (0.5, 0.0), width=0.6, height=0.6, mass=2.0)
+    world.run(seconds=0.1)
+    assert deepest(world, body) <= 1e-3 and world.brought_back == 1
+    assert world.component(body, Velocity).linear.magnitude < 2.0
 
 
 def test_what_comes_back_brings_no_energy_but_what_is_booked() -> None:

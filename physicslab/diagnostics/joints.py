@@ -35,6 +35,8 @@ class JointState:
         On B about its anchor, likewise [N m].
     stretch, twist : float
         How far lengths and places are from what it holds [m], and angles [rad]: the error that is left.
+    largest_stretch : float
+        The largest that was seen in substeps with soft contacts, and now [m].
     """
 
     entity: int
@@ -47,6 +49,7 @@ class JointState:
     torque: float
     stretch: float
     twist: float
+    largest_stretch: float
 
     @property
     def is_fixed(self) -> bool:
@@ -66,17 +69,15 @@ def joint_states(state: State) -> list[JointState]:
         place = transform["position"][a] + rotated(anchor, transform["angle"][a])
         angle = float(transform["angle"][b or a])
         ends = int(state.entity_index.entities[a]), int(state.entity_index.entities[b])
-        force, torque, stretch, twist = _figures(state, joint)
-        held = JointState(
-            joint.entity, joint.kind, Vector2(*place), angle, *ends, force, torque, stretch, twist
-        )
-        found.append(held)
+        kind, at = joint.kind, Vector2(*place.tolist())
+        force, torque, stretch, twist, largest = _figures(state, joint)
+        found.append(JointState(joint.entity, kind, at, angle, *ends, force, torque, stretch, twist, largest))
     return found
 
 
-def _figures(state: State, joint: Joint) -> tuple[Vector2, float, float, float]:
-    """Return the force on B, the torque about its anchor, the stretch and the twist."""
-    joints, force, torque = state.joints, np.zeros(2), 0.0
+def _figures(state: State, joint: Joint) -> tuple[Vector2, float, float, float, float]:
+    """Return the force on B, the torque about its anchor, stretch, twist and the largest stretch."""
+    joints, force, torque, largest = state.joints, np.zeros(2), 0.0, 0.0
     squares = {True: 0.0, False: 0.0}
     for row in range(joint.first, joint.first + joint.size):
         error = -float(joints.offset[row])
@@ -89,9 +90,12 @@ def _figures(state: State, joint: Joint) -> tuple[Vector2, float, float, float]:
             for end, gradient, sign in ends:
                 if end == joint.b:
                     force += pull * np.array(gradient)
-                    torque += sign * pull * (joints.measure[n] == Measure.ANGLE)
+                    torque += sign * pull if joints.measure[n] == Measure.ANGLE else 0.0
         if joints.role[row] == Role.LIMIT:
             error = min(error, 0.0)
+        if joints.measure[row] != Measure.ANGLE:
+            largest = max(largest, float(joints.largest[row]))
         if joints.role[row] != Role.MOTOR:
             squares[bool(joints.measure[row] == Measure.ANGLE)] += error * error
-    return Vector2(*force.tolist()), torque, math.sqrt(squares[False]), math.sqrt(squares[True])
+    stretch, twist = math.sqrt(squares[False]), math.sqrt(squares[True])
+    return Vector2(*force.tolist()), torque, stretch, twist, max(largest, stretch)

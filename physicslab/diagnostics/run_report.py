@@ -209,6 +209,7 @@ def _joints(world: World) -> dict[str, Any]:
             "force": [x, y],
             "torque": joint.torque,
             "stretch": joint.stretch,
+            "largest_stretch": joint.largest_stretch,
             "twist": joint.twist,
         }
     return {"joints": found}

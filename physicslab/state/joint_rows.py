@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from physicslab.components import Gear, Pin, Pulley, Rod, Rope, Slot, Transform, Weld
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.table import Table
-from physicslab.kernels.joints import terms
+from physicslab.kernels.joints import soft, terms
 from physicslab.kernels.joints.terms import MeasuredTerm, TermEnd, measure_term
 
 
@@ -31,11 +31,11 @@ class Measure(IntEnum):
 class Role(IntEnum):
     """What a row demands of its quantity g."""
 
-    HOLD = 0
+    HOLD = soft.HOLD
     """g = 0, by a force of any sign."""
-    LIMIT = 1
+    LIMIT = soft.LIMIT
     """g >= 0, by a force >= 0 and without bounce."""
-    MOTOR = 2
+    MOTOR = soft.MOTOR
     """dg/dt = ``target``, by a force of at most ``strongest``."""
 
 
@@ -54,8 +54,7 @@ class Term(NamedTuple):
 class Row(NamedTuple):
     """One row: g is the sum of one or two terms less ``offset``, its force acts by the gradient of g.
 
-    ``target`` is the speed of a motor, ``strongest`` its largest force, which may be infinite. Soft
-    constraints solve so many rows from here on as one ``block``; 0 are those after its first. ``placed`` is
+    ``target`` is the speed of a motor, ``strongest`` its largest force, which may be infinite. ``placed`` is
     the field that has the sum of the terms over the first one's scale; it is measured where it is not given.
     """
 
@@ -64,7 +63,6 @@ class Row(NamedTuple):
     offset: float = 0.0
     target: float = 0.0
     strongest: float = math.inf
-    block: int = 1
     placed: str = ""
 
 
@@ -109,19 +107,17 @@ class Joined(NamedTuple):
         return rows
 
 
-def _point(joint: Joined, block: int) -> list[Row]:
-    """Return two rows, the first ones of a block: the anchors are in one place."""
-    along = (joint.term(Measure.ALONG, axis) for axis in ((1.0, 0.0), (0.0, 1.0)))
-    return [Row((term,), block=size) for term, size in zip(along, (block, 0), strict=True)]
+def _point(joint: Joined) -> list[Row]:
+    """Return two rows: the anchors are in one place."""
+    return [Row((joint.term(Measure.ALONG, axis),)) for axis in ((1.0, 0.0), (0.0, 1.0))]
 
 
 def _pin(joint: Joined) -> Sequence[Row]:
-    return _point(joint, 2) + joint.bounded(joint.term(Measure.ANGLE), most="max_torque")
+    return _point(joint) + joint.bounded(joint.term(Measure.ANGLE), most="max_torque")
 
 
 def _weld(joint: Joined) -> Sequence[Row]:
-    angle = Row((joint.term(Measure.ANGLE),), block=0, placed="angle")
-    return [*_point(joint, 3), angle]
+    return [*_point(joint), Row((joint.term(Measure.ANGLE),), placed="angle")]
 
 
 def _rod(joint: Joined) -> Sequence[Row]:
@@ -140,10 +136,10 @@ def _axis(joint: Joined) -> tuple[float, float]:
 
 def _slot(joint: Joined) -> Sequence[Row]:
     """Return the row across the axis, that of the angle unless B turns, limits and motor along the axis."""
-    (x, y), turns = _axis(joint), bool(joint.table["turns"][joint.row])
-    rows = [Row((joint.term(Measure.ALONG_A, (-y, x)),), block=1 if turns else 2)]
-    if not turns:
-        rows.append(Row((joint.term(Measure.ANGLE),), block=0, placed="angle"))
+    x, y = _axis(joint)
+    rows = [Row((joint.term(Measure.ALONG_A, (-y, x)),))]
+    if not joint.table["turns"][joint.row]:
+        rows.append(Row((joint.term(Measure.ANGLE),), placed="angle"))
     return rows + joint.bounded(joint.term(Measure.ALONG_A, (x, y)))
 
 

@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.components import Velocity
 from physicslab.ecs.entity_index import EntityIndex
+from physicslab.state.joint_order import NO_BLOCKS, order_rows
 from physicslab.state.joint_rows import KINDS, Joined, Measure, Role, Row, Term, ends_of, measured
-
-type _Held = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 class Joint(NamedTuple):
@@ -55,14 +55,17 @@ class Joints:
     offset, target, strongest : float64 arrays (n,)
         What is taken from the terms [m or rad]; the speed of a motor [m/s or rad/s]; its largest force [N or
         N m], which may be infinite.
-    block : int64 array (n,)
-        How many rows are solved as one from here on; 0 for those after the first.
+    blocks : Blocks
+        The order in which soft constraints solve them, and which at once.
     impulse : float64 array (n,)
         Of the last substep [N s or N m s], from which the next one starts.
     force : float64 array (n,)
         At the end of the last step, or as its mean [N or N m].
-    measured : float64 array (m, k)
-        Room for what soft constraints measure of a term (:mod:`physicslab.kernels.joints.soft`).
+    largest : float64 array (n,)
+        The largest error so far, as far as soft constraints solved it [m or rad].
+    measured, matrix : float64 arrays (m, k), (l,)
+        Room for what soft constraints measure of a term, and for the matrices of blocks
+        (:mod:`physicslab.kernels.joints.blocks`).
     beside_contacts : bool
         Whether contacts are solved at all, and joints with them.
     rank : int
@@ -94,9 +97,9 @@ class Joints:
         self.offset, self.target, self.strongest = (
             np.array([row[n] for row in rows], np.float64) for n in range(2, 5)
         )
-        self.block = np.array([row.block for row in rows], np.int64)
-        self.impulse, self.force = np.zeros((2, len(rows)))
+        self.impulse, self.force, self.largest = np.zeros((3, len(rows)))
         self.measured: NDArray[np.float64] = np.zeros((0, 0))
+        self.matrix, self.blocks = np.zeros(0), NO_BLOCKS
         self.edges, self.apart, self.rank = np.zeros((0, 2), np.int64), np.zeros((0, 2), np.int64), -1
 
     def __len__(self) -> int:
@@ -113,7 +116,10 @@ class Joints:
     def rebuild(self, index: EntityIndex) -> bool:
         """Take the joints that there are; return whether they are others than before. Impulses are kept."""
         before, entities = self._joined, index.entities
-        held = {(joint.entity, joint.kind): self._held(joint) for joint in self.joints}
+        held: dict[Any, tuple[NDArray[np.float64], ...]] = {
+            (joint.entity, joint.kind): tuple(array[joint.own].copy() for array in self._carried)
+            for joint in self.joints
+        }
         joints: list[Joint] = []
         rows: list[Row] = []
         edges: set[tuple[int, int]] = set()
@@ -132,20 +138,26 @@ class Joints:
                 if not table["collide"][row]:
                     apart.add((min(joined.a, joined.b), max(joined.a, joined.b)))
         self._take(joints, rows)
+        moves = index.table(Velocity).present
+        moving = [{end for term in row.terms for end in (term.a, term.b) if moves[end]} for row in rows]
+        self.blocks = order_rows(moving, [range(joint.first, joint.first + joint.size) for joint in joints])
         self.edges = np.array(sorted(edges), np.int64).reshape(-1, 2)
         self.apart = np.array(sorted(apart), np.int64).reshape(-1, 2)
         for joint in joints:
-            impulse, force = held.get((joint.entity, joint.kind), (_NONE, _NONE))
-            if len(impulse) == joint.size:
-                self.impulse[joint.own], self.force[joint.own] = impulse, force
+            before_it = held.get((joint.entity, joint.kind), ())
+            if before_it and len(before_it[0]) == joint.size:
+                for array, values in zip(self._carried, before_it, strict=True):
+                    array[joint.own] = values
         self._settings = self.settings(index)
         self._joined = tuple(
             (joint.entity, joint.kind, int(entities[joint.a]), int(entities[joint.b])) for joint in joints
         )
         return before != self._joined
 
-    def _held(self, joint: Joint) -> _Held:
-        return self.impulse[joint.own].copy(), self.force[joint.own].copy()
+    @property
+    def _carried(self) -> tuple[NDArray[np.float64], ...]:
+        """What a row has that is not of its component."""
+        return self.impulse, self.force, self.largest
 
     def settings(self, index: EntityIndex) -> bytes:
         """Return the numbers of all joints, bit by bit."""
@@ -204,9 +216,6 @@ class Joints:
             impulses = held.get((joint.entity, joint.kind.__name__), ())
             if len(impulses) == joint.size:
                 self.impulse[joint.own] = impulses
-
-
-_NONE = np.zeros(0)
 
 
 def _placed(joined: Joined, row: Row) -> Row:

@@ -1,12 +1,14 @@
-"""Bodies beyond the bounds of the world that something fixed keeps there: they are put back inside.
+"""Bodies that what is fixed pushes to and fro: they are put where they have room.
 
-What is beyond the bounds is pushed in by their walls. Where a fixed body pushes it out again, as the end of a
-floor does, neither has an end: the bounds win. The body is put to the nearest place within them in which it
-overlaps nothing fixed, and loses the part of its velocity that points outwards.
+What is beyond the bounds of the world is pushed in by their walls. Where a fixed body pushes it out again, as
+the end of a floor does, neither has an end: the bounds win. Nor has it one where fixed bodies push another
+one into each other, as in a wedge that is too narrow for it. Such a body is put to the nearest place within
+the bounds in which it overlaps nothing fixed, and loses the part of its velocity that points beyond them.
 """
 
 import heapq
 import itertools
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +17,7 @@ from physicslab.components import Shape, Transform, Velocity
 from physicslab.contacts.islands import wake_neighbours
 from physicslab.contacts.outlines import Outlines, exits, outlines_of, overlap, overlapping
 from physicslab.kernels.accounts import OVERLAP
-from physicslab.kernels.solver.separate import BEYOND
+from physicslab.kernels.solver.separate import BEYOND, DEEP, ROUNDING
 from physicslab.state.state import State
 from physicslab.stepping.accounting import balance_of
 from physicslab.systems.schedule import Schedule
@@ -24,7 +26,7 @@ _OUTWARDS = -0.1
 """Along the inward normal of a wall: a fixed body whose push has less keeps what is beyond the wall there."""
 _HELD = 0.01
 """Overlap with it, as a share of a size, above which that body does push."""
-_WITHIN = 0.15
+_WITHIN = DEEP + ROUNDING
 """Overlap with a fixed body, as a share of a size, that is more than contacts leave: it is inside."""
 _FREE = 1e-6
 """Overlap, as a share of a size, that is none."""
@@ -39,9 +41,9 @@ type Numbers = NDArray[np.float64]
 
 
 def bring_back(state: State, schedule: Schedule) -> int:
-    """Put every body back inside that a fixed one keeps beyond the bounds; return how many.
+    """Put every body where it has room that a fixed one keeps beyond the bounds or in itself; count them.
 
-    To be called at the end of a step in which the contact stages have found a body beyond them.
+    To be called at the end of a step in which the contact stages have found one beyond them, or wedged.
 
     Parameters
     ----------
@@ -52,16 +54,15 @@ def bring_back(state: State, schedule: Schedule) -> int:
     """
     state.contacts.outside = 0
     bounds = state.physics.bounds
-    if bounds is None:
-        return 0
-    low, high = np.array(bounds[:2]), np.array(bounds[2:])
+    rooms = (-math.inf, -math.inf, math.inf, math.inf) if bounds is None else bounds
+    low, high = np.array(rooms[:2]), np.array(rooms[2:])
     rows = state.batch(Transform, Shape).rows
     inverse_mass, moves = state.bodies.inverse_mass[rows], state.table(Velocity).present[rows]
     movable, shapes = rows[inverse_mass > 0.0], outlines_of(state, rows[~moves])
     bodies = outlines_of(state, movable)
     beyond = _beyond(bodies, low, high) > BEYOND * bodies.size[:, None]
     places: dict[int, Numbers] = {}
-    for n in np.flatnonzero(beyond.any(axis=1)):
+    for n in np.flatnonzero(beyond.any(axis=1) | _may_be_within(bodies, shapes)):
         if _is_kept(bodies, int(n), shapes, _INWARDS[beyond[n]]):
             place = _free_place(bodies, int(n), shapes, low, high)
             if place is not None:
@@ -76,6 +77,14 @@ def _beyond(bodies: Outlines, low: Numbers, high: Numbers) -> Numbers:
     """Return how far each body is beyond each of the walls (n, 4) [m]."""
     reach = bodies.reach
     return np.concatenate((low - bodies.place + reach, bodies.place + reach - high), axis=1)
+
+
+def _may_be_within(bodies: Outlines, fixed: Outlines) -> NDArray[np.bool_]:
+    """Return which bodies (n,) may be inside a fixed one, by their boxes along the axes of the world."""
+    reach, within = bodies.reach - _WITHIN * bodies.size[:, None], np.zeros(len(bodies.size), np.bool_)
+    for place, far in zip(fixed.place, fixed.reach, strict=True):
+        within |= (np.abs(bodies.place - place) < reach + far).all(axis=1)
+    return within
 
 
 def _is_kept(bodies: Outlines, n: int, fixed: Outlines, inwards: Numbers) -> bool:
@@ -124,6 +133,8 @@ def _free_place(
                 seen.add(key)
                 heapq.heappush(waiting, (float(np.hypot(*(found - begin))), next(order), found))
     share = np.linspace(0.0, 1.0, _GRID)
+    low = np.where(np.isfinite(low), low, (fixed.place - fixed.reach).min(axis=0) - reach)
+    high = np.where(np.isfinite(high), high, (fixed.place + fixed.reach).max(axis=0) + reach)
     grid: Numbers = low + np.stack(np.meshgrid(share, share), axis=-1).reshape(-1, 2) * (high - low)
     nearest = np.argsort(np.hypot(*(grid - begin).T), kind="stable")
     free = next((int(k) for k in nearest if not hits(grid[k])), None)

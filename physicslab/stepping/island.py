@@ -187,7 +187,7 @@ def copy_joints(part: State, state: State) -> None:
     if len(part.joints):
         there = {(joint.entity, joint.kind): joint.own for joint in state.joints.joints}
         for joint in part.joints.joints:
-            for name in ("impulse", "force"):
+            for name in ("impulse", "force", "largest"):
                 whole = getattr(state.joints, name)
                 whole[there[joint.entity, joint.kind]] = getattr(part.joints, name)[joint.own]
         state.joints.rank = part.joints.rank

@@ -5,7 +5,6 @@ from typing import Any
 from physicslab.contacts.islands import keep_places
 from physicslab.contacts.near_pairs import refill
 from physicslab.kernels.loading import working_ns
-from physicslab.state.joint_rows import Measure, Role
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
 from physicslab.stepping.accounting import held_in, open_account
@@ -76,16 +75,7 @@ class Soft:
         return True
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
-        """Make ``steps`` steps or fewer; where one fails, those before it are counted.
-
-        Raises
-        ------
-        NotImplementedError
-            If a joint has rows that soft constraints do not solve.
-        """
-        unsolved = state.joints.why_not({Role.HOLD}, {Measure.ALONG}, terms=1)
-        if unsolved is not None:
-            raise NotImplementedError(f"no stepper can advance this world: {unsolved}")
+        """Make ``steps`` steps or fewer; where one fails, those before it are counted."""
         contacts, parts = state.contacts, divisions(state, h)
         single = bool(self.hooks) or parts > 1 or (state.bodies.unequal and state.has_forces)
         if not single:

@@ -117,7 +117,8 @@ class JointSystem(System):
         for kind in KINDS:
             rows, (a, b) = state.batch(kind).rows, ends_of(index, kind)
             remove_lost(state, kind, a, b)
-            _refuse_equal(state, kind, rows, a, b)
+            there = (a >= 0) & (b >= 0)
+            _refuse_equal(state, kind, rows[there], a[there], b[there])
         if state.joints.rebuild(index) and state.sleep.count:
             wake_all(state)
 

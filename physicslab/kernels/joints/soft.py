@@ -1,96 +1,107 @@
-"""Joints as soft constraints: impulses that hold bodies together, beside those of contacts.
+"""Joints beside soft contacts: impulses that hold bodies together, limit and drive them.
 
-A row is a spring and damper of 60 Hz, overdamped, integrated implicitly, and at most as fast as substeps can
-follow (Catto, Soft Constraints, GDC 2011; Solver2D, 2024). Impulses act on B, and on A with the other sign.
+Errors of places are corrected like those of a spring of 60 Hz with twice the critical damping, at most as
+fast as substeps can follow (Catto, Soft Constraints, GDC 2011; Solver2D, 2024); impulses of a block of rows
+are solved at once (:mod:`physicslab.kernels.joints.blocks`), and with contacts in turn. A limit that is not
+reached yet may be approached up to it within the substep. Which limits act and which motors are at their
+strongest is found by trying: an impulse beyond its bound is set to it, and the others are solved again.
 """
 
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
-from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, PX, PY, SPIN
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
+from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, MOTORS, PX, PY, SPIN
 from physicslab.kernels.arguments import Acting, Inverse, Motion
-from physicslab.kernels.joints.terms import ALONG, TermEnd, measure_term
+from physicslab.kernels.joints.blocks import (
+    A_TURN,
+    A_X,
+    A_Y,
+    ACTIVE,
+    B_TURN,
+    B_X,
+    B_Y,
+    BEFORE,
+    CHANGE,
+    ERROR,
+    GIVES,
+    NOTED,
+    OFF,
+    STATE,
+    Joints,
+    can_move,
+    factorise,
+    substitute,
+)
+from physicslab.kernels.joints.terms import TermEnd, measure_term
 
+HOLD, LIMIT, MOTOR = range(3)
+"""What a row demands (:class:`physicslab.state.joint_rows.Role`)."""
 _FASTEST, _DAMPING, _OF_SUBSTEPS = 60.0, 2.0, 0.25
-"""The frequency [Hz] of the constraint and its damping ratio; at most that share of the rate of substeps."""
+"""The frequency [Hz] of the correction and its damping ratio; at most that share of the rate of substeps."""
 _SETTLED = 1e-10
 """Share of an impulse by which it may still change where sweeps come to their end."""
-_SINGULAR = 1e-12
-"""Share of the product of its diagonal below which the determinant of two rows is rounding."""
-ACROSS_A, ACROSS_B, ERROR, BEFORE, NOTED, MEASURED = range(6)
-"""What is measured of a row: r x n of both arms [m], the error [m], its speed before the impulses [m/s], and
-its impulse then [N s]."""
-
-
-class Joints(NamedTuple):
-    """The rows of joints (n,): bodies, how many are solved as one, anchors and axes, impulses, measures."""
-
-    a: Rows
-    b: Rows
-    block: Rows
-    anchor_a: Vectors
-    anchor_b: Vectors
-    axis: Vectors
-    impulse: Numbers
-    measured: Vectors
+_TRIALS = 12
+"""How often a block is solved again in a sweep, as bounds of impulses turn out to act, or not to."""
 
 
 class JointSoftness(NamedTuple):
-    """The rate [1/s] at which errors are corrected, the share of an impulse made, and that of it given up."""
+    """The time of a substep [s], the rate of correction [1/s], how soft a dependent row is."""
 
+    h: float
     rate: float
-    mass_scale: float
-    impulse_scale: float
-
-
-JointsTuple = tuple[Rows, Rows, Rows, Vectors, Vectors, Vectors, Numbers, Vectors]
-"""The rows without names."""
+    spring: float
 
 
 @inlined
-def joint_softness(h: float, sweeps: int) -> JointSoftness:
-    """Return the spring of a row in a substep of ``h`` seconds; more sweeps carry a stiffer one."""
+def joint_softness(h: float) -> JointSoftness:
+    """Return the spring that corrects errors in a substep of ``h`` seconds."""
     omega = 2.0 * math.pi * min(_FASTEST, _OF_SUBSTEPS / h)
     damped = 2.0 * _DAMPING + h * omega
-    stiffness = h * omega * damped * sweeps * math.sqrt(math.sqrt(sweeps))
-    return JointSoftness(omega / damped, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness))
+    return JointSoftness(h, omega / damped, 1.0 / (h * omega * damped))
+
+
+@inlined
+def _along(joints: Joints, k: int, linear: Vectors, angular: Numbers) -> float:
+    """Return the product of the gradient of a term with velocities."""
+    a, b, at = joints.a[k], joints.b[k], joints.measured
+    at_a = at[k, A_X] * linear[a, 0] + at[k, A_Y] * linear[a, 1] + at[k, A_TURN] * angular[a]
+    at_b = at[k, B_X] * linear[b, 0] + at[k, B_Y] * linear[b, 1] + at[k, B_TURN] * angular[b]
+    return at_a + at_b  # type: ignore[no-any-return]
 
 
 @always_inlined
-def _speed(joints: Joints, i: int, linear: Vectors, angular: Numbers) -> float:
-    """Return how fast the error of a row grows [m/s], or of forces and torques what they give to it."""
-    a, b, nx, ny = joints.a[i], joints.b[i], joints.axis[i, 0], joints.axis[i, 1]
-    along = nx * (linear[b, 0] - linear[a, 0]) + ny * (linear[b, 1] - linear[a, 1])
-    turning = angular[b] * joints.measured[i, ACROSS_B] - angular[a] * joints.measured[i, ACROSS_A]
-    return along + turning  # type: ignore[no-any-return]
+def _speed(joints: Joints, i: int, motion: Motion) -> float:
+    """Return how fast the quantity of a row grows [m/s or rad/s]."""
+    total = _along(joints, i, motion.linear, motion.angular)
+    if joints.second[i] >= 0:
+        total += _along(joints, joints.second[i], motion.linear, motion.angular)
+    return total
+
+
+@inlined
+def _push(joints: Joints, k: int, motion: Motion, inverse: Inverse, impulse: float) -> None:
+    """Change velocities by an impulse at a term."""
+    a, b, at = joints.a[k], joints.b[k], joints.measured
+    motion.linear[a, 0] += inverse.mass[a] * impulse * at[k, A_X]
+    motion.linear[a, 1] += inverse.mass[a] * impulse * at[k, A_Y]
+    motion.angular[a] += inverse.inertia[a] * impulse * at[k, A_TURN]
+    motion.linear[b, 0] += inverse.mass[b] * impulse * at[k, B_X]
+    motion.linear[b, 1] += inverse.mass[b] * impulse * at[k, B_Y]
+    motion.angular[b] += inverse.inertia[b] * impulse * at[k, B_TURN]
 
 
 @always_inlined
 def _apply(joints: Joints, i: int, motion: Motion, inverse: Inverse, impulse: float) -> None:
     """Change velocities by an impulse of a row."""
-    a, b, px, py = joints.a[i], joints.b[i], impulse * joints.axis[i, 0], impulse * joints.axis[i, 1]
-    motion.linear[a, 0] -= inverse.mass[a] * px
-    motion.linear[a, 1] -= inverse.mass[a] * py
-    motion.angular[a] -= inverse.inertia[a] * impulse * joints.measured[i, ACROSS_A]
-    motion.linear[b, 0] += inverse.mass[b] * px
-    motion.linear[b, 1] += inverse.mass[b] * py
-    motion.angular[b] += inverse.inertia[b] * impulse * joints.measured[i, ACROSS_B]
+    _push(joints, i, motion, inverse, impulse)
+    if joints.second[i] >= 0:
+        _push(joints, joints.second[i], motion, inverse, impulse)
 
 
-@always_inlined
-def _response(joints: Joints, i: int, j: int, inverse: Inverse) -> float:
-    """Return how an impulse of row j changes the speed of row i, both of the same bodies [1/kg]."""
-    a, b, axis, measured = joints.a[i], joints.b[i], joints.axis, joints.measured
-    along = axis[i, 0] * axis[j, 0] + axis[i, 1] * axis[j, 1]
-    turning = inverse.inertia[a] * measured[i, ACROSS_A] * measured[j, ACROSS_A]
-    turning += inverse.inertia[b] * measured[i, ACROSS_B] * measured[j, ACROSS_B]
-    return (inverse.mass[a] + inverse.mass[b]) * along + turning  # type: ignore[no-any-return]
-
-
-@always_inlined
+@inlined
 def _end(motion: Motion, body: int, anchors: Vectors, i: int) -> TermEnd:
-    """Return a body at an end of row i."""
+    """Return a body at an end of a term."""
     position, linear = motion.position, motion.linear
     return TermEnd(
         position[body, 0], position[body, 1], motion.angle[body], linear[body, 0], linear[body, 1],
@@ -99,91 +110,185 @@ def _end(motion: Motion, body: int, anchors: Vectors, i: int) -> TermEnd:
 
 
 @inlined
-def begin_joints(joints: Joints, motion: Motion, inverse: Inverse, acting: Acting, h: float) -> None:
-    """Measure all rows where bodies are, and note speeds and impulses.
-
-    The speeds are less than now by what ``h`` seconds of forces give (:mod:`physicslab.kernels.solver.work`).
-    """
-    axis, measured = joints.axis, joints.measured
-    for i in range(len(joints.impulse)):
-        a, b = joints.a[i], joints.b[i]
-        at_a, at_b = _end(motion, a, joints.anchor_a, i), _end(motion, b, joints.anchor_b, i)
-        one = measure_term(ALONG, at_a, at_b, axis[i, 0], axis[i, 1])
-        across_a, across_b = -one.turn_a, one.turn_b
-        measured[i, ACROSS_A], measured[i, ACROSS_B], measured[i, ERROR] = across_a, across_b, one.value
-        given = 0.0
-        if acting.any and h > 0.0:
-            force, torque, nx, ny = acting.force, acting.torque, axis[i, 0], axis[i, 1]
-            if not acting.unkicked[b]:
-                given += inverse.mass[b] * (nx * force[b, 0] + ny * force[b, 1])
-                given += inverse.inertia[b] * torque[b] * across_b
-            if not acting.unkicked[a]:
-                given -= inverse.mass[a] * (nx * force[a, 0] + ny * force[a, 1])
-                given -= inverse.inertia[a] * torque[a] * across_a
-        measured[i, BEFORE] = _speed(joints, i, motion.linear, motion.angular) - h * given
-        measured[i, NOTED] = joints.impulse[i]
+def _given(joints: Joints, k: int, inverse: Inverse, acting: Acting) -> float:
+    """Return how forces accelerate the measure of a term."""
+    at, force, torque, given = joints.measured, acting.force, acting.torque, 0.0
+    for end in range(2):
+        body = joints.b[k] if end == 1 else joints.a[k]
+        if not acting.unkicked[body]:
+            pull = at[k, 3 * end] * force[body, 0] + at[k, 3 * end + 1] * force[body, 1]
+            given += inverse.mass[body] * pull + inverse.inertia[body] * torque[body] * at[k, 3 * end + 2]
+    return given
 
 
 @inlined
-def warm_start_joints(joints: Joints, motion: Motion, inverse: Inverse, scale: float) -> None:
+def begin_joints(joints: Joints, motion: Motion, inverse: Inverse, acting: Acting, h: float) -> None:
+    """Measure all terms where bodies are, and note speeds and impulses.
+
+    The speeds are less than now by what ``h`` seconds of forces give (:mod:`physicslab.kernels.solver.work`).
+    """
+    at, scale = joints.measured, joints.scale
+    for k in range(len(scale)):
+        ends = _end(motion, joints.a[k], joints.anchor_a, k), _end(motion, joints.b[k], joints.anchor_b, k)
+        one = measure_term(joints.measure[k], ends[0], ends[1], joints.axis[k, 0], joints.axis[k, 1])
+        at[k, A_X], at[k, A_Y], at[k, A_TURN] = scale[k] * one.ax, scale[k] * one.ay, scale[k] * one.turn_a
+        at[k, B_X], at[k, B_Y], at[k, B_TURN] = scale[k] * one.bx, scale[k] * one.by, scale[k] * one.turn_b
+        at[k, ERROR] = scale[k] * one.value
+    for i in range(len(joints.impulse)):
+        k, given = joints.second[i], 0.0
+        at[i, ERROR] += (at[k, ERROR] if k >= 0 else 0.0) - joints.offset[i]
+        if acting.any and h > 0.0:
+            given = _given(joints, i, inverse, acting)
+            if k >= 0:
+                given += _given(joints, k, inverse, acting)
+        at[i, BEFORE], at[i, NOTED] = _speed(joints, i, motion) - h * given, joints.impulse[i]
+        if joints.role[i] != MOTOR:
+            off = -at[i, ERROR] if joints.role[i] == LIMIT else abs(at[i, ERROR])
+            joints.largest[i] = max(joints.largest[i], off)
+
+
+@always_inlined
+def _bounded(joints: Joints, i: int, impulse: float, h: float) -> float:
+    """Return the impulse of a row, which a limit only pushes and a motor has not without bounds."""
+    if joints.role[i] == HOLD:
+        return impulse
+    cap = h * joints.strongest[i]
+    return max(0.0 if joints.role[i] == LIMIT else -cap, min(cap, impulse))  # type: ignore[no-any-return]
+
+
+@inlined
+def warm_start_joints(joints: Joints, motion: Motion, inverse: Inverse, scale: float, h: float) -> None:
     """Apply the impulses of the last substep, ``scale`` times as large."""
     for i in range(len(joints.impulse)):
-        joints.impulse[i] *= scale
+        joints.impulse[i] = _bounded(joints, i, scale * joints.impulse[i], h)
         _apply(joints, i, motion, inverse, joints.impulse[i])
 
 
 @inlined
-def sweep_joints(joints: Joints, motion: Motion, inverse: Inverse, soft: JointSoftness) -> tuple[bool, float]:
-    """Solve all rows once; return whether impulses still change, and their work by each one's mean speed."""
-    unsettled, work, i, impulse, measured = False, 0.0, 0, joints.impulse, joints.measured
-    while i < len(impulse):
-        j = i + joints.block[i] - 1
-        if inverse.mass[joints.a[i]] + inverse.mass[joints.b[i]] == 0.0:
-            i = j + 1  # fixed bodies, or bodies that sleep, whose impulses are kept
-            continue
-        one, between, other = _response(joints, i, i, inverse), 0.0, 0.0
-        v1, v2 = _speed(joints, i, motion.linear, motion.angular), 0.0
-        wanted1, wanted2 = v1 + soft.rate * measured[i, ERROR], 0.0
-        p1 = wanted1 / one if one > 0.0 else 0.0
-        p2 = 0.0
-        if j > i:
-            between, other = _response(joints, i, j, inverse), _response(joints, j, j, inverse)
-            v2 = _speed(joints, j, motion.linear, motion.angular)
-            wanted2 = v2 + soft.rate * measured[j, ERROR]
-            determinant = one * other - between * between
-            if determinant > _SINGULAR * one * other:
-                p1 = (other * wanted1 - between * wanted2) / determinant
-                p2 = (one * wanted2 - between * wanted1) / determinant
-            elif other > one:
-                p1, p2 = 0.0, wanted2 / other
-        change1 = -soft.mass_scale * p1 - soft.impulse_scale * impulse[i]
-        change2 = 0.0
-        impulse[i] += change1
-        _apply(joints, i, motion, inverse, change1)
-        if j > i:
-            change2 = -soft.mass_scale * p2 - soft.impulse_scale * impulse[j]
-            impulse[j] += change2
-            _apply(joints, j, motion, inverse, change2)
-        work += change1 * (v1 + 0.5 * (one * change1 + between * change2))
-        work += change2 * (v2 + 0.5 * (between * change1 + other * change2))
-        limit = _SETTLED * (abs(impulse[i]) + abs(impulse[j]))
-        unsettled = unsettled or abs(change1) + abs(change2) > limit
-        i = j + 1
-    return unsettled, work
+def factorise_joints(joints: Joints, inverse: Inverse, soft: JointSoftness) -> None:
+    """Choose the rows that act as far as is known, and factorise all blocks."""
+    first, at = 0, joints.measured
+    for i in range(len(joints.impulse)):
+        acts = can_move(joints, i, inverse)
+        if joints.role[i] == LIMIT:
+            acts = acts and joints.impulse[i] > 0.0
+        elif joints.role[i] == MOTOR:
+            acts = acts and abs(joints.impulse[i]) < soft.h * joints.strongest[i]
+        at[i, STATE] = ACTIVE if acts else OFF
+    for block in range(len(joints.ends)):
+        factorise(joints, first, joints.ends[block], inverse, soft.spring)
+        first = joints.ends[block]
+
+
+@always_inlined
+def _wanted(joints: Joints, i: int, soft: JointSoftness) -> float:
+    """Return how fast the quantity of a row is to grow [m/s or rad/s]."""
+    if joints.role[i] == MOTOR:
+        return joints.target[i]  # type: ignore[no-any-return]
+    error = joints.measured[i, ERROR]
+    if joints.role[i] == LIMIT and error > 0.0:
+        return -error / soft.h  # type: ignore[no-any-return]
+    return -soft.rate * error  # type: ignore[no-any-return]
 
 
 @inlined
-def work_of_joints(joints: Joints, motion: Motion, whole: bool) -> float:
-    """Return the work of the impulses [J], by the mean of the speeds that were noted and of those now.
+def _set_bounds(joints: Joints, first: int, end: int, motion: Motion, inverse: Inverse, h: float) -> bool:
+    """Set impulses to their bounds that would go beyond; return whether any was."""
+    at, found = joints.measured, False
+    for n in range(first, end):
+        i = joints.order[n]
+        if joints.role[i] == HOLD or at[i, STATE] == OFF:
+            continue
+        target = joints.impulse[i] + at[i, CHANGE]
+        bound = _bounded(joints, i, target, h)
+        if bound != target:
+            _apply(joints, i, motion, inverse, bound - joints.impulse[i])
+            joints.impulse[i], at[i, STATE], found = bound, OFF, True
+    return found
+
+
+@inlined
+def _free(
+    joints: Joints, first: int, end: int, motion: Motion, inverse: Inverse, soft: JointSoftness
+) -> bool:
+    """Let rows act again whose bound does not hold any more; return whether any does."""
+    at, found = joints.measured, False
+    for n in range(first, end):
+        i = joints.order[n]
+        if joints.role[i] == HOLD or at[i, STATE] != OFF:
+            continue
+        left = _wanted(joints, i, soft) - _speed(joints, i, motion)
+        inwards = left > 0.0 if joints.role[i] == LIMIT else left * joints.impulse[i] < 0.0
+        if joints.role[i] == MOTOR and joints.impulse[i] == 0.0:
+            inwards = left != 0.0 and joints.strongest[i] > 0.0
+        if inwards and can_move(joints, i, inverse):
+            at[i, STATE], found = ACTIVE, True
+    return found
+
+
+@inlined
+def _solve_block(
+    joints: Joints, first: int, end: int, motion: Motion, inverse: Inverse, soft: JointSoftness
+) -> bool:
+    """Solve the rows of a block at once; return whether impulses still change."""
+    at, impulse, changed, size, trials = joints.measured, joints.impulse, 0.0, 0.0, 0
+    while trials < _TRIALS:
+        trials += 1
+        for n in range(first, end):
+            i = joints.order[n]
+            at[i, CHANGE] = 0.0
+            if at[i, STATE] == ACTIVE:
+                gives = at[i, GIVES] * impulse[i] if soft.rate > 0.0 else 0.0
+                at[i, CHANGE] = _wanted(joints, i, soft) - _speed(joints, i, motion) - gives
+        substitute(joints, first, end)
+        if trials < _TRIALS and _set_bounds(joints, first, end, motion, inverse, soft.h):
+            factorise(joints, first, end, inverse, soft.spring)
+            changed = 1.0
+            continue
+        for n in range(first, end):
+            i = joints.order[n]
+            if at[i, STATE] == ACTIVE:
+                before = impulse[i]
+                impulse[i] = _bounded(joints, i, before + at[i, CHANGE], soft.h)
+                _apply(joints, i, motion, inverse, impulse[i] - before)
+                changed += abs(impulse[i] - before)
+                size += abs(impulse[i])
+        if not _free(joints, first, end, motion, inverse, soft):
+            break
+        factorise(joints, first, end, inverse, soft.spring)
+        changed += size
+    return changed > _SETTLED * size
+
+
+@inlined
+def sweep_joints(joints: Joints, motion: Motion, inverse: Inverse, soft: JointSoftness) -> bool:
+    """Solve all blocks once; return whether impulses still change."""
+    unsettled, first = False, 0
+    for block in range(len(joints.ends)):
+        loose = _solve_block(joints, first, joints.ends[block], motion, inverse, soft)
+        unsettled, first = unsettled or loose, joints.ends[block]
+    return unsettled
+
+
+@inlined
+def note_joints(joints: Joints, motion: Motion) -> None:
+    """Note speeds and impulses as they are now."""
+    at = joints.measured
+    for i in range(len(joints.impulse)):
+        at[i, BEFORE], at[i, NOTED] = _speed(joints, i, motion), joints.impulse[i]
+
+
+@inlined
+def book_work(joints: Joints, motion: Motion, account: Vectors, whole: bool) -> None:
+    """Book the work of the impulses, by the mean of the speeds that were noted and of those now.
 
     Of the ``whole`` impulses, or of what they have changed by since they were noted.
     """
-    work = 0.0
+    at = joints.measured
     for i in range(len(joints.impulse)):
-        impulse = joints.impulse[i] - (0.0 if whole else joints.measured[i, NOTED])
-        speed = _speed(joints, i, motion.linear, motion.angular)
-        work += 0.5 * impulse * (joints.measured[i, BEFORE] + speed)
-    return work
+        impulse = joints.impulse[i] - (0.0 if whole else at[i, NOTED])
+        cause = MOTORS if joints.role[i] == MOTOR else JOINTS
+        account[cause, ENERGY] += 0.5 * impulse * (at[i, BEFORE] + _speed(joints, i, motion))
 
 
 @inlined
@@ -192,21 +297,28 @@ def book_momentum(joints: Joints, motion: Motion, inverse: Inverse, account: Vec
 
     Of the ``whole`` impulses, or of what they have changed by since they were noted.
     """
-    position, linear, angular = motion.position, motion.linear, motion.angular
-    for i in range(len(joints.impulse)):
-        impulse = joints.impulse[i] - (0.0 if whole else joints.measured[i, NOTED])
-        px, py = impulse * joints.axis[i, 0], impulse * joints.axis[i, 1]
+    position, linear, angular, at = motion.position, motion.linear, motion.angular, joints.measured
+    for n in range(2 * len(joints.impulse)):
+        i = n // 2
+        k = joints.second[i] if n % 2 == 1 else i
+        if k < 0:
+            continue
+        impulse = joints.impulse[i] - (0.0 if whole else at[i, NOTED])
+        cause = MOTORS if joints.role[i] == MOTOR else JOINTS
         for end in range(2):
-            body = joints.b[i] if end == 1 else joints.a[i]
-            sign, across = (1.0, ACROSS_B) if end == 1 else (-1.0, ACROSS_A)
-            turn = sign * impulse * joints.measured[i, across]
+            body = joints.b[k] if end == 1 else joints.a[k]
+            px, py, turn = (
+                impulse * at[k, 3 * end],
+                impulse * at[k, 3 * end + 1],
+                impulse * at[k, 3 * end + 2],
+            )
             if inverse.mass[body] > 0.0:
-                account[JOINTS, PX] += sign * px
-                account[JOINTS, PY] += sign * py
-                account[JOINTS, SPIN] += sign * (position[body, 0] * py - position[body, 1] * px)
+                account[cause, PX] += px
+                account[cause, PY] += py
+                account[cause, SPIN] += position[body, 0] * py - position[body, 1] * px
             else:
-                account[HAND, ENERGY] -= sign * (px * linear[body, 0] + py * linear[body, 1])
+                account[HAND, ENERGY] -= px * linear[body, 0] + py * linear[body, 1]
             if inverse.inertia[body] > 0.0:
-                account[JOINTS, SPIN] += turn
+                account[cause, SPIN] += turn
             else:
                 account[HAND, ENERGY] -= turn * angular[body]

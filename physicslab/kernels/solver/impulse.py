@@ -3,7 +3,7 @@
 import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, fused, inlined, kernel
-from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION, JOINTS
+from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
 from physicslab.kernels.constraint.pair import (
     after_impulse_at,
@@ -13,15 +13,17 @@ from physicslab.kernels.constraint.pair import (
     put_velocity,
     velocity_of,
 )
+from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.joints.soft import (
-    Joints,
     JointSoftness,
     begin_joints,
     book_momentum,
+    book_work,
+    factorise_joints,
     joint_softness,
+    note_joints,
     sweep_joints,
     warm_start_joints,
-    work_of_joints,
 )
 from physicslab.kernels.near_counts import ACTIVE, WIDE_COUNT
 from physicslab.kernels.records import Manifolds, Points
@@ -101,18 +103,18 @@ def solve(
     ``warm_start_scale`` is the ratio of this substep to the last one: the impulses of resting contacts grow
     by that factor. What they do is booked by :func:`relax`, where the points are looked at again.
     """
-    joined, loose, stiff = len(joints.impulse) > 0, False, JointSoftness(0.0, 1.0, 0.0)
+    joined, loose, stiff = len(joints.impulse) > 0, False, joint_softness(h)
     if joined:
         begin_joints(joints, motion, inverse, acting, h)
-        warm_start_joints(joints, motion, inverse, warm_start_scale)
-        stiff = joint_softness(h, sweeps)
+        warm_start_joints(joints, motion, inverse, warm_start_scale, h)
+        factorise_joints(joints, inverse, stiff)
     _warm_start(contacts, motion, inverse, warm_start_scale)
     if near.counts[WIDE_COUNT] > 0:
         warm_start_wide(near, motion, warm_start_scale)
     soft = _soft_constraint(softness, acting, h, sweeps)
     for n in range(sweeps):
         if joined:
-            loose, _ = sweep_joints(joints, motion, inverse, stiff)
+            loose = sweep_joints(joints, motion, inverse, stiff)
         unsettled, _, _ = sweep(contacts, motion, inverse, soft, n % 2 == 1, False)
         if near.counts[WIDE_COUNT] > 0:
             sweep_wide(near, motion, 0.0, soft, False)
@@ -150,14 +152,19 @@ def relax(
     if crowd:
         take_means(near, motion)
     rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0), h
-    joined, loose, held, stiff = len(joints.impulse) > 0, False, 0.0, JointSoftness(0.0, 1.0, 0.0)
+    joined, loose, stiff = len(joints.impulse) > 0, False, JointSoftness(h, 0.0, 1.0)
     if joined:
-        near.account[JOINTS, ENERGY] += work_of_joints(joints, motion, True)
+        book_work(joints, motion, near.account, True)
         begin_joints(joints, motion, inverse, acting, 0.0)
+        factorise_joints(joints, inverse, stiff)
     for n in range(sweeps):
         if joined:
-            loose, work = sweep_joints(joints, motion, inverse, stiff)
-            held += work
+            if crowd:
+                note_joints(joints, motion)
+            loose = sweep_joints(joints, motion, inverse, stiff)
+            if crowd:
+                book_work(joints, motion, near.account, False)
+                book_momentum(joints, motion, inverse, near.account, False)
         unsettled, push, rub = sweep(contacts, motion, inverse, rigid, n % 2 == 1, crowd)
         pressed, friction_work = pressed + push, friction_work + rub
         if crowd:
@@ -166,8 +173,8 @@ def relax(
         elif not (unsettled or loose):
             break
     push, rub = book_relaxed(contacts, near, motion, inverse)
-    if joined:
-        near.account[JOINTS, ENERGY] += held if crowd else work_of_joints(joints, motion, False)
+    if joined and not crowd:
+        book_work(joints, motion, near.account, False)
         book_momentum(joints, motion, inverse, near.account, False)
     if not crowd:
         pressed, friction_work = pressed + push, friction_work + rub

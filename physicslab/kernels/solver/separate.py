@@ -10,8 +10,13 @@ from physicslab.kernels.float64x8 import lesser, mask_bits, take
 from physicslab.kernels.near_counts import DISC_BLOCKS, OUTSIDE
 from physicslab.kernels.records import Manifold, Points
 
-_DEEP = 0.1
+DEEP = 0.1
 """Share beyond which overlap is resolved by moving bodies."""
+ROUNDING = 1e-9
+"""Share by which overlap may be deeper than that and stays: rounding leaves as much, and whether one is moved
+must not depend on whether others are."""
+_SWEEPS = 8
+"""How often bodies are put out of fixed ones, as long as that leads one into another fixed one."""
 _SHARE = 0.6
 """Share of the way that they are moved in a substep."""
 BEYOND = 0.02
@@ -33,7 +38,7 @@ def _deep_slots(slots: L.Slots, k: int) -> int:
     lowest = take(slots.data, at + L.ONE + L.SEPARATION)
     if slots.kind != L.DISC:
         lowest = lesser(lowest, take(slots.data, at + L.TWO + L.SEPARATION))
-    return mask_bits(lowest < -_DEEP * take(slots.data, at + L.SIZE))
+    return mask_bits(lowest < -(DEEP + ROUNDING) * take(slots.data, at + L.SIZE))
 
 
 @always_inlined
@@ -44,7 +49,7 @@ def any_deep(contacts: Contacts, near: Near) -> bool:
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         lowest = _lowest(manifold, contacts.points, p)
-        if lowest < -_DEEP * manifold.size:
+        if lowest < -(DEEP + ROUNDING) * manifold.size:
             any_deep = True
         if manifold.wall >= 0 and manifold.swept != 1 and lowest < -BEYOND * manifold.size:
             near.counts[OUTSIDE] = 1
@@ -65,8 +70,8 @@ def _push_apart(
     """Move the bodies of a pair that overlaps deeply apart, the lighter one further."""
     moved_x = position[b, 0] - before[b, 0] - position[a, 0] + before[a, 0]
     moved_y = position[b, 1] - before[b, 1] - position[a, 1] + before[a, 1]
-    depth = -(lowest + moved_x * nx + moved_y * ny) - _DEEP * size
-    if depth > 0.0:
+    depth = -(lowest + moved_x * nx + moved_y * ny) - DEEP * size
+    if depth > ROUNDING * size:
         share = _SHARE * depth / (inverse_mass[a] + inverse_mass[b])
         position[a, 0] -= share * inverse_mass[a] * nx
         position[a, 1] -= share * inverse_mass[a] * ny
@@ -78,48 +83,53 @@ def _push_apart(
 def _put_back(
     a: int, b: int, nx: float, ny: float, lowest: float, size: float, position: Vectors, before: Vectors,
     inverse_mass: Numbers,
-) -> None:  # fmt: skip
-    """Move what overlaps a fixed body, or the world's bounds, out of it."""
+) -> bool:  # fmt: skip
+    """Move what overlaps a fixed body, or the world's bounds, out of it; whether it did."""
     if inverse_mass[a] > 0.0 and inverse_mass[b] > 0.0:
-        return
+        return False
     i, sign = (b, 1.0) if inverse_mass[b] > 0.0 else (a, -1.0)
     moved = sign * ((position[i, 0] - before[i, 0]) * nx + (position[i, 1] - before[i, 1]) * ny)
-    depth = -(lowest + moved) - _DEEP * size
-    if depth > 0.0:
-        position[i, 0] += sign * depth * nx
-        position[i, 1] += sign * depth * ny
+    depth = -(lowest + moved) - DEEP * size
+    if depth <= ROUNDING * size:
+        return False
+    position[i, 0] += sign * depth * nx
+    position[i, 1] += sign * depth * ny
+    return True
 
 
 @fused
 def _move(
     a: int, b: int, nx: float, ny: float, lowest: float, size: float, position: Vectors, before: Vectors,
     inverse_mass: Numbers, back: bool,
-) -> None:  # fmt: skip
-    """Push a pair apart, or put it ``back`` out of a fixed body."""
+) -> bool:  # fmt: skip
+    """Push a pair apart, or put it ``back`` out of a fixed body; whether it was."""
     if back:
-        _put_back(a, b, nx, ny, lowest, size, position, before, inverse_mass)
-    else:
-        _push_apart(a, b, nx, ny, lowest, size, position, before, inverse_mass)
+        return _put_back(a, b, nx, ny, lowest, size, position, before, inverse_mass)
+    _push_apart(a, b, nx, ny, lowest, size, position, before, inverse_mass)
+    return False
 
 
 @inlined
 def _move_scalar(
     contacts: Contacts, position: Vectors, before: Vectors, inverse_mass: Numbers, back: bool
-) -> None:
-    """Move the bodies of scalar contacts."""
+) -> bool:
+    """Move the bodies of scalar contacts; whether any was put back."""
+    any_back = False
     for k in range(contacts.number):
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         if manifold.swept != 1:
-            _move(
+            any_back |= _move(
                 manifold.a, manifold.b, manifold.normal_x, manifold.normal_y,
                 _lowest(manifold, contacts.points, p), manifold.size, position, before, inverse_mass, back,
             )  # fmt: skip
+    return any_back
 
 
 @inlined
-def _move_wide(near: Near, position: Vectors, before: Vectors, inverse_mass: Numbers, back: bool) -> None:
-    """Move the bodies of wide contacts."""
+def _move_wide(near: Near, position: Vectors, before: Vectors, inverse_mass: Numbers, back: bool) -> bool:
+    """Move the bodies of wide contacts; whether any was put back."""
+    any_back = False
     for slots in (near.discs, near.boxes):
         data = slots.data
         for k in range(near.counts[DISC_BLOCKS + slots.kind]):
@@ -133,10 +143,11 @@ def _move_wide(near: Near, position: Vectors, before: Vectors, inverse_mass: Num
                 lowest = data[at + L.ONE + L.SEPARATION]
                 if slots.kind != L.DISC:
                     lowest = min(lowest, data[at + L.TWO + L.SEPARATION])
-                _move(
+                any_back |= _move(
                     slots.a[k * L.WIDE + place], slots.b[k * L.WIDE + place], data[at + L.NORMAL_X],
                     data[at + L.NORMAL_Y], lowest, data[at + L.SIZE], position, before, inverse_mass, back,
                 )  # fmt: skip
+    return any_back
 
 
 @inlined
@@ -159,8 +170,9 @@ def separate(
 
     Only positions change: however many bodies are on one spot, separating them gives them no speed. A body
     beyond the world's bounds, or within a fixed body, is put back at once, so that the heaviest body cannot
-    press another one through a floor. What is beyond the bounds is noted in the counts: where both hold of a
-    body, neither may have an end (:mod:`physicslab.stepping.bounds`).
+    press another one through a floor. That one is beyond the bounds, or is wedged between fixed bodies, is
+    noted in the counts: there the end of one overlap is the beginning of another
+    (:mod:`physicslab.stepping.bounds`).
     """
     position = motion.position
     before = position.copy()
@@ -172,6 +184,11 @@ def separate(
         if way > farthest:
             position[i, 0] = before[i, 0] + x * farthest / way
             position[i, 1] = before[i, 1] + y * farthest / way
-    _move_scalar(contacts, position, before, inverse_mass, True)
-    _move_wide(near, position, before, inverse_mass, True)
+    wedged, sweep = True, 0
+    while wedged and sweep < _SWEEPS:
+        wedged = _move_scalar(contacts, position, before, inverse_mass, True)
+        wedged |= _move_wide(near, position, before, inverse_mass, True)
+        sweep += 1
+    if wedged:
+        near.counts[OUTSIDE] = 1
     _book(near, motion, before, inverse_mass, acting)

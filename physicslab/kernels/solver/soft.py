@@ -43,7 +43,7 @@ from physicslab.kernels.energy import moments_of_mass, motion_totals
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
-from physicslab.kernels.joints.soft import Joints, JointsTuple
+from physicslab.kernels.joints.blocks import Joints, JointsTuple
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
 from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
 from physicslab.kernels.ode.spring_flow import flow_springs

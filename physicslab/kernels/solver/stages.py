@@ -15,7 +15,7 @@ from physicslab.kernels.arguments import (
 from physicslab.kernels.broad.near_pairs import activate, sort_scalar
 from physicslab.kernels.geometry.contact import find_contacts
 from physicslab.kernels.geometry.shapes import Shapes
-from physicslab.kernels.joints.soft import Joints
+from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.near_counts import (
     ACTIVE,
     ENERGETIC,

@@ -1,0 +1,220 @@
+"""Joints beside soft contacts: every kind, its limits and motors, heavy loads, and where its work goes."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from physicslab import World
+from physicslab.components import (
+    Gear,
+    Mass,
+    Pin,
+    Pulley,
+    Rod,
+    Rope,
+    Shape,
+    Slot,
+    Transform,
+    Velocity,
+    Weld,
+)
+from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.joints import JointState, joint_states
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.kernels.accounts import ENERGY, JOINTS, MOTORS, SPIN
+from physicslab.prefabs import box, circle
+from physicslab.state.joint_order import order_rows
+
+G = 9.81
+
+
+def bench(*, gravity: float = G) -> World:
+    """Return a world with soft contacts, and a rock far away."""
+    world = World(
+        physics=PhysicsConfig(gravity=(0.0, -gravity)), simulation=SimulationConfig(contacts="soft")
+    )
+    box(world, (0.0, -500.0), width=1.0, height=1.0, static=True)
+    return world
+
+
+def bars(world: World, count: int, kind: type[Any], end: float = 1.0, angle: float = 0.0) -> int:
+    """Spawn bars of .5 m in a row from the origin on, joined; return the last, of ``end`` kg."""
+    last: int | None = None
+    along = np.array((math.cos(angle), math.sin(angle)))
+    for n in range(count):
+        place = Transform(tuple((0.5 * n + 0.25) * along), angle)
+        bar = world.spawn(place, Velocity(), Mass(end if n == count - 1 else 1.0), Shape.box(0.5, 0.05))
+        at = (0.0, 0.0) if last is None else (0.25, 0.0)
+        world.spawn(kind(a=last, b=bar, anchor_a=at, anchor_b=(-0.25, 0.0)))
+        last = bar
+    assert last is not None
+    return last
+
+
+def state_of(world: World, kind: type[Any]) -> JointState:
+    return next(joint for joint in joint_states(world) if joint.kind is kind)
+
+
+def largest(world: World) -> float:
+    """Return the largest stretch that there was [m]."""
+    return max(joint.largest_stretch for joint in joint_states(world))
+
+
+def test_a_chain_of_100_links_carries_10_000_times_the_mass_of_one() -> None:
+    world = bench()
+    bars(world, 100, Pin, end=1e4, angle=-0.5 * math.pi)
+    world.component(world.entities()[-2], Velocity).linear = (0.5, 0.0)
+    world.run(seconds=0.2)
+    assert largest(world) < 0.01 * 0.5
+
+
+def test_a_cantilever_of_ten_welds_does_not_sag() -> None:
+    world = bench()
+    last = bars(world, 10, Weld)
+    world.run(seconds=0.5)
+    assert abs(world.component(last, Transform).position.y) < 1e-9
+    assert state_of(world, Weld).torque == pytest.approx(10.0 * G * 2.5, rel=1e-9)
+
+
+def test_a_bridge_carries_a_ball_of_a_ton() -> None:
+    world = bench()
+    last = bars(world, 10, Pin)
+    world.spawn(Pin(b=last, anchor_a=(5.0, 0.0), anchor_b=(0.25, 0.0)))
+    ball = circle(world, (2.5, 1.05), radius=1.0, mass=1000.0)
+    world.run(seconds=1.0)
+    assert largest(world) < 0.01 * 0.5
+    assert world.component(ball, Transform).position.y > 0.5
+
+
+def test_a_motor_turns_with_its_torque_up_to_its_speed_and_books_its_work() -> None:
+    world = bench(gravity=0.0)
+    wheel = world.spawn(Transform(), Velocity(), Mass(1.0, inertia=2.0))
+    world.spawn(Pin(b=wheel, motor_speed=3.0, max_torque=4.0))
+    world.run(seconds=0.5)
+    assert world.component(wheel, Velocity).angular == pytest.approx(1.0, rel=1e-12)
+    assert state_of(world, Pin).torque == pytest.approx(4.0)
+    world.run(seconds=1.5)
+    assert world.component(wheel, Velocity).angular == pytest.approx(3.0, rel=1e-12)
+    assert world.account.sums[MOTORS, ENERGY] == pytest.approx(9.0, rel=1e-12)
+    assert world.account.sums[MOTORS, SPIN] == pytest.approx(6.0, rel=1e-12)
+    assert world.account.sums[JOINTS, ENERGY] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_motor_that_is_blocked_gives_its_strongest_force_and_no_work() -> None:
+    world = bench()
+    lift = world.spawn(Transform(), Velocity(), Mass(2.0), Shape.box(0.5, 0.5))
+    world.spawn(Slot(b=lift, axis=(0.0, 1.0), upper=0.1, motor_speed=0.5, max_force=50.0))
+    world.run(seconds=1.0)
+    held = state_of(world, Slot)
+    assert world.component(lift, Transform).position.y == pytest.approx(0.1, abs=1e-9)
+    assert held.force.y == pytest.approx(2.0 * G, rel=1e-9)
+    before = world.account.sums[MOTORS, ENERGY]
+    world.run(seconds=1.0)
+    assert world.account.sums[MOTORS, ENERGY] == before
+
+
+def test_a_limit_stops_a_fall_without_bounce() -> None:
+    world = bench()
+    bar = world.spawn(Transform((0.5, 0.0)), Velocity(), Mass(1.0), Shape.box(1.0, 0.1))
+    world.spawn(Pin(b=bar, anchor_b=(-0.5, 0.0), lower=-0.5))
+    lowest = 0.0
+    for _ in range(60):
+        world.step()
+        lowest = min(lowest, world.component(bar, Transform).angle)
+    assert lowest == pytest.approx(-0.5, abs=1e-3)
+    assert world.component(bar, Velocity).angular == pytest.approx(0.0, abs=1e-12)
+    assert state_of(world, Pin).torque == pytest.approx(0.5 * G * math.cos(0.5), rel=1e-6)
+
+
+def test_a_rope_is_slack_and_then_holds() -> None:
+    world = bench()
+    bob = world.spawn(Transform((0.0, -0.2)), Velocity(), Mass(2.0), Shape.circle(0.1))
+    world.spawn(Rope(b=bob, length=1.0))
+    world.run(seconds=0.2)
+    assert state_of(world, Rope).force.magnitude == 0.0
+    world.run(seconds=1.0)
+    assert world.component(bob, Transform).position.y == pytest.approx(-1.0, abs=1e-6)
+    assert state_of(world, Rope).force.y == pytest.approx(2.0 * G, rel=1e-9)
+    assert world.account.sums[JOINTS, ENERGY] == pytest.approx(-2.0 * G * 0.8, rel=1e-6)
+
+
+def test_a_pulley_is_an_atwood_machine() -> None:
+    world = bench()
+    one, other = (world.spawn(Transform((x, -2.0)), Velocity(), Mass(m)) for x, m in ((-1, 2.0), (1, 1.0)))
+    world.spawn(Pulley(a=one, b=other, wheel_a=(-1.0, 0.0), wheel_b=(1.0, 0.0)))
+    world.run(seconds=0.5)
+    assert world.component(other, Velocity).linear.y == pytest.approx(world.time * G / 3.0, rel=1e-12)
+    assert state_of(world, Pulley).force.y == pytest.approx(4.0 * G / 3.0, rel=1e-9)
+
+
+def test_a_train_of_gears_of_1_to_1000() -> None:
+    world, pins = bench(), []
+    world.simulation = SimulationConfig(contacts="soft", integrator="leapfrog")
+    for n in range(4):
+        wheel = world.spawn(Transform((3.0 * n, 0.0)), Velocity(), Mass(1.0, inertia=1.0), Shape.circle(1.0))
+        pins.append(world.spawn(Pin(b=wheel, anchor_a=(3.0 * n, 0.0))))
+        if n:
+            world.spawn(Gear(first=pins[n - 1], second=pins[n], ratio=-10.0))
+    world.component(wheel, Velocity).angular = 1000.0
+    world.run(seconds=1.0)
+    spins = [float(v) for v in world.table(Velocity)["angular"] if v]
+    assert spins[1] / spins[0] == pytest.approx(-10.0, rel=1e-9)
+    assert spins[3] / spins[0] == pytest.approx(-1000.0, rel=1e-9)
+
+
+def pair(kind: type[Any], world: World, ends: tuple[int, int | None]) -> None:
+    """Join two bodies at points beside their middles."""
+    a, b = ends
+    at = {} if kind is Pulley else {"anchor_a": (0.3, 0.1), "anchor_b": (-0.4, 0.2)}
+    extra: dict[type[Any], dict[str, Any]] = {
+        Pin: {"lower": -0.5, "upper": 0.7, "motor_speed": 2.0, "max_torque": 1.0},
+        Slot: {"axis": (1.0, 0.5), "upper": 2.5, "motor_speed": 1.0, "max_force": 3.0},
+        Pulley: {"wheel_a": (0.0, 3.0), "wheel_b": (2.0, 3.0), "ratio": 1.5},
+    }
+    world.spawn(kind(a=a, b=b, **at, **extra.get(kind, {})))
+
+
+def balance(world: World) -> NDArray[np.float64]:
+    """Return the energy, the momentum and the angular momentum of a world (4,)."""
+    momentum = measure_momentum(world)
+    return np.array((measure_energy(world).total, *momentum.linear, momentum.angular))
+
+
+@given(
+    kind=st.sampled_from([Pin, Slot, Weld, Rod, Rope, Pulley]),
+    speeds=st.lists(st.floats(-3.0, 3.0), min_size=6, max_size=6),
+    mass=st.floats(1e-3, 1e3), fixed=st.booleans(),
+)  # fmt: skip
+def test_every_change_of_energy_and_momentum_is_booked(
+    kind: type[Any], speeds: list[float], mass: float, fixed: bool
+) -> None:
+    world = bench(gravity=0.0 if fixed else G)
+    one = world.spawn(
+        Transform(), Velocity((speeds[0], speeds[1]), speeds[2]), Mass(1.0), Shape.box(1.0, 0.4)
+    )
+    other = world.spawn(
+        Transform((2.0, 0.0)), Velocity((speeds[3], speeds[4]), speeds[5]), Mass(mass), Shape.box(0.5, 0.5)
+    )
+    pair(kind, world, (one, None if fixed and kind is not Pulley else other))
+    before = balance(world)
+    world.run(seconds=0.4)
+    scale = 1.0 + mass * (1.0 + sum(v * v for v in speeds))
+    booked = world.account.sums.sum(axis=0)
+    assert balance(world) - before == pytest.approx(booked, abs=1e-11 * scale)
+    assert state_of(world, kind).stretch < 0.02 + 1e-3 * max(map(abs, speeds))
+
+
+@pytest.mark.parametrize("count", [1, 7])
+def test_rows_that_share_a_body_are_near_in_a_block(count: int) -> None:
+    rows = [{n, n + 1} for n in range(count)] + [{100}]
+    blocks = order_rows(rows, [range(n, n + 1) for n in range(len(rows))])
+    assert sorted(blocks.order.tolist()) == list(range(len(rows)))
+    assert sorted(np.diff(blocks.ends, prepend=0).tolist()) == [1, count]
+    assert int((np.arange(len(rows)) - blocks.low).max()) <= 1
+    hub = order_rows([{0, n} for n in range(1, 2000)], [range(n, n + 1) for n in range(1999)])
+    assert len(hub.ends) == 1999, "too wide to be solved at once"
