@@ -5,13 +5,15 @@ take a ``seed``, and give the same things for the same seed.
 """
 
 from physicslab.prefabs.body import BodyOptions, body, box, capsule, circle
+from physicslab.prefabs.bridge import bridge
 from physicslab.prefabs.chain import chain, pendulum
 from physicslab.prefabs.container import container
 from physicslab.prefabs.gas import gas
 from physicslab.prefabs.pile import pile, pyramid, stack
 from physicslab.prefabs.planets import Planet, binary, planets
+from physicslab.prefabs.ragdoll import ragdoll
 
 __all__ = [
-    "BodyOptions", "Planet", "binary", "body", "box", "capsule", "chain", "circle", "container", "gas",
-    "pendulum", "pile", "planets", "pyramid", "stack",
+    "BodyOptions", "Planet", "binary", "body", "box", "bridge", "capsule", "chain", "circle", "container",
+    "gas", "pendulum", "pile", "planets", "pyramid", "ragdoll", "stack",
 ]  # fmt: skip

@@ -1,6 +1,7 @@
 """A bridge of planks on pins, which hangs between two points."""
 
 import math
+from itertools import pairwise
 from typing import Unpack
 
 from physicslab.components import Pin
@@ -53,7 +54,7 @@ def bridge(
         at += along
     arm = (0.5 * length, 0.0)
     world.spawn(Pin(a=planks[0], anchor_a=-Vector2(*arm), anchor_b=first))
-    for one, other in zip(planks, planks[1:], strict=False):
+    for one, other in pairwise(planks):
         world.spawn(Pin(a=one, b=other, anchor_a=arm, anchor_b=-Vector2(*arm)))
     world.spawn(Pin(a=planks[-1], anchor_a=arm, anchor_b=last))
     return planks

@@ -1,7 +1,7 @@
-"""What is built of many bodies on joints, beside contacts: a bridge under a heavy ball, a heap of ragdolls."""
+"""Many bodies on joints, beside contacts: a bridge under a heavy ball, a heap of ragdolls."""
 
 import math
-from functools import lru_cache, partial
+from functools import cache, partial
 
 import numpy as np
 
@@ -31,11 +31,11 @@ def loaded_bridge() -> World:
 
 
 def ragdoll_heap(count: int) -> World:
-    """Return ragdolls of 71 kg that fall into a pit of 4 m, one after the other."""
+    """Return ragdolls of 71 kg that lie over each other and fall into a pit of 4 m."""
     world = open_space()
     container(world, width=4.0, height=3.0)
     for n in range(count):
-        ragdoll(world, (0.6 * (n % 3 - 1), 1.5 + 2.0 * n), angle=0.4 * (n % 3 - 1))
+        ragdoll(world, (0.3 * (n % 3 - 1), 1.0 + 1.4 * n), angle=1.5 if n % 2 else -1.5)
     return world
 
 
@@ -46,7 +46,7 @@ def _bridge_gap() -> float:
     return largest(world, steps, lambda: gap(world)) / (1.05 * 15.0 / 30)
 
 
-@lru_cache(maxsize=1)
+@cache  # two cases look at one run
 def _heap() -> tuple[float, float]:
     """Return the largest gap of a heap of ragdolls [m], and the mean speed of its parts at last [m/s]."""
     world = ragdoll_heap(_DOLLS)
