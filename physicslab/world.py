@@ -359,6 +359,11 @@ class World(State):
         parts = tuple(world for world in worlds if isinstance(world, World)) or (self,)
         return tuple(sorted(parts, key=lambda part: -int(np.count_nonzero(part.bodies.inverse_mass))))
 
+    @property
+    def plans(self) -> tuple[StepPlan, ...]:
+        """The plans by which it is advanced: its own, or those of its islands, in the order of ``parts``."""
+        return tuple(part.plan for part in self.parts)
+
     @quiet
     def add_up_forces(self) -> None:
         """Update ``bodies.force`` and ``.torque`` to the forces that act.

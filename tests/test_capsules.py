@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pygame
@@ -160,8 +161,9 @@ def test_a_file_keeps_it_and_goes_on_with_the_same_bits(tmp_path: Path) -> None:
     ("name", "value"), [("length", -1.0), ("length", 0.0), ("radius", 0.0), ("width", 1.0)]
 )
 def test_bad_sizes_are_refused_by_name(name: str, value: float) -> None:
+    sizes: dict[str, Any] = {"length": 1.0, "radius": 0.5, name: value}
     with pytest.raises(InvalidValue, match=rf"^Shape\.{name} = {value}: must be"):
-        Shape("capsule", **{"length": 1.0, "radius": 0.5, name: value})
+        Shape("capsule", **sizes)
 
 
 def test_in_the_window_it_is_picked_painted_and_resized_by_its_outline() -> None:

@@ -11,10 +11,17 @@ from numpy.typing import NDArray
 
 from physicslab import World, load_scene, save_scene
 from physicslab.components import Drag, Mass, Material, Pin, Shape, Spring, Transform, Velocity
+from physicslab.diagnostics.energy import Audit
+from physicslab.diagnostics.precision import find_imprecise
+from physicslab.diagnostics.step_warnings import lost_phase
+from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.files.writer import write_scene
 from physicslab.history import History, Remove, RemoveComponent
 from physicslab.kernels.accounts import EDITS
+from physicslab.lab.accuracy.twins import TWINS, refined, with_ids
+from physicslab.prefabs import box
 from physicslab.state.masses import Diverged
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage, System, at
@@ -262,6 +269,39 @@ def test_a_system_that_acts_within_the_step_sees_one_world() -> None:
     world.step()
     assert sizes(world) == []
     assert world.islands.why_one == "Wind acts within the step"
+
+
+def test_what_is_told_of_a_world_is_so_of_its_islands() -> None:
+    world = World()
+    box(world, (0, -0.5), width=2000, height=1, static=True)
+    for k in range(13):
+        box(world, (40.0 * k, 0.5), width=1, height=1)
+    world.synchronise()
+    assert world.plan.contacts == "soft", "of 13 bodies, were they one"
+    assert len(world.plans) == 13 and {plan.contacts for plan in world.plans} == {"rigid"}
+    said = StepWatch(world).note(1, 5.0)
+    assert "rigid contacts go from one event to the next" in said
+    document = with_ids(write_scene(world))
+    made = {twin.name for twin in TWINS if twin.make(document, world) is not None}
+    assert "eighth of the step" in made
+    assert made.isdisjoint({"half step", "stiffer", "rigid"}), "no contact gives way"
+
+
+def test_the_refined_twin_of_islands_takes_shorter_steps_in_each() -> None:
+    world = World()
+    for x, stiffness in ((0.0, 40.0), (100.0, 4000.0)):
+        spring = Spring(anchor_b=(x, 0), rest_length=1, stiffness=stiffness)
+        world.spawn(Transform((x + 1.2, 0)), Velocity(), Mass(1.0), spring)
+    world.synchronise()
+    twin = refined(with_ids(write_scene(world)), world, 2.0)
+    steps = [(plan.integrator.name, plan.substeps) for plan in world.plans]
+    assert [(plan.integrator.name, plan.substeps) for plan in twin.plans] == steps
+    assert twin.simulation.dt == 0.5 * world.simulation.dt and steps[1] == ("blanes_moan", 3)
+    world.run(seconds=2.0)
+    lost = [lost_phase(part) for part in world.parts]
+    assert lost[0] is None and lost[1] is not None and lost_phase(world) is None
+    (warning,) = find_imprecise(world, Audit(world))
+    assert warning.value == lost[1][1]
 
 
 def test_accounts_counts_and_the_log_are_those_of_all_islands() -> None:

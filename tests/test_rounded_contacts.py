@@ -13,14 +13,14 @@ from physicslab.kernels.geometry.cores import Touch
 from physicslab.kernels.geometry.outline import Outline, Way
 from physicslab.kernels.geometry.shapes import BOX
 from physicslab.kernels.interpreter import twin_of
-from physicslab.state.shapes import register
+from physicslab.state.shapes import Register
 
 touch_cores, sweep_cores = twin_of(cores.touch_cores), twin_of(cores.sweep_cores)
 box_box, circle_box, pose_at = twin_of(manifold.box_box), twin_of(manifold.circle_box), twin_of(cores.pose_at)
 
 _TURNS = [2.0 * math.pi * k / 5 for k in range(5)]
 FIVE = Kind(tuple((math.cos(turn), math.sin(turn)) for turn in _TURNS), x="radius", y="radius")
-_, EXTENTS, POOL = register((*KINDS.values(), FIVE))
+POOL = Register((*KINDS.values(), FIVE)).pool
 FIRST = {"disc": 0, "box": BOX, "capsule": 5, "five": 7}
 COUNT = {"disc": 1, "box": 4, "capsule": 2, "five": 5}
 angles, extents = st.floats(-math.pi, math.pi), st.floats(0.2, 2.0)
@@ -33,7 +33,9 @@ def outline(kind: str, angle: float, a: float, b: float) -> Outline:
         "disc": (0.0, 0.0, a), "box": (a, b, 0.0), "capsule": (a, 0.0, b), "five": (a, a, 0.3 * b),
     }[kind]  # fmt: skip
     c, s = (math.cos(angle), math.sin(angle)) if kind != "disc" else (1.0, 0.0)
-    return Outline(kind == "box", c, s, half_x, half_y, radius, COUNT[kind], FIRST[kind])
+    return Outline(
+        kind == "box", c, s, half_x, half_y, radius, COUNT[kind], FIRST[kind], min(half_x, half_y) + radius
+    )
 
 
 def touch(dx: float, dy: float, one: Outline, other: Outline, margin: float = math.inf) -> Touch:
@@ -84,7 +86,8 @@ def test_of_a_disc_and_a_box_it_gives_what_their_own_way_gives(
     box, disc = outline("box", turn, half_x, half_y), outline("disc", 0.0, radius, 0.0)
     nx, ny, _px, _py, separation = circle_box(dx, dy, box, radius)
     found = touch(dx, dy, box, disc)
-    assert found.gap == pytest.approx(separation, abs=1e-11)
+    # Beside the end of a face the corner counts as nearest from a millionth of the radius on.
+    assert found.gap == pytest.approx(separation, abs=1e-6 * radius)
     if separation > 1e-6 - radius:  # nearer to the middle of a side either side may be the nearest
         assert (found.nx, found.ny) == pytest.approx((nx, ny), abs=1e-5)
     assert found.points == 1
@@ -134,7 +137,7 @@ def test_a_sweep_ends_where_they_touch(
     a: float, b: float,
 ) -> None:  # fmt: skip
     one, other = outline(kind, turn_a, a, b), outline(other_kind, turn_b, b, a)
-    dx, dy = 7.0 * math.cos(way), 7.0 * math.sin(way)
+    dx, dy = 9.0 * math.cos(way), 9.0 * math.sin(way)
     path = Way(dx, dy, -2.0 * dx, -2.0 * dy)  # through each other
     t = sweep_cores(path, spin_a, spin_b, 0.0, one, other, POOL)
     assert 0.0 < t < 1.0

@@ -190,7 +190,7 @@ REFUSED = [
     ("ball.Mass.mass=1e999", "is not finite; must be a finite number"),
     ("ball.Mass.mass=null", "must be a finite number >= 1e-300 kg"),
     ("ball.Material.restitution=120 %", 'restitution = "120 %": must be a finite number from 0 to 1'),
-    ("ball.Velocity.linear=3", 'linear = "3": "3" is no pair; must be two finite numbers [x, y] m/s'),
+    ("ball.Velocity.linear=3", "linear = \"3\": '3' is no pair; must be two finite numbers [x, y] m/s"),
     ("ball.Velocity.linear=[1, 2, 3]", "is no pair; must be two finite numbers [x, y] m/s"),
     ("ball.Velocity.linear=[1, 2 kg]", "'2 kg' is in kg; this is in m/s; must be two finite numbers"),
     ("ball.Shape.kind=bx", f': {BALL}Shape.kind = "bx": must be one of "circle", "box"'),

@@ -230,6 +230,7 @@ def test_values_that_no_file_holds_are_refused_too() -> None:
 
 def test_every_field_of_every_component_refuses_a_wrong_type(tmp_path: Path) -> None:
     wrong = {"number": "1", "whole": 1.5, "vector": [1, 2, 3], "flag": 0, "entity": 1.5, "choice": "?"}
+    wrong["points"] = [[1, 2], [3]]
     base: dict[str, Any] = {"Shape": {"kind": "circle", "radius": 1}}
     for kind in (Transform, Velocity, Mass, Shape, Material, Spring, Trail):
         name = kind.__name__

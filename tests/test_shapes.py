@@ -11,7 +11,7 @@ from physicslab.components.shape import KINDS, Kind
 from physicslab.kernels.geometry import moments, shapes
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple
 from physicslab.kernels.interpreter import twin_of
-from physicslab.state.shapes import register, with_names
+from physicslab.state.shapes import Register, with_names
 
 area_and_moment, inertia_of, derive_shape = (
     twin_of(kernel) for kernel in (moments.area_and_moment, moments.inertia_of, shapes.derive_shape)
@@ -29,10 +29,11 @@ def row_of(
 ) -> Shapes:
     """Return a table of one shape of a kind, which comes behind the others in the register."""
     columns = np.array([radius]), np.array([width]), np.array([height]), np.array([length])
-    kinds, extents, pool = register((*KINDS.values(), kind))
-    plain: ShapesTuple = np.zeros((2, 1), np.int64), np.zeros((4, 1)), pool
-    table = with_names(plain)
-    assert derive_shape(0, np.array([len(kinds) - 1]), columns, kinds, extents, table)
+    some = (*KINDS.values(), kind)
+    kinds, extents, pool = Register(some).arrays()
+    plain: ShapesTuple = np.zeros((2, 1), np.int64), np.zeros((5, 1)), pool
+    table, own = with_names(plain), np.zeros(1, np.int64)
+    assert derive_shape(0, np.array([len(some)]), own, columns, kinds, extents, table)
     return table
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from physicslab.commands import CommandError
 from physicslab.ecs.component import COMPONENTS, Component, Field, InvalidValue
-from physicslab.ecs.quantity_text import InvalidText, evaluate
+from physicslab.ecs.quantity_text import InvalidText, evaluate, evaluate_pair, evaluate_points
 from physicslab.ecs.text import suggestion, unique_name
 from physicslab.files.checks import shown
 from physicslab.files.entities import UNSAVED
@@ -17,14 +17,13 @@ from physicslab.world import World
 
 _FORM = "ID.Component.field=VALUE"
 _WORDS = {"true": True, "false": False}
-_PAIR = re.compile(r"\s*\[(?P<x>[^],]+),(?P<y>[^],]+)\](?P<unit>[^][]*)")
 
 
 def add_assignments(parser: ArgumentParser) -> None:
     """Declare the option ``--set``, which may be given any number of times."""
     words = (
         "set a field before the run: a number in SI units or with a unit of its own (2 kg, 30 deg, 5 km/h), "
-        "[x, y], true, false, null or a word; repeat it for more fields"
+        "[x, y], [[x, y], ...], true, false, null or a word; repeat it for more fields"
     )
     parser.add_argument("--set", metavar=_FORM, action="append", default=[], help=words)
 
@@ -108,7 +107,9 @@ def _value(spec: Field, text: str, names: Mapping[str, int], where: str) -> Any:
                 number = evaluate(text, spec.unit)
                 return int(number) if number.is_integer() else number
             case "vector":
-                return _vector(text, spec.unit)
+                return evaluate_pair(text, spec.unit)
+            case "points":
+                return evaluate_points(text, spec.unit)
             case "flag":
                 return _WORDS.get(text, text)
             case "entity":
@@ -119,16 +120,6 @@ def _value(spec: Field, text: str, names: Mapping[str, int], where: str) -> Any:
         allowed = "" if spec.kind == "entity" else f"; must be {spec.allowed}"
         raise CommandError(f"{where} = {shown(text)}: {error}{allowed}") from error
     return text
-
-
-def _vector(text: str, unit: str) -> tuple[float, float]:
-    """Return two numbers; a unit behind the brackets is that of both."""
-    pair = _PAIR.fullmatch(text)
-    if pair is None:
-        raise InvalidText(f"{shown(text)} is no pair")
-    own = pair["unit"].strip()
-    x, y = (evaluate(f"({part.strip()}) {own}" if own else part, unit) for part in (pair["x"], pair["y"]))
-    return x, y
 
 
 def _replace(

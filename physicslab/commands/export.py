@@ -216,6 +216,7 @@ def _notes(world: World, run: MeasuredRun) -> list[str]:
     simulation, audit = world.simulation, run.record.audit
     causes = f"energy changed by {' and '.join(audit.causes)}, " if audit.causes else ""
     energy = f"{causes}error of the energy {audit.error:.2g} of what is exchanged"
-    method = f"{world.plan.integrator.name}, {run.record.steps} steps of {simulation.dt:.6g} s"
+    methods = " and ".join(dict.fromkeys(plan.integrator.name for plan in world.plans))
+    method = f"{methods}, {run.record.steps} steps of {simulation.dt:.6g} s"
     advice = [f"Not to be trusted: {found}." for found in run.record.warnings.all]
     return [f"Computed by {method}, {simulation.substeps} substeps each; {energy}.", *advice]

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from physicslab.components.lengths import extent
-from physicslab.ecs.component import Component, InvalidValue, component, field
+from physicslab.components.vertices import centred, plain, why_not_convex, why_off_centre
+from physicslab.ecs.component import Component, InvalidValue, Points, component, field
+from physicslab.ecs.fields import LENGTH_LIMIT
 from physicslab.ecs.vector import Vector2
 
 
@@ -15,26 +18,32 @@ class Kind(NamedTuple):
     Attributes
     ----------
     core : tuple of pairs of floats
-        Its 1 to 8 vertices, counter-clockwise about their centre of mass, in units of ``x`` and ``y``.
+        Its 1 to 8 vertices, counter-clockwise about their centre of mass, in units of ``x`` and ``y``;
+        empty where each shape has its own.
     x, y, radius : str
         The fields of :class:`Shape` that stretch the core along its axes, and that round it; empty for none.
+    own : pair of ints
+        The least and the largest number of ``vertices`` that a shape of this kind has of its own; 0 for none.
     """
 
     core: tuple[tuple[float, float], ...]
     x: str = ""
     y: str = ""
     radius: str = ""
+    own: tuple[int, int] = (0, 0)
 
     @property
-    def sizes(self) -> tuple[str, ...]:
+    def fields(self) -> tuple[str, ...]:
         """The fields that a shape of this kind has."""
-        return tuple(dict.fromkeys(name for name in (self.radius, self.x, self.y) if name))
+        names = ("vertices" if self.own[1] else "", self.radius, self.x, self.y)
+        return tuple(dict.fromkeys(name for name in names if name))
 
 
 KINDS = {
     "circle": Kind(((0.0, 0.0),), radius="radius"),
     "box": Kind(((0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)), x="width", y="height"),
     "capsule": Kind(((0.5, 0.0), (-0.5, 0.0)), x="length", radius="radius"),
+    "polygon": Kind((), radius="radius", own=(3, 8)),
 }
 """Every kind of shape. A new one is a row; loops read the table :mod:`physicslab.kernels.geometry.shapes`."""
 CIRCLE, BOX = 1, 2
@@ -51,17 +60,25 @@ class Shape(Component):
     """The outline of a body, centred on its Transform. An entity without it cannot touch anything."""
 
     kind: str = field(choices=tuple(KINDS), fixed=True, meaning="what sort of outline")
-    radius: float = extent(0.0, "radius of a circle, or of a capsule's round ends")
+    radius: float = extent(0.0, "radius of a circle, of a capsule's round ends, or of a polygon's corners")
     width: float = extent(0.0, "extent of a box along its own x axis")
     height: float = extent(0.0, "extent of a box along its own y axis")
     length: float = extent(0.0, "distance of the centres of a capsule's round ends, along its own x axis")
+    vertices: Points = field(
+        default=(),
+        unit="m",
+        limit=LENGTH_LIMIT,
+        meaning="corners of a polygon, counter-clockwise, from its centre of mass",
+    )
 
-    SIZES = {name: kind.sizes for name, kind in KINDS.items()}  # noqa: RUF012
+    HAS = {name: kind.fields for name, kind in KINDS.items()}  # noqa: RUF012
 
     @property
     def core(self) -> tuple[Vector2, ...]:
         """The vertices of its core [m], counter-clockwise: of a circle its middle, of a box its corners."""
         kind = KINDS[self.kind]
+        if kind.own[1]:
+            return self.vertices
         x, y = (float(getattr(self, name)) if name else 0.0 for name in (kind.x, kind.y))
         return tuple(Vector2(u * x, v * y) for u, v in kind.core)
 
@@ -91,12 +108,29 @@ class Shape(Component):
         """Return a capsule of the given radius [m], whose round ends have centres so far apart [m]."""
         return Shape("capsule", radius=radius, length=length)
 
+    @staticmethod
+    def polygon(vertices: Sequence[Vector2 | tuple[float, float]], radius: float = 0.0) -> Shape:
+        """Return a convex polygon of 3 to 8 vertices [m], counter-clockwise, rounded by a radius [m].
+
+        They are shifted so that its centre of mass is at the origin, as those of a Shape are.
+        """
+        return Shape("polygon", radius=radius, vertices=centred(vertices, radius))
+
     def validate(self) -> None:
-        """Check that the sizes are those of the kind, and greater than zero."""
-        for name in (spec.name for spec in self.FIELDS if spec.name != "kind"):
-            size = getattr(self, name)
-            if name in self.SIZES[self.kind]:
-                if size <= 0.0:
-                    raise InvalidValue("Shape", name, size, f"a finite number > 0 m for a {self.kind}")
-            elif size != 0.0:
-                raise InvalidValue("Shape", name, size, f"left out: a {self.kind} has no {name}")
+        """Check that the sizes are those of the kind and above zero, and that vertices are a polygon."""
+        kind, fields = KINDS[self.kind], self.HAS[self.kind]
+        for spec in self.FIELDS[1:]:
+            value = getattr(self, spec.name)
+            if spec.name not in fields:
+                if value != spec.default:
+                    allowed = f"left out: a {self.kind} has no {spec.name}"
+                    raise InvalidValue("Shape", spec.name, plain(value), allowed)
+            elif spec.kind == "number" and value <= 0.0 and not kind.own[1]:
+                raise InvalidValue("Shape", spec.name, value, f"a finite number > 0 m for a {self.kind}")
+        if kind.own[1]:
+            self._check_vertices(kind)
+
+    def _check_vertices(self, kind: Kind) -> None:
+        refused = why_not_convex(self.vertices, *kind.own) or why_off_centre(self.vertices, self.radius)
+        if refused is not None:
+            raise InvalidValue("Shape", "vertices", plain(self.vertices), refused)

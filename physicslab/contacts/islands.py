@@ -167,7 +167,7 @@ def _figures(state: State) -> NDArray[np.float64]:
     state.compile(state.sleep.kernels)
     edits.note_figures(
         transform["position"], transform["angle"],
-        shapes.vertices, shapes.half_x, shapes.half_y, shapes.reach,
+        shapes.vertices, shapes.first, shapes.half_x, shapes.half_y, shapes.reach,
         material["restitution"], material["friction"], bodies.inverse_mass, bodies.inverse_inertia,
         state.table(Velocity).present, figures,
     )  # fmt: skip

@@ -1,12 +1,14 @@
 """Contacts as people and programs read them: normal, points, impulses."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Transform
+from physicslab.components import Shape, Transform, Velocity
+from physicslab.contacts.outlines import outlines_of
 from physicslab.ecs.vector import Vector2
 from physicslab.state.contacts import Contacts
 from physicslab.state.state import State
@@ -104,6 +106,66 @@ def contact_between(state: State, a: int, b: int) -> Contact | None:
             # numbers stay.
             return replace(seen, a=a, b=b, normal=-seen.normal)
     return None
+
+
+_GROWN = 0.1
+"""Share of its size by which the box around a body is grown where pairs are called near."""
+_LARGE = 4.0
+"""Extent in medians from which on a body is compared with all others; the others are in strips."""
+
+
+def count_near_pairs(state: State) -> int:
+    """Return how many pairs of bodies, of which one moves, are near enough to meet within a step or so.
+
+    The boxes around them overlap, each grown by a tenth of its body's size and the way of a step. This
+    depends on the present motion alone: the pairs that the broad phase has listed depend on when it did so.
+    """
+    rows, velocity = state.batch(Transform, Shape).rows, state.table(Velocity)
+    bodies, moves = outlines_of(state, rows), state.bodies.inverse_mass[rows] > 0.0
+    speed = np.where(velocity.present[rows, None], np.abs(velocity["linear"][rows]), 0.0)
+    reach = bodies.reach + _GROWN * bodies.size[:, None] + speed * state.simulation.dt
+    low, high = bodies.place - reach, bodies.place + reach
+    found, extent = 0, reach.max(axis=1, initial=0.0)
+    if state.physics.bounds is not None:
+        bounds = np.array(state.physics.bounds)
+        found += int((low[moves] <= bounds[:2]).sum() + (high[moves] >= bounds[2:]).sum())
+
+    def count(a: NDArray[np.int64], b: NDArray[np.int64]) -> int:
+        near = ((low[a] <= high[b]) & (low[b] <= high[a])).all(axis=1) & (moves[a] | moves[b])
+        if len(state.joints.apart):
+            near &= state.joints.may_touch(rows[a], rows[b])
+        return int(near.sum())
+
+    large = extent > _LARGE * np.median(extent) if len(rows) else extent > 0.0
+    for k in np.flatnonzero(large).tolist():
+        others = np.flatnonzero(~large | (np.arange(len(rows)) > k))
+        found += count(np.full(len(others), k), others)
+    small = np.flatnonzero(~large)
+    for a, b in _neighbours(low[small], high[small]) if len(small) > 1 else ():
+        found += count(small[a], small[b])
+    return found
+
+
+def _neighbours(low: NDArray[np.float64], high: NDArray[np.float64]) -> Iterator[tuple[Any, Any]]:
+    """Yield pairs of boxes (n, 2) among which all are that overlap, each once: two arrays of numbers (k,).
+
+    Boxes are in the strip that holds their lower edges, as high as the highest of them: each may overlap
+    those of its own and of the next strip.
+    """
+    width, height = (high - low).max(axis=0)
+    strip = np.floor((low[:, 1] - low[:, 1].min()) / height)
+    across = 2.0 * (high[:, 0].max() - low[:, 0].min())  # the next strip begins so far to the right
+    left = strip * across + low[:, 0]
+    order = np.argsort(left, kind="stable")
+    begins = left[order]
+    ends = begins + (high - low)[order, 0]
+    own = np.arange(len(order)), np.arange(1, len(order) + 1), np.searchsorted(begins, ends, side="right")
+    first = np.searchsorted(begins, begins + across - width)
+    above = own[0], first, np.searchsorted(begins, ends + across, side="right")
+    for one, start, stop in (own, above):
+        number = np.maximum(stop - start, 0)
+        other = np.arange(number.sum()) + np.repeat(start - np.cumsum(number) + number, number)
+        yield order[np.repeat(one, number)], order[other]
 
 
 def ordered_records(contacts: Contacts) -> list[int]:

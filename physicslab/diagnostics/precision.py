@@ -53,20 +53,22 @@ def _shorter(trust: Mapping[str, Any]) -> bool:
 
 def _oscillation(world: World, audit: Audit) -> Iterator[ModelWarning]:
     """Yield the spring that loses most phase, if it is seen in the last digits alone."""
-    found = lost_phase(world)
-    if found is not None and EXACT_PHASE < found[1] <= PHASE_LIMIT:
-        late, lost, rate = found
+    each = ((part, *found) for part in world.parts if (found := lost_phase(part)) is not None)
+    part, late, lost, rate = max(each, key=lambda found: found[2], default=(world, 0, 0.0, 0.0))
+    if EXACT_PHASE < lost <= PHASE_LIMIT:
         what = (
             f"oscillates with omega h = {rate:.2g}, and is out of phase by the error of the method: places "
             "are off by about that share of how far it stretches"
         )
-        setting = 'simulation.integrator = "dop853"' if world.plan.smooth else ""
+        setting = 'simulation.integrator = "dop853"' if part.plan.smooth else ""
         yield ModelWarning.about(world, late, what, lost, "rad", EXACT_PHASE, setting)
 
 
 def _passage(world: World, audit: Audit) -> Iterator[ModelWarning]:
     """Yield the error of energy of a method that follows the motion, where it shows that it did not."""
-    if world.plan.smooth and world.plan.integrator.chooses_steps and audit.error > _EXACT_ENERGY:
+    # Where some parts are not smooth, the error of the sum may be theirs.
+    follows = any(plan.integrator.chooses_steps for plan in world.plans)
+    if follows and all(plan.smooth for plan in world.plans) and audit.error > _EXACT_ENERGY:
         usual, cause, setting = SimulationConfig().tolerance, "bodies pass closely, or forces jump", ""
         if world.simulation.tolerance > usual:
             cause = f"simulation.tolerance = {world.simulation.tolerance:g} lets each step be off"

@@ -8,7 +8,7 @@ from typing import Any
 
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import MOMENTUM_CAUSES
-from physicslab.contacts.report import list_contacts
+from physicslab.contacts.report import count_near_pairs, list_contacts
 from physicslab.diagnostics.energy import ACCOUNT_WORDS, Audit, flows, measure_momentum, summation
 from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
@@ -119,7 +119,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "angular_momentum_account": _account({**_MOMENTA, **record.audit.account.angular_momentum}),
         "momentum": list(momentum.linear),
         "angular_momentum": momentum.angular,
-        "candidate_pairs": int(world.contacts.candidate_pairs),
+        "candidate_pairs": count_near_pairs(world),
         "contacts": int(world.contacts.count),
         "asleep": world.sleep.count,
         "contact_forces": _contact_forces(world),

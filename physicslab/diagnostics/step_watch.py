@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from physicslab.contacts.report import count_near_pairs
 from physicslab.diagnostics.step_warnings import ModelWarning
 from physicslab.world import World
 
@@ -77,9 +78,15 @@ class StepWatch:
         """
         world, contacts = self._world, self._world.contacts
         new, self._logged = int(contacts.logged) - self._logged, int(contacts.logged)
-        if new < STORM_LIMIT or world.plan.collisions != "exact":
+        located = [part for part in world.parts if part.plan.collisions == "exact"]
+        if new < STORM_LIMIT or not located:
             return ""
         log = contacts.impacts[-new:]
+        if len(located) < len(world.parts):
+            own = [part.entity_index.entities[part.bodies.inverse_mass > 0.0] for part in located]
+            log = log[np.isin((log["entity_a"], log["entity_b"]), np.concatenate(own)).any(axis=0)]
+        if not len(log):
+            return ""
         times = np.sort(log["time"])
         counts = np.searchsorted(times, times + world.simulation.dt) - np.arange(len(times))
         begin = int(np.argmax(counts))
@@ -97,18 +104,18 @@ class StepWatch:
 
     def _reason(self, impacts: float, evaluations: float) -> tuple[str, str, str]:
         """Return in words what takes the time, what would help, and the figures."""
-        world = self._world
-        method = world.plan.integrator
-        if impacts >= _STORM and world.plan.collisions == "exact":
+        world, plans = self._world, self._world.plans
+        # That of the part which has evaluated its forces most often.
+        method = max(world.parts, key=lambda part: part.force_evaluations).plan.integrator
+        if impacts >= _STORM and any(plan.collisions == "exact" for plan in plans):
             return "one impact follows another", 'simulation.collisions = "step"', f"{impacts:.3g} impacts"
         if evaluations >= _EVALUATIONS:
             setting = "a shorter dt" if not method.chooses_steps else "a larger simulation.tolerance"
             figures = f"{evaluations:.3g} force evaluations by {method.name}"
             return "forces change so fast that it is divided into many", setting, figures
-        if world.plan.contacts == "rigid" and world.plan.collisions == "step":
+        if any(plan.contacts == "rigid" and plan.collisions == "step" for plan in plans):
             why = "rigid contacts go from one event to the next"
             return why, 'simulation.contacts = "soft"', f"{evaluations:.3g} force evaluations"
         bodies = len(world.entity_index) - 1
-        pairs = int(world.contacts.candidate_pairs)
-        figures = f"{bodies} entities, {pairs} near pairs, {world.substeps} substeps"
+        figures = f"{bodies} entities, {count_near_pairs(world)} near pairs, {world.substeps} substeps"
         return "there is much to compute", "fewer bodies or substeps", figures

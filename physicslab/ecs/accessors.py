@@ -5,7 +5,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from physicslab.ecs.fields import REQUIRED, Field, Kind
+from physicslab.ecs.fields import POINTS, REQUIRED, Field, Kind
 from physicslab.ecs.text import text_of
 from physicslab.ecs.vector import Vector2
 
@@ -36,6 +36,18 @@ class Derived:
 
     def __set__(self, handle: object, value: float | None) -> None:
         """Give the number explicitly, or leave it to the world with ``None``."""
+        raise NotImplementedError
+
+
+class Points:
+    """The type of a list of points: reads as a tuple of :class:`Vector2`, takes any pairs of numbers."""
+
+    def __get__(self, handle: object, owner: type | None = None) -> tuple[Vector2, ...]:
+        """Return the points of the handle's row."""
+        raise NotImplementedError  # the decorator puts a property in this place
+
+    def __set__(self, handle: object, value: Sequence[Vector2 | Sequence[float]] | NDArray[Any]) -> None:
+        """Store points in the handle's row."""
         raise NotImplementedError
 
 
@@ -79,6 +91,7 @@ def accessor(spec: Field, column: int, *, validated: bool) -> property:
         "entity": lambda self: self._views[column][self._row] or None,
         "choice": lambda self: spec.choices[self._views[column][self._row] - 1],
         "text": lambda self: text_of(self._views[column][self._row]),
+        "points": lambda self: POINTS.value_of(self._views[column][self._row]),
     }
 
     def read_vector(self: Any) -> Vector2:

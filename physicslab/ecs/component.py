@@ -15,11 +15,11 @@ from inspect import Parameter, Signature
 from itertools import pairwise
 from typing import Any, ClassVar, cast, dataclass_transform, get_origin, get_type_hints
 
-from physicslab.ecs.accessors import ABSENT, Derived, Maker, Vector, accessor, maker
+from physicslab.ecs.accessors import ABSENT, Derived, Maker, Points, Vector, accessor, maker
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue, Kind, field
 
 __all__ = [
-    "COMPONENTS", "Component", "Derived", "Field", "InvalidValue", "Vector", "component", "field",
+    "COMPONENTS", "Component", "Derived", "Field", "InvalidValue", "Points", "Vector", "component", "field",
     "local_components",
 ]  # fmt: skip
 
@@ -137,6 +137,7 @@ def component[T](cls: type[T]) -> type[T]:
     ``int | None``          an entity, or none                         int64 (n,), 0 for none
     ``str`` with choices    one word of a fixed list                   int64 (n,), 1 + index in the list
     ``str``                 a text, empty or to be seen                int64 (n,), a code, 0 for empty
+    ``Points``              a list of points, read as ``Vector2``      int64 (n,), a code, 0 for empty
     ======================  =========================================  ===============================
 
     A row whose entity lacks the component is all zeros. Reading gives plain Python values; writing checks the
@@ -263,11 +264,11 @@ def _documented(cls: type, specs: tuple[Field, ...]) -> str:
 def _kind_of(hint: Any, described: Field) -> Kind:
     kinds: dict[Any, Kind] = {
         float: "number", Derived: "number", int: "whole", Vector: "vector", bool: "flag",
-        int | None: "entity", str: "text",
+        int | None: "entity", str: "text", Points: "points",
     }  # fmt: skip
     if described.choices:
         return "choice"
     if hint not in kinds:
-        allowed = "float, int, bool, Vector, Derived, int | None, or str"
+        allowed = "float, int, bool, Vector, Points, Derived, int | None, or str"
         raise TypeError(f"no column holds {hint!r}; use {allowed}")
     return kinds[hint]

@@ -9,10 +9,11 @@ from typing import Any, Concatenate, Literal
 
 import numpy as np
 
+from physicslab.ecs.interned import Interned
 from physicslab.ecs.text import code_of, has_width, is_line
 from physicslab.ecs.vector import Vector2
 
-Kind = Literal["number", "whole", "vector", "flag", "entity", "choice", "text"]
+Kind = Literal["number", "whole", "vector", "flag", "entity", "choice", "text", "points"]
 
 _SHOWN_LIMIT = 100
 """Characters of a value that a message shows."""
@@ -24,6 +25,8 @@ LENGTH_LIMIT = 1e150
 """The largest extent, arm or length of a spring [m]: the squares of two can be added."""
 TEXT_LIMIT = 200
 """Characters of a text whose field gives no ``limit`` of its own."""
+POINTS: Interned[tuple[Vector2, ...]] = Interned(())
+"""The lists of points in columns."""
 REQUIRED: Any = object()
 """The default of a field that has none."""
 
@@ -120,6 +123,8 @@ class Field:
             case "vector":
                 each = f", at most {self.limit:g} each" if self.limit < math.inf else ""
                 return f"two finite numbers [x, y]{unit}{each}"
+            case "points":
+                return f"a list of points [x, y]{unit} of finite numbers, at most {self.limit:g} each"
         words = "a whole number" if self.kind == "whole" else "a finite number"
         if self.above > -math.inf:
             words += f" > {self.above:g}"
@@ -151,7 +156,7 @@ class Field:
         """Return ``value`` as a column stores it, or raise :class:`InvalidValue`.
 
         Vectors come back as a pair of floats, choices as their code (1, 2, ...), no entity as 0,
-        texts as the code of :mod:`physicslab.ecs.text`.
+        texts and lists of points as their codes (:mod:`physicslab.ecs.interned`).
         """
         stored = _CONVERSIONS[self.kind](self, value)
         if stored is None:
@@ -245,6 +250,16 @@ def _text(field: Field, value: object) -> int | None:
     return code_of(value)
 
 
+def _points(field: Field, value: object) -> int | None:
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if not isinstance(value, tuple | list):
+        return None
+    found = [_vector(field, point) for point in value]
+    known = [Vector2(point[0] + 0.0, point[1] + 0.0) for point in found if point is not None]  # no -0.0
+    return POINTS.code_of(tuple(known)) if len(known) == len(found) else None
+
+
 _CONVERSIONS: Mapping[Kind, Callable[[Field, object], Any]] = {
     "number": _number,
     "whole": _whole,
@@ -253,5 +268,6 @@ _CONVERSIONS: Mapping[Kind, Callable[[Field, object], Any]] = {
     "entity": _entity,
     "choice": _choice,
     "text": _text,
+    "points": _points,
 }
 """How each kind of field turns a value into what its column stores; ``None`` for one that it cannot hold."""

@@ -5,10 +5,11 @@ import math
 import operator
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from physicslab.ecs.text import printable, shortened
+from physicslab.ecs.vector import Vector2
 
 type Dimension = tuple[int, ...]
 """Powers of metre, kilogram, second and coulomb; an angle has none."""
@@ -76,6 +77,9 @@ _UNCLEAR = (
 """Texts that can be read as different numbers."""
 _SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
 
+_PAIR = re.compile(r"\s*\[(?P<x>[^],]+),(?P<y>[^],]+)\](?P<unit>[^][]*)")
+_POINTS = re.compile(r"\s*\[(?P<points>\s*(?:\[[^][]*\]\s*,?\s*)*)\](?P<unit>[^][]*)")
+
 
 def evaluate(text: str, unit: str = "1") -> float:
     """Return the number that a text stands for, in an SI unit.
@@ -127,6 +131,43 @@ def evaluate(text: str, unit: str = "1") -> float:
     if not math.isfinite(value):
         raise InvalidText(f"'{shown}' is not finite")
     return value
+
+
+def evaluate_pair(text: str, unit: str = "1") -> tuple[float, float]:
+    """Return two numbers in an SI unit; a unit behind the brackets is that of both.
+
+    >>> evaluate_pair("[1 + 1, 3] cm", "m"), evaluate_pair("[20 mm, 0.5]", "m")
+    ((0.02, 0.03), (0.02, 0.5))
+    """
+    pair = _PAIR.fullmatch(text)
+    if pair is None:
+        raise InvalidText(f"'{shortened(printable(text.strip()), _SHOWN_LIMIT)}' is no pair")
+    own = pair["unit"].strip()
+    x, y = (evaluate(f"({part.strip()}) {own}" if own else part, unit) for part in (pair["x"], pair["y"]))
+    return x, y
+
+
+def evaluate_points(text: str, unit: str = "1") -> list[tuple[float, float]]:
+    """Return a list of pairs of numbers in an SI unit; a unit behind the brackets is that of all.
+
+    >>> evaluate_points("[[0, 0], [3, 0], [0, 1/2]] cm", "m")
+    [(0.0, 0.0), (0.03, 0.0), (0.0, 0.005)]
+    """
+    points = _POINTS.fullmatch(text)
+    if points is None:
+        shown = shortened(printable(text.strip()), _SHOWN_LIMIT)
+        raise InvalidText(f"'{shown}' is no list of points [[x, y], ...]")
+    own = points["unit"]
+    return [evaluate_pair(f"[{one}]{own}", unit) for one in re.findall(r"\[([^][]*)\]", points["points"])]
+
+
+def points_text(points: Iterable[Vector2]) -> str:
+    """Return points as :func:`evaluate_points` takes them, to all figures.
+
+    >>> points_text([Vector2(0.5, -1.0), Vector2(0.1, 2.0)])
+    '[[0.5, -1], [0.1, 2]]'
+    """
+    return repr([[int(x) if x == round(x) and abs(x) < 1e15 else x for x in point] for point in points])
 
 
 def _evaluated(text: str, shown: str) -> _Quantity:

@@ -20,6 +20,7 @@ _DTYPES: Mapping[Kind, type] = {
     "entity": np.int64,
     "choice": np.int64,
     "text": np.int64,
+    "points": np.int64,
 }
 
 

@@ -3,9 +3,10 @@
 import difflib
 import itertools
 import re
-import threading
 import unicodedata
 from collections.abc import Container, Iterable
+
+from physicslab.ecs.interned import Interned
 
 SHORT = 60
 """Characters of a value, a key or a name that a message shows."""
@@ -97,34 +98,6 @@ def in_words(name: str) -> str:
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", name).lower()
 
 
-_texts = [""]
-_codes = {"": 0}
-_adding = threading.Lock()
-
-
-def code_of(text: str) -> int:
-    """Return the number that stands for a text in this process; 0 for the empty one.
-
-    >>> code_of(""), code_of("start") == code_of("start"), text_of(code_of("start"))
-    (0, True, 'start')
-    """
-    code = _codes.get(text)
-    if code is None:
-        with _adding:  # of two threads that add one text, the second finds it there
-            code = _codes.get(text)
-            if code is None:
-                code = len(_texts)
-                _texts.append(text)  # before its code can be found
-                _codes[text] = code
-    return code
-
-
-def text_of(code: int) -> str:
-    """Return the text that a number stands for.
-
-    Raises
-    ------
-    IndexError
-        If it stands for none.
-    """
-    return _texts[code]
+_TEXTS = Interned("")
+code_of, text_of = _TEXTS.code_of, _TEXTS.value_of
+"""The number that stands for a text in this process, 0 for the empty one; and the text of a number."""

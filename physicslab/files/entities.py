@@ -221,11 +221,14 @@ def _check_inertia(mass: Mass, shape: Shape, where: str) -> None:
     """Refuse a body so large and heavy that its moment of inertia is not finite, by its largest size."""
     if mass.is_given("inertia"):
         return
-    sizes = {name: float(getattr(shape, name)) for name in shape.SIZES[shape.kind]}
+    sizes = {name: getattr(shape, name) for name in shape.HAS[shape.kind]}
+    if sizes.pop("vertices", None) is not None:
+        sizes["reach"] = shape.reach
     largest = max(sizes, key=lambda name: sizes[name])
     if not math.isfinite(mass.mass * sum(size * size for size in sizes.values())):
         allowed = f"smaller: the moment of inertia is not finite with Mass.mass = {mass.mass:g} kg"
-        raise checks.refusal(f"{where}: Shape.{largest}", sizes[largest], allowed)
+        name = "vertices, which reach" if largest == "reach" else largest
+        raise checks.refusal(f"{where}: Shape.{name}", sizes[largest], allowed)
 
 
 def _check_references(component: Component, entities: Sequence[Mapping[str, Any]], where: str) -> None:

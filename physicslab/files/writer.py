@@ -8,6 +8,7 @@ import esper
 
 from physicslab.components import Name, Shape
 from physicslab.components.naming import plain_name
+from physicslab.components.vertices import plain
 from physicslab.contacts.islands import export_rests
 from physicslab.contacts.memory import copied, kept_rows
 from physicslab.ecs.component import COMPONENTS, Component
@@ -278,7 +279,7 @@ def _fields(component: Component, ids: Mapping[int, str], label: str) -> dict[st
                 raise SceneError(f"{place} = {value}: must be an entity of this world")
             written[spec.name] = ids[value]
         elif not _is_default(spec, value):
-            written[spec.name] = list(value) if isinstance(value, Vector2) else value
+            written[spec.name] = plain(value)
     return written
 
 
@@ -293,6 +294,4 @@ def _is_default(spec: Field, value: Any) -> bool:
 
 def _settings(config: PhysicsConfig | SimulationConfig) -> dict[str, Any]:
     values = {name: getattr(config, name) for name in field_names(type(config))}
-    return {
-        name: list(value) if isinstance(value, Vector2 | tuple) else value for name, value in values.items()
-    }
+    return {name: plain(value) for name, value in values.items()}

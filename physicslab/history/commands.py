@@ -98,7 +98,7 @@ class SetField:
         The entity.
     component, field : str
         The names of the component, as in scene files, and of its field.
-    value : number, pair of numbers, bool, str or None
+    value : number, pair of numbers, list of pairs, bool, str or None
         As the field takes it, in its unit.
     """
 
@@ -120,7 +120,8 @@ class SetField:
         part = world.component(self.entity, kind)
         setattr(part, self.field, self.value)
         part.validate()
-        return self if spec.kind != "vector" else replace(self, value=getattr(part, self.field))
+        mutable = spec.kind in ("vector", "points")  # a list that was given may change
+        return replace(self, value=getattr(part, self.field)) if mutable else self
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,6 @@ from physicslab.kernels.geometry.shapes import (
     ShapesTuple,
     SizesTuple,
     derive_shape,
-    half_thickness,
     named_shapes,
 )
 from physicslab.kernels.records import Pairs
@@ -24,7 +23,7 @@ LARGEST = sys.float_info.max
 def derive_masses(
     has_velocity: Flags, has_mass: Flags, held: Flags,
     mass: Numbers, inertia: Numbers, inertia_given: Flags, fixed_rotation: Flags,
-    kind: Rows, sizes: SizesTuple, kinds: Pairs, extents: Vectors, plain_shapes: ShapesTuple,
+    kind: Rows, own: Rows, sizes: SizesTuple, kinds: Pairs, extents: Vectors, plain_shapes: ShapesTuple,
     angular: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
     awake_inverse_mass: Numbers, awake_inverse_inertia: Numbers, asleep: Flags,
 ) -> tuple[float, int, int, float]:  # fmt: skip
@@ -41,9 +40,9 @@ def derive_masses(
     lightest, heaviest, infinite, sizeless, smallest = 0.0, math.inf, -1, -1, math.inf
     shapes = named_shapes(plain_shapes)
     for i in range(len(mass)):
-        sized = derive_shape(i, kind, sizes, kinds, extents, shapes)
+        sized = derive_shape(i, kind, own, sizes, kinds, extents, shapes)
         if kind[i] != 0:
-            smallest = min(smallest, 2.0 * half_thickness(shapes, i))
+            smallest = min(smallest, 2.0 * shapes.thin[i])
         if sizeless < 0 and not sized:
             sizeless = i
         if not inertia_given[i]:

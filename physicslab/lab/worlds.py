@@ -110,7 +110,7 @@ def velocity(world: World, body: int | str) -> Vector2:
 
 def steps_not_rigid(*worlds: World) -> tuple[int, int]:
     """Return how many steps of worlds with rigid contacts were left to soft ones, and made by impulses."""
-    usable = (stepper for world in worlds for stepper in world.steppers.usable)
+    usable = (stepper for world in worlds for part in world.parts for stepper in part.steppers.usable)
     rigid = [stepper for stepper in usable if isinstance(stepper, Rigid)]
     return sum(stepper.left_to_soft for stepper in rigid), sum(stepper.by_impulses for stepper in rigid)
 

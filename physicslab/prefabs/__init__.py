@@ -4,7 +4,7 @@ They give no more than components; what they make can be changed like anything e
 take a ``seed``, and give the same things for the same seed.
 """
 
-from physicslab.prefabs.body import BodyOptions, body, box, capsule, circle
+from physicslab.prefabs.body import BodyOptions, body, box, capsule, circle, polygon
 from physicslab.prefabs.bridge import bridge
 from physicslab.prefabs.chain import chain, pendulum
 from physicslab.prefabs.container import container
@@ -15,5 +15,5 @@ from physicslab.prefabs.ragdoll import ragdoll
 
 __all__ = [
     "BodyOptions", "Planet", "binary", "body", "box", "bridge", "capsule", "chain", "circle", "container",
-    "gas", "pendulum", "pile", "planets", "pyramid", "ragdoll", "stack",
+    "gas", "pendulum", "pile", "planets", "polygon", "pyramid", "ragdoll", "stack",
 ]  # fmt: skip

@@ -1,5 +1,6 @@
 """Bodies: boxes, circles, and bodies of any shape."""
 
+from collections.abc import Sequence
 from typing import TypedDict, Unpack
 
 from physicslab.components import Mass, Material, Shape, Transform, Velocity
@@ -115,3 +116,25 @@ def circle(world: World, position: Pair, *, radius: float = 0.25, **options: Unp
     0.1
     """
     return body(world, Shape.circle(radius), position, **options)
+
+
+def polygon(
+    world: World,
+    position: Pair,
+    vertices: Sequence[Pair],
+    *,
+    radius: float = 0.0,
+    **options: Unpack[BodyOptions],
+) -> int:
+    """Spawn a convex polygon of 3 to 8 vertices [m], rounded by a radius [m]; return its entity.
+
+    Vertices are counter-clockwise, from anywhere: its centre of mass is put at ``position`` [m].
+
+    Examples
+    --------
+    >>> world = World()
+    >>> wedge = polygon(world, (0, 0.5), [(0, 0), (3, 0), (0, 1.5)], name="wedge")
+    >>> world.component(wedge, Shape).vertices[0]
+    Vector2(x=-1.0, y=-0.5)
+    """
+    return body(world, Shape.polygon(vertices, radius), position, **options)

@@ -38,6 +38,8 @@ class Bodies:
         The table of shapes, as :func:`physicslab.state.masses.derive_masses` derives it from components.
     plain_shapes : tuple of arrays
         The same as kernels take it.
+    register : tuple of arrays
+        The register of cores that both were derived with (:mod:`physicslab.state.shapes`).
     sub_integrated : bool array (rows,)
         The rows with a method of their own between contacts (:class:`physicslab.stepping.split_forces`).
     unkicked : bool array (rows,)
@@ -47,6 +49,7 @@ class Bodies:
     def __init__(self) -> None:
         self.unequal, self.smallest = False, math.inf
         self.columns: tuple[object, tuple[Any, ...]]
+        self.register: tuple[NDArray[Any], ...] = ()
         self.checked: tuple[NDArray[Any], ...] = ()
         self.resize(0)
 

@@ -11,7 +11,7 @@ from physicslab.components.shape import kind_of
 from physicslab.ecs.component import InvalidValue
 from physicslab.kernels import direct_entry, motion, ranges
 from physicslab.kernels.solver import impulse
-from physicslab.state.shapes import EXTENTS, KINDS, sizes_in
+from physicslab.state.shapes import REGISTER, sizes_in, with_names
 from physicslab.state.state import State
 
 _INERTIA = next(spec for spec in Mass.FIELDS if spec.name == "inertia")
@@ -38,6 +38,10 @@ def derive_masses(state: State) -> None:
     if len(bodies.torque) != len(state.entity_index):
         bodies.resize(len(state.entity_index))
         state.compile((motion.derive_masses, ranges.find_outside))
+    if REGISTER.arrays() is not bodies.register:
+        bodies.register, bodies.columns = REGISTER.arrays(), (None, ())
+        bodies.plain_shapes = (*bodies.plain_shapes[:2], REGISTER.pool)
+        bodies.shapes = with_names(bodies.plain_shapes)
     revision, columns = bodies.columns
     if revision == state.entity_index.revision and columns[-1] is state.sleep.asleep:
         outside = direct_entry(ranges.find_outside)(*bodies.checked)
@@ -67,7 +71,8 @@ def _columns(state: State) -> tuple[Any, ...]:
     return (
         velocity.present, mass.present, state.table(Held).present,
         mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
-        shape["kind"], sizes_in(shape), KINDS, EXTENTS, bodies.plain_shapes, velocity["angular"],
+        shape["kind"], shape["vertices"], sizes_in(shape), REGISTER.kinds, REGISTER.extents,
+        bodies.plain_shapes, velocity["angular"],
         bodies.inverse_mass, bodies.inverse_inertia,
         bodies.awake_inverse_mass, bodies.awake_inverse_inertia, state.sleep.asleep,
     )  # fmt: skip
@@ -102,11 +107,13 @@ def _refuse_number(state: State, row: int) -> None:
 def _refuse_size(state: State, row: int) -> None:
     """Refuse a size that was written to a column and would keep a kernel from ever returning."""
     shape = state.table(Shape)
-    needed = kind_of(int(shape["kind"][row])).sizes
+    label, has = state.label_of_row(row), kind_of(int(shape["kind"][row])).fields
     for spec in Shape.FIELDS:
-        size = float(shape[spec.name][row]) if spec.name in needed else 1.0
-        if not 0.0 < size < math.inf:
-            raise InvalidValue(f"{state.label_of_row(row)}: Shape", spec.name, size, spec.allowed)
+        size = float(shape[spec.name][row]) if spec.name in has and spec.kind == "number" else 1.0
+        if not 0.0 < size < math.inf and not (size == 0.0 and "vertices" in has):
+            raise InvalidValue(f"{label}: Shape", spec.name, size, spec.allowed)
+    code = int(shape["vertices"][row])
+    raise InvalidValue(f"{label}: Shape", "vertices", code, "a code of vertices that a Shape has been given")
 
 
 def check_finite(state: State, time: float) -> None:

@@ -1,46 +1,91 @@
 """The table of shapes of a world, and the register of kinds as the arrays that it is derived with."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import shape
 from physicslab.components.shape import Kind
+from physicslab.ecs.fields import POINTS
 from physicslab.ecs.table import Table
-from physicslab.kernels.geometry.shapes import MOST_VERTICES, Shapes, ShapesTuple, SizesTuple
+from physicslab.kernels.geometry.shapes import MOST_VERTICES, OWN, Shapes, ShapesTuple, SizesTuple
 
-_SIZES = tuple(spec.name for spec in shape.Shape.FIELDS if spec.name != "kind")
-
-
-def register(kinds: tuple[Kind, ...]) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return kinds (n, 5) and half extents (n, 2) by code, as ``derive_shape`` takes them, and the pool."""
-    cores = [np.array(kind.core) for kind in kinds]
-    extents = np.array([(0.0, 0.0), *(np.abs(core).max(axis=0) for core in cores)])
-    pool = [
-        core / np.where(extent > 0.0, extent, 1.0) for core, extent in zip(cores, extents[1:], strict=True)
-    ]
-    rows, first = [(0, 0, -1, -1, -1)], 0
-    for kind in kinds:
-        x, y, radius = (_SIZES.index(name) if name else -1 for name in (kind.x, kind.y, kind.radius))
-        rows.append((len(kind.core), first, x, y, radius))
-        first += len(kind.core)
-    return np.array(rows), extents, np.concatenate(pool)
+_SIZES = tuple(spec.name for spec in shape.Shape.FIELDS if spec.kind == "number")
 
 
-KINDS, EXTENTS, _POOL = register(tuple(shape.KINDS.values()))
-"""The register as arrays: see :func:`physicslab.kernels.geometry.shapes.derive_shape`."""
+class Register:
+    """The cores of all kinds, and behind them those of polygons, as arrays that grow.
+
+    Attributes
+    ----------
+    kinds : int64 array (n, 5)
+        See :func:`physicslab.kernels.geometry.shapes.derive_shape`; in row ``OWN + code`` are the vertices
+        with this code in :data:`physicslab.ecs.fields.POINTS`. Rows that are not taken yet are 0.
+    extents : float64 array (n, 2)
+        Half of the extents of each core, in units of the sizes that stretch it.
+    pool : float64 array (m, 2)
+        The vertices of the cores, in shares of these.
+    """
+
+    def __init__(self, kinds: tuple[Kind, ...]) -> None:
+        self.kinds: NDArray[np.int64] = np.zeros((0, 5), np.int64)
+        self.extents: NDArray[np.float64] = np.zeros((0, 2))
+        self.pool: NDArray[np.float64] = np.zeros((0, 2))
+        self._arrays: tuple[NDArray[Any], ...] = ()
+        self._cores = self._vertices = 0
+        self._known = 1  # of the lists of points; the first one is empty
+        self._add(np.zeros((0, 2)), -1, -1, -1)
+        for kind in kinds:
+            sizes = (_SIZES.index(name) if name else -1 for name in (kind.x, kind.y, kind.radius))
+            self._add(np.array(kind.core).reshape(-1, 2), *sizes)
+        if self._cores > OWN + 1:
+            raise ValueError(f"there are more than {OWN} kinds of shapes: raise OWN")
+        self._cores = OWN + 1
+
+    def arrays(self) -> tuple[NDArray[Any], ...]:
+        """Return kinds, extents and pool with all lists of points: another tuple where one is new."""
+        for code in range(self._known, len(POINTS)):
+            points = [(point.x, point.y) for point in POINTS.value_of(code)]
+            self._add(np.array(points).reshape(-1, 2), -1, -1, 0)
+            self._known = code + 1
+        present = self.kinds, self.extents, self.pool
+        if len(self._arrays) == 0 or any(a is not b for a, b in zip(self._arrays, present, strict=True)):
+            self._arrays = present
+        return self._arrays
+
+    def _add(self, core: NDArray[np.float64], x: int, y: int, radius: int) -> None:
+        row, first = self._cores, self._vertices
+        extent = np.abs(core).max(axis=0, initial=0.0)
+        self.kinds, self.extents = _with_room(self.kinds, row + 1), _with_room(self.extents, row + 1)
+        self.pool = _with_room(self.pool, first + len(core))
+        self.kinds[row], self.extents[row] = (len(core), first, x, y, radius), extent
+        self.pool[first : first + len(core)] = core / np.where(extent > 0.0, extent, 1.0)
+        self._cores, self._vertices = row + 1, first + len(core)
+
+
+def _with_room[T: np.generic](array: NDArray[T], rows: int) -> NDArray[T]:
+    """Return an array of at least so many rows that begins as this one does: the same one, or a larger."""
+    if rows <= len(array):
+        return array
+    larger = np.zeros((max(rows, 2 * len(array)), *array.shape[1:]), array.dtype)
+    larger[: len(array)] = array
+    return larger
+
+
+REGISTER = Register(tuple(shape.KINDS.values()))
+"""The cores of this process."""
 
 
 def blank_shapes(rows: int) -> ShapesTuple:
     """Return a table of so many rows without shapes."""
-    return np.zeros((2, rows), np.int64), np.zeros((4, rows)), _POOL
+    return np.zeros((2, rows), np.int64), np.zeros((5, rows)), REGISTER.pool
 
 
 def with_names(plain: ShapesTuple) -> Shapes:
     """Return the same table, its columns by name."""
     cores, lengths, pool = plain
-    return Shapes(cores[0], cores[1], lengths[0], lengths[1], lengths[2], lengths[3], pool)
+    return Shapes(cores[0], cores[1], lengths[0], lengths[1], lengths[2], lengths[3], lengths[4], pool)
 
 
 def sizes_in(table: Table) -> SizesTuple:
@@ -57,20 +102,29 @@ class Cores(NamedTuple):
     radius: NDArray[np.float64]
 
 
+def _rows_in(table: Table, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the rows of the register of the shapes in some rows of ``Shape``."""
+    REGISTER.arrays()
+    own = table["vertices"][rows]
+    found: NDArray[np.int64] = np.where(own > 0, OWN + own, table["kind"][rows])
+    return found
+
+
 def lengths_of(table: Table, rows: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return half of the extents (n, 2) and the radii (n,) of the cores in some rows of ``Shape`` [m]."""
-    code, own = table["kind"][rows], np.arange(len(rows))
-    columns = np.zeros((1 + len(_SIZES), len(rows)))
+    core, own = _rows_in(table, rows), np.arange(len(rows))
+    columns = np.ones((1 + len(_SIZES), len(rows)))
     columns[1:] = [column[rows] for column in sizes_in(table)]
-    which = KINDS[code, 2:].T + 1
-    half: NDArray[np.float64] = EXTENTS[code] * columns[which[:2], own].T
-    return half, columns[which[2], own]
+    stretched_x, stretched_y, rounded = REGISTER.kinds[core, 2:].T
+    stretched = np.stack((columns[stretched_x + 1, own], columns[stretched_y + 1, own]), axis=1)
+    half: NDArray[np.float64] = REGISTER.extents[core] * stretched
+    return half, np.where(rounded >= 0, columns[rounded + 1, own], 0.0)
 
 
 def cores_of(table: Table, rows: NDArray[np.int64]) -> Cores:
     """Return the shapes of some rows as they are now, be they in the table of shapes yet or not."""
     half, radius = lengths_of(table, rows)
-    vertices, first = KINDS[table["kind"][rows], :2].T
+    vertices, first = REGISTER.kinds[_rows_in(table, rows), :2].T
     last = np.maximum(vertices - 1, 0)[:, None]
-    corners = _POOL[first[:, None] + np.minimum(np.arange(MOST_VERTICES), last)] * half[:, None, :]
+    corners = REGISTER.pool[first[:, None] + np.minimum(np.arange(MOST_VERTICES), last)] * half[:, None, :]
     return Cores(corners, vertices, radius)

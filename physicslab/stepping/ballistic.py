@@ -157,5 +157,4 @@ def _boxes(state: State) -> tuple[NDArray[np.float64], NDArray[np.float64], NDAr
         x, y = of.half_x * of.pool[at, 0], of.half_y * of.pool[at, 1]
         half = np.maximum(half, np.abs(np.stack((c * x - s * y, s * x + c * y), axis=1)))
     half += of.radius[:, None]
-    size = 2.0 * (np.minimum(of.half_x, of.half_y) + of.radius)
-    return transform["position"] - half, transform["position"] + half, size
+    return transform["position"] - half, transform["position"] + half, 2.0 * of.thin

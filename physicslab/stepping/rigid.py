@@ -151,8 +151,7 @@ class Rigid:
         material, physics = state.table(Material), state.physics
         present = np.concatenate((np.repeat(state.table(Velocity).present, 2), state.table(Velocity).present))
         self._ode.v[: len(present)][~present] = 0.0
-        of = state.bodies.shapes
-        size = 2.0 * (np.minimum(of.half_x, of.half_y) + of.radius)
+        size = 2.0 * state.bodies.shapes.thin
         a, b, wall = self._pairs[: len(self._pairs) - len(self._rows)].T
         walled = wall >= 0
         coefficients = np.empty((len(a), 3))

@@ -10,7 +10,7 @@ from physicslab.kernels import Numbers, Vectors, inlined, kernel
 from physicslab.kernels.arguments import Motion, MotionTuple
 from physicslab.kernels.geometry.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE, WIDE_TOLERANCE
 from physicslab.kernels.geometry.pair import CONTACT_MARGIN
-from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents, half_thickness, named_shapes
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents, named_shapes
 
 __all__ = [
     "CORNERWISE",
@@ -64,7 +64,7 @@ def left(
     ux, uy = linear[i, 0] * h, linear[i, 1] * h
     ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if reach > radius else 1.0)
     turned = (abs(motion.angle[i] - fat[2, i]) + abs(motion.angular[i]) * h) * (reach - radius)
-    needed = _touching_distance(reach, radius, half_thickness(shapes, i), speculative_margin)
+    needed = _touching_distance(reach, radius, shapes.thin[i], speculative_margin)
     return not (max(moved_x, moved_y) + ahead + turned + needed <= fat[4, i] and reach == fat[3, i])
 
 
@@ -85,7 +85,7 @@ def still_holds(
 def all_inside(motion: Motion, shapes: Shapes, fat: Vectors, h: float, speculative_margin: float) -> bool:
     """Whether no body has left its fat box, as :func:`still_holds` describes."""
     position, angle, linear, angular = motion
-    _, _, half_x, half_y, radius, reach, _ = shapes
+    radius, reach, thin = shapes.radius, shapes.reach, shapes.thin
     places, velocities = position.reshape(position.size), linear.reshape(linear.size)
     holds = True
     for i in range(len(angle)):  # no early exit, so that LLVM vectorises the loop
@@ -94,8 +94,7 @@ def all_inside(motion: Motion, shapes: Shapes, fat: Vectors, h: float, speculati
         ux, uy = velocities[2 * i] * h, velocities[2 * i + 1] * h
         ahead = math.sqrt(ux * ux + uy * uy) * (CORNERWISE if reach[i] > radius[i] else 1.0)
         turned = (abs(angle[i] - fat[2, i]) + abs(angular[i]) * h) * (reach[i] - radius[i])
-        thickness = min(half_x[i], half_y[i]) + radius[i]
-        needed = _touching_distance(reach[i], radius[i], thickness, speculative_margin)
+        needed = _touching_distance(reach[i], radius[i], thin[i], speculative_margin)
         inside = (max(moved_x, moved_y) + ahead + turned + needed <= fat[4, i]) | (reach[i] == 0.0)
         holds &= inside & (reach[i] == fat[3, i])
     return holds
@@ -139,7 +138,7 @@ def fatten(
     ahead_x, ahead_y = max(6.5 * h * abs(vx) - 0.5 * around, 0.0), max(6.5 * h * abs(vy) - 0.5 * around, 0.0)
     margin = 0.08 * min(half_x, half_y) + around
     margin += 2.0 * h * abs(motion.angular[i]) * (reach - radius)
-    margin += _touching_distance(reach, radius, half_thickness(shapes, i), speculative_margin)
+    margin += _touching_distance(reach, radius, shapes.thin[i], speculative_margin)
     fat[6, i], fat[7, i] = math.copysign(ahead_x, vx), math.copysign(ahead_y, vy)
     x, y = x + fat[6, i], y + fat[7, i]
     fat[0, i], fat[1, i], fat[2, i], fat[3, i], fat[4, i] = x, y, angle, reach, margin

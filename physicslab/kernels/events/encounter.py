@@ -19,7 +19,7 @@ from physicslab.kernels.events.meeting import (
     place_at,
 )
 from physicslab.kernels.events.path import place, seen_from, velocity
-from physicslab.kernels.geometry.shapes import MOST_VERTICES, Shapes, face, half_thickness, vertex
+from physicslab.kernels.geometry.shapes import MOST_VERTICES, Shapes, face, vertex
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
 from physicslab.kernels.records import Manifold, Point
 
@@ -302,12 +302,12 @@ def gap_of(
 ) -> tuple[float, float]:
     """Return the gap of a pair at the start of its paths, and the size of the smaller body [m]."""
     a, b = manifold.a, manifold.b
-    size = 2.0 * half_thickness(shapes, b)
+    size = 2.0 * shapes.thin[b]
     if manifold.wall >= 0:
         return _to_wall(manifold, paths[b, 0], paths[b, 2], angle, shapes, walls)[0], size
     course = Course(paths[b, 0] - paths[a, 0], paths[b, 2] - paths[a, 2], 0.0, 0.0, 0.0, 0.0)
     seen, c, s, _, _ = _lie(manifold, course, angle, shapes)
-    return _nearest(shapes, a, b, seen, c, s)[0], min(size, 2.0 * half_thickness(shapes, a))
+    return _nearest(shapes, a, b, seen, c, s)[0], min(size, 2.0 * shapes.thin[a])
 
 
 @inlined

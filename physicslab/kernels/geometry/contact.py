@@ -13,7 +13,7 @@ from physicslab.kernels.geometry.pair import (
     touch_wall,
     touch_with_circle,
 )
-from physicslab.kernels.geometry.shapes import Shapes, half_thickness, has_own_way
+from physicslab.kernels.geometry.shapes import Shapes, has_own_way
 from physicslab.kernels.records import Manifold, Point, Points
 
 ACTIVATION_RATIO = 1.02
@@ -118,9 +118,9 @@ def _look_up(
     """
     a, b, half_x, half_y, angle = manifold.a, manifold.b, shapes.half_x, shapes.half_y, motion.angle
     radius = shapes.radius
-    size, of_both = 2.0 * half_thickness(shapes, b), 2.0 * half_x[b] + 4.0 * half_y[b]
+    size, of_both = 2.0 * shapes.thin[b], 2.0 * half_x[b] + 4.0 * half_y[b]
     if manifold.wall < 0:
-        size = min(size, 2.0 * half_thickness(shapes, a))
+        size = min(size, 2.0 * shapes.thin[a])
         of_both += 6.0 * half_x[a] + 10.0 * half_y[a]
     travel = abs(way.ux) + abs(way.uy)
     if turns:
@@ -129,6 +129,8 @@ def _look_up(
         travel += h * spin  # how far a corner comes
         if has_own_way(shapes, a) and has_own_way(shapes, b):
             size = min(max(half_x[a], radius[a]), max(half_x[b], radius[b]))
+        else:  # of the same extents there are many polygons
+            of_both += 13.0 * (shapes.reach[a] + shapes.thin[a]) + 17.0 * (shapes.reach[b] + shapes.thin[b])
         of_both += 7.0 * radius[a] + 11.0 * radius[b]
     moved_x, moved_y = way.dx - manifold.base_x, way.dy - manifold.base_y
     turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b

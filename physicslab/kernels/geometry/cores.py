@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from physicslab.kernels import Vectors, inlined
 from physicslab.kernels.geometry.manifold import ALIKE, FAVOUR, LEVEL, Corner
-from physicslab.kernels.geometry.outline import Outline, Way, corner, half_size, swing_of, turned
+from physicslab.kernels.geometry.outline import Outline, Way, corner, swing_of, turned
 
 _FACE, FLIPPED, VERTICES = 65, 129, 200
 """From these numbers on features are vertices on faces of A (65 + vertex + 8 face), vertices on faces of B,
@@ -25,6 +25,8 @@ _ENDS = 1e-6
 """Share of the radius by which vertices must be farther than faces to be what is nearest."""
 _SLACK = 2e-3
 """Share of the radius by which the nearest edge may pass the ends of a face: more than that hides."""
+_TIE = 1e-9
+"""Share of the smallest width by which it may end before a face begins, as where vertices meet head-on."""
 
 
 class Touch(NamedTuple):
@@ -82,7 +84,7 @@ def _best_face(
     """
     gap, face = _farthest_face(dx, dy, a, b, pool)
     gap_b, face_b = _farthest_face(-dx, -dy, b, a, pool)
-    smallest, flip = min(half_size(a), half_size(b)), False
+    smallest, flip = min(a.thin, b.thin), False
     if gap_b > gap + ALIKE * smallest:
         gap, face, flip = gap_b, face_b, True
     if _FACE <= old < VERTICES:
@@ -179,13 +181,15 @@ def touch_cores(way: Way, a: Outline, b: Outline, pool: Vectors, margin: float, 
             return Touch(separation, sign * mx, sign * my, 1, first, none)
     # The edge of the other one is cut off at the ends of the face.
     length = math.sqrt(fx * fx + fy * fy)
-    tx, ty, slack = fx / length, fy / length, _SLACK * both
+    tx, ty, slack, tie = fx / length, fy / length, _SLACK * both, _TIE * min(a.thin, b.thin)
     along1, along2 = (qx - px) * tx + (qy - py) * ty, (rx - px) * tx + (ry - py) * ty
     start, end_share, run = 0.0, 1.0, along2 - along1
     if abs(run) > 0.0:
         low, high = (-slack - along1) / run, (length + slack - along1) / run
         start, end_share = max(start, min(low, high)), min(end_share, max(low, high))
-    elif along1 < -slack or along1 > length + slack:
+        if start > end_share >= start - tie / abs(run):
+            end_share = start
+    elif along1 < -slack - tie or along1 > length + slack + tie:
         end_share = -1.0
     if start > end_share:
         return Touch(gap - both, sign * nx, sign * ny, 0, none, none)
@@ -254,6 +258,8 @@ def sweep_cores(
             if closing <= 0.0:
                 return MISS
             t += gap / closing
+        elif found.points == 0:
+            return MISS
         else:
             point = (
                 found.two if found.points == 2 and found.two.separation < found.one.separation else found.one

@@ -11,7 +11,7 @@ class Outline(NamedTuple):
     """A row of the table of shapes, and how it lies.
 
     Whether it is a box; cosine and sine of its angle; half extents of its core and its radius [m]; the number
-    of its vertices, and where they begin in the pool.
+    of its vertices, and where they begin in the pool; half of its smallest width [m].
     """
 
     box: bool
@@ -22,6 +22,7 @@ class Outline(NamedTuple):
     radius: float
     vertices: int
     first: int
+    thin: float
 
 
 class Way(NamedTuple):
@@ -38,7 +39,7 @@ def lying(i: int, shapes: Shapes, c: float, s: float) -> Outline:
     """Return the outline of row i, turned by the angle of which these are cosine and sine."""
     return Outline(
         shapes.first[i] == BOX, c, s, shapes.half_x[i], shapes.half_y[i], shapes.radius[i],
-        shapes.vertices[i], shapes.first[i],
+        shapes.vertices[i], shapes.first[i], shapes.thin[i],
     )  # fmt: skip
 
 
@@ -63,12 +64,12 @@ def kept_outline(i: int, angle: Numbers, shapes: Shapes, rotations: Vectors) -> 
 @inlined
 def turned(outline: Outline, angle: float) -> Outline:
     """Return an outline turned by an angle [rad]."""
-    box, c, s, half_x, half_y, radius, vertices, first = outline
+    box, c, s, half_x, half_y, radius, vertices, first, thin = outline
     if angle == 0.0 or vertices < 2:
         return outline
     cosine, sine = math.cos(angle), math.sin(angle)
     return Outline(
-        box, c * cosine - s * sine, s * cosine + c * sine, half_x, half_y, radius, vertices, first
+        box, c * cosine - s * sine, s * cosine + c * sine, half_x, half_y, radius, vertices, first, thin
     )  # fmt: skip
 
 
@@ -77,12 +78,6 @@ def corner(k: int, outline: Outline, pool: Vectors) -> tuple[float, float]:
     """Return vertex k of a core, counted counter-clockwise, from its centre in the world's directions [m]."""
     x, y = outline.half_x * pool[outline.first + k, 0], outline.half_y * pool[outline.first + k, 1]
     return outline.c * x - outline.s * y, outline.s * x + outline.c * y
-
-
-@inlined
-def half_size(outline: Outline) -> float:
-    """Return half of the smaller extent of an outline [m]."""
-    return min(outline.half_x, outline.half_y) + outline.radius
 
 
 @inlined

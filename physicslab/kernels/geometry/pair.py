@@ -6,7 +6,7 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Vectors, inlined
 from physicslab.kernels.geometry.cores import MISS, opening, pose_at, sweep_cores, touch_cores
 from physicslab.kernels.geometry.manifold import LEVEL, box_box, circle_box, circle_circle
-from physicslab.kernels.geometry.outline import Outline, Way, corner, half_size, swing_of, turned
+from physicslab.kernels.geometry.outline import Outline, Way, corner, swing_of, turned
 from physicslab.kernels.geometry.sweep import (
     sweep_box_box,
     sweep_circle_box,
@@ -234,7 +234,7 @@ def touch_rounded(
 
     Both turn, by ``turn_a`` and ``turn_b`` [rad] in the substep.
     """
-    size = 2.0 * min(half_size(a), half_size(b))
+    size = 2.0 * min(a.thin, b.thin)
     travel = math.sqrt(way.ux * way.ux + way.uy * way.uy)
     travel += swing_of(a, turn_a) + swing_of(b, turn_b)
     near = CONTACT_MARGIN * size + speculative_margin
@@ -304,8 +304,8 @@ def touch_wall(
     manifold.normal_x, manifold.normal_y = nx, ny
     before_1, before_2 = _impulses_of(one), _impulses_of(two)
     manifold.count, manifold.swept = 0, 0
-    manifold.size = 2.0 * half_size(body)
-    margin = CONTACT_MARGIN * half_size(body) + travel
+    manifold.size = 2.0 * body.thin
+    margin = CONTACT_MARGIN * body.thin + travel
     best, second, low, next_low = _lowest_corners(height, nx, ny, body, pool)
     for j in range(2):
         nearest, separation = (best, low - radius) if j == 0 else (second, next_low - radius)

@@ -13,7 +13,7 @@ to date from the beginning of a step on. Then, of row ``i``:
 - ``vertex(shapes, i, k)``, ``face(shapes, i, k)``, ``support(shapes, i, x, y)``: of the core, in the body's
   own directions. Face k goes from vertex k to the next one.
 - ``shapes.radius[i]``: its rounding. ``shapes.reach[i]``: the largest distance of the outline from the
-  centre. ``half_thickness(shapes, i)``: half of the smaller extent. ``half_extents(shapes, i, angle)``: of
+  centre. ``shapes.thin[i]``: half of its smallest width. ``half_extents(shapes, i, angle)``: of
   the upright box.
 
 What turns without effect, a disc, has ``shapes.reach[i] - shapes.radius[i]`` equal to 0.
@@ -27,6 +27,8 @@ from physicslab.kernels.records import Pairs
 
 BOX = 1
 """Where the vertices of a box begin in the pool, after the one of a disc."""
+OWN = 7
+"""In the register of cores, the rows behind this one are those of shapes with vertices of their own."""
 MOST_VERTICES = 8
 """The largest number of vertices of a core."""
 
@@ -44,6 +46,8 @@ class Shapes(NamedTuple):
         By how much the core is rounded [m].
     reach : float64 array (rows,)
         The largest distance of the outline from the centre [m].
+    thin : float64 array (rows,)
+        Half of the smallest width of the outline [m].
     pool : float64 array (n, 2)
         The vertices of each core, in shares of ``half_x`` and ``half_y``; equal cores share theirs.
     """
@@ -54,11 +58,12 @@ class Shapes(NamedTuple):
     half_y: Numbers
     radius: Numbers
     reach: Numbers
+    thin: Numbers
     pool: Vectors
 
 
 ShapesTuple = tuple[Pairs, Vectors, Vectors]
-"""The same in three arrays (2, rows), (4, rows), (n, 2), which are passed faster."""
+"""The same in three arrays (2, rows), (5, rows), (n, 2), which are passed faster."""
 SizesTuple = tuple[Numbers, Numbers, Numbers, Numbers]
 """The columns of sizes of the ``Shape`` component, in its order."""
 
@@ -67,7 +72,7 @@ SizesTuple = tuple[Numbers, Numbers, Numbers, Numbers]
 def named_shapes(plain: ShapesTuple) -> Shapes:
     """Give names to the arrays."""
     cores, lengths, pool = plain
-    return Shapes(cores[0], cores[1], lengths[0], lengths[1], lengths[2], lengths[3], pool)
+    return Shapes(cores[0], cores[1], lengths[0], lengths[1], lengths[2], lengths[3], lengths[4], pool)
 
 
 @inlined
@@ -109,13 +114,6 @@ def has_own_way(shapes: Shapes, i: int) -> bool:
     return bool(shapes.vertices[i] < 2 or shapes.first[i] == BOX)
 
 
-@always_inlined
-def half_thickness(shapes: Shapes, i: int) -> float:
-    """Return half of the smaller extent of row i [m]."""
-    half: float = min(shapes.half_x[i], shapes.half_y[i]) + shapes.radius[i]
-    return half
-
-
 @inlined
 def half_extents(shapes: Shapes, i: int, angle: float) -> tuple[float, float]:
     """Return half of the width and height of the upright box about the centre of row i, turned so far [m]."""
@@ -144,17 +142,32 @@ def _size(column: int, i: int, sizes: SizesTuple) -> float:
     return float(height[i]) if column == 2 else float(length[i])
 
 
+@inlined
+def _thinness(shapes: Shapes, i: int) -> float:
+    """Return half of the smallest width of the core of row i, which is across one of its faces [m]."""
+    smaller: float = min(shapes.half_x[i], shapes.half_y[i])
+    if shapes.vertices[i] < 3 or shapes.first[i] == BOX:
+        return smaller
+    for k in range(shapes.vertices[i]):
+        nx, ny, distance, _ = face(shapes, i, k)
+        _, behind = support(shapes, i, -nx, -ny)
+        smaller = min(smaller, 0.5 * (distance + behind))
+    return smaller
+
+
 @always_inlined
 def derive_shape(
-    i: int, kind: Rows, sizes: SizesTuple, kinds: Pairs, extents: Vectors, shapes: Shapes
+    i: int, kind: Rows, own: Rows, sizes: SizesTuple, kinds: Pairs, extents: Vectors, shapes: Shapes
 ) -> bool:
     """Fill row i of the table from its component; return whether its sizes are finite and above 0.
 
-    ``kinds`` (n, 5) has, of each kind, the number of vertices, where they begin in the pool, and the columns
-    of ``sizes`` that stretch it along x and y and round it, or -1; ``extents`` (n, 2) has half of the extents
-    of the core in units of these sizes.
+    ``own`` (rows,) has the codes of vertices of their own, or 0. ``kinds`` (n, 5) is the register of cores:
+    of each the number of vertices, where they begin in the pool, and the columns of ``sizes`` that stretch it
+    along x and y and round it, or -1; ``extents`` (n, 2) has half of the extents in units of these sizes.
     """
-    row = kind[i]
+    row = kind[i] if own[i] == 0 else OWN + own[i]
+    if row >= len(kinds):
+        return False
     count, first, rounded = kinds[row, 0], kinds[row, 1], kinds[row, 4]
     size_x, size_y = _size(kinds[row, 2], i, sizes), _size(kinds[row, 3], i, sizes)
     rounding = _size(rounded, i, sizes)
@@ -169,4 +182,6 @@ def derive_shape(
             x, y = vertex(shapes, i, k)
             farthest = max(farthest, x * x + y * y)
         shapes.reach[i] = math.sqrt(farthest) + radius
-    return 0.0 < size_x < math.inf and 0.0 < size_y < math.inf and 0.0 < rounding < math.inf
+        shapes.thin[i] = _thinness(shapes, i) + radius
+    shaped = (count > 0 or row == 0) and (rounding > 0.0 or own[i] > 0)
+    return shaped and 0.0 < size_x < math.inf and 0.0 < size_y < math.inf and 0.0 <= rounding < math.inf

@@ -17,14 +17,14 @@ _SAME = 1e-6
 
 @kernel
 def note_figures(
-    position: Vectors, angle: Numbers, vertices: Rows, half_x: Numbers, half_y: Numbers, reach: Numbers,
-    restitution: Numbers, friction: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
+    position: Vectors, angle: Numbers, vertices: Rows, first: Rows, half_x: Numbers, half_y: Numbers,
+    reach: Numbers, restitution: Numbers, friction: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers,
     moves: Flags, figures: Vectors,
 ) -> None:  # fmt: skip
     """Write down where every body is and what it is made of."""
     for i in range(len(angle)):
         figures[i, 0], figures[i, 1], figures[i, 2] = position[i, 0], position[i, 1], angle[i]
-        figures[i, _VERTICES], figures[i, _REACH] = vertices[i], reach[i]
+        figures[i, _VERTICES], figures[i, _REACH] = vertices[i] + 16 * first[i], reach[i]
         figures[i, 5], figures[i, 6] = half_x[i], half_y[i]
         figures[i, 7], figures[i, 8] = restitution[i], friction[i]
         figures[i, INVERSE_MASS], figures[i, 10] = inverse_mass[i], inverse_inertia[i]

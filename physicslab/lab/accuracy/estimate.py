@@ -148,7 +148,7 @@ def estimate_error(
     if found.path is None:
         return found
     left = max(budget_s, _RUNS_AT_LEAST * found.own_s)
-    soft = not scene.event_driven or _something_rests(load(), seconds)
+    soft = not _flies(scene) or _something_rests(load(), seconds)
     for i, twin in enumerate(twins):
         other = twin.make(document, scene) if soft or twin.name != "rigid" else None
         if other is not None:
@@ -175,7 +175,12 @@ def find_order(found: Estimate, load: Callable[[], World], seconds: float) -> No
 
 def _something_rests(world: World, seconds: float) -> bool:
     """Whether a body ever rests on another: where impacts are located, only such ones move softly."""
-    return any(world.contacts.active for _ in world.stepping(seconds=seconds))
+    return any(part.contacts.active for _ in world.stepping(seconds=seconds) for part in world.parts)
+
+
+def _flies(world: World) -> bool:
+    """Whether all impacts are located between flights in closed form."""
+    return all(part.event_driven for part in world.parts)
 
 
 def _compared(twin: Twin, world: World, run: Callable[[World], Path], found: Estimate) -> TwinResult:
@@ -214,8 +219,9 @@ def _order(found: Estimate, scene: World, quarter: Callable[[], Path]) -> tuple[
         return None, "the error is that of rounding"
     if found.worst == "nudged":
         return None, "a rounding at the start has grown to this: no step is short enough"
-    if scene.plan.integrator.chooses_steps and not scene.event_driven:
-        return None, f"{scene.plan.integrator.name} chooses its steps"
+    methods = [plan.integrator for plan in scene.plans]
+    if all(method.chooses_steps for method in methods) and not _flies(scene):
+        return None, f"{methods[0].name} chooses its steps"
     half_path = found.paths.get("half step")
     if half_path is None:
         return None, "half the step fails"
@@ -230,6 +236,6 @@ def _order(found: Estimate, scene: World, quarter: Callable[[], Path]) -> tuple[
     if min(coarse, fine) == 0.0:
         return None, "no difference is left between half and a quarter of the step"
     order = math.log2(coarse / fine)
-    if abs(order) > scene.plan.integrator.order + _ORDER_MARGIN:
+    if abs(order) > max(method.order for method in methods) + _ORDER_MARGIN:
         return None, "halving the step does not change places regularly"
     return order, "from the step, its half and its quarter"

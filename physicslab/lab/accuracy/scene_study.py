@@ -217,8 +217,8 @@ class _Scene:
         row.evaluations = world.force_evaluations
         audit.sample(world)
         row.energy = audit.error
-        contacts = world.plan.contacts if world.plan.collisions == "step" else "rigid"
-        row.is_located = contacts == "rigid" and not any(steps_not_rigid(world))
+        soft = any(plan.contacts == "soft" and plan.collisions == "step" for plan in world.plans)
+        row.is_located = not soft and not any(steps_not_rigid(world))
         finer = self.refined_end(run.simulation, 2.0)
         row.half_step, row.cpu_ms = _apart(places, finer), 1e3 * fastest
         run.places, run.finer = places, finer

@@ -19,7 +19,8 @@ from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.text import unique_name
 from physicslab.files.reader import read_scene
 from physicslab.integrators.dop853 import DOP853
-from physicslab.stepping.plan import tolerance_for
+from physicslab.stepping.island import Part
+from physicslab.stepping.plan import StepPlan, tolerance_for
 from physicslab.world import World
 
 type Document = dict[str, Any]
@@ -120,35 +121,44 @@ def refined(document: Document, world: World, factor: float) -> World:
     tolerance = max(_LEAST_TOLERANCE, 0.1 * tolerance_for(world, world.schedule.forces))
     twin = _with_settings(document, dt=world.simulation.dt / factor, tolerance=tolerance)
     twin.synchronise()
-    if world.plan.collisions != "exact":
-        twin.resume(*world.plan.kept)  # auto would make the same steps within a shorter one
+    # Else auto would make the same steps within a shorter one.
+    own, others = _islands(world), _islands(twin)
+    for part, other in zip(own, others, strict=True) if len(own) == len(others) else ():
+        if part.plan.collisions != "exact":
+            other.resume(*part.plan.kept)
     return twin
 
 
+def _islands(world: World) -> list[Part]:
+    """Return what advances a world, in the order of first bodies: itself, or its islands."""
+    return [island.world for island in world.islands.members] or [world]
+
+
 def _half(document: Document, world: World) -> World | None:
-    return None if _follows_events(world) else refined(document, world, 2.0)
+    return refined(document, world, 2.0) if not all(map(_follows_events, world.plans)) else None
 
 
 def _fine(document: Document, world: World) -> World | None:
     """Return the scene in so short steps that an event which is missed by a step is missed by little."""
-    return refined(document, world, _FINE) if _follows_events(world) else None
+    return refined(document, world, _FINE) if any(map(_follows_events, world.plans)) else None
 
 
-def _follows_events(world: World) -> bool:
+def _follows_events(plan: StepPlan) -> bool:
     """Whether contacts are rigid: the step goes from event to event, and half of it may meet the same."""
-    return world.plan.collisions == "step" and world.plan.contacts == "rigid"
+    return plan.collisions == "step" and plan.contacts == "rigid"
 
 
 def _other(document: Document, world: World) -> World | None:
     """Return the scene with steps that end at other moments; none for a smooth method that chooses them."""
-    if world.plan.smooth and world.plan.integrator.chooses_steps:
+    if all(plan.smooth and plan.integrator.chooses_steps for plan in world.plans):
         return None
     return refined(document, world, GOLDEN)
 
 
 def _tightest(document: Document, world: World) -> World | None:
     """Return the scene by the method that chooses its steps, where it goes by one of fixed steps."""
-    if not world.plan.smooth or world.plan.integrator.chooses_steps:
+    smooth = all(plan.smooth for plan in world.plans)
+    if not smooth or all(plan.integrator.chooses_steps for plan in world.plans):
         return None
     twin = _with_settings(document, integrator=DOP853.name, tolerance=SimulationConfig().tolerance)
     twin.synchronise()
@@ -161,16 +171,21 @@ def _with_settings(document: Document, **changes: Any) -> World:
 
 def _rigid(document: Document, world: World) -> World | None:
     """Return the scene with contacts that do not give way, where these can be had."""
-    if world.plan.collisions == "none" or world.plan.contacts == "rigid":
+    if not _gives_way(world):
         return None
     twin = _with_settings(document, contacts="rigid", collisions="auto", integrator="auto", sleeping=False)
     twin.synchronise()
-    return twin if twin.plan.contacts == "rigid" else None
+    return twin if any(plan.contacts == "rigid" for plan in twin.plans) else None
+
+
+def _gives_way(world: World) -> bool:
+    """Whether any contacts may be soft."""
+    return any(plan.collisions != "none" and plan.contacts == "soft" for plan in world.plans)
 
 
 def _stiffer(document: Document, world: World) -> World | None:
     """Return the scene with harder contacts, at half the step: their stiffness goes by step and sweeps."""
-    if world.plan.collisions == "none" or world.plan.contacts == "rigid":
+    if not _gives_way(world):
         return None
     simulation = world.simulation
     sweeps = None if simulation.iterations is None else min(1000, 2 * simulation.iterations)

@@ -23,6 +23,7 @@ from physicslab.components import (
     Velocity,
     Weld,
 )
+from physicslab.components.vertices import regular
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
 from physicslab.ecs.text import in_words
@@ -129,6 +130,7 @@ def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable
         yield "Shape: circle", lambda entity: Shape.circle(_SIZE)
         yield "Shape: box", lambda entity: Shape.box(2.0 * _SIZE, 2.0 * _SIZE)
         yield "Shape: capsule", lambda entity: Shape.capsule(2.0 * _SIZE, _SIZE)
+        yield "Shape: polygon", lambda entity: Shape.polygon(regular(3, 1.5 * _SIZE))
         return
     if kind is Spring:
         yield plain_kind(kind), lambda entity: _spring_above(world, entity)

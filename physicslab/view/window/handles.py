@@ -6,6 +6,7 @@ from typing import Literal
 
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.components.shape import KINDS
+from physicslab.components.vertices import centred
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
@@ -114,7 +115,14 @@ class Handles:
 
     def _resize(self, edits: Edits, entity: int, corner: Vector2, snaps: bool) -> None:
         """Make a body as large as its corner says; what it weighs stays."""
-        kind, sizes = KINDS[edits.world.component(entity, Shape).kind], {}
+        shape, sizes = edits.world.component(entity, Shape), {}
+        kind = KINDS[shape.kind]
+        if kind.own[1]:
+            size = _size(corner.magnitude, snaps)
+            factor = size / _corner(edits.world, entity).magnitude
+            edits.show(entity, Shape, "vertices", centred([factor * one for one in shape.core], shape.radius))
+            self.words = f"{size:.3g} m"
+            return
         if kind.radius:
             sizes[kind.radius] = abs(corner.y) if kind.x else corner.magnitude
         for axis, name in enumerate((kind.x, kind.y)):

@@ -11,6 +11,7 @@ from physicslab.components import Drag, Mass, Material, Shape, Spring, Trail, Tr
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field
+from physicslab.ecs.quantity_text import points_text
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetField
 from physicslab.state.joint_rows import KINDS
@@ -69,6 +70,9 @@ class ComponentRows:
                 case "entity":
                     if len(values) == 1:
                         self._entity(kind, spec, key, values[0])
+                case "points":
+                    shared = _common(values)
+                    self._number(kind, spec, key, None if shared is None else points_text(shared))
                 case _:
                     if spec.unit in scales:
                         values = [without_rounding(value, scale) for value in values]
@@ -143,7 +147,7 @@ def _common(values: Sequence[Any]) -> Any:
 def _is_shown(spec: Field, held: Component) -> bool:
     """Whether a field has a row: sizes of the other kind of shape and what cannot change have none."""
     if isinstance(held, Shape):
-        return spec.name in Shape.SIZES[held.kind]
+        return spec.name in Shape.HAS[held.kind]
     return spec.kind == "entity" or not spec.fixed
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from physicslab.components import Held, Mass, Transform, Velocity
+from physicslab.contacts.report import count_near_pairs
 from physicslab.diagnostics.energy import ACCOUNT_WORDS, Audit, Momentum, flows, summation
 from physicslab.diagnostics.reference_solution import ReferenceSolution, reference_solution
 from physicslab.diagnostics.scales import scales_of
@@ -90,7 +91,7 @@ class WorldFigures:
     def __init__(self, world: World, watch: EnergyWatch, frame_rate: float = 0.0) -> None:
         contacts, moving = world.contacts, world.batch(Transform, Velocity).rows
         self.bodies, self.asleep = len(body_rows(world).all), world.sleep.count
-        self.candidate_pairs, self.contacts = contacts.candidate_pairs, contacts.count
+        self.candidate_pairs, self.contacts = count_near_pairs(world), contacts.count
         self.audit = watch.sample(world)
         self.energy, now = self.audit.latest, self.audit.account.now
         self.momentum = Momentum(Vector2(now.px, now.py), now.spin)

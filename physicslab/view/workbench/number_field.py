@@ -10,7 +10,7 @@ import pygame
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.ecs.fields import Field, InvalidValue
-from physicslab.ecs.quantity_text import InvalidText, evaluate
+from physicslab.ecs.quantity_text import InvalidText, evaluate, evaluate_points
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 
@@ -249,10 +249,12 @@ def _shown(value: float | str | None, spec: Field, width: float) -> str:
     return next((text for text in texts if imgui.calc_text_size(text).x <= room), texts[-1])
 
 
-def _as_field(text: str, spec: Field) -> float | str:
-    """Return what was written as a field takes it; raise ``InvalidText`` where that is no number."""
+def _as_field(text: str, spec: Field) -> float | str | list[tuple[float, float]]:
+    """Return what was written as a field takes it; raise ``InvalidText`` where it cannot be read."""
     if spec.kind == "text":
         return text
+    if spec.kind == "points":
+        return evaluate_points(text, spec.unit)
     value = evaluate(text, spec.unit)
     return round(value) if spec.kind == "whole" and value == round(value) else value
 

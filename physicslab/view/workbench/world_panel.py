@@ -305,7 +305,8 @@ def build_settings(ui: Ui, numbers: NumberFields, world: World, window: Window) 
         if chosen != now:
             window.do_next(_change, held, name, _SLEEPING[chosen] if name == "sleeping" else chosen)
         if name == "integrator" and now == "auto":
-            ui.faint(f"auto takes {world.plan.integrator.name}: {world.plan.reason}")
+            for plan in dict.fromkeys(world.plans):
+                ui.faint(f"auto takes {plan.integrator.name}: {plan.reason}")
     if charged:
         _build_electric_field(ui, numbers, world, window)
 

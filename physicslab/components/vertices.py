@@ -1,0 +1,112 @@
+"""Vertices of polygons: what they must be like, where their centre of mass is, and how they are centred."""
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
+
+from physicslab.ecs.vector import Vector2
+
+_ROUNDING = 1e-9
+"""Share of the largest distance of two vertices below which a length is zero, and the sine of a turn is."""
+
+
+def why_not_convex(vertices: Sequence[Vector2], least: int, most: int) -> str | None:
+    """Return in words what the vertices of a convex polygon must be that these [m] are not, or ``None``."""
+    count = len(vertices)
+    if not least <= count <= most:
+        return f"{least} to {most} vertices; these are {count}"
+    size = max((one - other).magnitude for one in vertices for other in vertices)
+    for k, one in enumerate(vertices):
+        for j in range(k):
+            if (one - vertices[j]).magnitude <= _ROUNDING * size:
+                return f"vertices at different places; number {j + 1} and number {k + 1} are at one"
+    turns = _turns(vertices)
+    if all(turn <= _ROUNDING for turn in turns) and min(turns) < -_ROUNDING:
+        return f"counter-clockwise; these are clockwise: take {plain(vertices[::-1])}"
+    for k, turn in enumerate(turns):
+        if abs(turn) <= _ROUNDING:
+            return f"convex, each vertex a corner; number {k + 1} is in line with its neighbours"
+        if turn < 0.0:
+            return f"convex; at number {k + 1} these turn inwards"
+    if sum(turns) > 3.0 * math.pi:
+        return "convex; these go around more than once"
+    return None
+
+
+def _turns(vertices: Sequence[Vector2]) -> list[float]:
+    """Return by how much the outline turns to the left at each vertex [rad]."""
+    edges = [after - one for one, after in pairwise((*vertices, vertices[0]))]
+    return [math.atan2(one.cross(after), one.dot(after)) for one, after in pairwise((edges[-1], *edges))]
+
+
+def why_off_centre(vertices: Sequence[Vector2], radius: float) -> str | None:
+    """Return by how much a convex polygon that is rounded by a radius [m] is off its centre, or ``None``."""
+    centre = centre_of_mass(vertices, radius)
+    if centre.magnitude <= _ROUNDING * max(vertex.magnitude for vertex in vertices):
+        return None
+    return (
+        f"about the centre of mass; that of these is at [{centre.x!r}, {centre.y!r}] m: shift them by "
+        f"[{-centre.x!r}, {-centre.y!r}] m, to {plain(centred(vertices, radius))}"
+    )
+
+
+def centred(vertices: Sequence[Vector2 | tuple[float, float]], radius: float = 0.0) -> tuple[Vector2, ...]:
+    """Return the vertices of a convex polygon [m] from its centre of mass.
+
+    Parameters
+    ----------
+    vertices : sequence of vectors or pairs of floats
+        Counter-clockwise, from anywhere [m].
+    radius : float
+        What rounds it [m].
+
+    Examples
+    --------
+    >>> [tuple(vertex) for vertex in centred([(0, 0), (3, 0), (0, 3)])]
+    [(-1.0, -1.0), (2.0, -1.0), (-1.0, 2.0)]
+    """
+    given = [Vector2(*vertex) for vertex in vertices]
+    centre = centre_of_mass(given, radius)
+    return tuple(vertex - centre for vertex in given)
+
+
+def centre_of_mass(vertices: Sequence[Vector2], radius: float = 0.0) -> Vector2:
+    """Return the centre of mass [m] of a convex polygon of uniform density that is rounded by a radius [m].
+
+    It consists of triangles, a strip along each edge, and a sector at each vertex.
+    """
+    first = vertices[0]
+    moved = [vertex - first for vertex in vertices]
+    edges = [(one, after - one) for one, after in pairwise((*moved, moved[0]))]
+    normals = [Vector2(edge.y, -edge.x) * (1.0 / edge.magnitude) for _, edge in edges]
+    area, moment, third = 0.0, Vector2(), radius**3 / 3.0
+    before = normals[-1]
+    for (one, edge), normal in zip(edges, normals, strict=True):
+        triangle, strip = 0.5 * one.cross(edge), radius * edge.magnitude
+        sector = 0.5 * radius * radius * math.atan2(before.cross(normal), before.dot(normal))
+        area += triangle + strip + sector
+        moment += (2.0 * one + edge) * (triangle / 3.0)
+        moment += (one + 0.5 * edge + 0.5 * radius * normal) * strip
+        moment += one * sector + third * Vector2(normal.y - before.y, before.x - normal.x)
+        before = normal
+    return first + moment * (1.0 / area)
+
+
+def regular(count: int, radius: float) -> tuple[Vector2, ...]:
+    """Return the vertices of a regular polygon in a circle of a radius [m]; a side of it is below.
+
+    >>> [round(vertex.y, 3) for vertex in regular(4, 1.0)]
+    [-0.707, 0.707, 0.707, -0.707]
+    """
+    turn = 2.0 * math.pi / count
+    return tuple(Vector2.from_angle((k + 0.5) * turn - 0.5 * math.pi, radius) for k in range(count))
+
+
+def plain(value: Any) -> Any:
+    """Return a value as files have it: points as lists of numbers.
+
+    >>> plain((Vector2(1, 2),)), plain(0.5)
+    ([[1.0, 2.0]], 0.5)
+    """
+    return [plain(part) for part in value] if isinstance(value, Vector2 | tuple) else value
