@@ -18,7 +18,6 @@ from physicslab.prefabs import (
     Planet,
     binary,
     box,
-    bridge,
     chain,
     circle,
     container,
@@ -206,18 +205,6 @@ def test_planets_keep_their_distance_and_the_star_takes_their_momentum() -> None
         assert math.dist(place(world, star), place(world, outer)) == pytest.approx(3.0, rel=0.05)
     with pytest.raises(ValueError, match="c: distance = 0"):
         planets(world, 1.0, [Planet("c", 1.0, 0)])
-
-
-@pytest.mark.parametrize(("count", "slack"), [(1, 1.0), (7, 1.2), (30, 1.05)])
-def test_a_bridge_reaches_from_end_to_end(count: int, slack: float) -> None:
-    world = World()
-    planks = bridge(world, (1, 2), (4, 6), count=count, slack=slack, mass=3.0)
-    world.synchronise()
-    joints = joint_states(world)
-    assert len(planks) == count and len(joints) == count + 1
-    assert max(joint.stretch for joint in joints) < 1e-12
-    assert world.component(planks[0], Shape).width == pytest.approx(slack * 5.0 / count)
-    assert world.component(planks[0], Mass).mass == 3.0
 
 
 def test_a_ragdoll_is_whole_and_bends_within_its_limits() -> None:

@@ -7,8 +7,10 @@ import pytest
 
 from physicslab import World, load_scene
 from physicslab.components import Mass, Shape, Transform, Velocity
-from physicslab.diagnostics.energy import Audit, measure_energy, measure_momentum
+from physicslab.diagnostics.energy import Audit, measure_account, measure_energy, measure_momentum
+from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.text import printable
+from physicslab.ecs.vector import Vector2
 from physicslab.scenes import SCENES
 
 
@@ -170,3 +172,44 @@ def test_the_gas_keeps_its_energy() -> None:
     world.run(seconds=1.0)
     assert world.collisions > 1000
     assert measure_energy(world).kinetic == pytest.approx(before, rel=1e-9)
+
+
+def test_two_double_pendulums_part_though_they_begin_alike() -> None:
+    world = load_scene("double_pendulum")
+
+    def apart() -> float:
+        left, right = (
+            world.component(world.entity(f"{side} lower"), Transform) for side in ("left", "right")
+        )
+        return (right.position - left.position - Vector2(4.4, 0.0)).magnitude
+
+    world.run(seconds=1.0)
+    assert apart() < 0.02
+    world.run(seconds=9.0)
+    assert apart() > 0.5
+    assert abs(measure_account(world).energy["numerical"]) < 1e-9
+
+
+def test_the_bridge_carries_what_falls_on_it() -> None:
+    world = load_scene("bridge")
+    world.run(seconds=4.0)
+    heights = [world.component(world.entity(f"{mass} kg"), Transform).position.y for mass in (5, 20, 60)]
+    assert min(heights) > -1.5
+    world.synchronise()
+    assert max(joint.stretch for joint in joint_states(world)) < 0.002
+
+
+def test_the_piston_keeps_to_the_kinematics_of_its_crank() -> None:
+    world = load_scene("piston")
+    world.run(seconds=1.3)
+    turned = math.radians(60.0) + 1.3 * math.pi
+    way = 0.5 * math.cos(turned) + math.sqrt(1.4**2 - (0.5 * math.sin(turned)) ** 2)
+    assert x(world, "piston") == pytest.approx(way, abs=1e-10)
+
+
+def test_weights_on_pulleys_fall_as_slowly_as_their_scene_says() -> None:
+    world = load_scene("pulleys")
+    world.run(seconds=1.0)
+    for name, start, acceleration in (("right 1", 1.4, 0.2 / 2.2), ("right 2", 0.8, 0.4 / 6.4)):
+        fallen = start - world.component(world.entity(name), Transform).position.y
+        assert fallen == pytest.approx(0.5 * acceleration * 9.81, abs=1e-11)

@@ -8,6 +8,7 @@ from physicslab.components.graph import Graph, GraphLine
 from physicslab.components.held import Held
 from physicslab.components.mass import Mass
 from physicslab.components.material import Material
+from physicslab.components.medium import Medium
 from physicslab.components.meter import Meter
 from physicslab.components.name import Name
 from physicslab.components.note import Note
@@ -29,7 +30,7 @@ from physicslab.components.velocity import Velocity
 from physicslab.components.weld import Weld
 
 __all__ = [
-    "Charge", "Drag", "Gate", "Gear", "Graph", "GraphLine", "Held", "Mass", "Material", "Meter", "Name",
-    "Note", "Pin", "Protractor", "Pulley", "Rod", "Rope", "Ruler", "Shape", "Slider", "Slot", "Spring",
-    "Strobe", "Thrust", "Trail", "Transform", "Velocity", "Weld",
+    "Charge", "Drag", "Gate", "Gear", "Graph", "GraphLine", "Held", "Mass", "Material", "Medium", "Meter",
+    "Name", "Note", "Pin", "Protractor", "Pulley", "Rod", "Rope", "Ruler", "Shape", "Slider", "Slot",
+    "Spring", "Strobe", "Thrust", "Trail", "Transform", "Velocity", "Weld",
 ]  # fmt: skip

@@ -238,6 +238,8 @@ class Sandbox:
             pace.done(made, dt)
             if made and (slow := self._watch.note(made, self._clock() - began)):
                 self.window.notify(slow[:1].upper() + slow[1:], 10.0, failed=True)
+            if broken := self._watch.note_breaks():
+                self.window.notify(broken, 6.0)
         microscope.follow(pace, self.world.time)
 
     def _step(self, dt: float) -> None:

@@ -4,11 +4,10 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2, rotated
-from physicslab.state.joint_rows import Measure, Role, measured
+from physicslab.state.joint_figures import figures_of
+from physicslab.state.joint_rows import Measure
 from physicslab.state.joints import Joint
 from physicslab.state.state import State
 
@@ -37,6 +36,8 @@ class JointState:
         How far lengths and places are from what it holds [m], and angles [rad]: the error that is left.
     largest_stretch : float
         The largest that was seen in substeps with soft contacts, and now [m].
+    size : float
+        The length that its error is compared with [m]: that of its arms, and of a rod or a rope.
     """
 
     entity: int
@@ -50,6 +51,7 @@ class JointState:
     stretch: float
     twist: float
     largest_stretch: float
+    size: float
 
     @property
     def is_fixed(self) -> bool:
@@ -70,32 +72,15 @@ def joint_states(state: State) -> list[JointState]:
         angle = float(transform["angle"][b or a])
         ends = int(state.entity_index.entities[a]), int(state.entity_index.entities[b])
         kind, at = joint.kind, Vector2(*place.tolist())
-        force, torque, stretch, twist, largest = _figures(state, joint)
-        found.append(JointState(joint.entity, kind, at, angle, *ends, force, torque, stretch, twist, largest))
+        figures, size = figures_of(state, joint), _size(state, joint)
+        found.append(JointState(joint.entity, kind, at, angle, *ends, *figures, size))  # type: ignore[arg-type]
     return found
 
 
-def _figures(state: State, joint: Joint) -> tuple[Vector2, float, float, float, float]:
-    """Return the force on B, the torque about its anchor, stretch, twist and the largest stretch."""
-    joints, force, torque, largest = state.joints, np.zeros(2), 0.0, 0.0
-    squares = {True: 0.0, False: 0.0}
-    for row in range(joint.first, joint.first + joint.size):
-        error = -float(joints.offset[row])
-        terms = [n for n in (row, int(joints.second[row])) if n >= 0]
-        for n in terms:
-            one, scale = measured(joints.term(n), state.entity_index), float(joints.scale[n])
-            error += scale * one.value
-            pull = scale * float(joints.force[row])
-            ends = (joints.a[n], (one.ax, one.ay), -1.0), (joints.b[n], (one.bx, one.by), 1.0)
-            for end, gradient, sign in ends:
-                if end == joint.b:
-                    force += pull * np.array(gradient)
-                    torque += sign * pull if joints.measure[n] == Measure.ANGLE else 0.0
-        if joints.role[row] == Role.LIMIT:
-            error = min(error, 0.0)
-        if joints.measure[row] != Measure.ANGLE:
-            largest = max(largest, float(joints.largest[row]))
-        if joints.role[row] != Role.MOTOR:
-            squares[bool(joints.measure[row] == Measure.ANGLE)] += error * error
-    stretch, twist = math.sqrt(squares[False]), math.sqrt(squares[True])
-    return Vector2(*force.tolist()), torque, stretch, twist, max(largest, stretch)
+def _size(state: State, joint: Joint) -> float:
+    """Return the length that the error of a joint is compared with [m]."""
+    joints, n = state.joints, joint.first
+    arms = [joints.anchor_a[n] if joint.a else (0.0, 0.0), joints.anchor_b[n] if joint.b else (0.0, 0.0)]
+    length = abs(float(joints.offset[n])) if joints.measure[n] == Measure.DISTANCE else 0.0
+    reach = [float(state.bodies.shapes.reach[body]) for body in (joint.a, joint.b) if body]
+    return max([length, *(math.hypot(x, y) for x, y in arms)]) or max(reach, default=0.0) or 1.0

@@ -16,6 +16,7 @@ from physicslab.ecs.text import printable, unique_name
 from physicslab.ecs.vector import Vector2
 from physicslab.stepping.partition import MAX_BODIES
 from physicslab.stepping.stepper import Advancer
+from physicslab.systems.breaking import breaks_of
 from physicslab.world import World
 
 _MOMENTA: dict[str, float | Vector2] = dict.fromkeys(MOMENTUM_CAUSES, math.nan)
@@ -197,9 +198,9 @@ def _contact_forces(world: World) -> list[dict[str, Any]]:
 
 
 def _joints(world: World) -> dict[str, Any]:
-    """Return of each joint force [N] and torque [N m] on B, and the error left [m, rad]; or nothing."""
-    joints = joint_states(world)
-    if not joints:
+    """Return of each joint force [N] and torque [N m] on B, and the error left [m, rad]; and which broke."""
+    joints, broken = joint_states(world), breaks_of(world.schedule.systems, world.time)
+    if not joints and not broken:
         return {}
     found = {}
     for joint in joints:
@@ -212,7 +213,8 @@ def _joints(world: World) -> dict[str, Any]:
             "largest_stretch": joint.largest_stretch,
             "twist": joint.twist,
         }
-    return {"joints": found}
+    gone = [one._asdict() for one in broken]
+    return {"joints": found} | ({"broken": gone} if gone else {})
 
 
 def _energy_words(report: Mapping[str, Any]) -> list[str]:

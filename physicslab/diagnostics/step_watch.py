@@ -4,6 +4,7 @@ import numpy as np
 
 from physicslab.contacts.report import count_near_pairs
 from physicslab.diagnostics.step_warnings import ModelWarning
+from physicslab.systems.breaking import breaks_of
 from physicslab.world import World
 
 _SLOW_S = 1.0
@@ -36,6 +37,7 @@ class StepWatch:
         self._collisions, self._evaluations = int(world.collisions), world.force_evaluations
         self._logged = int(world.contacts.logged)
         self._worst = 0.0
+        self._broken = len(breaks_of(world.schedule.systems, world.time))
         self._slow: ModelWarning | None = None
         self._storm: ModelWarning | None = None
         self._most_impacts = 0
@@ -65,6 +67,12 @@ class StepWatch:
         self._slow = ModelWarning(None, f"a step takes long: {why}", each, "s", _SLOW_S, setting)
         line = f"slow: the step to t = {world.time:.9g} s took {each:.3g} s: {why} ({figures})"
         return f"{line}; {setting} would help" if first else ""
+
+    def note_breaks(self) -> str:
+        """Return which joints broke since the last call; empty if none did."""
+        broken = breaks_of(self._world.schedule.systems, self._world.time)
+        new, self._broken = broken[self._broken :], len(broken)
+        return "; ".join(map(str, new))
 
     def note_impacts(self) -> str:
         """Take note of the impacts that were located in time since the last call.

@@ -18,6 +18,7 @@ from physicslab.diagnostics.contact_warnings import (
     contact_warnings,
     rigid_setting,
 )
+from physicslab.diagnostics.joint_warnings import joint_warnings
 from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, ModelWarning, WorstWarnings, step_warnings
 from physicslab.state.masses import quiet
 from physicslab.state.shapes import lengths_of
@@ -225,6 +226,6 @@ def _more_substeps(world: World, factor: float) -> str:
 
 RULES: tuple[Callable[[World], Iterator[ModelWarning]], ...] = (
     _refusals, _division, step_warnings, _distance, _finished_otherwise, _laws,
-    _contact_model, _soft_contacts,
+    _contact_model, _soft_contacts, joint_warnings,
 )  # fmt: skip
 """All of them, in the order in which they are shown. Another is added here, and nowhere else."""

@@ -13,6 +13,7 @@ from physicslab.components import (
     Held,
     Mass,
     Material,
+    Medium,
     Pin,
     Shape,
     Slot,
@@ -35,7 +36,7 @@ UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""
 
 type _Expected = tuple[tuple[str, ...], tuple[str, ...], str]
-_NEED_TRANSFORM = (Velocity, Mass, Shape, Material, Trail)
+_NEED_TRANSFORM = (Velocity, Mass, Shape, Material, Medium, Trail)
 _PLACED = "the id of an entity with a Transform"
 _MAY_REST = (Velocity, Mass, Shape)
 
@@ -207,6 +208,9 @@ def _check_together(components: Sequence[Component], entity: Mapping[str, Any], 
                 f"{where}: {name} = {checks.shown(entity[name])}: must have a Transform beside it"
             )
     of: dict[type[Any], Any] = {type(component): component for component in components}
+    if Medium in of and (Shape not in of or Velocity in of):
+        allowed = "on an entity with a Shape and without a Velocity: a medium stays where it is"
+        raise checks.refusal(f"{where}: Medium", entity[Medium.__name__], allowed)
     if Mass in of and Shape in of:
         _check_inertia(of[Mass], of[Shape], where)
     fixed = Mass in of and of[Mass].fixed_rotation

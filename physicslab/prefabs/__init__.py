@@ -5,7 +5,6 @@ take a ``seed``, and give the same things for the same seed.
 """
 
 from physicslab.prefabs.body import BodyOptions, body, box, capsule, circle, polygon
-from physicslab.prefabs.bridge import bridge
 from physicslab.prefabs.chain import chain, pendulum
 from physicslab.prefabs.container import container
 from physicslab.prefabs.gas import gas
@@ -14,6 +13,6 @@ from physicslab.prefabs.planets import Planet, binary, planets
 from physicslab.prefabs.ragdoll import ragdoll
 
 __all__ = [
-    "BodyOptions", "Planet", "binary", "body", "box", "bridge", "capsule", "chain", "circle", "container",
+    "BodyOptions", "Planet", "binary", "body", "box", "capsule", "chain", "circle", "container",
     "gas", "pendulum", "pile", "planets", "polygon", "pyramid", "ragdoll", "stack",
 ]  # fmt: skip

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Drag, Held, Mass, Material, Shape, Spring, Transform, Velocity
+from physicslab.components import Drag, Held, Mass, Material, Medium, Shape, Spring, Transform, Velocity
 from physicslab.components.shape import kind_of
 from physicslab.ecs.component import InvalidValue
 from physicslab.kernels import direct_entry, motion, ranges
@@ -55,7 +55,8 @@ def derive_masses(state: State) -> None:
             _refuse_number(state, outside)
         columns = _columns(state)
         ratio, infinite, sizeless, bodies.smallest = motion.derive_masses(*columns)
-        bodies.columns = state.entity_index.revision, columns
+        if not len(state.batch(Medium)):  # else some are copies, which do not follow edits
+            bodies.columns = state.entity_index.revision, columns
     if sizeless >= 0:
         _refuse_size(state, sizeless)
     if infinite >= 0:
@@ -71,11 +72,18 @@ def _columns(state: State) -> tuple[Any, ...]:
     return (
         velocity.present, mass.present, state.table(Held).present,
         mass["mass"], mass["inertia"], mass["inertia_given"], mass["fixed_rotation"],
-        shape["kind"], shape["vertices"], sizes_in(shape), REGISTER.kinds, REGISTER.extents,
+        *_solid(state), sizes_in(shape), REGISTER.kinds, REGISTER.extents,
         bodies.plain_shapes, velocity["angular"],
         bodies.inverse_mass, bodies.inverse_inertia,
         bodies.awake_inverse_mass, bodies.awake_inverse_inertia, state.sleep.asleep,
     )  # fmt: skip
+
+
+def _solid(state: State) -> tuple[NDArray[np.int64], ...]:
+    """Return kind and vertices of each row (rows,); 0 where a medium fills it: nothing touches it."""
+    shape, filled = state.table(Shape), state.table(Medium).present
+    columns = shape["kind"], shape["vertices"]
+    return tuple(np.where(filled, 0, column) for column in columns) if filled.any() else columns
 
 
 def _checked(state: State) -> tuple[NDArray[Any], ...]:

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Held, Material, Shape, Transform, Velocity
 from physicslab.components.shape import KINDS
+from physicslab.state.solid import solid_rows
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
@@ -84,7 +85,7 @@ def turning_rows(state: State) -> NDArray[np.int64]:
 
 def count_pairs(state: State) -> int:
     """Return how many pairs may meet, without making a list of what may be thousands of millions."""
-    shaped = state.batch(Shape, Transform).rows
+    shaped = solid_rows(state)
     count, movable = len(shaped), int(np.count_nonzero(state.bodies.inverse_mass[shaped] > 0.0))
     walls = 0 if state.physics.bounds is None else 4
     return movable * (movable - 1) // 2 + movable * (count - movable) + movable * walls
@@ -92,7 +93,7 @@ def count_pairs(state: State) -> int:
 
 def pairs_that_may_meet(state: State) -> NDArray[np.int64]:
     """Return every pair of rows (a, b, wall) of which one can be moved, sorted, bounds as walls of row 0."""
-    shaped = state.batch(Shape, Transform).rows
+    shaped = solid_rows(state)
     inverse_mass = state.bodies.inverse_mass[shaped]
     i, j = np.triu_indices(len(shaped), 1)
     meets = (inverse_mass[i] > 0.0) | (inverse_mass[j] > 0.0)

@@ -344,18 +344,20 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
 def tolerance_for(state: State, forces: Sequence[ForceSystem]) -> float:
     """Return the tolerance of a method that chooses its steps.
 
-    It is the configured one; but ``auto`` takes a larger one than the default for joints, and for stiff
-    springs in damped motion. It depends on no position or velocity: a loaded scene has the same.
+    It is the configured one; but ``auto`` takes a larger one than the default for joints, for forces that
+    are rounded more than others, and for stiff springs in damped motion. It depends on no position or
+    velocity: a loaded scene has the same.
     """
     simulation = state.simulation
     rates = [force.strongest_rate(state) for force in forces if isinstance(force, SpringSystem)]
     stiff = max(rates, default=0.0) * simulation.dt > _STIFF and _sees_velocity(state, forces)
     chosen = simulation.integrator == "auto" and simulation.tolerance == SimulationConfig().tolerance
     planets = any(force.attractors > 1 for force in forces)
+    finest = max((force.rounding for force in forces), default=0.0) if chosen else 0.0
     if not chosen or planets or not (stiff or len(state.joints)):
-        return simulation.tolerance
+        return max(simulation.tolerance, finest)
     if not stiff:
-        return _OF_JOINED
+        return max(_OF_JOINED, finest)
     return _OF_OVERDAMPED if _is_overdamped(state) else _OF_STIFF
 
 

@@ -166,8 +166,7 @@ class Rigid:
         accounts = np.array([ode.slots.get(cause, -1) for cause in (FRICTION, CONTACT, HAND, JOINTS, MOTORS)])
         return (
             len(size), ode.inverse_mass, ode.damping, ode.damped_calls, self._shapes(state), walls,
-            self._pairs, np.concatenate((coefficients, self._rows.coefficients)), accounts, *ode.joints,
-            self._rows.numbers, self._rows.ends,
+            self._pairs, self._rows.behind(coefficients), accounts, *ode.joints,
         )  # fmt: skip
 
     def _shapes(self, state: State) -> ShapesTuple:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.kernels.rigid import joint_points as packing
-from physicslab.kernels.rigid.features import FIRST_ROW
+from physicslab.kernels.rigid.features import JOINT, MOTOR, WALL
 from physicslab.state.joint_rows import Measure, Role
 from physicslab.state.state import State
 
@@ -17,26 +17,24 @@ class RigidRows:
     rows : int64 array (n,)
         Which of all rows of joints they are.
     pairs : int64 array (n, 3)
-        The bodies that each acts on, and its number from that on which marks a row.
-    coefficients : float64 array (n, 3)
-        The largest force of a motor [N], a restitution of 0, and a size [m]: of what its length or lever is.
-    numbers, ends : float64 and int64 arrays (n, k)
+        The bodies that each acts on, and whether it is a limit or a motor.
+    coefficients : float64 array (n, k)
         As :mod:`physicslab.kernels.rigid.joint_points` has them.
     """
 
     def __init__(self, state: State) -> None:
         joints, bodies = state.joints, state.bodies
         joints.refresh(state.entity_index)
-        # A motor without a force, and a row of what nothing moves, do nothing.
-        moves = (bodies.inverse_mass > 0.0) | (bodies.inverse_inertia > 0.0)
+        # A motor without a force, and a row of what nothing moves or turns, do nothing.
+        turns = bodies.inverse_inertia > 0.0
+        moves = (bodies.inverse_mass > 0.0) | turns
         acting = np.flatnonzero(~joints.solved & (joints.strongest > 0.0)).tolist()
-        rows = [row for row in acting if moves[self._bodies(state, row)].any()]
+        given = [turns if joints.measure[row] == Measure.ANGLE else moves for row in acting]
+        rows = [row for row, can in zip(acting, given, strict=True) if can[self._bodies(state, row)].any()]
         self.rows: NDArray[np.int64] = np.array(rows, np.int64)
         n = len(self.rows)
         self.pairs = np.zeros((n, 3), np.int64)
-        self.coefficients = np.zeros((n, 3))
-        self.numbers = np.zeros((n, packing.NUMBERS))
-        self.ends = np.zeros((n, packing.WHOLE), np.int64)
+        self.coefficients = np.zeros((n, packing.NUMBERS))
         for number, row in enumerate(self.rows.tolist()):
             self._pack(state, number, row)
 
@@ -68,31 +66,38 @@ class RigidRows:
         size = size if size > 0.0 else 1.0
         lever, motor = size if turns else 1.0, joints.role[row] == Role.MOTOR
         one, other = bodies if len(bodies) > 1 else (0, *bodies)
-        self.pairs[number] = one, other, FIRST_ROW + number
-        self.coefficients[number] = joints.strongest[row] / lever if motor else 0.0, 0.0, size
-        numbers, ends = self.numbers[number], self.ends[number]
-        numbers[packing.LEVER] = lever
-        numbers[packing.OFFSET], numbers[packing.TARGET] = joints.offset[row], joints.target[row]
-        ends[packing.ROLE], ends[packing.TERMS] = joints.role[row], len(terms)
+        self.pairs[number] = one, other, (MOTOR if motor else JOINT) - WALL
+        own = self.coefficients[number]
+        own[:3] = joints.strongest[row] / lever if motor else 0.0, 0.0, size
+        own[packing.LEVER], own[packing.TERMS] = lever, len(terms)
+        own[packing.OFFSET], own[packing.TARGET] = joints.offset[row], joints.target[row]
         for k, term in enumerate(terms):
-            own = numbers[packing.FIRST_TERM + packing.TERM * k :]
-            own[0], own[1:3], own[3:5] = joints.scale[term], joints.anchor_a[term], joints.anchor_b[term]
-            own[5:7] = joints.axis[term]
-            first = packing.FIRST_ENDS + packing.TERM_ENDS * k
-            ends[first : first + 3] = joints.measure[term], joints.a[term], joints.b[term]
+            one = own[packing.FIRST_TERM + packing.TERM * k :][: packing.TERM]
+            one[packing.MEASURE], one[packing.SCALE] = joints.measure[term], joints.scale[term]
+            one[packing.ENDS : packing.SCALE] = joints.a[term], joints.b[term]
+            one[packing.ARM : packing.AXIS] = *joints.anchor_a[term], *joints.anchor_b[term]
+            one[packing.AXIS :] = joints.axis[term]
 
     def __len__(self) -> int:
         return len(self.rows)
 
+    def behind(self, contacts: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the coefficients of all pairs, of ``contacts`` (n, 3) and then of these."""
+        if not len(self.rows):
+            return contacts
+        found = np.zeros((len(contacts) + len(self.rows), packing.NUMBERS))
+        found[: len(contacts), :3], found[len(contacts) :] = contacts, self.coefficients
+        return found
+
     @property
     def driven(self) -> bool:
         """Whether any is a motor."""
-        return bool((self.ends[:, packing.ROLE] == Role.MOTOR).any())
+        return bool((self.pairs[:, 2] == MOTOR - WALL).any())
 
     def force_of(self, number: int, normal: float, tangent: float) -> tuple[int, float]:
         """Return the row of a joint, and its force [N or N m] from those of its point [N]."""
-        force = tangent if self.ends[number, packing.ROLE] == Role.MOTOR else normal
-        return int(self.rows[number]), float(self.numbers[number, packing.LEVER]) * force
+        force = tangent if self.pairs[number, 2] == MOTOR - WALL else normal
+        return int(self.rows[number]), float(self.coefficients[number, packing.LEVER]) * force
 
 
 def why_not_points(state: State) -> str | None:

@@ -90,7 +90,8 @@ class SplitForces:
         rows = sub_integrated_rows(state, forces)
         self._ode = OdeSystem(state, forces, rows, kicked=method.kicks)
         # Contacts are accurate to far fewer digits than free motion: more would only take time.
-        self._ode.tolerance = max(state.simulation.tolerance, _TOLERANCE)
+        rounded = 1e3 * max((force.rounding for force in forces), default=0.0)
+        self._ode.tolerance = max(state.simulation.tolerance, _TOLERANCE, rounded)
         state.bodies.sub_integrated[:] = rows & state.table(Velocity).present
         self._find_predictable(state)
         self.springs: SpringFlow | None = None

@@ -11,6 +11,7 @@ from physicslab.contacts.near_pairs import partition
 from physicslab.kernels.broad import grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes, still_holds
 from physicslab.kernels.wide import slots
+from physicslab.state.solid import solid_rows
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
 
@@ -24,7 +25,7 @@ _SPARSE = 2
 
 def nothing_to_touch(state: State) -> str | None:
     """Return why no two things in this world can ever meet, or ``None`` if they can."""
-    shapes, moving = len(state.batch(Shape, Transform)), len(state.batch(Shape, Transform, Velocity))
+    shapes, moving = len(solid_rows(state)), len(state.batch(Shape, Transform, Velocity))
     if not shapes:
         return "no Shape in the scene"
     if not moving:
@@ -40,7 +41,7 @@ def nothing_to_touch(state: State) -> str | None:
 
 def _may_any_touch(state: State) -> bool:
     """Whether any two bodies may meet that no joint keeps from touching each other."""
-    shaped = state.batch(Shape, Transform).rows
+    shaped = solid_rows(state)
     i, j = np.triu_indices(len(shaped), 1)
     a, b = shaped[i], shaped[j]
     moves = state.table(Velocity).present

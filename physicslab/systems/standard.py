@@ -1,5 +1,6 @@
 """The physics systems, in the order in which they run within a stage. A new system is added here."""
 
+from physicslab.systems.breaking import BreakSystem
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.charged import ElectricFieldSystem, MagneticFieldSystem
 from physicslab.systems.contact import ContactSystem
@@ -9,6 +10,7 @@ from physicslab.systems.gate import GateSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.joint import JointSystem
+from physicslab.systems.medium import MediumSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.spring import SpringSystem
@@ -25,6 +27,7 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     CoulombSystem,
     ElectricFieldSystem,
     MagneticFieldSystem,
+    MediumSystem,
     IntegrateSystem,
     JointSystem,
     BroadPhaseSystem,
@@ -34,6 +37,7 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     TrailSystem,
     StrobeSystem,
     GateSystem,
+    BreakSystem,
 )
 
 

@@ -182,6 +182,8 @@ class ForceSystem(System):
     (:mod:`physicslab.kernels.accounts`)."""
     potential: ClassVar[str | None] = None
     """The name under which the energy is reported; ``None`` for a force that stores none."""
+    rounding: ClassVar[float] = 0.0
+    """The finest tolerance of steps that ``auto`` takes: below it, the force's own rounding shows."""
     turns: ClassVar[bool] = False
     """Whether a compiled force adds torques, at ``layout.turn``; one in Python may add them in any case."""
 

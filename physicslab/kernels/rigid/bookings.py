@@ -9,6 +9,7 @@ from physicslab.kernels.rigid.features import (
     FEATURE,
     JOINED,
     JOINT,
+    MOTOR,
     MOTORS,
     NORMAL,
     ONE,
@@ -18,7 +19,7 @@ from physicslab.kernels.rigid.features import (
     VT,
     Scene,
 )
-from physicslab.kernels.rigid.joint_points import is_motor, motor_rate
+from physicslab.kernels.rigid.joint_points import motor_rate
 
 __all__ = ["book_contacts", "book_row", "book_speeds"]
 
@@ -45,7 +46,7 @@ def book_contacts(
         account = contacts
         if points[i, FEATURE] >= JOINT:
             account = scene.accounts[JOINED]
-            if is_motor(scene, points, i):
+            if points[i, FEATURE] == MOTOR:
                 account = scene.accounts[MOTORS]
                 given[account + ENERGY] += across * motor_rate(scene, points, measures, i)
         elif points[i, STATUS] != STICKS:

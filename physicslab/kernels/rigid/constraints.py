@@ -13,8 +13,10 @@ from physicslab.kernels.rigid.features import (
     FEATURE,
     GAP,
     JOINT,
+    MOTOR,
     NORMAL,
     ONE,
+    PAIR,
     TANGENT,
     VN,
     VT,
@@ -22,7 +24,7 @@ from physicslab.kernels.rigid.features import (
     rate_along,
 )
 from physicslab.kernels.rigid.joined import book_answer, lessen, measure_joints, pass_on
-from physicslab.kernels.rigid.joint_points import OWN, is_motor, measure
+from physicslab.kernels.rigid.joint_points import OWN, measure
 from physicslab.kernels.rigid.least_norm import (
     REFINEMENTS,
     begin_equations,
@@ -69,11 +71,11 @@ def _coupling(scene: Scene, equations: Equations, i: int, j: int) -> tuple[float
     return nn, nt, tn, tt
 
 
-@inlined
+@fused
 def _own_response(scene: Scene, equations: Equations, i: int, nn: float, tt: float) -> tuple[float, float]:
     """Return what unit forces cause at the row of a joint, and what stands for that where it has none."""
-    if is_motor(scene, equations.points, i):
-        nn = scene.row_numbers[equations.points[i, FEATURE] - JOINT, OWN]
+    if equations.points[i, FEATURE] == MOTOR:
+        nn = scene.coefficients[equations.points[i, PAIR], OWN]
     return nn if nn > 0.0 else 1.0, tt if tt > 0.0 else 1.0
 
 
@@ -153,7 +155,7 @@ def find_free_rates(
     """Find how the speeds of points change at accelerations, of which ``share`` of the forces are part."""
     for i in range(count):
         opening, sliding = rates_without_forces(scene, equations, i, acceleration)
-        if is_motor(scene, equations.points, i):  # nothing moves by what presses on it
+        if equations.points[i, FEATURE] == MOTOR:  # nothing moves by what presses on it
             opening += share * equations.a[2 * i, 2 * i] * equations.vectors[UNKNOWN, 2 * i]
         equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = opening, sliding
 

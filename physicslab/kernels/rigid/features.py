@@ -35,7 +35,7 @@ __all__ = [
     "JOINED",
     "JOINT",
     "MARGIN",
-    "MEASURES",
+    "MEASURES", "MOTOR",
     "MOTORS",
     "MU",
     "NORMAL",
@@ -66,11 +66,11 @@ __all__ = [
 
 PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)
 """The columns of a point: its pair; bodies and features; what it may do, and what it does."""
-CORNER, WALL, JOINT = MOST_VERTICES, 2 * MOST_VERTICES, 2 * MOST_VERTICES + 4
-"""Where features of vertices, walls and rows of joints begin; those before are faces, from the vertex of that
-number on."""
+CORNER, WALL, JOINT, MOTOR = MOST_VERTICES, 2 * MOST_VERTICES, 2 * MOST_VERTICES + 4, 2 * MOST_VERTICES + 5
+"""Where features of vertices and walls begin; those before are faces, from the vertex of that number on. Then
+what limits of joints are, and motors."""
 FIRST_ROW = JOINT - WALL
-"""From which number on the third column of a pair is a row of a joint, and no wall."""
+"""From which number on the third column of a pair says that it is a row of a joint, and no wall."""
 NORMAL, TANGENT, NX, NY = 0, 6, 3, 4
 """The columns of measures of a point that hold the gradients of its gap and of its way along the surface, by
 x, y and angle of ONE, then of OTHER. By OTHER's x and y that of the gap is the normal."""
@@ -92,7 +92,7 @@ class Scene(NamedTuple):
     The number of rows; inverse masses (3 rows,), damping, forces; shapes, walls of the bounds (4,) [m];
     pairs (n, 3), and of each the friction, restitution and smaller size [m] (n, 3); where accounts are (3,);
     the rows that joints keep in any case, their numbers and whole numbers
-    (:mod:`physicslab.kernels.joints.rows`); those that are points (n, NUMBERS) and (n, WHOLE)
+    (:mod:`physicslab.kernels.joints.rows`). Pairs that are rows have more coefficients
     (:mod:`physicslab.kernels.rigid.joint_points`).
     """
 
@@ -107,13 +107,9 @@ class Scene(NamedTuple):
     accounts: Rows
     joint_numbers: Numbers
     joints: Rows
-    row_numbers: Vectors
-    row_ends: Pairs
 
 
-SceneTuple = tuple[
-    int, Numbers, Numbers, Calls, ShapesTuple, Numbers, Pairs, Vectors, Rows, Numbers, Rows, Vectors, Pairs
-]  # fmt: skip
+SceneTuple = tuple[int, Numbers, Numbers, Calls, ShapesTuple, Numbers, Pairs, Vectors, Rows, Numbers, Rows]
 
 
 @fused
@@ -121,7 +117,7 @@ def named_scene(plain: SceneTuple) -> Scene:
     """Give names to a tuple."""
     return Scene(
         plain[0], plain[1], plain[2], plain[3], named_shapes(plain[4]), plain[5], plain[6], plain[7],
-        plain[8], plain[9], plain[10], plain[11], plain[12],
+        plain[8], plain[9], plain[10],
     )  # fmt: skip
 
 

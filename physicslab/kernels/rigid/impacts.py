@@ -30,10 +30,12 @@ from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complement
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
+    FEATURE,
     FIRST_ROW,
     GAP,
     GIVEN,
     MEASURES,
+    MOTOR,
     MU,
     NX,
     NY,
@@ -49,7 +51,6 @@ from physicslab.kernels.rigid.features import (
     Scene,
 )
 from physicslab.kernels.rigid.joined import book_impulses
-from physicslab.kernels.rigid.joint_points import is_motor
 from physicslab.kernels.solver.impact_log import (
     ImpactPoints,
     Pair,
@@ -97,7 +98,7 @@ def _closing_speed(equations: Equations, i: int, rate: float) -> float:
 
 @inlined
 def _gather(
-    scene: Scene, equations: Equations, count: int, impact: Equations, rest: float, rate: float, last: bool
+    equations: Equations, count: int, impact: Equations, rest: float, rate: float, last: bool
 ) -> tuple[int, bool]:
     """Take the points that approach, and inelastic ones that rest; a motor with a cap has no impulse.
 
@@ -106,7 +107,7 @@ def _gather(
     n, approaching = 0, False
     for i in range(count):
         e, speed = equations.measures[i, RESTITUTION], equations.measures[i, VN]
-        if is_motor(scene, equations.points, i):
+        if equations.points[i, FEATURE] == MOTOR:
             continue
         bounces = -e * speed > rest and not last
         # One that bounces in a short step does so before half of the next would take it below the surface.
@@ -326,7 +327,7 @@ def resolve_simultaneous_impacts(
     most = _SHORT_ROUNDS if rate > 0.0 else _MAX_ROUNDS
     for turn in range(most + 2):
         measure_all(scene, equations, count, q, v)
-        n, approaching = _gather(scene, equations, count, impact, rest, rate, turn >= most)
+        n, approaching = _gather(equations, count, impact, rest, rate, turn >= most)
         if not approaching:
             return impacts, True, energetic, lowered, last, turn
         assemble(scene, impact, n)

@@ -28,7 +28,9 @@ from physicslab.kernels.rigid.equations import (
     named_equations,
 )
 from physicslab.kernels.rigid.features import (
+    FEATURE,
     GIVEN,
+    MOTOR,
     MU,
     PAIR,
     STATUS,
@@ -42,7 +44,6 @@ from physicslab.kernels.rigid.features import (
 from physicslab.kernels.rigid.impacts import approaches, resolve_simultaneous_impacts
 from physicslab.kernels.rigid.jammed import stop_sliding
 from physicslab.kernels.rigid.joined import book_answer
-from physicslab.kernels.rigid.joint_points import is_motor
 from physicslab.kernels.rigid.passing import longest_piece, share_of_ways
 from physicslab.kernels.rigid.piece_end import (
     ALLOWED,
@@ -103,7 +104,7 @@ _SHORT = 0.1
 
 @inlined
 def _note_changes(
-    kind: int, index: int, scene: Scene, equations: Equations, count: int, changed: Points, rest: float
+    kind: int, index: int, equations: Equations, count: int, changed: Points, rest: float
 ) -> None:
     """Note what points do from now on, where the laws alone would leave that to rounding.
 
@@ -113,7 +114,7 @@ def _note_changes(
     n, forces = 0, equations.vectors
     limit = _SAME_MOMENT * abs(forces[UNKNOWN, 2 * index]) if kind <= HOLDS else 0.0
     for i in range(count if kind <= SLIDES else 0):
-        if kind == SLIDES and not (i == index and is_motor(scene, equations.points, i)):
+        if kind == SLIDES and not (i == index and equations.points[i, FEATURE] == MOTOR):
             continue
         pressing, rubbing = forces[UNKNOWN, 2 * i], forces[UNKNOWN, 2 * i + 1]
         left = equations.measures[i, MU] * pressing - abs(rubbing)
@@ -271,7 +272,7 @@ def advance_piece(
         if passed >= 0.0:
             break
         short = False
-    _note_changes(kind, index, of, points, count if kind >= 0 else 0, changed, rest)
+    _note_changes(kind, index, points, count if kind >= 0 else 0, changed, rest)
     for i in range(len(q)):
         q[i], v[i] = at.q[i], at.v[i]
     return passed, evaluations, kind >= 0

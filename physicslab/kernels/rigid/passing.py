@@ -4,8 +4,8 @@ import math
 
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.ode.dop853_tableau import LAST
-from physicslab.kernels.rigid.features import FIRST_ROW, Scene
-from physicslab.kernels.rigid.joint_points import fastest_change
+from physicslab.kernels.rigid.features import FIRST_ROW, JOINT, WALL, Scene
+from physicslab.kernels.rigid.joint_points import fastest_change, gap_of_row
 from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages
 from physicslab.kernels.rigid.touching import far_apart, length_of
 
@@ -36,16 +36,39 @@ def _turning_reach(scene: Scene, row: int) -> float:
 
 
 @inlined
-def _relative(scene: Scene, p: int, q: Numbers, rates: Numbers) -> float:
-    """Return the largest rate at which points of a pair come together, of speeds or accelerations."""
-    rows, a, b, wall = scene.rows, scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
-    if wall >= FIRST_ROW:
-        change: float = fastest_change(scene, wall - FIRST_ROW, q, rates)
-        return change
+def _relative(scene: Scene, a: int, b: int, rates: Numbers) -> float:
+    """Return the largest rate at which points of two bodies come together, of speeds or accelerations."""
+    rows = scene.rows
     rate: float = length_of(rates[2 * b] - rates[2 * a], rates[2 * b + 1] - rates[2 * a + 1])
     rate += abs(rates[2 * rows + a]) * _turning_reach(scene, a)
     rate += abs(rates[2 * rows + b]) * _turning_reach(scene, b)
     return rate
+
+
+@inlined
+def _contacts(scene: Scene) -> int:
+    """Return how many pairs are bodies that may touch: rows of joints come behind them."""
+    n = len(scene.pairs)
+    while n > 0 and scene.pairs[n - 1, 2] >= FIRST_ROW:
+        n -= 1
+    return n
+
+
+@inlined
+def _longest_before_limits(
+    scene: Scene, first: int, q: Numbers, v: Numbers, acceleration: Numbers, allowed: Numbers
+) -> float:
+    """Return the same for limits, the pairs from ``first`` on."""
+    longest, rows, own = math.inf, scene.rows, scene.coefficients
+    for p in range(first, len(scene.pairs)):
+        allowed[p] = math.inf
+        if scene.pairs[p, 2] == JOINT - WALL:
+            speed, push = fastest_change(rows, own, p, q, v), fastest_change(rows, own, p, q, acceleration)
+            if speed > 0.0 or push > 0.0:
+                allowed[p] = max(gap_of_row(rows, own, p, q), 0.0) + _STRIDE * own[p, 2]
+                longest = min(longest, time_to_pass(allowed[p], speed, push))
+                allowed[p] += _STRIDE * own[p, 2]
+    return longest
 
 
 @inlined
@@ -54,9 +77,12 @@ def longest_piece(scene: Scene, q: Numbers, v: Numbers, acceleration: Numbers, a
 
     If all went on as it begins. How far each pair may come together is noted in ``allowed`` [m].
     """
-    longest = math.inf
-    for p in range(len(scene.pairs)):
-        speed, push = _relative(scene, p, q, v), _relative(scene, p, q, acceleration)
+    longest, contacts = math.inf, _contacts(scene)
+    if contacts < len(scene.pairs):
+        longest = _longest_before_limits(scene, contacts, q, v, acceleration, allowed)
+    for p in range(contacts):
+        a, b = scene.pairs[p, 0], scene.pairs[p, 1]
+        speed, push = _relative(scene, a, b, v), _relative(scene, a, b, acceleration)
         allowed[p] = math.inf
         if speed > 0.0 or push > 0.0:
             allowed[p] = max(far_apart(scene, p, q, math.inf), 0.0) + _STRIDE * scene.coefficients[p, 2]
@@ -90,8 +116,16 @@ def share_of_ways(scene: Scene, v: Numbers, h: float, short: bool, stages: Stage
                 else:
                     turned = max(turned, change)
         strays[row] = h * (math.sqrt(2.0) * off + turned * _turning_reach(scene, row))
-    for p in range(len(scene.pairs)):
+    contacts = _contacts(scene)
+    for p in range(contacts):
         a, b = scene.pairs[p, 0], scene.pairs[p, 1]
-        way = 0.5 * h * (_relative(scene, p, stages.q, v) + _relative(scene, p, stages.q, stages.v))
+        way = 0.5 * h * (_relative(scene, a, b, v) + _relative(scene, a, b, stages.v))
         worst = max(worst, (way + strays[a] + strays[b]) / allowed[p])
+    for p in range(contacts, len(scene.pairs)):
+        if allowed[p] < math.inf:
+            own, a, b = scene.coefficients, scene.pairs[p, 0], scene.pairs[p, 1]
+            rate = fastest_change(rows, own, p, stages.q, v) + fastest_change(
+                rows, own, p, stages.q, stages.v
+            )
+            worst = max(worst, (0.5 * h * rate + strays[a] + strays[b]) / allowed[p])
     return worst

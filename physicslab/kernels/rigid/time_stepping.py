@@ -27,10 +27,10 @@ from physicslab.kernels.rigid.equations import (
 )
 from physicslab.kernels.rigid.features import (
     FEATURE,
-    FIRST_ROW,
     GAP,
     GIVEN,
     JOINT,
+    MOTOR,
     MU,
     ONE,
     OTHER,
@@ -41,7 +41,6 @@ from physicslab.kernels.rigid.features import (
     named_scene,
 )
 from physicslab.kernels.rigid.joined import book_impulses
-from physicslab.kernels.rigid.joint_points import MOTOR, ROLE
 from physicslab.kernels.rigid.pieces import StagesTuple, named_stages
 from physicslab.kernels.rigid.touching import length_of
 
@@ -86,8 +85,7 @@ def drive(
     """
     of, points = named_scene(scene), named_equations(equations)
     for p in range(len(of.pairs)):
-        row = of.pairs[p, 2] - FIRST_ROW
-        if row < 0 or of.row_ends[row, ROLE] != MOTOR:
+        if of.pairs[p, 2] != MOTOR - WALL:
             continue
         find_points(of, p, q, v, points.points)
         measure_all(of, points, 1, q, v)

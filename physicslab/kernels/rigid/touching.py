@@ -23,6 +23,7 @@ from physicslab.kernels.rigid.features import (
     GIVEN,
     JOINT,
     MEASURES,
+    MOTOR,
     MU,
     ONE,
     OTHER,
@@ -37,9 +38,10 @@ from physicslab.kernels.rigid.features import (
     WALL,
     Points,
     Scene,
+    measure_contact,
 )
 from physicslab.kernels.rigid.joined import strongest_joint
-from physicslab.kernels.rigid.joint_points import OWN, UNIT, gap_of_row, is_motor, measure
+from physicslab.kernels.rigid.joint_points import OWN, UNIT, gap_of_row, measure
 from physicslab.kernels.rigid.least_norm import solve_equations
 
 __all__ = [
@@ -93,9 +95,6 @@ def far_apart(scene: Scene, p: int, q: Numbers, enough: float) -> float:
     """
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
     shapes = scene.shapes
-    if wall >= FIRST_ROW:
-        left: float = gap_of_row(scene, wall - FIRST_ROW, q)
-        return left
     reach = shapes.reach[b]
     if wall >= 0:
         place = q[2 * b] if wall == 0 or wall == 2 else q[2 * b + 1]
@@ -148,6 +147,23 @@ def _is_closed(radius: Numbers, points: Points, count: int, others: Points, k: i
 
 
 @inlined
+def _find_open_row(
+    scene: Scene, equations: Equations, count: int, scratch: Equations, p: int, q: Numbers, v: Numbers
+) -> tuple[int, float, float]:
+    """Do the same as :func:`find_open` for a row of a joint, which a motor always keeps closed."""
+    gap: float = scene.coefficients[p, 2]
+    closed = scene.pairs[p, 2] == MOTOR - WALL
+    for i in range(count):
+        closed = closed or equations.points[i, PAIR] == p
+    if closed:
+        return 0, gap, -math.inf
+    find_points(scene, p, q, v, scratch.points)
+    measure(scene, scratch.points, 0, q, v, scratch.measures)
+    gap = min(gap, scratch.measures[0, GAP])
+    return 1, gap, gap
+
+
+@inlined
 def find_open(
     scene: Scene, equations: Equations, count: int, scratch: Equations, p: int, q: Numbers, v: Numbers
 ) -> tuple[int, float, float]:
@@ -157,6 +173,8 @@ def find_open(
     least [m], minus infinity where a point is closed.
     """
     gap: float = scene.coefficients[p, 2]
+    if scene.pairs[p, 2] >= FIRST_ROW:
+        return _find_open_row(scene, equations, count, scratch, p, q, v)
     apart = far_apart(scene, p, q, gap)
     if apart > gap:
         return 0, gap, apart
@@ -168,7 +186,7 @@ def find_open(
         else:
             for column in range(GIVEN):
                 scratch.points[n, column] = scratch.points[k, column]
-            measure(scene, scratch.points, n, q, v, scratch.measures)
+            measure_contact(scene, scratch.points, n, q, v, scratch.measures)
             gap = min(gap, scratch.measures[n, GAP])
             n += 1
     return n, gap, min(apart, gap)
@@ -195,14 +213,14 @@ def moved_closer(scene: Scene, p: int, q: Numbers, later: Numbers) -> float:
 @inlined
 def _find_unit(scene: Scene, scratch: Equations, i: int, most: float, strongest: float) -> float:
     """Find what a force at a motor causes, and a unit of force of the size of those there are [N]."""
-    own, rows, r = 0.0, scene.rows, scratch.points[i, FEATURE] - JOINT
+    own, rows, p = 0.0, scene.rows, scratch.points[i, PAIR]
     for side in range(2):
         body, t = scratch.points[i, ONE + side], TANGENT + 3 * side
         for k in range(3):
             place = 2 * body + k if k < 2 else 2 * rows + body
             own += scene.inverse_mass[place] * scratch.measures[i, t + k] * scratch.measures[i, t + k]
     unit: float = strongest / own if strongest > 0.0 else most
-    scene.row_numbers[r, OWN], scene.row_numbers[r, UNIT] = own, unit
+    scene.coefficients[p, OWN], scene.coefficients[p, UNIT] = own, unit
     return unit
 
 
@@ -222,7 +240,13 @@ def find_touching(
     for p in range(len(scene.pairs)):
         size = scene.coefficients[p, 2]
         limit = (_TOUCH + within) * size
-        if far_apart(scene, p, q, limit) > limit:
+        if scene.pairs[p, 2] >= FIRST_ROW:
+            left = 0.0  # of a motor
+            if scene.pairs[p, 2] == JOINT - WALL:
+                left = gap_of_row(scene.rows, scene.coefficients, p, q)
+        else:
+            left = far_apart(scene, p, q, limit)
+        if left > limit:
             continue
         n, _ = find_points(scene, p, q, v, scratch.points)
         for k in range(n):
@@ -235,7 +259,7 @@ def find_touching(
                 for column in range(GIVEN):
                     equations.points[count, column] = scratch.points[k, column]
                 equations.measures[count, MU] = scene.coefficients[p, 0]
-                if is_motor(scene, scratch.points, k):
+                if scratch.points[k, FEATURE] == MOTOR:
                     unit = _find_unit(scene, scratch, k, scene.coefficients[p, 0], strongest)
                     equations.measures[count, MU] /= unit
                 equations.measures[count, RESTITUTION] = scene.coefficients[p, 1]
@@ -386,8 +410,7 @@ def hold_evenly(
         inverse_mass[i], pulled[i] = share * scene.inverse_mass[i], share * acceleration[i]
     even = Scene(
         scene.rows, inverse_mass, scene.damping, scene.calls, scene.shapes, scene.walls, scene.pairs,
-        scene.coefficients, scene.accounts, scene.joint_numbers, scene.joints, scene.row_numbers,
-        scene.row_ends,
+        scene.coefficients, scene.accounts, scene.joint_numbers, scene.joints,
     )  # fmt: skip
     _note_given(equations, count, changed, rest)
     assemble(even, equations, count)

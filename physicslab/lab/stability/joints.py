@@ -1,38 +1,108 @@
-"""Joints: heavy loads at their ends, and such as contradict each other."""
+"""Joints: heavy loads at their ends, motors and pulleys at their stops, and such as contradict each other."""
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 
-from physicslab.components import Mass, Pin, Shape, Transform, Velocity
+from physicslab.components import Gear, Mass, Pin, Pulley, Rod, Shape, Slot, Transform, Velocity, Weld
+from physicslab.diagnostics.energy import measure_energy
 from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.stability.case import StabilityCase
 from physicslab.lab.worlds import energy_change, floor, largest, open_space
+from physicslab.prefabs import circle
 from physicslab.world import World
 
 _LINK = 0.5
 """The length of a link [m]."""
 
 
-def _pinned(links: int, heavy: float, contacts: str = "auto") -> World:
-    """Return a chain of bars of 1 kg let go level, held at one end, with a ``heavy`` last one [kg]."""
-    world, last = open_space(contacts=contacts), None
-    for i in range(links):
-        mass = heavy if i == links - 1 else 1.0
-        parts = Transform(((i + 0.5) * _LINK, 0.0)), Velocity(), Mass(mass), Shape.box(_LINK, 0.05)
-        bar, at = world.spawn(*parts), (0.0 if last is None else 0.5 * _LINK, 0.0)
-        world.spawn(Pin(a=last, b=bar, anchor_a=at, anchor_b=(-0.5 * _LINK, 0.0)))
-        last = bar
+def _soft() -> World:
+    """Return a world with soft contacts, far above a floor."""
+    world = open_space(contacts="soft")
+    floor(world, Vector2(0.0, -500.0))
     return world
 
 
-def _stretched(make: Callable[[], World], seconds: float) -> float:
+def _bars(
+    world: World, links: int, heavy: float = 1.0, light: float = 1.0, kind: type[Any] = Pin
+) -> tuple[World, int]:
+    """Add level bars, the first held by the world; return that, and the ``heavy`` last one [kg]."""
+    last: int | None = None
+    for i in range(links):
+        mass = heavy if i == links - 1 else light
+        parts = Transform(((i + 0.5) * _LINK, 0.0)), Velocity(), Mass(mass), Shape.box(_LINK, 0.05)
+        bar, at = world.spawn(*parts), (0.0 if last is None else 0.5 * _LINK, 0.0)
+        world.spawn(kind(a=last, b=bar, anchor_a=at, anchor_b=(-0.5 * _LINK, 0.0)))
+        last = bar
+    assert last is not None
+    return world, last
+
+
+def _gap(world: World, seconds: float) -> float:
     """Return the largest distance of points that joints hold together, in lengths of a link."""
+    world.run(seconds=seconds)
+    return max(joint.largest_stretch for joint in joint_states(world)) / _LINK
+
+
+def _chain(links: int, heavy: float, light: float = 1.0) -> float:
+    return _gap(_bars(_soft(), links, heavy, light)[0], 3.0)
+
+
+def _cantilever() -> float:
+    """Return by what share of its length the end of ten bars sags."""
+    world, last = _bars(_soft(), 10, kind=Weld)
+    world.run(seconds=3.0)
+    return abs(world.component(last, Transform).position.y) / (10 * _LINK)
+
+
+def _bridge() -> float:
+    """Return the largest gap of a bridge of 30 planks on which a ball of a ton falls from half a metre."""
+    world, last = _bars(_soft(), 30, 10.0, 10.0)
+    world.spawn(Pin(b=last, anchor_a=(30 * _LINK, 0.0), anchor_b=(0.5 * _LINK, 0.0)))
+    circle(world, (15 * _LINK, 1.5), radius=1.0, mass=1000.0)
+    return _gap(world, 4.0)
+
+
+def _blocked() -> float:
+    """Return how far a motor of 10 kN pushes a carriage of 1 kg beyond its stop [m]."""
+    world = _soft()
+    carriage = world.spawn(Transform(), Velocity(), Mass(1.0), Shape.box(0.5, 0.5))
+    world.spawn(Slot(b=carriage, upper=0.2, motor_speed=5.0, max_force=1e4))
+    return largest(world, 600, lambda: world.component(carriage, Transform).position.x - 0.2)
+
+
+def _gears() -> float:
+    """Return the error of the speed of the last wheel of a train of 1 to 1,000, as a share."""
+    world, pins, wheels = _soft(), list[int](), list[int]()
+    for n in range(4):
+        place = Transform((3.0 * n, 0.0))
+        wheels.append(world.spawn(place, Velocity(), Mass(1.0), Shape.circle(1.0)))
+        pins.append(world.spawn(Pin(b=wheels[n], anchor_a=(3.0 * n, 0.0))))
+        if n:
+            world.spawn(Gear(first=pins[n - 1], second=pins[n], ratio=-10.0))
+    world.add(pins[0], Pin(b=wheels[0], motor_speed=0.1, max_torque=1e9))
+    world.run(seconds=5.0)
+    return abs(world.component(wheels[3], Velocity).angular / -100.0 - 1.0)
+
+
+def _pulley() -> float:
+    """Return by what share the energy grows of a weight that is pulled up into its wheel, which it passes."""
+    world = _soft()
+    ends = [world.spawn(Transform((x, -0.5)), Velocity(), Mass(m)) for x, m in ((-1.0, 10.0), (1.0, 0.1))]
+    world.spawn(Pulley(a=ends[0], b=ends[1], wheel_a=(-1.0, 0.0), wheel_b=(1.0, 0.0)))
+    before, fallen = measure_energy(world).total, 10.0 * 9.81 * 0.5
+    return largest(world, 300, lambda: (measure_energy(world).total - before) / fallen)
+
+
+def _short_rod(make: Callable[[], World]) -> float:
+    """Return how far the bob of a pendulum of a micrometre gets from its hinge [m]."""
     world = make()
-    steps = round(seconds / world.simulation.dt)
-    return largest(world, steps, lambda: max(joint.stretch for joint in joint_states(world)) / _LINK)
+    bob = world.spawn(Transform((1e-6, 0.0)), Velocity(), Mass(1.0), Shape.circle(0.1))
+    world.spawn(Rod(b=bob))
+    return largest(world, 300, lambda: world.component(bob, Transform).position.magnitude)
 
 
 def _contradicted(contacts: str) -> float:
@@ -48,18 +118,58 @@ def _contradicted(contacts: str) -> float:
 
 
 def _unequal() -> float:
-    """Return the change of energy of a double pendulum of 1 g and 1,000 t, of what its fall exchanges."""
-    world = _pinned(2, 1e9)
+    """Return the change of energy of a double pendulum of 1 kg and 10^9 kg, of what its fall exchanges."""
+    world, _ = _bars(open_space(), 2, 1e9)
     return energy_change(world, world.stepping(seconds=5.0))
 
 
 _case = partial(StabilityCase, group="joints")
+_link = partial(
+    _case, right="its links stay together", figure="largest gap, in lengths of a link", limit=0.01
+)
 
 JOINTS = (
+    *(
+        _link(
+            name=f"chain_{name}", measure=partial(_chain, 100, heavy), long_s=5.0,
+            title=f"chain of 100 bars of 1 kg let go level, {heavy:,.0f} kg at the end, soft, 3 s",
+        )
+        for name, heavy in (("100kg", 100.0), ("10t", 10_000.0))
+    ),
+    _link(
+        name="joint_1e9", title="bar of 10^-3 kg between a pin and a bar of 10^6 kg, let go level, soft, 3 s",
+        measure=partial(_chain, 2, 1e6, 1e-3),
+    ),
     _case(
-        name="pins_soft_100kg", title="chain of 20 bars on pins let go level, 100 kg at the end, soft, 5 s",
-        right="its links stay together", figure="largest gap, in lengths of a link", limit=0.05,
-        measure=partial(_stretched, partial(_pinned, 20, 100.0, contacts="soft"), 5.0),
+        name="cantilever", title="cantilever of 10 welded bars, soft, 3 s", right="it stays straight",
+        figure="sag of its end, in its length", limit=0.01, measure=_cantilever,
+    ),
+    _link(
+        name="bridge_ball", title="bridge of 30 planks of 10 kg, 1,000 kg fall on it, soft, 4 s",
+        measure=_bridge, long_s=2.0,
+    ),
+    _case(
+        name="motor_blocked", title="motor of 10 kN against the stop of a slot, 1 kg, soft, 10 s", unit="m",
+        right="the carriage stays at the stop", figure="way beyond it", limit=1e-6, measure=_blocked,
+    ),
+    _case(
+        name="gears_1000", title="train of gears, 1 to 1,000, driven at 0.1 rad/s, soft, 5 s",
+        right="the last wheel turns 1,000 times as fast", figure="error of its speed", limit=1e-6,
+        measure=_gears,
+    ),
+    _case(
+        name="pulley_stop", title="pulley: 10 kg pull 0.1 kg up into the wheel, soft, 5 s",
+        right="no energy comes from it", figure="largest gain of energy", limit=1e-6, measure=_pulley,
+    ),
+    *(
+        _case(
+            name=f"rod_1um_{name}", title=f"pendulum of a micrometre let go level, {words}, 5 s", unit="m",
+            right="the bob stays at its hinge", figure="largest distance", limit=limit,
+            measure=partial(_short_rod, make),
+        )
+        for name, words, make, limit in (
+            ("smooth", "nothing touches", open_space, 1.000001e-6), ("soft", "soft", _soft, 1e-3),
+        )
     ),
     _case(
         name="pins_unequal", title="double pendulum of bars of 1 and 1e9 kg let go level, 5 s",
@@ -69,8 +179,7 @@ JOINTS = (
         _case(
             name=f"pins_contradict_{contacts}", unit="m/s", limit=1e-3,
             title=f"bar whose pins are 20 % farther apart than its holes, {contacts} contacts, 5 s",
-            right="it comes to rest between them", figure="speed at last",
-            measure=partial(_contradicted, contacts),
+            right="it comes to rest", figure="speed at last", measure=partial(_contradicted, contacts),
         )
         for contacts in ("soft", "rigid")
     ),

@@ -6,12 +6,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Held, Mass, Shape, Transform, Velocity
+from physicslab.components import Held, Mass, Medium, Shape, Transform, Velocity
 from physicslab.components.shape import BOX, CIRCLE
 from physicslab.contacts.outlines import Outlines, outlines_of
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look, Rounded
-from physicslab.view.canvas.theme import Theme
+from physicslab.view.canvas.theme import Theme, mixed
 from physicslab.world import World
 
 type Rows = NDArray[np.int64]
@@ -19,6 +19,8 @@ type Rows = NDArray[np.int64]
 
 POINT_RADIUS = 5.0
 """How large a body without a Shape appears [px]."""
+_FAINT = 0.5
+"""Share of its colour in the rim of a medium: bodies within it are to stand out."""
 _MIN_HALF = 0.9
 """Half extent of a body on the screen [px] below which it is drawn larger: it is still seen from far away."""
 
@@ -59,12 +61,13 @@ def body_rows(world: World) -> BodyRows:
 
 @lru_cache(maxsize=8)
 def _palette(theme: Theme) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
-    """Return rims and fills: of static, kinematic and held bodies, then of all others in turn."""
-    rims = (theme.static, theme.kinematic, theme.held, *theme.bodies)
+    """Return rims and fills: of static, kinematic and held bodies, of media, then of all others in turn."""
+    fluid = mixed(theme.background, theme.bodies[0], _FAINT)
+    rims = (theme.static, theme.kinematic, theme.held, fluid, *theme.bodies)
     return np.array(rims, np.uint8), np.array([theme.fill(rim) for rim in rims], np.uint8)
 
 
-_STATIC, _KINEMATIC, _HELD, _OWN = range(4)
+_STATIC, _KINEMATIC, _HELD, _FLUID, _OWN = range(5)
 
 
 def own_colour(world: World, theme: Theme, rows: Rows) -> Rows:
@@ -76,8 +79,10 @@ def _look(world: World, theme: Theme, rows: Rows) -> Look:
     rims, fills = _palette(theme)
     moves, held = world.table(Velocity).present[rows], world.table(Held).present[rows]
     own = _OWN + own_colour(world, theme, rows)
-    fill = np.where(moves, np.where(world.table(Mass).present[rows], own, _KINEMATIC), _STATIC)
-    return Look(fills[fill], rims[np.where(held, _HELD, fill)], ~moves)
+    fluid = world.table(Medium).present[rows]
+    still = np.where(fluid, _FLUID, _STATIC)
+    fill = np.where(moves, np.where(world.table(Mass).present[rows], own, _KINEMATIC), still)
+    return Look(fills[fill], rims[np.where(held, _HELD, fill)], ~moves & ~fluid)
 
 
 def _marker_look(world: World, theme: Theme, rows: Rows) -> Look:
@@ -101,11 +106,15 @@ def _on_screen(
 
 
 def draw_bodies(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> None:
-    """Draw every body that is on the screen."""
-    rows = body_rows(world)
-    _draw_boxes(world, rows.boxes, camera, theme, canvas)
-    _draw_rounded(world, rows.rounded, camera, theme, canvas)
-    _draw_discs(world, rows.discs, camera, theme, canvas)
+    """Draw every body that is on the screen, media behind all others."""
+    rows, fluid = body_rows(world), world.table(Medium).present
+    for layer in (True, False) if len(world.batch(Medium)) else (False,):
+        boxes, rounded, discs = (
+            part[fluid[part] == layer] for part in (rows.boxes, rows.rounded, rows.discs)
+        )
+        _draw_boxes(world, boxes, camera, theme, canvas)
+        _draw_rounded(world, rounded, camera, theme, canvas)
+        _draw_discs(world, discs, camera, theme, canvas)
     centre = camera.project(world.table(Transform)["position"][rows.points])
     radius = np.full(len(centre), POINT_RADIUS)
     seen = _on_screen(centre, radius, camera.size)

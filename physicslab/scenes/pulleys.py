@@ -1,0 +1,30 @@
+"""Weights on ropes over pulleys."""
+
+from physicslab.components import Meter, Pulley
+from physicslab.prefabs import box
+from physicslab.scenes.scene import Scene
+from physicslab.world import World
+
+_HEIGHT = 2.5
+"""Of the wheels [m]."""
+
+
+def _fill(world: World) -> None:
+    box(world, (0.0, -0.1), width=8.0, height=0.2, static=True, friction=0.8, name="floor")
+    # The second rope goes twice to B: 2 kg are in balance with 1 kg.
+    for n, (x, second, ratio, y) in enumerate(((-2.0, 1.2, 1.0, 1.4), (1.8, 2.4, 2.0, 0.8)), 1):
+        left, right = x - 0.6, x + 0.6
+        a = box(world, (left, 0.5), width=0.4, height=0.4, mass=1.0, name=f"left {n}")
+        b = box(world, (right, y), width=0.5, height=0.5, mass=second, name=f"right {n}")
+        rope = Pulley(a, b, (0.0, 0.2), (0.0, 0.25), (left, _HEIGHT), (right, _HEIGHT), ratio)
+        world.spawn(rope, name=f"rope {n}")
+        world.spawn(Meter("velocity y", b))
+
+
+PULLEYS = Scene(
+    name="pulleys",
+    title="Pulleys",
+    description="1 kg against 1.2 kg; and 1 kg against 2.4 kg on two lines, by which it could hold 2 kg.",
+    fill=_fill,
+    view=(-3.6, -0.4, 3.6, 3.0),
+)

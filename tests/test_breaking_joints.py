@@ -1,0 +1,101 @@
+"""Joints that break, and joints that contradict each other: told, and nothing else moves."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from physicslab import World, save_scene
+from physicslab.cli import main
+from physicslab.components import Gear, Mass, Pin, Rope, Shape, Transform, Velocity, Weld
+from physicslab.diagnostics.step_watch import StepWatch
+from physicslab.diagnostics.warnings import find_warnings
+from physicslab.ecs.config import SimulationConfig
+from physicslab.history.keyframe import Keyframe
+from physicslab.prefabs import box
+from physicslab.systems.breaking import breaks_of
+
+
+def swing(contacts: str = "auto") -> World:
+    """Return a bob on a rope that breaks at 2.5 times its weight, let go level: it does on its way down."""
+    world = World(simulation=SimulationConfig(contacts=contacts))
+    if contacts == "soft":
+        box(world, (0.0, -50.0), width=1.0, height=1.0, static=True)
+    bob = world.spawn(Transform((1.0, 0.0)), Velocity(), Mass(2.0), Shape.circle(0.1), name="bob")
+    world.spawn(Rope(b=bob, length=1.0, breaks=2.5 * 2.0 * 9.81), name="rope")
+    return world
+
+
+@pytest.mark.parametrize("contacts", ["auto", "soft"])
+def test_a_rope_breaks_once_is_told_and_can_be_undone(contacts: str) -> None:
+    world = swing(contacts)
+    world.run(seconds=0.2)
+    frame, watch = Keyframe(world), StepWatch(world)
+    world.run(seconds=0.6)
+    (broken,) = breaks_of(world.schedule.systems, world.time)
+    # 3 m g sin(angle) of a pendulum that was let go level
+    assert broken.force == pytest.approx(2.5 * 2.0 * 9.81, rel=0.03)
+    assert "rope broke at t = 0." in watch.note_breaks()
+    assert watch.note_breaks() == ""
+    assert not len(world.batch(Rope))
+    place = tuple(world.component(world.entity("bob"), Transform).position)
+    frame.restore(world)
+    assert len(world.batch(Rope)) == 1
+    assert breaks_of(world.schedule.systems, world.time) == ()
+    world.run(seconds=0.6)
+    assert tuple(world.component(world.entity("bob"), Transform).position) == place
+    assert breaks_of(world.schedule.systems, world.time) == (broken,)
+
+
+def test_a_weld_breaks_by_its_torque_and_a_gear_goes_with_its_pin() -> None:
+    world = World()
+    arm = world.spawn(Transform((0.5, 0.0)), Velocity(), Mass(1.0), Shape.box(1.0, 0.1))
+    world.spawn(Weld(b=arm, anchor_b=(-0.5, 0.0), breaks_torque=4.0), name="weld")
+    pins = []
+    for x in (5.0, 8.0):
+        wheel = world.spawn(Transform((x, 0.0)), Velocity(), Mass(1.0, inertia=1.0))
+        pins.append(world.spawn(Pin(b=wheel, anchor_a=(x, 0.0), breaks=5.0 if x == 5.0 else None)))
+    world.spawn(Gear(first=pins[0], second=pins[1]))
+    world.run(seconds=0.1)
+    assert [one.kind for one in breaks_of(world.schedule.systems, world.time)] == ["Pin", "Weld"]
+    assert [joint.kind for joint in world.joints.joints] == [Pin]
+
+
+def test_the_report_has_forces_and_what_broke(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    world = swing()
+    world.spawn(
+        Pin(a=world.spawn(Transform((9.0, 0.0)), Velocity(), Mass(3.0)), anchor_b=(9.0, 0.0)), name="pin"
+    )
+    save_scene(world, tmp_path / "swing.json")
+    main(["run", str(tmp_path / "swing.json"), "--seconds", "0.8", "--json", "-"])
+    captured = capsys.readouterr()
+    report = json.loads(captured.out)
+    assert [one["label"] for one in report["broken"]] == ["rope"]
+    assert "rope broke at t = " in captured.err
+    assert report["joints"]["pin"]["force"] == pytest.approx([0.0, -3.0 * 9.81], abs=1e-9)
+    assert report["joints"]["pin"]["torque"] == 0.0
+
+
+@pytest.mark.parametrize("contacts", ["auto", "soft"])
+def test_pins_that_contradict_each_other_are_told_and_nothing_explodes(contacts: str) -> None:
+    world = World(simulation=SimulationConfig(contacts=contacts))
+    if contacts == "soft":
+        box(world, (0.0, -50.0), width=1.0, height=1.0, static=True)
+    bar = world.spawn(Transform(), Velocity(), Mass(1.0), Shape.box(1.0, 0.1))
+    for n, side in enumerate((-1.0, 1.0)):
+        world.spawn(Pin(b=bar, anchor_a=(0.6 * side, 0.0), anchor_b=(0.5 * side, 0.0)), name=f"pin{n}")
+    world.run(seconds=1.0)
+    assert np.abs(world.table(Velocity)["linear"]).max() < 1e-6
+    (told,) = [one for one in find_warnings(world) if "contradicts" in one.what]
+    assert told.entity in ("pin0", "pin1")
+    assert str(told).startswith(f"{told.entity}: contradicts other joints: not all can be kept: ")
+
+
+def test_a_joint_that_holds_what_is_held_is_told() -> None:
+    world = World()
+    bar = world.spawn(Transform(), Velocity(), Mass(1.0), Shape.box(1.0, 0.1))
+    for side in (-0.5, 0.5):
+        world.spawn(Pin(b=bar, anchor_a=(side, 0.0), anchor_b=(side, 0.0)))
+    world.run(seconds=0.1)
+    assert [one.value for one in find_warnings(world) if "hold what others hold" in one.what] == [1.0]
