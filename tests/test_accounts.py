@@ -411,7 +411,7 @@ def test_a_ballistic_pendulum_loses_what_the_masses_say() -> None:
 
 @pytest.mark.parametrize(
     ("method", "order", "scene", "dt"),
-    [("leapfrog", 2, "two_planets", 0.05), ("blanes_moan", 6, "pendulum", 0.03)],
+    [("leapfrog", 2, "two_planets", 0.05), ("blanes_moan", 6, "two_planets", 0.5)],
 )
 def test_the_error_falls_with_the_step_at_the_order_of_the_method(
     method: str, order: int, scene: str, dt: float

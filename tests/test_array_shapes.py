@@ -6,11 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent.parent / "physicslab"
-FOLDERS = (
-    "commands", "components", "contacts", "desktop", "diagnostics", "ecs", "export", "files", "history",
-    "integrators", "kernels", "lab", "ode", "prefabs", "scenes", "state", "systems", "view",
-)  # fmt: skip
-"""The folders that hold to it; ``stepping`` follows."""
 SHAPE = re.compile(r"\((?:\.{3}|\w[\w +-]*)(?:,(?: [\w. +-]+)?)+\)|\bshapes?\b")
 """``(n,)``, ``(rows, 2)``, ``(2 rows, k)``; or words on the shape."""
 NAMED = {"Numbers", "Vectors", "Rows", "Flags", "Masks"}
@@ -66,7 +61,7 @@ def unshaped(tree: ast.Module) -> Iterator[str]:
 
 
 def test_array_arguments_have_a_shape() -> None:
-    paths = [path for folder in FOLDERS for path in sorted((PACKAGE / folder).rglob("*.py"))]
+    paths = sorted(PACKAGE.rglob("*.py"))
     missing = [
         f"{path.relative_to(PACKAGE)}: {name}"
         for path in paths

@@ -14,6 +14,7 @@ from desk import (
     bring_into_sight,
     button_down,
     button_up,
+    choose,
     click,
     click_at,
     empty_world,
@@ -23,7 +24,7 @@ from desk import (
     write,
 )
 
-from physicslab.components import Drag, Mass, Material, Name, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import Drag, Mass, Material, Name, Rod, Shape, Spring, Trail, Transform, Velocity
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.component import Component, component, field, local_components
 from physicslab.ecs.vector import Vector2
@@ -195,7 +196,7 @@ def test_two_that_are_selected_are_joined_as_far_apart_as_they_are() -> None:
     world = empty_world(gravity_mode="none")
     one, two = circle(world, (-1, 0)), circle(world, (2, 0))
     desk = opened(world, one, two)
-    click(desk, "Join by a spring")
+    choose(desk, "Join ...", "Join by a spring")
     (made,) = [e for e in world.entities() if world.has(e, Spring)]
     spring = world.component(made, Spring)
     assert (spring.a, spring.b) == (one, two) and spring.rest_length == pytest.approx(3.0)
@@ -209,28 +210,36 @@ def test_two_that_are_selected_are_joined_as_far_apart_as_they_are() -> None:
     assert not world.has(made, Spring) and world.has(one, Transform)
 
 
-def test_a_body_is_hung_on_a_rod_and_swings() -> None:
+def test_a_body_is_hung_on_a_rod_or_from_a_spring() -> None:
     world = empty_world()
-    body = circle(world, (0, 0), mass=2.0)
+    body, weight = circle(world, (0, 0), mass=2.0), circle(world, (3, 0), mass=2.0)
     desk = opened(world, body)
-    click(desk, "Hang on a rod")
-    (made,) = [e for e in world.entities() if world.has(e, Spring)]
-    assert world.component(made, Spring).anchor_b == Vector2(0.0, 1.5)
-    assert desk.ui.rows["Period"] == f"{2 * math.pi * math.sqrt(1.50015 / 9.81):.4g} s"
-    assert desk.window.notice == "This rod is a stiff spring: weight makes it give way 0.1500 mm"
+    choose(desk, "Hang, pin ...", "Hang on a rod")
+    (made,) = world.batch(Rod).entities.tolist()
+    assert world.component(made, Rod).anchor_b == Vector2(0.0, 1.5)
+    assert desk.ui.rows["Period"] == f"{2 * math.pi * math.sqrt(1.5 / 9.81):.4g} s"
     desk.window.selection.entities = (made,)
     desk.frames(SETTLED)
-    assert desk.ui.rows["Gives way"] == "0.1500 mm"
+    assert desk.ui.rows["Rod force"] == "0 N"
+    desk.window.selection.entities = (weight,)
+    desk.frames(SETTLED)
+    choose(desk, "Hang, pin ...", "Hang from a spring")
+    give = f"{9.81 / (4 * math.pi) ** 2:.4f} m"
+    assert desk.window.notice == f"Its weight lengthens this spring by {give}"
+    (spring,) = world.batch(Spring).entities.tolist()
+    desk.window.selection.entities = (spring,)
+    desk.frames(SETTLED)
+    assert desk.ui.rows["Gives way"] == give
     fixed = box(world, (3, 3), static=True)
     desk.window.selection.entities = (fixed,)
     desk.frames(SETTLED)
-    click(desk, "Hang on a spring")
+    choose(desk, "Hang, pin ...", "Hang from a spring")
     assert desk.window.notice == "No spring: neither of its ends could move"
 
 
 def test_the_erase_tool_takes_a_spring_alone() -> None:
     world = empty_world(gravity_mode="none")
-    bob = pendulum(world, (0, 2), length=2.0, angle=0.0)
+    bob = pendulum(world, (0, 2), length=2.0, angle=0.0, stiffness=5000.0)
     one, two = circle(world, (2, 0)), circle(world, (4, 0))
     own = world.spawn(Spring(a=one, b=two, rest_length=2.0))
     desk = opened(world)
@@ -244,7 +253,7 @@ def test_the_erase_tool_takes_a_spring_alone() -> None:
 @pytest.mark.parametrize("paused", [True, False])
 def test_a_pin_is_dragged(paused: bool) -> None:
     world = empty_world(gravity_mode="none")
-    bob = pendulum(world, (0, 2), length=2.0, angle=0.0)
+    bob = pendulum(world, (0, 2), length=2.0, angle=0.0, stiffness=5000.0)
     desk = opened(world)
     desk.window.tool = "circle"
     if not paused:
@@ -272,7 +281,7 @@ def test_a_pin_is_dragged(paused: bool) -> None:
 
 def test_the_end_of_a_spring_is_chosen_from_a_list_or_clicked() -> None:
     world = empty_world(gravity_mode="none")
-    bob = pendulum(world, (0, 2), length=2.0, angle=0.0)
+    bob = pendulum(world, (0, 2), length=2.0, angle=0.0, stiffness=5000.0)
     crate = box(world, (3, 0), width=1.0, height=1.0, name="crate")
     desk = opened(world, bob)
     bring_into_sight(desk, "Spring.b")
@@ -366,7 +375,7 @@ def test_shift_and_arrows_turn_what_is_selected() -> None:
 
 def test_arrows_and_figures_show_forces_of_the_same_step() -> None:
     world = empty_world()
-    bob = pendulum(world, (0, 2), length=2.0, angle=1.2)
+    bob = pendulum(world, (0, 2), length=2.0, angle=1.2, stiffness=5000.0)
     desk = Desk(world)
     desk.window.level = "Measure"
     desk.key("v")

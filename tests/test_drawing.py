@@ -1,17 +1,34 @@
 """Bodies and joints that are drawn: by a drag, by clicks, and by numbers that are typed beside the cursor."""
 
+import itertools
 import math
+from typing import Any
 
+import numpy as np
 import pygame
 import pytest
 from desk import Desk, empty_world
 
-from physicslab.components import Mass, Pin, Shape, Spring, Transform, Velocity
+from physicslab.components import (
+    Gear,
+    Mass,
+    Pin,
+    Pulley,
+    Rod,
+    Rope,
+    Shape,
+    Slot,
+    Spring,
+    Transform,
+    Velocity,
+    Weld,
+)
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
-from physicslab.view.controls import drawing, measure
-from physicslab.view.controls.tools import DRAWING, TOOLS
+from physicslab.view.controls import drawing, measure, polygons
+from physicslab.view.controls.joining import attachments
+from physicslab.view.controls.tools import DIGITS, DRAWING, TOOLS, key_of
 from physicslab.world import World
 
 type Place = tuple[float, float]
@@ -39,7 +56,7 @@ def draw(desk: Desk, tool: str, start: Place, end: Place, typed: str = "") -> No
     desk.frames()
 
 
-def only(world: World, kind: type) -> object:
+def only(world: World, kind: type) -> Any:
     (entity,) = world.batch(kind).entities.tolist()
     return world.component(entity, kind)
 
@@ -64,8 +81,8 @@ def test_a_body_is_as_large_and_lies_as_it_was_drawn(
     draw(desk, tool, (0.0, 0.0), end)
     shape, body = only(desk.world, Shape), only(desk.world, Transform)
     assert {name: getattr(shape, name) for name in sizes} == pytest.approx(sizes, abs=0.01)
-    assert tuple(body.position) == pytest.approx(place, abs=0.01)  # type: ignore[attr-defined]
-    assert math.remainder(body.angle - angle, math.pi) == pytest.approx(0.0, abs=1e-9)  # type: ignore[attr-defined]
+    assert tuple(body.position) == pytest.approx(place, abs=0.01)
+    assert math.remainder(body.angle - angle, math.pi) == pytest.approx(0.0, abs=1e-9)
     assert bool(desk.world.batch(Mass).entities.tolist()) == (tool != "block")
     desk.window.edits.history.undo()
     assert desk.world.entities() == [], "one undo"
@@ -96,8 +113,8 @@ def test_the_size_stands_at_the_cursor_and_numbers_typed_take_its_place(desk: De
     desk.window.edits.history.undo()
     draw(desk, "beam", (0.0, 0.0), (1.0, 1.0), "2 m, 30 deg")
     shape, body = only(desk.world, Shape), only(desk.world, Transform)
-    assert shape.width == pytest.approx(2.0, rel=1e-12)  # type: ignore[attr-defined]
-    assert body.angle == pytest.approx(math.pi / 6.0, rel=1e-12)  # type: ignore[attr-defined]
+    assert shape.width == pytest.approx(2.0, rel=1e-12)
+    assert body.angle == pytest.approx(math.pi / 6.0, rel=1e-12)
 
 
 def test_numbers_of_each_measure_lead_to_a_way_and_back() -> None:
@@ -146,7 +163,7 @@ def test_the_right_button_draws_a_box_whatever_tool_is_in_hand(desk: Desk) -> No
     desk.frames()
     desk.release(1.0, 1.0, "right")
     desk.frames()
-    assert only(desk.world, Shape).kind == "box"  # type: ignore[attr-defined]
+    assert only(desk.world, Shape).kind == "box"
 
 
 def test_a_spring_is_drawn_by_two_clicks_as_well(desk: Desk) -> None:
@@ -155,7 +172,7 @@ def test_a_spring_is_drawn_by_two_clicks_as_well(desk: Desk) -> None:
     assert words(desk) == "... to the other end"
     draw(desk, "spring", (0.02, 0.0), (0.02, 0.0))
     spring = only(desk.world, Spring)
-    assert spring.a == ball and not spring.anchor_a, "near the middle it is the middle"  # type: ignore[attr-defined]
+    assert spring.a == ball and not spring.anchor_a, "near the middle it is the middle"
     assert not desk.window.sketch.grips
 
 
@@ -163,13 +180,111 @@ def test_a_pin_joins_the_two_bodies_under_it_or_one_with_the_world(desk: Desk) -
     one, other = box(desk.world, (0.0, 0.0), width=2.0), box(desk.world, (1.5, 0.0), width=2.0)
     draw(desk, "pin", (0.75, 0.1), (0.75, 0.1))
     pin = only(desk.world, Pin)
-    assert {pin.a, pin.b} == {one, other}  # type: ignore[attr-defined]
-    assert tuple(pin.anchor_a + pin.anchor_b) == pytest.approx((0.0, 0.2), abs=0.01)  # type: ignore[attr-defined]
+    assert {pin.a, pin.b} == {one, other}
+    assert tuple(pin.anchor_a + pin.anchor_b) == pytest.approx((0.0, 0.2), abs=0.01)
     draw(desk, "pin", (-0.8, 0.0), (-0.8, 0.0))
     pin = desk.world.component(desk.world.batch(Pin).entities.tolist()[-1], Pin)
-    assert (pin.a, pin.b) == (one, None)
+    assert (pin.a, pin.b) == (None, one)
     draw(desk, "pin", (0.0, 2.0), (0.0, 2.0))
     assert "holds a body" in desk.window.notice
+
+
+def clicks(desk: Desk, tool: str, *places: Place) -> None:
+    for place in places:
+        draw(desk, tool, place, place)
+
+
+def made(desk: Desk, kind: type) -> Any:
+    return desk.world.component(desk.world.batch(kind).entities.tolist()[-1], kind)
+
+
+def test_rods_and_ropes_are_drawn_between_bodies_and_points(desk: Desk) -> None:
+    one, other = circle(desk.world, (0.0, 0.0)), circle(desk.world, (2.0, 0.0))
+    draw(desk, "rod", (0.0, 0.0), (2.0, 0.0))
+    rod = made(desk, Rod)
+    assert (rod.a, rod.b, rod.length) == (one, other, 2.0)
+    draw(desk, "rope", (0.0, 2.0), (0.0, 0.08))
+    rope = made(desk, Rope)
+    assert (rope.a, rope.b) == (one, None) and rope.length == pytest.approx(2.0, abs=0.01)
+    assert tuple(rope.anchor_a) == (0.0, 0.0), "near the middle it is the middle"
+    for tool, ends in (("rod", ((3.0, 2.0), (4.0, 2.0))), ("rope", ((3.0, 2.0), (4.0, 2.0)))):
+        draw(desk, tool, *ends)
+        assert "holds a body" in desk.window.notice
+    assert len(desk.window.edits.history.entries) == 2, "one entry for each"
+
+
+def test_a_slot_goes_the_way_that_was_drawn_in_the_frame_of_what_is_below() -> None:
+    world = empty_world(gravity=(0, 0))
+    table = box(world, (0.0, 0.0), width=3.0, height=1.0, angle=0.5 * math.pi)
+    top = circle(world, (0.0, 0.5), radius=0.2)
+    desk = Desk(world)
+    desk.key("space")
+    draw(desk, "slot", (0.0, 0.5), (0.0, 1.5))
+    slot = made(desk, Slot)
+    assert (slot.a, slot.b) == (table, top)
+    assert tuple(slot.axis) == pytest.approx((1.0, 0.0), abs=1e-9)
+
+
+def test_motors_and_welds_are_put_down_by_a_click(desk: Desk) -> None:
+    wheel = circle(desk.world, (0.0, 0.0), radius=0.5)
+    clicks(desk, "motor", (0.0, 0.0))
+    motor = made(desk, Pin)
+    assert (motor.a, motor.b, motor.motor_speed) == (None, wheel, 3.0)
+    one, other = box(desk.world, (2.0, 0.0), width=1.0), box(desk.world, (3.02, 0.0), width=1.0)
+    clicks(desk, "weld", (2.51, 0.0))
+    weld = made(desk, Weld)
+    assert {weld.a, weld.b} == {one, other}
+    rock = box(desk.world, (-3.0, 0.0), static=True)
+    clicks(desk, "weld", (-3.0, 0.0))
+    assert "neither of its ends" in desk.window.notice and desk.world.has(rock, Transform)
+
+
+def test_a_pulley_is_drawn_by_two_drags_or_four_clicks(desk: Desk) -> None:
+    for n in range(2):
+        one, other = box(desk.world, (0.0, 0.0)), box(desk.world, (2.0, 0.5))
+        if n:
+            clicks(desk, "pulley", (0.0, 0.0), (0.0, 2.0), (2.0, 0.5), (2.0, 2.0))
+        else:
+            draw(desk, "pulley", (0.0, 0.0), (0.0, 2.0))
+            assert words(desk) == "Drag from the other body to its wheel"
+            draw(desk, "pulley", (2.0, 0.5), (2.0, 2.0))
+        pulley = made(desk, Pulley)
+        assert (pulley.a, pulley.b) == (one, other) and pulley.length == pytest.approx(3.5, abs=0.01)
+        assert tuple(pulley.wheel_a + pulley.wheel_b) == pytest.approx((2.0, 4.0), abs=0.01)
+        for entity in desk.world.entities():
+            desk.world.remove(entity)
+
+
+def test_a_gear_couples_two_pinned_wheels_by_their_radii(desk: Desk) -> None:
+    for x, radius in ((0.0, 0.8), (1.2, 0.4)):
+        circle(desk.world, (x, 0.0), radius=radius)
+        clicks(desk, "pin", (x, 0.0))
+    clicks(desk, "gear", (0.3, 0.1), (1.3, 0.1))
+    gear = made(desk, Gear)
+    assert (gear.first, gear.second) == tuple(desk.world.batch(Pin).entities.tolist())
+    assert gear.ratio == pytest.approx(-2.0)
+    circle(desk.world, (-3.0, 0.0))
+    clicks(desk, "gear", (0.3, 0.1), (-3.0, 0.0))
+    assert "pin them first" in desk.window.notice
+
+
+def test_two_that_are_selected_are_joined_in_every_way(desk: Desk) -> None:
+    one, other = circle(desk.world, (0.0, 0.0)), circle(desk.world, (2.0, 0.0))
+    for bodies in ((one,), (one, other)):
+        for label, (tip, act) in attachments(desk.world, bodies).items():
+            before = len(desk.world.entities())
+            act(desk.world, desk.window)
+            count = len(desk.world.entities()) - before
+            assert tip and count == (0 if label == "Couple by a gear" else 1), (label, desk.window.notice)
+            for entity in desk.world.entities()[before:]:
+                desk.world.remove(entity)
+
+
+def test_digits_take_up_the_tools(desk: Desk) -> None:
+    for key, name in DIGITS.items():
+        desk.key(key.removeprefix("shift+"), pygame.KMOD_SHIFT if "shift" in key else 0)
+        desk.frames()
+        assert desk.window.tool == name and key_of(TOOLS[name]) == key.capitalize()
 
 
 @pytest.mark.parametrize("tool", DRAWING)
@@ -181,8 +296,85 @@ def test_what_is_drawn_has_a_ghost_or_a_line_and_is_named(desk: Desk, tool: str)
     for place in ((0.0, 0.0), (2.0, 1.0)):
         desk.move(*place)
         desk.frames()
-    if drawn.build is not None:
+    if drawn.is_open:
+        assert drawing.ghost(desk.world, drawn, desk.window) is None and words(desk) == drawn.prompts[0]
+    elif drawn.build is not None:
         shown = drawing.ghost(desk.world, drawn, desk.window)
         assert shown is not None and shown[1] and (len(shown[0].place) or drawn.name == "binary")
     else:
         assert words(desk) == drawn.prompts[0]
+
+
+# ---- polygons ----------------------------------------------------------------------------------------------
+
+
+def test_a_polygon_is_closed_at_its_first_corner(desk: Desk) -> None:
+    clicks(desk, "polygon", (0.0, 0.0), (2.0, 0.0), (0.0, 1.5))
+    assert not desk.world.entities()
+    clicks(desk, "polygon", (0.04, 0.04))
+    shape, body = only(desk.world, Shape), only(desk.world, Transform)
+    assert shape.kind == "polygon" and len(shape.vertices) == 3
+    assert tuple(body.position) == pytest.approx((2.0 / 3.0, 0.5), abs=0.01), "its centre of mass"
+    assert made(desk, Mass).mass == pytest.approx(5.0 * 1.5, rel=0.02)
+    assert not desk.window.sketch.grips
+
+
+def test_the_order_of_corners_does_not_matter_and_hollow_ones_are_refused(desk: Desk) -> None:
+    clicks(desk, "polygon", (0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0))
+    assert len(only(desk.world, Shape).vertices) == 4
+    clicks(desk, "polygon", (-3.0, 0.0), (-1.0, 0.0), (-2.5, 0.2), (-3.0, 2.0), (-3.0, 0.0))
+    assert "only convex shapes" in desk.window.notice and len(desk.world.entities()) == 1
+    clicks(desk, "polygon", (-3.0, 0.0), (-2.0, 0.0), (-1.0, 0.0), (-3.0, 0.0))
+    assert len(desk.world.entities()) == 1
+
+
+def stroke(desk: Desk, places: list[Place]) -> None:
+    desk.window.tool = "polygon"
+    desk.press(*places[0])
+    desk.frames()
+    for place in places[1:]:
+        desk.move(*place)
+        desk.frames()
+    desk.release(*places[-1])
+    desk.frames()
+
+
+def test_a_polygon_is_drawn_with_one_stroke(desk: Desk) -> None:
+    around = [(math.cos(0.1 * n), math.sin(0.1 * n)) for n in range(63)]
+    stroke(desk, around)
+    shape = only(desk.world, Shape)
+    assert shape.kind == "polygon" and len(shape.vertices) == 8, "as many as it may have"
+    assert polygons.area(shape.vertices) == pytest.approx(2.9, abs=0.15)
+
+
+def test_a_square_drawn_by_hand_is_one_and_a_crescent_is_refused(desk: Desk) -> None:
+    sides = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)]
+    path = [
+        (a[0] + (b[0] - a[0]) * n / 10 + 0.004 * (n % 2), a[1] + (b[1] - a[1]) * n / 10)
+        for a, b in itertools.pairwise(sides)
+        for n in range(10)
+    ]
+    stroke(desk, path)
+    assert len(only(desk.world, Shape).vertices) == 4
+    bow = [(0.1 * n - 3.0, 0.15 * abs(n - 10)) for n in range(21)]
+    bow += [(0.1 * n - 3.0, 0.15 * abs(n - 10) + 0.6) for n in range(20, -1, -1)]
+    stroke(desk, bow)
+    assert "only convex shapes" in desk.window.notice and len(desk.world.entities()) == 1
+
+
+def test_a_straight_stroke_is_an_edge_and_eight_corners_are_a_polygon(desk: Desk) -> None:
+    stroke(desk, [(0.1 * n, 0.0) for n in range(11)])
+    assert len(desk.window.sketch.grips) == 2
+    corners = [(math.cos(n * math.pi / 4), math.sin(n * math.pi / 4)) for n in range(8)]
+    desk.key("escape")
+    desk.frames()
+    clicks(desk, "polygon", *corners)
+    assert len(only(desk.world, Shape).vertices) == 8
+
+
+def test_a_ramp_has_the_length_and_the_angle_of_its_slope(desk: Desk) -> None:
+    draw(desk, "ramp", (0.0, 0.0), (1.0, 0.2), "2 m, 20 deg")
+    shape = only(desk.world, Shape)
+    width, height = np.ptp(np.array([tuple(vertex) for vertex in shape.vertices]), axis=0)
+    assert (width, height) == pytest.approx((2 * math.cos(math.pi / 9), 2 * math.sin(math.pi / 9)))
+    assert not len(desk.world.batch(Velocity))

@@ -308,8 +308,8 @@ def with_a_driven_body(world: World) -> None:
 
 
 CAUSES: dict[str, tuple[Callable[[World], object], str]] = {
-    "a spring": (lambda world: pendulum(world, (0, 2)), ""),
-    "a damper": (lambda world: pendulum(world, (0, 2), damping=1.0), "by damping"),
+    "a spring": (lambda world: pendulum(world, (0, 2), stiffness=5000.0), ""),
+    "a damper": (lambda world: pendulum(world, (0, 2), stiffness=5000.0, damping=1.0), "by damping"),
     "drag": (with_drag, "by damping"),
     "damping": (with_damping, "by damping"),
     "a driven body": (with_a_driven_body, "by hand and driven bodies"),

@@ -26,7 +26,7 @@ def desk() -> Desk:
 @pytest.mark.parametrize("key", ["delete", "backspace"])
 def test_delete_removes_the_body_under_the_cursor_and_its_springs(desk: Desk, key: str) -> None:
     ball, other = circle(desk.world, (0, 0)), circle(desk.world, (2, 0))
-    pendulum(desk.world, (-3, 1))
+    pendulum(desk.world, (-3, 1), stiffness=5000.0)
     desk.world.spawn(Spring(a=ball, b=other))
     desk.move(0.1, 0)
     desk.key(key)

@@ -2,7 +2,9 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -13,11 +15,14 @@ from physicslab import World
 from physicslab.components import Mass, Material, Pin, Pulley, Rope, Shape, Slot, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.vector import Vector2
+from physicslab.files.scene import load_scene, save_scene
 from physicslab.kernels.accounts import CONTACT, ENERGY, JOINTS, MOTORS, PX
+from physicslab.stepping import rigid_motion
 from physicslab.stepping.accounting import balance_of
 from physicslab.stepping.rigid import Rigid
 
 G = 9.81
+_MOTION = ((Transform, "position"), (Transform, "angle"), (Velocity, "linear"), (Velocity, "angular"))
 
 
 def empty(gravity: float = G) -> World:
@@ -335,6 +340,43 @@ def test_no_chain_of_ropes_makes_energy_or_grows(
     again = made()
     again.run(seconds=0.4)
     assert again.table(Transform)["position"].tobytes() == position.tobytes()
+
+
+def test_single_steps_a_run_and_a_saved_scene_give_the_same_bits(tmp_path: Path) -> None:
+    worlds = []
+    for _ in range(3):
+        world, _ = bar_on_a_pin(0.4, lower=-0.3, upper=0.6, motor_speed=2.0, max_torque=7.0)
+        ball = world.spawn(Transform((0.4, 0.9)), Velocity(), Mass(0.5), Shape.circle(0.1), Material(0.5))
+        world.spawn(Rope(b=ball, anchor_a=(0.0, 0.9), length=0.45))
+        worlds.append(world)
+    for _ in range(60):
+        worlds[0].step()
+    worlds[1].run(steps=60)
+    worlds[2].run(steps=25)
+    save_scene(worlds[2], tmp_path / "scene.json")
+    worlds[2] = load_scene(tmp_path / "scene.json")
+    worlds[2].run(steps=35)
+    assert went_by_events(worlds[1])
+    states = {b"".join(world.table(kind)[name].tobytes() for kind, name in _MOTION) for world in worlds}
+    assert len(states) == 1
+
+
+def test_short_steps_hold_what_events_would() -> None:
+    """Where events accumulate, the rest of a step is made by impulses: limits hold, caps are caps."""
+    world, bar = bar_on_a_pin(0.0, lower=-0.2, motor_speed=-1.0, max_torque=1.5)
+    world.synchronise()
+    rigid = next(stepper for stepper in world.steppers.usable if isinstance(stepper, Rigid))
+    inertia = (1.0 + 0.01) / 12.0 + 0.25
+    with patch.object(rigid_motion, "_MAX_EVENTS", 0):
+        world.run(seconds=0.05)
+        assert rigid.by_impulses == 3
+        spin = world.component(bar, Velocity).angular
+        assert spin == pytest.approx(-(0.5 * G + 1.5) / inertia * 0.05, rel=1e-3)
+        angle = world.component(bar, Transform).angle
+        assert world.account.sums[MOTORS, ENERGY] == pytest.approx(-1.5 * angle, rel=1e-2)
+        world.run(seconds=0.4)
+    assert world.component(bar, Transform).angle == pytest.approx(-0.2, abs=1e-6)
+    assert world.component(bar, Velocity).angular == pytest.approx(0.0, abs=1e-6)
 
 
 # ---- which worlds ------------------------------------------------------------------------------------------

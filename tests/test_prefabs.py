@@ -146,7 +146,7 @@ def test_a_gas_stays_in_its_region_and_between_its_speeds() -> None:
 
 def test_a_pendulum_hangs_at_its_length_and_swings_with_its_period() -> None:
     world = space(gravity=Vector2(0.0, -9.81))
-    bob = pendulum(world, (1, 5), length=2, angle=0.05, stiffness=50_000)
+    bob = pendulum(world, (1, 5), length=2, angle=0.05)
     x, y = place(world, bob)
     assert (x, y) == pytest.approx((1 + 2 * math.sin(0.05), 5 - 2 * math.cos(0.05)))
     crossings: list[float] = []
@@ -157,6 +157,8 @@ def test_a_pendulum_hangs_at_its_length_and_swings_with_its_period() -> None:
             crossings.append(world.time - world.simulation.dt * (1.0 - now) / (before - now))
         before = now
     assert crossings[1] - crossings[0] == pytest.approx(2 * math.pi * math.sqrt(2 / 9.81), rel=2e-3)
+    with pytest.raises(ValueError, match=r"damping = 1\.0: needs a stiffness"):
+        pendulum(world, (0, 0), damping=1.0)
 
 
 def test_a_chain_hangs_together_without_force_at_the_start() -> None:

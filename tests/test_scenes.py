@@ -100,7 +100,7 @@ def test_what_a_scene_does_not_need_is_left_out() -> None:
     assert running >= {"GravitySystem", "IntegrateSystem", "TrailSystem"} and not running & left_out
     running, left_out = run("pendulum")
     assert left_out >= {"DragSystem", *touching, "TrailSystem"}
-    assert running >= {"GravitySystem", "SpringSystem", "IntegrateSystem"} and not running & left_out
+    assert running >= {"GravitySystem", "JointSystem", "IntegrateSystem"} and not running & left_out
 
 
 def test_two_planets_have_and_keep_no_momentum() -> None:

@@ -173,3 +173,21 @@ def test_rods_that_contradict_each_other_explode_nothing() -> None:
     assert largest_error(world) > 0.1
     assert measure_energy(world).kinetic < 1e3
     assert np.abs(world.table(Transform)["position"]).max() < 5.0
+
+
+def test_a_linkage_passes_where_it_lies_flat_and_goes_on_as_it_came() -> None:
+    world, rods = World(), []
+    for x in (0.0, 1.0):
+        rods.append(body(world, x, 1.0, vx=-3.0, spin=3.0))
+        world.spawn(Pin(b=rods[-1], anchor_a=(x, 0.0), anchor_b=(0.0, -1.0)))
+    top = body(world, 0.5, 1.0, vx=-3.0)
+    for x, rod in zip((-0.5, 0.5), rods, strict=True):
+        world.spawn(Pin(rod, top, anchor_b=(x, 0.0)))
+    world.synchronise()
+    before = measure_energy(world).total
+    world.run(seconds=1.5)
+    angles = [world.component(rod, Transform).angle for rod in rods]
+    assert angles[0] > 1.6 * math.pi, "flat twice"
+    assert angles[1] == pytest.approx(angles[0], abs=1e-13)
+    assert world.component(top, Transform).angle == pytest.approx(0.0, abs=1e-13)
+    assert measure_energy(world).total == pytest.approx(before, abs=1e-7)

@@ -23,7 +23,7 @@ from physicslab.components import (
     Velocity,
     Weld,
 )
-from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.diagnostics.joints import JointState, joint_states
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
@@ -233,3 +233,20 @@ def test_rows_that_share_a_body_are_near_in_a_block(count: int) -> None:
     assert int((np.arange(len(rows)) - blocks.low).max()) <= 1
     hub = order_rows([{0, n} for n in range(1, 2000)], [range(n, n + 1) for n in range(1999)])
     assert len(hub.ends) == 1999, "too wide to be solved at once"
+
+
+@pytest.mark.parametrize("span", [3.04, 3.2, 3.36])
+def test_a_chain_that_does_not_fit_between_its_ends_gains_no_more_than_its_springs_have(span: float) -> None:
+    world, end = bench(), (-0.5 * span, 0.0)
+    before: int | None = None
+    for n in range(8):
+        plank = box(world, ((n - 3.5) * span / 8, 0.0), width=0.4, height=0.1, mass=2.0)
+        world.spawn(Pin(before, plank, end, (-0.2, 0.0)))
+        before, end = plank, (0.2, 0.0)
+    world.spawn(Pin(None, before, (0.5 * span, 0.0), end))
+    stretch = abs(span - 3.2) / 8
+    springs = 0.5 * 9 * 2.0 * (2.0 * math.pi * 60.0 * stretch) ** 2
+    for _ in range(30):
+        world.step()
+        assert measure_account(world).now.energy <= springs + 1.0
+    assert max(joint.stretch for joint in joint_states(world)) <= max(0.0, span - 3.2) / 3 + 0.01

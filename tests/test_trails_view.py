@@ -56,11 +56,13 @@ def test_what_is_spawned_meanwhile_gets_a_trail_too() -> None:
     desk.press(1, 1)
     desk.release(1, 1)
     desk.press(-1, 1, "right")
+    desk.release(-1, 1, "right")
     desk.frames(3)
     assert len(worn(world)) == 2
     desk.key("r")
     desk.frames()
     desk.press(0, 0)
+    desk.release(0, 0)
     desk.frames(3)
     assert len(worn(world)) == 1
     system = world.schedule.find(TrailSystem)

@@ -241,8 +241,8 @@ def test_run_writes_what_can_be_relied_on(tmp_path: Path, capsys: pytest.Capture
 def test_trust_in_a_run_that_was_changed_is_in_the_changed_run(capsys: pytest.CaptureFixture[str]) -> None:
     digits = {}
     for substeps in ("1", "16"):
-        arguments = ["run", "pendulum", "--seconds", "2", "--integrator", "leapfrog", "--substeps", substeps]
-        assert main([*arguments, "--trust", "--json", "-"]) == 0
+        words = f"run two_planets --seconds 2 --integrator leapfrog --substeps {substeps}"
+        assert main([*words.split(), "--trust", "--json", "-"]) == 0
         digits[substeps] = json.loads(capsys.readouterr().out)["trust"]["digits"]
     assert digits["16"] - digits["1"] == pytest.approx(2.0 * math.log10(16.0), abs=0.5)
 

@@ -281,7 +281,7 @@ def test_the_sinking_of_a_stack_is_of_order_two() -> None:
 def test_the_mirror_image_of_a_scene_without_contacts_is_the_same_scene() -> None:
     def load() -> World:
         world = read_scene(scene(physics={"gravity": [0.7, -9.81]}))
-        pendulum(world, (0.3, 1.0))
+        pendulum(world, (0.3, 1.0), stiffness=5000.0)
         world.spawn(Transform((2.0, 1.0), 0.4), *_loose())
         return world
 

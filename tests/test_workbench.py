@@ -33,7 +33,7 @@ from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
 from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.controls import CONTROLS, Control
-from physicslab.view.controls.spawning import BODIES
+from physicslab.view.controls.spawning import BODIES, GROUPS
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import DRAWING, HAND, MORE_TOOLS, PALETTE, PAN, TOOLS
 from physicslab.view.window.recent import Recovery
@@ -132,7 +132,10 @@ def test_every_tool_can_be_taken_up_and_its_usage_is_told(desk: Desk, tool: Tool
     assert desk.world.entities() == []
 
 
-@pytest.mark.parametrize("tool", [DRAWING[one.name] for one in BODIES], ids=lambda tool: tool.name)
+SPAWNING = [DRAWING[one.name] for one in (*BODIES, *GROUPS) if not one.is_open]
+
+
+@pytest.mark.parametrize("tool", SPAWNING, ids=lambda tool: tool.name)
 def test_every_thing_there_is_can_be_spawned_with_a_click(desk: Desk, tool: Tool) -> None:
     take_up(desk, tool)
     at(desk, 1, -0.5)
@@ -385,7 +388,7 @@ def test_no_click_on_a_panel_reaches_the_world(desk: Desk, button: str, first: i
     desk.frames(SETTLED)
     centre = desk.window.camera.centre
     window = Window(desk.window.canvas)
-    changes = ("Delete", "Duplicate", "Hang on a rod", "Pin", "Plot", "Step back", "Time line")
+    changes = ("Delete", "Duplicate", "Hang, pin ...", "Plot", "Step back", "Time line")
     for label in [label for label in desk.ui.places if label not in changes][first::3]:
         click(desk, label, button)
         tap(desk, "escape")

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from physicslab.components.lengths import extent
-from physicslab.components.vertices import centred, plain, why_not_convex, why_off_centre
+from physicslab.components.vertices import centred, plain, why_no_chain, why_not_convex, why_off_centre
 from physicslab.ecs.component import Component, InvalidValue, Points, component, field
 from physicslab.ecs.fields import LENGTH_LIMIT
 from physicslab.ecs.vector import Vector2
@@ -24,6 +24,8 @@ class Kind(NamedTuple):
         The fields of :class:`Shape` that stretch the core along its axes, and that round it; empty for none.
     own : pair of ints
         The least and the largest number of ``vertices`` that a shape of this kind has of its own; 0 for none.
+    part : int
+        How many of its vertices are a convex part, of which it is one after the other; 0 where it is convex.
     """
 
     core: tuple[tuple[float, float], ...]
@@ -31,6 +33,7 @@ class Kind(NamedTuple):
     y: str = ""
     radius: str = ""
     own: tuple[int, int] = (0, 0)
+    part: int = 0
 
     @property
     def fields(self) -> tuple[str, ...]:
@@ -44,10 +47,13 @@ KINDS = {
     "box": Kind(((0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5)), x="width", y="height"),
     "capsule": Kind(((0.5, 0.0), (-0.5, 0.0)), x="length", radius="radius"),
     "polygon": Kind((), radius="radius", own=(3, 8)),
+    "chain": Kind((), own=(2, 1000), part=2),
 }
 """Every kind of shape. A new one is a row; loops read the table :mod:`physicslab.kernels.geometry.shapes`."""
-CIRCLE, BOX = 1, 2
+CIRCLE, BOX, CHAIN = 1, 2, 5
 """Codes in the ``kind`` column: their places in the list, from 1 on; 0 is no shape."""
+STAYS = "that of a body without Velocity: a chain does not move"
+"""What a kind must be in place of a chain that moves."""
 
 
 def kind_of(code: int) -> Kind:
@@ -68,15 +74,20 @@ class Shape(Component):
         default=(),
         unit="m",
         limit=LENGTH_LIMIT,
-        meaning="corners of a polygon, counter-clockwise, from its centre of mass",
+        meaning="corners of a polygon, counter-clockwise, from its centre; of a chain, solid on its left",
     )
 
     HAS = {name: kind.fields for name, kind in KINDS.items()}  # noqa: RUF012
 
     @property
     def core(self) -> tuple[Vector2, ...]:
-        """The vertices of its core [m], counter-clockwise: of a circle its middle, of a box its corners."""
+        """The vertices of its core [m], counter-clockwise: of a circle its middle, of a box its corners.
+
+        Those of a chain go there and back again.
+        """
         kind = KINDS[self.kind]
+        if kind.part:
+            return (*self.vertices, *self.vertices[-2:0:-1])
         if kind.own[1]:
             return self.vertices
         x, y = (float(getattr(self, name)) if name else 0.0 for name in (kind.x, kind.y))
@@ -109,6 +120,14 @@ class Shape(Component):
         return Shape("capsule", radius=radius, length=length)
 
     @staticmethod
+    def chain(vertices: Sequence[Vector2 | tuple[float, float]]) -> Shape:
+        """Return a chain of segments between 2 to 1,000 vertices [m], solid on its left, for a fixed body.
+
+        It is a loop where the last vertex is the first one.
+        """
+        return Shape("chain", vertices=[Vector2(*vertex) for vertex in vertices])
+
+    @staticmethod
     def polygon(vertices: Sequence[Vector2 | tuple[float, float]], radius: float = 0.0) -> Shape:
         """Return a convex polygon of 3 to 8 vertices [m], counter-clockwise, rounded by a radius [m].
 
@@ -131,6 +150,9 @@ class Shape(Component):
             self._check_vertices(kind)
 
     def _check_vertices(self, kind: Kind) -> None:
-        refused = why_not_convex(self.vertices, *kind.own) or why_off_centre(self.vertices, self.radius)
+        if kind.part:
+            refused = why_no_chain(self.vertices, *kind.own)
+        else:
+            refused = why_not_convex(self.vertices, *kind.own) or why_off_centre(self.vertices, self.radius)
         if refused is not None:
             raise InvalidValue("Shape", "vertices", plain(self.vertices), refused)

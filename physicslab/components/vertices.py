@@ -34,6 +34,20 @@ def why_not_convex(vertices: Sequence[Vector2], least: int, most: int) -> str | 
     return None
 
 
+def why_no_chain(vertices: Sequence[Vector2], least: int, most: int) -> str | None:
+    """Return in words what the vertices of a chain must be that these [m] are not, or ``None``."""
+    count = len(vertices)
+    if not least <= count <= most:
+        return f"{least} to {most} vertices; these are {count}"
+    size = max(vertex.magnitude for vertex in vertices)
+    for k, (one, after) in enumerate(pairwise(vertices), start=1):
+        if (after - one).magnitude <= _ROUNDING * size:
+            return f"vertices at different places; number {k} and number {k + 1} are at one"
+    if count == 3 and vertices[0] == vertices[-1]:
+        return "open, or a loop of more than two segments"
+    return None
+
+
 def _turns(vertices: Sequence[Vector2]) -> list[float]:
     """Return by how much the outline turns to the left at each vertex [rad]."""
     edges = [after - one for one, after in pairwise((*vertices, vertices[0]))]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform
+from physicslab.components.shape import CHAIN
 from physicslab.ecs.vector import Vector2
 from physicslab.state.shapes import cores_of, lengths_of
 from physicslab.state.state import State
@@ -35,6 +36,8 @@ class Outlines:
         Their numbers.
     radius, size : float64 arrays (n,)
         What rounds the core, and the smaller one of its whole extents [m].
+    line : bool array (n,)
+        Whether it is a chain, which has no inside.
     """
 
     place: Numbers
@@ -42,6 +45,7 @@ class Outlines:
     vertices: Rows
     radius: Numbers
     size: Numbers
+    line: NDArray[np.bool_]
 
     def moved(self, by: Vector2) -> Outlines:
         """Return the same elsewhere."""
@@ -51,7 +55,7 @@ class Outlines:
         """Return the one in a row, with a place of its own."""
         own = slice(n, n + 1)
         place, corners, vertices = self.place[own].copy(), self.corners[own], self.vertices[own]
-        return Outlines(place, corners, vertices, self.radius[own], self.size[own])
+        return Outlines(place, corners, vertices, self.radius[own], self.size[own], self.line[own])
 
     @property
     def reach(self) -> Numbers:
@@ -82,15 +86,17 @@ def outlines_at(state: State, rows: Rows, place: Numbers, angle: Numbers) -> Out
     """Return outlines of the shapes in some rows, at places (n, 2) [m] and turned by angles (n,) [rad]."""
     half, radius = lengths_of(state.table(Shape), rows)
     corners, vertices, _ = cores_of(state.table(Shape), rows)
+    line = state.table(Shape)["kind"][rows] == CHAIN
+    half[line] = np.hypot(*half[line].T)[:, None]
     c, s = np.cos(angle), np.sin(angle)
     turned = np.stack((c, s, -s, c), axis=1).reshape(-1, 2, 2)
-    return Outlines(place, corners @ turned, vertices, radius, 2.0 * (half.min(axis=1) + radius))
+    return Outlines(place, corners @ turned, vertices, radius, 2.0 * (half.min(axis=1) + radius), line)
 
 
 def overlapping(one: Outlines, n: int, others: Outlines) -> Rows:
-    """Return which of the others may overlap a shape: their boxes along the axes of the world do."""
+    """Return which of the others may overlap a shape: their upright boxes do, and they are no chains."""
     near = (np.abs(others.place - one.place[n]) < others.reach + one.reach[n]).all(axis=1)
-    return np.flatnonzero(near)
+    return np.flatnonzero(near & ~others.line & ~one.line[n])
 
 
 def overlap(one: Outlines, n: int, two: Outlines, m: int) -> tuple[float, Numbers]:

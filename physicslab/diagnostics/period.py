@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.components import Mass, Pin, Rod, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.state.attached import motion_of_point
+from physicslab.state.joints import Joint
 from physicslab.world import World
 
 _STRING = 0.005
@@ -72,13 +73,16 @@ def spring_state(world: World, entity: int) -> SpringState | None:
 
 
 def period_of(world: World, entity: int) -> Period | None:
-    """Return how long an oscillation of a body or a spring takes; ``None`` where there is none.
+    """Return how long an oscillation of a body, a spring or a joint takes; ``None`` where there is none.
 
-    One spring alone may hold the body, and its other end something fixed; then uniform gravity and the spring
-    are looked at, and no other force and no contact. A body on a joint has none here. One that its weight
-    hardly stretches the spring of is a pendulum, whose period follows from its amplitude and from how far the
-    spring gives way.
+    One spring, rod or pin alone may hold the body, and its other end something fixed; then uniform gravity
+    and what holds it are looked at, and no other force and no contact. A body that hardly stretches its
+    spring is a pendulum, whose period follows from its amplitude and from how far the spring gives way.
     """
+    world.synchronise()
+    joints = [one for one in world.joints.joints if entity in (one.entity, *_bodies_of(world, one))]
+    if joints:
+        return _on_a_joint(world, joints[0]) if len(joints) == 1 else None
     holding = [entity] if world.has(entity, Spring) else _springs_at(world, entity)
     if len(holding) != 1:
         return None
@@ -92,7 +96,7 @@ def period_of(world: World, entity: int) -> Period | None:
         return None
     mass = 1.0 / sum(1.0 / world.component(end, Mass).mass for end in bodies)
     if len(bodies) == 1:
-        swing = _pendulum(world, number, bodies[0], mass)
+        swing = _on_a_string(world, number, bodies[0], mass)
         if swing is not None:
             return swing if swing.seconds > 0.0 else None
     rate = spring.stiffness / mass - (0.5 * spring.damping / mass) ** 2
@@ -101,8 +105,65 @@ def period_of(world: World, entity: int) -> Period | None:
     return Period(2.0 * math.pi / math.sqrt(rate), "of small oscillations along the spring: 2 pi sqrt(m / k)")
 
 
-def _pendulum(world: World, number: int, body: int, mass: float) -> Period | None:
-    """Return the period of a pendulum; 0 s if it turns over; ``None`` for any other body."""
+def _bodies_of(world: World, joint: Joint) -> list[int]:
+    found: list[int] = world.entity_index.entities[[joint.a, joint.b]].tolist()
+    return found
+
+
+def _on_a_joint(world: World, joint: Joint) -> Period | None:
+    """Return the period of a body that one rod or pin alone holds to something fixed."""
+    bodies = _bodies_of(world, joint)
+    moving = [body for body in bodies if body and _moves(world, body)]
+    if len(moving) != 1 or _springs_at(world, moving[0]) or world.physics.gravity_mode != "linear":
+        return None
+    if sum(moving[0] in _bodies_of(world, one) for one in world.joints.joints) > 1:
+        return None
+    (body,), part = moving, world.component(joint.entity, joint.kind)
+    end = bodies.index(body)
+    own, fixed = (part.anchor_a, part.anchor_b)[:: 1 if end == 0 else -1]
+    pivot, speed = motion_of_point(world, bodies[1 - end] or None, fixed)
+    row, place = world.entity_index.row_of[body], world.component(body, Transform).position
+    arm, velocity = place - pivot, world.component(body, Velocity).linear - speed
+    inertia = 0.0  # a rod at the middle does not turn it
+    if joint.kind is Pin:
+        inverse = float(world.bodies.inverse_inertia[row])
+        inertia = (1.0 / inverse if inverse else math.inf) / world.component(body, Mass).mass
+    elif joint.kind is not Rod or own:
+        return None
+    bounded = joint.size > (2 if joint.kind is Pin else 1)  # it has limits, or a motor
+    if bounded or arm.magnitude < _AT_REST or not math.isfinite(inertia):
+        return None
+    length = (inertia + arm.dot(arm)) / arm.magnitude
+    return _swing(world.physics.gravity, arm, arm.cross(velocity) / arm.dot(arm), length)
+
+
+def _swing(pull: Vector2, arm: Vector2, rate: float, length: float, give: float = 0.0) -> Period | None:
+    """Return the period of a pendulum of a reduced length [m] that turns at a rate [rad/s].
+
+    ``None`` if it turns over, or nothing pulls it. The spring that holds it may give way by a share of its
+    length: it follows the pull on it and is longer by e (c + u) of its length, e = m g / (k L), at the cosine
+    c of the angle and with u = L w^2 / g. To first order in e the energy, in m g L, is
+    u/2 - c + e (3/2 u^2 + u c - c^2/2), and so w^2 = 2 g/L (c - c0) (1 - e (15/2 c - 13/2 c0)).
+    """
+    strength = pull.magnitude
+    if not strength:
+        return None
+    c, u = arm.dot(pull) / (arm.magnitude * strength), length * rate * rate / strength
+    # If it rings about that length, the angular momentum does not: w is that without the ringing.
+    u *= (arm.magnitude / (length * (1.0 + give * (c + u)))) ** 4 if give else 1.0
+    energy = 0.5 * u - c + give * (1.5 * u * u + u * c - 0.5 * c * c)
+    highest = -2.0 * energy / (1.0 + math.sqrt(1.0 - 2.0 * give * energy))
+    if highest <= -1.0:
+        return None
+    first, second = _elliptic(0.5 * (1.0 - min(highest, 1.0)))
+    turning = first * (1.0 - give * (3.75 + 3.25 * highest)) + 7.5 * give * second
+    angle = math.degrees(math.acos(min(highest, 1.0)))
+    law = f"of a pendulum that swings to {angle:.1f}° on each side"
+    return Period(4.0 * math.sqrt(length / strength) * turning, law)
+
+
+def _on_a_string(world: World, number: int, body: int, mass: float) -> Period | None:
+    """Return the period of a pendulum on a spring; 0 s if it turns over; ``None`` for any other body."""
     physics, state = world.physics, spring_state(world, number)
     spring, pull = world.component(number, Spring), world.physics.gravity.magnitude
     if physics.gravity_mode != "linear" or not pull or state is None:
@@ -114,23 +175,8 @@ def _pendulum(world: World, number: int, body: int, mass: float) -> Period | Non
         return None
     pivot = state.end if own == body else state.start
     arm, velocity = world.component(body, Transform).position - pivot, world.component(body, Velocity).linear
-    # The spring follows the pull on it: it is longer by e (c + u) of its length, e = m g / (k L), at the
-    # cosine c of the angle and with u = L w^2 / g. To first order in e the energy, in m g L, is
-    # u/2 - c + e (3/2 u^2 + u c - c^2/2), and so w^2 = 2 g/L (c - c0) (1 - e (15/2 c - 13/2 c0)).
-    length, give = spring.rest_length, stretch / spring.rest_length
-    c, swept = arm.dot(physics.gravity) / (arm.magnitude * pull), arm.cross(velocity)
-    u = length * (swept / arm.dot(arm)) ** 2 / pull
-    # If it rings about that length, the angular momentum does not: w is that without the ringing.
-    u = length * (swept / (length * (1.0 + give * (c + u))) ** 2) ** 2 / pull
-    energy = 0.5 * u - c + give * (1.5 * u * u + u * c - 0.5 * c * c)
-    highest = -2.0 * energy / (1.0 + math.sqrt(1.0 - 2.0 * give * energy))
-    if highest <= -1.0:
-        return Period(0.0, "")
-    first, second = _elliptic(0.5 * (1.0 - min(highest, 1.0)))
-    turning = first * (1.0 - give * (3.75 + 3.25 * highest)) + 7.5 * give * second
-    angle = math.degrees(math.acos(min(highest, 1.0)))
-    law = f"of a pendulum that swings to {angle:.1f}° on each side"
-    return Period(4.0 * math.sqrt(length / pull) * turning, law)
+    rate, length = arm.cross(velocity) / arm.dot(arm), spring.rest_length
+    return _swing(physics.gravity, arm, rate, length, stretch / length) or Period(0.0, "")
 
 
 def _elliptic(m: float) -> tuple[float, float]:
@@ -150,9 +196,9 @@ def _elliptic(m: float) -> tuple[float, float]:
 
 
 def gives_way(world: World, entity: int) -> float | None:
-    """Return by how much the weight of its bodies stretches a spring that serves as a rod [m].
+    """Return by how much the weight of its bodies stretches a spring that they hang from [m].
 
-    It is that of the heavier one. ``None`` where weight stretches it by more than a rod, or nothing has any.
+    It is that of the heavier one. ``None`` where nothing has any weight, or nothing holds it.
     """
     if not world.has(entity, Spring) or world.physics.gravity_mode != "linear":
         return None
@@ -161,8 +207,7 @@ def gives_way(world: World, entity: int) -> float | None:
     if not ends or spring.stiffness <= 0.0:
         return None
     heaviest = max(world.component(end, Mass).mass for end in ends)
-    stretch = heaviest * world.physics.gravity.magnitude / spring.stiffness
-    return stretch if 0.0 < stretch <= _STRING * spring.rest_length else None
+    return heaviest * world.physics.gravity.magnitude / spring.stiffness or None
 
 
 def _moves(world: World, entity: int) -> bool:

@@ -25,6 +25,7 @@ from physicslab.components import (
 from physicslab.components.gear import COUPLED, OTHER_JOINT
 from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.components.name import why_no_id
+from physicslab.components.shape import STAYS
 from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
 from physicslab.ecs.text import suggestion
@@ -213,6 +214,8 @@ def _check_together(components: Sequence[Component], entity: Mapping[str, Any], 
         raise checks.refusal(f"{where}: Medium", entity[Medium.__name__], allowed)
     if Mass in of and Shape in of:
         _check_inertia(of[Mass], of[Shape], where)
+    if Velocity in of and Shape in of and of[Shape].kind == "chain":
+        raise checks.refusal(f"{where}: Shape.kind", "chain", STAYS)
     fixed = Mass in of and of[Mass].fixed_rotation
     if fixed and Velocity in of and of[Velocity].angular != 0.0:
         angular = of[Velocity].angular

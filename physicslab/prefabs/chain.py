@@ -1,6 +1,6 @@
-"""What hangs on springs: chains of balls, pendulums."""
+"""What hangs: chains of balls on springs, pendulums on rods or springs."""
 
-from physicslab.components import Spring
+from physicslab.components import Rod, Spring
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import Pair, circle
 from physicslab.world import World
@@ -59,36 +59,46 @@ def pendulum(
     length: float = 2.0,
     angle: float = 0.5,
     radius: float = 0.2,
-    stiffness: float = 5_000.0,
+    stiffness: float | None = None,
     damping: float = 0.0,
     mass: float = 1.0,
     restitution: float = 0.0,
     friction: float = 0.5,
     name: str | None = None,
 ) -> int:
-    """Spawn a disc that hangs from a fixed point by a spring, stiff enough for a rod; return its entity.
+    """Spawn a disc that hangs from a fixed point on a rod, or on a spring; return its entity.
 
-    The bob's centre is the spring's end, so that it swings without being turned. The spring pushes too.
+    The end is at the bob's centre, so that it swings without being turned. A rod and a spring push, too.
 
     Parameters
     ----------
     anchor : vector
         The point of the world it hangs from [m].
     length : float
-        Rest length of the spring, and the bob's distance at the start [m].
+        Of the rod, or rest length of the spring: the bob's distance at the start [m].
     angle : float
         Where the bob is at the start: from straight down, counter-clockwise [rad].
     radius : float
         Of the bob [m].
-    stiffness, damping : float
-        Of the spring [N/m], [N s/m]; it gives way by about the bob's weight over the stiffness.
+    stiffness, damping : float, optional
+        Of a spring in place of the rod [N/m], [N s/m]; it gives way by the bob's weight over the stiffness.
     mass, restitution, friction, name : optional
         Of the bob: [kg], the numbers of its surface, its id.
+
+    Raises
+    ------
+    ValueError
+        If there is a damping and no stiffness.
     """
+    if stiffness is None and damping:
+        raise ValueError(f"damping = {damping!r}: needs a stiffness, for a spring in place of the rod")
     hanging = Vector2(0.0, -length).rotated(angle)
     bob = circle(
         world, Vector2(*anchor) + hanging,
         radius=radius, mass=mass, restitution=restitution, friction=friction, name=name,
     )  # fmt: skip
-    world.add(bob, Spring(anchor_b=anchor, rest_length=length, stiffness=stiffness, damping=damping))
+    if stiffness is None:
+        world.add(bob, Rod(anchor_b=anchor, length=length))
+    else:
+        world.add(bob, Spring(anchor_b=anchor, rest_length=length, stiffness=stiffness, damping=damping))
     return bob

@@ -16,7 +16,7 @@ def _fill(world: World) -> None:
 PENDULUM = Scene(
     name="pendulum",
     title="A pendulum",
-    description="A bob on a stiff spring of 2 m; its period is a little above 2 pi sqrt(l / g) = 2.84 s.",
+    description="A bob on a rod of 2 m; its period is a little above 2 pi sqrt(l / g) = 2.84 s.",
     fill=_fill,
     view=(-1.4, 0.4, 3.6, 3.3),  # the graph of its energies has the right half
 )

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Held, Mass, Material, Medium, Shape, Spring, Transform, Velocity
-from physicslab.components.shape import kind_of
+from physicslab.components.shape import CHAIN, STAYS, kind_of
 from physicslab.ecs.component import InvalidValue
 from physicslab.kernels import direct_entry, motion, ranges
 from physicslab.kernels.solver import impulse
@@ -53,6 +53,7 @@ def derive_masses(state: State) -> None:
         outside = ranges.find_outside(*bodies.checked)
         if outside >= 0:
             _refuse_number(state, outside)
+        _check_chains(state)
         columns = _columns(state)
         ratio, infinite, sizeless, bodies.smallest = motion.derive_masses(*columns)
         if not len(state.batch(Medium)):  # else some are copies, which do not follow edits
@@ -64,6 +65,12 @@ def derive_masses(state: State) -> None:
         inertia, allowed = float(mass["inertia"][infinite]), f"{_INERTIA.allowed}, of mass and Shape too"
         raise InvalidValue(f"{state.label_of_row(infinite)}: Mass", "inertia", inertia, allowed)
     bodies.unequal = ratio > impulse.HEAVY_RATIO
+
+
+def _check_chains(state: State) -> None:
+    """Refuse chains that move."""
+    for row in np.flatnonzero((state.table(Shape)["kind"] == CHAIN) & state.table(Velocity).present).tolist():
+        raise InvalidValue(f"{state.label_of_row(row)}: Shape", "kind", "chain", STAYS)
 
 
 def _columns(state: State) -> tuple[Any, ...]:

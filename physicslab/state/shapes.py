@@ -39,6 +39,7 @@ class Register:
         for kind in kinds:
             sizes = (_SIZES.index(name) if name else -1 for name in (kind.x, kind.y, kind.radius))
             self._add(np.array(kind.core).reshape(-1, 2), *sizes)
+            self.kinds[self._cores - 1, 0] += kind.part
         if self._cores > OWN + 1:
             raise ValueError(f"there are more than {OWN} kinds of shapes: raise OWN")
         self._cores = OWN + 1
@@ -46,20 +47,26 @@ class Register:
     def arrays(self) -> tuple[NDArray[Any], ...]:
         """Return kinds, extents and pool with all lists of points: another tuple where one is new."""
         for code in range(self._known, len(POINTS)):
-            points = [(point.x, point.y) for point in POINTS.value_of(code)]
-            self._add(np.array(points).reshape(-1, 2), -1, -1, 0)
+            points = np.array([(point.x, point.y) for point in POINTS.value_of(code)])
+            if len(points) > 1:  # a component with fewer has been refused
+                closed = bool((points[0] == points[-1]).all())
+                before, behind = points[[-2 if closed else 1]], points[[1 if closed else -2]]
+                points = np.concatenate((before, points, behind))
+            self._add(points.reshape(-1, 2), -1, -1, 0, beside=1)
             self._known = code + 1
         present = self.kinds, self.extents, self.pool
         if len(self._arrays) == 0 or any(a is not b for a, b in zip(self._arrays, present, strict=True)):
             self._arrays = present
         return self._arrays
 
-    def _add(self, core: NDArray[np.float64], x: int, y: int, radius: int) -> None:
+    def _add(self, core: NDArray[np.float64], x: int, y: int, radius: int, beside: int = 0) -> None:
+        """Add a core; so many vertices at its beginning and its end are its neighbours as a chain."""
         row, first = self._cores, self._vertices
         extent = np.abs(core).max(axis=0, initial=0.0)
         self.kinds, self.extents = _with_room(self.kinds, row + 1), _with_room(self.extents, row + 1)
         self.pool = _with_room(self.pool, first + len(core))
-        self.kinds[row], self.extents[row] = (len(core), first, x, y, radius), extent
+        self.kinds[row] = max(len(core) - 2 * beside, 0), first + beside, x, y, radius
+        self.extents[row] = extent
         self.pool[first : first + len(core)] = core / np.where(extent > 0.0, extent, 1.0)
         self._cores, self._vertices = row + 1, first + len(core)
 
@@ -95,7 +102,10 @@ def sizes_in(table: Table) -> SizesTuple:
 
 
 class Cores(NamedTuple):
-    """Rounded polygons: vertices (n, 8, 2) [m], the last one repeated; their numbers and radii (n,) [m]."""
+    """Rounded polygons: vertices (n, 8, 2) [m], the last one repeated; their numbers and radii (n,) [m].
+
+    A chain goes there and back again, with as many vertices more as it needs.
+    """
 
     corners: NDArray[np.float64]
     vertices: NDArray[np.int64]
@@ -125,6 +135,11 @@ def cores_of(table: Table, rows: NDArray[np.int64]) -> Cores:
     """Return the shapes of some rows as they are now, be they in the table of shapes yet or not."""
     half, radius = lengths_of(table, rows)
     vertices, first = REGISTER.kinds[_rows_in(table, rows), :2].T
-    last = np.maximum(vertices - 1, 0)[:, None]
-    corners = REGISTER.pool[first[:, None] + np.minimum(np.arange(MOST_VERTICES), last)] * half[:, None, :]
+    last, chain = np.maximum(vertices - 1, 0)[:, None], table["kind"][rows] == shape.CHAIN
+    most = max(MOST_VERTICES, 2 * int(vertices[chain].max(initial=0)))
+    which = np.minimum(np.arange(most), last)
+    if chain.any():
+        which[chain] = np.maximum(last[chain] - np.abs(np.arange(most) - last[chain]), 0)
+        vertices = np.where(chain, 2 * last[:, 0], vertices)
+    corners = REGISTER.pool[first[:, None] + which] * half[:, None, :]
     return Cores(corners, vertices, radius)

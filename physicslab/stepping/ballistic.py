@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Material, Shape, Transform, Velocity
-from physicslab.components.shape import KINDS
+from physicslab.components.shape import CHAIN, KINDS
 from physicslab.state.solid import solid_rows
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import BroadPhaseSystem
@@ -48,6 +48,8 @@ def why_not_exact(state: State, schedule: Schedule) -> str | None:
         label, kind = state.label_of_row(int(rows[0])), state.table(Shape)["kind"][rows[0]]
         name = list(KINDS)[kind - 1]
         return f"{label} is a {name} that may turn (Mass.fixed_rotation would keep it as it is)"
+    if (reason := why_chained(state)) is not None:
+        return reason
     if count_pairs(state) > MAX_PAIRS:
         return f"more than {MAX_PAIRS} pairs may meet"
     return None
@@ -72,6 +74,12 @@ def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:
         elif not (system.is_engine or type(system).marked().keys() <= _OBSERVING):
             return f"{system.name} acts within the step"
     return None
+
+
+def why_chained(state: State) -> str | None:
+    """Return which chain is in the way of contacts that are located in time, or ``None``."""
+    rows = np.flatnonzero(state.table(Shape)["kind"] == CHAIN)
+    return f"{state.label_of_row(int(rows[0]))} is a chain, which soft contacts know" if len(rows) else None
 
 
 def turning_rows(state: State) -> NDArray[np.int64]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
 from physicslab.contacts.islands import wake_neighbours
-from physicslab.contacts.outlines import Outlines, exits, outlines_of, overlap, overlapping
+from physicslab.contacts.outlines import Numbers, Outlines, exits, outlines_of, overlap, overlapping
 from physicslab.kernels.accounts import OVERLAP
 from physicslab.kernels.solver.separate import BEYOND, DEEP, ROUNDING
 from physicslab.state.state import State
@@ -36,8 +36,6 @@ _TRIES, _GRID = 40, 12
 """How many places are tried; then how many across and up."""
 _INWARDS = np.array(((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)))
 """The normals of the walls: left, bottom, right, top."""
-
-type Numbers = NDArray[np.float64]
 
 
 def bring_back(state: State, schedule: Schedule) -> int:

@@ -22,6 +22,7 @@ from physicslab.stepping.run import Stepped
 from physicslab.stepping.select import Steppers
 
 type Rows = NDArray[np.int64]
+"""Numbers of rows or entities (n,)."""
 
 _COUNTED = ("force_evaluations", "collisions", "brought_back")
 """What a world counts that is the sum of its islands."""

@@ -22,7 +22,9 @@ from physicslab.systems.schedule import Schedule
 from physicslab.systems.standard import PHYSICS_SYSTEMS
 
 type Rows = NDArray[np.int64]
+"""Numbers of rows (n,)."""
 type Numbers = NDArray[np.float64]
+"""Of bodies (n,), or of vectors (n, 2)."""
 
 MAX_BODIES = 12
 """Number of bodies with a Shape above which an island has none of its own steppers: all such are together."""

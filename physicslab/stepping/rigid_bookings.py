@@ -8,6 +8,7 @@ from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 
 type Numbers = NDArray[np.float64]
+"""Of coordinates, of speeds, or of sums (n,)."""
 
 
 def _momenta(ode: OdeSystem, q: Numbers, v: Numbers) -> Numbers:

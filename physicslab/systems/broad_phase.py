@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Shape, Transform, Velocity
+from physicslab.components.shape import CHAIN
 from physicslab.contacts.arguments import motion_of, near_in, shapes_of, speculative_margin
 from physicslab.contacts.near_pairs import partition
-from physicslab.kernels.broad import grid, leaving, near_pairs
+from physicslab.ecs.fields import POINTS
+from physicslab.kernels.broad import chains, grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes, still_holds
 from physicslab.kernels.wide import slots
 from physicslab.state.solid import solid_rows
@@ -122,6 +124,7 @@ class BroadPhaseSystem(System):
         self._couples: NDArray[np.uint32] = np.zeros(512, np.uint32)
         self._pairs: NDArray[np.int64] = np.zeros((512, 3), np.int64)
         self.bounds: NDArray[np.float64] = np.zeros(4)
+        self.chains: NDArray[np.int64] = np.zeros(0, np.int64)
         self._listed_for: tuple[object, ...] = ()
 
     def attach(self, state: State) -> None:
@@ -136,6 +139,9 @@ class BroadPhaseSystem(System):
             state.contacts.stale = True
         if state.physics.bounds is not None:
             self.bounds[:] = state.physics.bounds
+        self.chains = np.flatnonzero(state.table(Shape)["kind"] == CHAIN)
+        if len(self.chains):
+            state.compile((chains.add_chains,))
 
     def why_left_out(self, state: State) -> str | None:
         """Needed where two things could ever meet."""
@@ -174,7 +180,7 @@ class BroadPhaseSystem(System):
         left, vertices = self.leavers, state.bodies.shapes.vertices
         if len(vertices) <= _FEW or _sparse(state) or left.crowded or state.contacts.stale:
             return False
-        if len(state.joints.apart):  # which the search for new pairs does not know
+        if len(state.joints.apart) or len(self.chains):  # which the search for new pairs does not know
             return False
         if left.indexed is None:
             left.indexed = leaving.index_bodies(
@@ -194,7 +200,13 @@ class BroadPhaseSystem(System):
         fat_boxes(motion_of(state), shapes_of(state), awake, self.fat, self.boxes, ahead, share, margin)
         inverse_mass = state.bodies.inverse_mass
         bounded = state.physics.bounds is not None
-        found, walls = self._count_pairs(state.bodies.shapes.vertices, inverse_mass, bounded)
+        vertices = state.bodies.shapes.vertices
+        if len(self.chains):
+            vertices = vertices.copy()
+            vertices[self.chains] = 0
+        found, walls = self._count_pairs(vertices, inverse_mass, bounded)
+        if len(self.chains):
+            walls = self._add_chains(state, found, walls)
         if len(state.joints.apart):
             couples = self._couples[: 2 * found].reshape(-1, 2)
             couples = couples[state.joints.may_touch(couples[:, 0], couples[:, 1])]
@@ -202,6 +214,29 @@ class BroadPhaseSystem(System):
             self._couples[: 2 * found] = couples.ravel()
         self.leavers.begin()
         partition(state, self._couples, found, self._pairs, walls, self.fat)
+
+    def _add_chains(self, state: State, found: int, walls: int) -> int:
+        """Add the pairs of bodies and segments of chains to those of the bounds; return how many both are."""
+        shape, (position, angle, _, _) = state.table(Shape), motion_of(state)
+        solid = self.chains[state.bodies.shapes.vertices[self.chains] > 0]
+        codes = shape["vertices"][solid].tolist()
+        segments = np.array([len(POINTS.value_of(code)) - 1 for code in codes])
+        while True:
+            count = chains.add_chains(
+                solid, segments, position, angle, shapes_of(state), self.boxes, self.fat,
+                state.bodies.inverse_mass, self._pairs, walls,
+            )  # fmt: skip
+            if found + count <= len(self._pairs):
+                break
+            larger = np.zeros((2 * (found + count), 3), np.int64)
+            larger[:walls] = self._pairs[:walls]
+            self._pairs = larger
+        if len(state.joints.apart):
+            added = self._pairs[walls:count]
+            added = added[state.joints.may_touch(added[:, 0], added[:, 1])]
+            self._pairs[walls : walls + len(added)] = added
+            count = walls + len(added)
+        return count
 
     def _count_pairs(
         self, vertices: NDArray[np.int64], inverse_mass: NDArray[np.float64], bounded: bool

@@ -22,6 +22,8 @@ __all__ = [
 _LONG = 4.0
 """Ratio of bounding radii from which the circle around the larger body shows little of where it is."""
 _FREE = -1
+_SIDES = 1024
+"""More than there are bounds and segments of a chain."""
 
 
 @inlined
@@ -262,7 +264,8 @@ def activate(
 def _rank(manifolds: Manifolds, p: int, rows: int) -> int:
     """Return a number that is larger for what comes later in the order of rows and walls."""
     manifold = manifolds[p]
-    return int((manifold.a * rows + manifold.b) * 8 + manifold.wall + 1)
+    wall = manifold.wall if manifold.wall > -2 else 2 - manifold.wall
+    return int((manifold.a * rows + manifold.b) * _SIDES + wall + 1)
 
 
 @allocating

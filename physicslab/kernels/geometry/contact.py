@@ -5,7 +5,7 @@ import math
 from physicslab.kernels import Rows, Vectors, always_inlined, fused, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment_arms, response
-from physicslab.kernels.geometry.outline import Way, kept_outline, swing_of
+from physicslab.kernels.geometry.outline import Way, kept_outline, on_segment, swing_of
 from physicslab.kernels.geometry.pair import (
     CONTACT_MARGIN,
     touch_boxes,
@@ -194,8 +194,9 @@ def touch(
     turn_b = h * motion.angular[b] if body.vertices > 1 else 0.0
     if not (has_own_way(shapes, manifold.a) and has_own_way(shapes, b)):
         touch_rounded(
-            manifold, one, two, way, turn_a, turn_b, start, speculative_margin, other, body, shapes.pool
-        )
+            manifold, one, two, way, turn_a, turn_b, start, speculative_margin,
+            on_segment(other, manifold.wall), on_segment(body, manifold.wall), shapes.pool,
+        )  # fmt: skip
     elif other.box and body.box:
         touch_boxes(manifold, one, two, way, start, speculative_margin, other, body)
     else:

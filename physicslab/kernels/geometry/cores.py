@@ -10,17 +10,11 @@ from typing import NamedTuple
 
 from physicslab.kernels import Vectors, inlined
 from physicslab.kernels.geometry.manifold import ALIKE, FAVOUR, LEVEL, Corner
-from physicslab.kernels.geometry.outline import Outline, Way, corner, swing_of, turned
+from physicslab.kernels.geometry.outline import Outline, Way, corner
 
-_FACE, FLIPPED, VERTICES = 65, 129, 200
+FACE, FLIPPED, VERTICES = 65, 129, 200
 """From these numbers on features are vertices on faces of A (65 + vertex + 8 face), vertices on faces of B,
 and pairs of vertices. Those of two boxes end before."""
-MISS = 2.0
-"""What a sweep returns where two outlines miss each other."""
-APPROACHES, REFINEMENTS = 40, 8
-"""Largest numbers of steps towards a meeting, none of which can pass it, and of Newton's steps at its end."""
-NEAR = 0.02
-"""Share of the farthest motion from which on the gap is nearly linear."""
 _ENDS = 1e-6
 """Share of the radius by which vertices must be farther than faces to be what is nearest."""
 _SLACK = 2e-3
@@ -87,8 +81,8 @@ def _best_face(
     smallest, flip = min(a.thin, b.thin), False
     if gap_b > gap + ALIKE * smallest:
         gap, face, flip = gap_b, face_b, True
-    if _FACE <= old < VERTICES:
-        held, held_flip = (old - _FACE) // 8 % 8, old >= FLIPPED
+    if FACE <= old < VERTICES:
+        held, held_flip = (old - FACE) // 8 % 8, old >= FLIPPED
         held_a, held_b, sign = (b, a, -1.0) if held_flip else (a, b, 1.0)
         held_gap = _clear_of(held, sign * dx, sign * dy, held_a, held_b, pool)
         if gap <= held_gap + FAVOUR * smallest:
@@ -97,7 +91,7 @@ def _best_face(
 
 
 @inlined
-def _nearest_edge(nx: float, ny: float, outline: Outline, pool: Vectors) -> int:
+def nearest_edge(nx: float, ny: float, outline: Outline, pool: Vectors) -> int:
     """Return the edge of a core whose outward normal is most opposed to a normal."""
     best, least = 0, math.inf
     if outline.vertices > 1:
@@ -155,7 +149,7 @@ def touch_cores(way: Way, a: Outline, b: Outline, pool: Vectors, margin: float, 
     nx, ny, distance, px, py = _normal(face, one, pool)
     if gap - both > margin:
         return Touch(gap - both, sign * nx, sign * ny, 0, none, none)
-    next_face, edge = (face + 1) % one.vertices, _nearest_edge(nx, ny, other, pool)
+    next_face, edge = (face + 1) % one.vertices, nearest_edge(nx, ny, other, pool)
     next_edge = (edge + 1) % other.vertices
     ex, ey = corner(next_face, one, pool)
     qx, qy = corner(edge, other, pool)
@@ -193,9 +187,9 @@ def touch_cores(way: Way, a: Outline, b: Outline, pool: Vectors, margin: float, 
         end_share = -1.0
     if start > end_share:
         return Touch(gap - both, sign * nx, sign * ny, 0, none, none)
-    feature = (FLIPPED if flip else _FACE) + 8 * face
-    first = _on_face(start, qx, qy, wx, wy, nx, ny, distance, one.radius, other.radius)
-    second = _on_face(end_share, qx, qy, wx, wy, nx, ny, distance, one.radius, other.radius)
+    feature = (FLIPPED if flip else FACE) + 8 * face
+    first = on_face(start, qx, qy, wx, wy, nx, ny, distance, one.radius, other.radius)
+    second = on_face(end_share, qx, qy, wx, wy, nx, ny, distance, one.radius, other.radius)
     first = Corner(first.x + from_x, first.y + from_y, first.separation, feature + edge)
     second = Corner(second.x + from_x, second.y + from_y, second.separation, feature + next_edge)
     if other.vertices == 1 or second.separation > margin:
@@ -206,7 +200,7 @@ def touch_cores(way: Way, a: Outline, b: Outline, pool: Vectors, margin: float, 
 
 
 @inlined
-def _on_face(
+def on_face(
     share: float, qx: float, qy: float, wx: float, wy: float, nx: float, ny: float, distance: float,
     radius: float, rounding: float,
 ) -> Corner:  # fmt: skip
@@ -215,61 +209,3 @@ def _on_face(
     clear = nx * x + ny * y - distance
     back = 0.5 * (clear - radius + rounding)
     return Corner(x - back * nx, y - back * ny, clear - radius - rounding, 0)
-
-
-@inlined
-def pose_at(
-    way: Way, turn_a: float, turn_b: float, a: Outline, b: Outline, share: float
-) -> tuple[Way, Outline, Outline]:
-    """Return how two outlines lie a share of a substep from now."""
-    dx, dy, ux, uy = way
-    moved = Way(dx + share * ux, dy + share * uy, ux, uy)
-    return moved, turned(a, share * turn_a), turned(b, share * turn_b)
-
-
-@inlined
-def opening(point: Corner, way: Way, nx: float, ny: float, turn_a: float, turn_b: float) -> float:
-    """Return by how much a point of two outlines opens in a substep, with the normal of now [m]."""
-    bx, by = point.x - way.dx, point.y - way.dy
-    ux = way.ux - turn_b * by + turn_a * point.y
-    uy = way.uy + turn_b * bx - turn_a * point.x
-    return ux * nx + uy * ny
-
-
-@inlined
-def sweep_cores(
-    way: Way, turn_a: float, turn_b: float, start: float, a: Outline, b: Outline, pool: Vectors
-) -> float:
-    """Return the share of a substep, 0 to 1 from ``start`` on, after which two outlines touch, or ``MISS``.
-
-    They turn by ``turn_a`` and ``turn_b`` [rad] in it. The first steps are conservative advancement: the gap
-    along its normal closes no faster than the way and the turning corners make it (Mirtich, 1996).
-    """
-    swing, t = swing_of(a, turn_a) + swing_of(b, turn_b), 0.0
-    farthest = math.sqrt(way.ux * way.ux + way.uy * way.uy) + swing
-    for step in range(APPROACHES + REFINEMENTS):
-        moved, at_a, at_b = pose_at(way, turn_a, turn_b, a, b, start + t)
-        found = touch_cores(Way(moved.dx, moved.dy, 0.0, 0.0), at_a, at_b, pool, math.inf, 0)
-        gap, nx, ny = found.gap, found.nx, found.ny
-        if step == 0 and gap < 0.0:
-            return 0.0
-        if step < APPROACHES and (gap > NEAR * farthest or found.points == 0):
-            closing = swing - (nx * way.ux + ny * way.uy)
-            if closing <= 0.0:
-                return MISS
-            t += gap / closing
-        elif found.points == 0:
-            return MISS
-        else:
-            point = (
-                found.two if found.points == 2 and found.two.separation < found.one.separation else found.one
-            )
-            rate = opening(point, moved, nx, ny, turn_a, turn_b)
-            if rate >= 0.0:
-                return MISS
-            t -= point.separation / rate
-            if abs(point.separation) <= 1e-14 * farthest:
-                break
-        if t > 1.0 or t < 0.0:
-            return MISS
-    return t

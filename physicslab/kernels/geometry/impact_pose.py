@@ -8,7 +8,7 @@ from physicslab.kernels.constraint.pair import ContactFrame
 from physicslab.kernels.geometry.cores import FLIPPED, VERTICES
 from physicslab.kernels.geometry.manifold import circle_box
 from physicslab.kernels.geometry.outline import lying
-from physicslab.kernels.geometry.shapes import BOX, Shapes, has_own_way, vertex
+from physicslab.kernels.geometry.shapes import BOX, Shapes, has_own_way, is_chain, segment_of, vertex
 from physicslab.kernels.records import Manifold, Point
 
 _FLIPPED_BOX = 33
@@ -73,14 +73,20 @@ def _corner_on_face(
 
 
 @inlined
+def _segment(manifold: Manifold, shapes: Shapes, i: int) -> int:
+    """Return the number of the segment of row i, where it is a chain, that a pair is about."""
+    return segment_of(manifold.wall) if is_chain(shapes, i) else 0
+
+
+@inlined
 def _corner_on_corner(
     manifold: Manifold, point: Point, motion: Motion, shapes: Shapes, t: float
 ) -> ContactFrame[float]:
     """Return where the discs around two vertices meet, each of which turns with its body."""
     a, b, vertices = manifold.a, manifold.b, point.feature - VERTICES
-    ax, ay = vertex(shapes, a, vertices % 8)
+    ax, ay = vertex(shapes, a, vertices % 8 + _segment(manifold, shapes, a))
     ax, ay = _turned(ax, ay, motion.angle[a] + t * motion.angular[a])
-    bx, by = vertex(shapes, b, vertices // 8)
+    bx, by = vertex(shapes, b, vertices // 8 + _segment(manifold, shapes, b))
     bx, by = _turned(bx, by, motion.angle[b] + t * motion.angular[b])
     dx, dy = _apart(a, b, motion, t)
     across_x, across_y = dx + bx - ax, dy + by - ay

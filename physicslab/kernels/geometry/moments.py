@@ -3,7 +3,7 @@
 import math
 
 from physicslab.kernels import always_inlined, inlined
-from physicslab.kernels.geometry.shapes import BOX, Shapes, face, vertex
+from physicslab.kernels.geometry.shapes import BOX, Shapes, face, is_chain, vertex
 
 
 @inlined
@@ -45,7 +45,7 @@ def area_and_moment(shapes: Shapes, i: int) -> tuple[float, float]:
 @always_inlined
 def inertia_of(shapes: Shapes, i: int, mass: float) -> float:
     """Return the moment of inertia of row i about its centre [kg m^2]; 0 where it has no shape."""
-    if shapes.vertices[i] == 0:
+    if shapes.vertices[i] == 0 or is_chain(shapes, i):
         return 0.0
     if shapes.vertices[i] == 1:
         radius: float = shapes.radius[i]

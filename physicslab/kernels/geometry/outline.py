@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Vectors, fused, inlined
-from physicslab.kernels.geometry.shapes import BOX, Shapes
+from physicslab.kernels.geometry.shapes import BOX, Shapes, segment_of
 
 
 class Outline(NamedTuple):
@@ -59,6 +59,20 @@ def kept_outline(i: int, angle: Numbers, shapes: Shapes, rotations: Vectors) -> 
         rotations[i, 1], rotations[i, 2] = math.cos(angle[i]), math.sin(angle[i])
     c, s = (rotations[i, 1], rotations[i, 2]) if turns else (1.0, 0.0)
     return lying(i, shapes, c, s)
+
+
+@fused
+def is_segment(outline: Outline) -> bool:
+    """Whether an outline is one of a chain: no other core of two vertices has no radius."""
+    return bool(outline.vertices == 2 and outline.radius == 0.0)
+
+
+@fused
+def on_segment(outline: Outline, wall: int) -> Outline:
+    """Return the segment of a chain that the ``wall`` of a pair names; of other shapes the outline itself."""
+    box, c, s, half_x, half_y, radius, vertices, first, thin = outline
+    first += segment_of(wall) if is_segment(outline) else 0
+    return Outline(box, c, s, half_x, half_y, radius, vertices, first, thin)
 
 
 @inlined

@@ -4,13 +4,17 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Vectors, inlined
-from physicslab.kernels.geometry.cores import MISS, opening, pose_at, sweep_cores, touch_cores
 from physicslab.kernels.geometry.manifold import LEVEL, box_box, circle_box, circle_circle
 from physicslab.kernels.geometry.outline import Outline, Way, corner, swing_of, turned
+from physicslab.kernels.geometry.segment import touch_outlines
 from physicslab.kernels.geometry.sweep import (
+    MISS,
+    opening,
+    pose_at,
     sweep_box_box,
     sweep_circle_box,
     sweep_circle_circle,
+    sweep_outlines,
     sweep_turning_box,
 )
 from physicslab.kernels.records import Manifold, Point
@@ -241,17 +245,17 @@ def touch_rounded(
     loaded = manifold.count > 0 and one.normal_impulse + two.normal_impulse > 0.0
     old = one.feature if loaded else 0  # of others a file keeps none
     before_1, before_2 = _impulses_of(one), _impulses_of(two)
-    found = touch_cores(way, a, b, pool, near + travel, old)
+    found = touch_outlines(way, a, b, pool, near + travel, old)
     manifold.count, manifold.swept, manifold.size, manifold.gap = 0, 0, size, found.gap
     fast = travel > SWEEP_THRESHOLD * size and not loaded
     if found.gap > near and not (fast and found.gap <= travel + speculative_margin):
         return
     place, share = way, 0.0
     if fast:
-        t = sweep_cores(way, turn_a, turn_b, start, a, b, pool)
+        t = sweep_outlines(way, turn_a, turn_b, start, a, b, pool)
         if t <= 1.0:
             meeting, met_a, met_b = pose_at(way, turn_a, turn_b, a, b, start + t)
-            met = touch_cores(meeting, met_a, met_b, pool, near + travel, 0)
+            met = touch_outlines(meeting, met_a, met_b, pool, near + travel, 0)
             if met.gap > -_ROUNDING * size:  # else they overlapped before the substep began
                 found, place, share = met, meeting, start + t
                 manifold.swept = 1

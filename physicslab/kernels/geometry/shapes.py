@@ -109,6 +109,18 @@ def support(shapes: Shapes, i: int, x: float, y: float) -> tuple[int, float]:
 
 
 @fused
+def is_chain(shapes: Shapes, i: int) -> bool:
+    """Whether row i is a chain, one segment of it after the other: no other two vertices have no radius."""
+    return bool(shapes.vertices[i] == 2 and shapes.radius[i] == 0.0)
+
+
+@fused
+def segment_of(wall: int) -> int:
+    """Return the number of the segment of a chain that the ``wall`` of a pair names, from -2 downwards."""
+    return -2 - wall
+
+
+@fused
 def has_own_way(shapes: Shapes, i: int) -> bool:
     """Whether row i is a disc or a box, for which loops have faster ways than for any rounded polygon."""
     return bool(shapes.vertices[i] < 2 or shapes.first[i] == BOX)
@@ -164,6 +176,7 @@ def derive_shape(
     ``own`` (rows,) has the codes of vertices of their own, or 0. ``kinds`` (n, 5) is the register of cores:
     of each the number of vertices, where they begin in the pool, and the columns of ``sizes`` that stretch it
     along x and y and round it, or -1; ``extents`` (n, 2) has half of the extents in units of these sizes.
+    A chain counts as being as thin as it reaches: what touches it is smaller.
     """
     row = kind[i] if own[i] == 0 else OWN + own[i]
     if row >= len(kinds):
@@ -174,7 +187,10 @@ def derive_shape(
     half_x, half_y = extents[row, 0] * size_x, extents[row, 1] * size_y
     radius = rounding if rounded >= 0 else 0.0
     same = shapes.half_x[i] == half_x and shapes.half_y[i] == half_y and shapes.radius[i] == radius
-    if not same or shapes.first[i] != first or shapes.vertices[i] != count:
+    of_kind = kinds[kind[i], 0]  # of a chain 2: it is one segment after the other
+    chained = own[i] > 0 and of_kind > 0
+    parts = of_kind if chained else count
+    if not same or shapes.first[i] != first or shapes.vertices[i] != parts:
         shapes.vertices[i], shapes.first[i] = count, first
         shapes.half_x[i], shapes.half_y[i], shapes.radius[i] = half_x, half_y, radius
         farthest = 0.0
@@ -182,6 +198,7 @@ def derive_shape(
             x, y = vertex(shapes, i, k)
             farthest = max(farthest, x * x + y * y)
         shapes.reach[i] = math.sqrt(farthest) + radius
-        shapes.thin[i] = _thinness(shapes, i) + radius
+        shapes.vertices[i] = parts
+        shapes.thin[i] = shapes.reach[i] if chained else _thinness(shapes, i) + radius
     shaped = (count > 0 or row == 0) and (rounding > 0.0 or own[i] > 0)
     return shaped and 0.0 < size_x < math.inf and 0.0 < size_y < math.inf and 0.0 <= rounding < math.inf

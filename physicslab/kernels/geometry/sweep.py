@@ -7,10 +7,17 @@ circle.
 
 import math
 
-from physicslab.kernels import inlined
-from physicslab.kernels.geometry.cores import APPROACHES, MISS, NEAR, REFINEMENTS
-from physicslab.kernels.geometry.manifold import circle_box
+from physicslab.kernels import Vectors, inlined
+from physicslab.kernels.geometry.manifold import Corner, circle_box
 from physicslab.kernels.geometry.outline import Outline, Way, swing_of, turned
+from physicslab.kernels.geometry.segment import touch_outlines
+
+MISS = 2.0
+"""What a sweep returns where two outlines miss each other."""
+APPROACHES, REFINEMENTS = 40, 8
+"""Largest numbers of steps towards a meeting, none of which can pass it, and of Newton's steps at its end."""
+NEAR = 0.02
+"""Share of the farthest motion from which on the gap is nearly linear."""
 
 
 @inlined
@@ -99,4 +106,64 @@ def sweep_box_box(way: Way, a: Outline, b: Outline) -> float:
     t = max(max(enter1, enter2), max(enter3, enter4), 0.0)
     if t > min(min(leave1, leave2), min(leave3, leave4)) or t > 1.0:
         return MISS
+    return t
+
+
+@inlined
+def pose_at(
+    way: Way, turn_a: float, turn_b: float, a: Outline, b: Outline, share: float
+) -> tuple[Way, Outline, Outline]:
+    """Return how two outlines lie a share of a substep from now."""
+    dx, dy, ux, uy = way
+    moved = Way(dx + share * ux, dy + share * uy, ux, uy)
+    return moved, turned(a, share * turn_a), turned(b, share * turn_b)
+
+
+@inlined
+def opening(point: Corner, way: Way, nx: float, ny: float, turn_a: float, turn_b: float) -> float:
+    """Return by how much a point of two outlines opens in a substep, with the normal of now [m]."""
+    bx, by = point.x - way.dx, point.y - way.dy
+    ux = way.ux - turn_b * by + turn_a * point.y
+    uy = way.uy + turn_b * bx - turn_a * point.x
+    return ux * nx + uy * ny
+
+
+@inlined
+def sweep_outlines(
+    way: Way, turn_a: float, turn_b: float, start: float, a: Outline, b: Outline, pool: Vectors
+) -> float:
+    """Return the share of a substep, 0 to 1 from ``start`` on, after which two outlines touch, or ``MISS``.
+
+    They turn by ``turn_a`` and ``turn_b`` [rad] in it. The first steps are conservative advancement: the gap
+    along its normal closes no faster than the way and the turning corners make it (Mirtich, 1996).
+    """
+    swing, t = swing_of(a, turn_a) + swing_of(b, turn_b), 0.0
+    farthest = math.sqrt(way.ux * way.ux + way.uy * way.uy) + swing
+    for step in range(APPROACHES + REFINEMENTS):
+        moved, at_a, at_b = pose_at(way, turn_a, turn_b, a, b, start + t)
+        found = touch_outlines(Way(moved.dx, moved.dy, 0.0, 0.0), at_a, at_b, pool, math.inf, 0)
+        gap, nx, ny = found.gap, found.nx, found.ny
+        if step == 0 and gap < 0.0:
+            return 0.0
+        if gap <= 0.0 and found.points == 0:
+            return MISS  # another segment of the chain is what it meets
+        if step < APPROACHES and (gap > NEAR * farthest or found.points == 0):
+            closing = swing - (nx * way.ux + ny * way.uy)
+            if closing <= 0.0:
+                return MISS
+            t += gap / closing
+        elif found.points == 0:
+            return MISS
+        else:
+            point = (
+                found.two if found.points == 2 and found.two.separation < found.one.separation else found.one
+            )
+            rate = opening(point, moved, nx, ny, turn_a, turn_b)
+            if rate >= 0.0:
+                return MISS
+            t -= point.separation / rate
+            if abs(point.separation) <= 1e-14 * farthest:
+                break
+        if t > 1.0 or t < 0.0:
+            return MISS
     return t

@@ -13,10 +13,10 @@ from physicslab.kernels.arguments import Inverse
 
 _DEPENDENT = 1e-13
 """Share of its diagonal below which a pivot is rounding: the row depends on those before it."""
-A_X, A_Y, A_TURN, B_X, B_Y, B_TURN, ERROR, BEFORE, NOTED, CHANGE, GIVES, STATE, MEASURED = range(13)
+A_X, A_Y, A_TURN, B_X, B_Y, B_TURN, ERROR, BEFORE, NOTED, CHANGE, DIAGONAL, GIVES, STATE, MEASURED = range(14)
 """The measures of a term: its gradient by x, y and the angle of A, and of B. Those of a row, beside its first
 term: the error [m or rad]; its speed before the impulses and its impulse then [N s]; how the impulse changes;
-how soft a dependent row is; whether it is ``ACTIVE``."""
+how a unit impulse changes its own speed; how soft a dependent row is; whether it is ``ACTIVE``."""
 OFF, ACTIVE = 0.0, 1.0
 """A row that moves nothing, or whose impulse is at its bound; one that is solved."""
 
@@ -58,7 +58,7 @@ JointsTuple = tuple[
 """The rows without names."""
 
 
-@inlined
+@always_inlined
 def _common(joints: Joints, p: int, q: int, inverse: Inverse) -> float:
     """Return how a unit impulse of term q changes the speed of term p: by bodies that they have in common."""
     total, measured = 0.0, joints.measured
@@ -73,17 +73,16 @@ def _common(joints: Joints, p: int, q: int, inverse: Inverse) -> float:
     return total
 
 
-@inlined
-def response(joints: Joints, i: int, j: int, inverse: Inverse) -> float:
+@always_inlined
+def _response(joints: Joints, i: int, j: int, inverse: Inverse) -> float:
     """Return how a unit impulse of row j changes the speed of row i: an element of A."""
-    p, q = joints.second[i], joints.second[j]
-    total = _common(joints, i, j, inverse)
-    if p >= 0:
-        total += _common(joints, p, j, inverse)
-    if q >= 0:
-        total += _common(joints, i, q, inverse)
-        if p >= 0:
+    total, p = 0.0, i
+    while p >= 0:
+        q = j
+        while q >= 0:
             total += _common(joints, p, q, inverse)
+            q = joints.second[j] if q == j else -1
+        p = joints.second[i] if p == i else -1
     return total
 
 
@@ -101,24 +100,21 @@ def factorise(joints: Joints, first: int, end: int, inverse: Inverse, softness: 
             for n in range(low[k], k + 1):
                 matrix[row + n] = 0.0
             continue
-        for n in range(low[k], k):
-            j, column = joints.order[n], start[n] - low[n]
-            pivot = matrix[column + n]
-            left = 0.0
-            if pivot > 0.0:
-                left = response(joints, i, j, inverse)
-                for between in range(max(low[k], low[n]), n):
-                    left -= matrix[row + between] * matrix[column + between]
-                left /= pivot
-            matrix[row + n] = left
-        diagonal = response(joints, i, i, inverse)
-        left = diagonal
-        for n in range(low[k], k):
-            left -= matrix[row + n] * matrix[row + n]
-        if left <= _DEPENDENT * diagonal:
-            measured[i, GIVES] = softness * diagonal
-            left = max(left, 0.0) + softness * diagonal
-        matrix[row + k] = math.sqrt(left)
+        for n in range(low[k], k + 1):
+            column = start[n] - low[n]
+            diagonal = _response(joints, i, joints.order[n], inverse)
+            left = diagonal
+            for between in range(max(low[k], low[n]), n):
+                left -= matrix[row + between] * matrix[column + between]
+            if n < k:
+                pivot = matrix[column + n]
+                matrix[row + n] = left / pivot if pivot > 0.0 else 0.0
+                continue
+            measured[i, DIAGONAL] = diagonal
+            if left <= _DEPENDENT * diagonal:
+                measured[i, GIVES] = softness * diagonal
+                left = max(left, 0.0) + softness * diagonal
+            matrix[row + k] = math.sqrt(left)
 
 
 @inlined
@@ -143,5 +139,9 @@ def substitute(joints: Joints, first: int, end: int) -> None:
 
 @always_inlined
 def can_move(joints: Joints, i: int, inverse: Inverse) -> bool:
-    """Whether an impulse of a row moves anything: not that between fixed bodies, or bodies that sleep."""
-    return response(joints, i, i, inverse) > 0.0
+    """Whether a row acts on any body that moves: not on fixed ones alone, or such as sleep."""
+    total, k = 0.0, i
+    while k >= 0:
+        total += inverse.mass[joints.a[k]] + inverse.mass[joints.b[k]]
+        k = joints.second[i] if k == i else -1
+    return total > 0.0

@@ -24,9 +24,10 @@ OFFSET, TARGET, GIVEN = 18, 19, 20
 """The numbers of a row, behind those of its two terms: what is taken from these, and the speed of a motor.
 Behind all rows are the inverse masses of the coordinates, then their rates of damping [1/s], ``STATE``
 numbers a row, the matrix, its factor, and room for a number of each coordinate."""
-ERROR, RATE, LAMBDA, RIGHT, DIAGONAL, CHANGE, STATE = range(12, 19)
+ERROR, RATE, LAMBDA, RIGHT, SHARE, CHANGE, STATE = range(12, 19)
 """The state of a row, behind its gradient by x, y and angle of each end: the error g [m or rad]; Jdot v
-[1/s^2 of that]; the force [N or N m]; the right side; the diagonal of the matrix; how the force changes."""
+[1/s^2 of that]; the force [N or N m]; the right side; its pivot's share of the diagonal; how the force
+changes."""
 
 
 def room_of(rows: int, coordinates: int, entries: int) -> tuple[int, int]:

@@ -23,6 +23,7 @@ from physicslab.kernels.joints.blocks import (
     B_Y,
     BEFORE,
     CHANGE,
+    DIAGONAL,
     ERROR,
     GIVES,
     NOTED,
@@ -61,7 +62,7 @@ def joint_softness(h: float) -> JointSoftness:
     return JointSoftness(h, omega / damped, 1.0 / (h * omega * damped))
 
 
-@inlined
+@always_inlined
 def _along(joints: Joints, k: int, linear: Vectors, angular: Numbers) -> float:
     """Return the product of the gradient of a term with velocities."""
     a, b, at = joints.a[k], joints.b[k], joints.measured
@@ -73,13 +74,14 @@ def _along(joints: Joints, k: int, linear: Vectors, angular: Numbers) -> float:
 @always_inlined
 def _speed(joints: Joints, i: int, motion: Motion) -> float:
     """Return how fast the quantity of a row grows [m/s or rad/s]."""
-    total = _along(joints, i, motion.linear, motion.angular)
-    if joints.second[i] >= 0:
-        total += _along(joints, joints.second[i], motion.linear, motion.angular)
+    total, k = 0.0, i
+    while k >= 0:
+        total += _along(joints, k, motion.linear, motion.angular)
+        k = joints.second[i] if k == i else -1
     return total
 
 
-@inlined
+@always_inlined
 def _push(joints: Joints, k: int, motion: Motion, inverse: Inverse, impulse: float) -> None:
     """Change velocities by an impulse at a term."""
     a, b, at = joints.a[k], joints.b[k], joints.measured
@@ -94,12 +96,13 @@ def _push(joints: Joints, k: int, motion: Motion, inverse: Inverse, impulse: flo
 @always_inlined
 def _apply(joints: Joints, i: int, motion: Motion, inverse: Inverse, impulse: float) -> None:
     """Change velocities by an impulse of a row."""
-    _push(joints, i, motion, inverse, impulse)
-    if joints.second[i] >= 0:
-        _push(joints, joints.second[i], motion, inverse, impulse)
+    k = i
+    while k >= 0:
+        _push(joints, k, motion, inverse, impulse)
+        k = joints.second[i] if k == i else -1
 
 
-@inlined
+@always_inlined
 def _end(motion: Motion, body: int, anchors: Vectors, i: int) -> TermEnd:
     """Return a body at an end of a term."""
     position, linear = motion.position, motion.linear
@@ -109,7 +112,7 @@ def _end(motion: Motion, body: int, anchors: Vectors, i: int) -> TermEnd:
     )  # fmt: skip
 
 
-@inlined
+@always_inlined
 def _given(joints: Joints, k: int, inverse: Inverse, acting: Acting) -> float:
     """Return how forces accelerate the measure of a term."""
     at, force, torque, given = joints.measured, acting.force, acting.torque, 0.0
@@ -137,10 +140,10 @@ def begin_joints(joints: Joints, motion: Motion, inverse: Inverse, acting: Actin
     for i in range(len(joints.impulse)):
         k, given = joints.second[i], 0.0
         at[i, ERROR] += (at[k, ERROR] if k >= 0 else 0.0) - joints.offset[i]
-        if acting.any and h > 0.0:
-            given = _given(joints, i, inverse, acting)
-            if k >= 0:
-                given += _given(joints, k, inverse, acting)
+        k = i if acting.any and h > 0.0 else -1
+        while k >= 0:
+            given += _given(joints, k, inverse, acting)
+            k = joints.second[i] if k == i else -1
         at[i, BEFORE], at[i, NOTED] = _speed(joints, i, motion) - h * given, joints.impulse[i]
         if joints.role[i] != MOTOR:
             off = -at[i, ERROR] if joints.role[i] == LIMIT else abs(at[i, ERROR])
@@ -165,8 +168,37 @@ def warm_start_joints(joints: Joints, motion: Motion, inverse: Inverse, scale: f
 
 
 @inlined
+def _limit_correction(joints: Joints, first: int, end: int, soft: JointSoftness) -> None:
+    """Lessen the errors of a block where correcting them gives bodies more energy than its springs have.
+
+    A straight chain that is too long for its fixed ends can close its gaps by bending alone: the straighter
+    it is, the faster its links would have to move, without a bound.
+    """
+    at, stored, given, stiffness = joints.measured, 0.0, 0.0, soft.rate / (soft.h * soft.spring)
+    for n in range(first, end):
+        i = joints.order[n]
+        corrected = at[i, STATE] == ACTIVE and joints.role[i] != MOTOR and at[i, DIAGONAL] > 0.0
+        if not corrected or (joints.role[i] == LIMIT and at[i, ERROR] > 0.0):
+            at[i, CHANGE] = 0.0
+            continue
+        at[i, CHANGE] = -soft.rate * at[i, ERROR]
+        stored += stiffness * at[i, ERROR] * at[i, ERROR] / at[i, DIAGONAL]
+    if stored == 0.0:
+        return
+    substitute(joints, first, end)
+    for n in range(first, end):
+        given -= soft.rate * at[joints.order[n], ERROR] * at[joints.order[n], CHANGE]
+    if given > stored:
+        share = math.sqrt(stored / given)
+        for n in range(first, end):
+            i = joints.order[n]
+            if joints.role[i] == HOLD or at[i, ERROR] < 0.0:
+                at[i, ERROR] *= share
+
+
+@inlined
 def factorise_joints(joints: Joints, inverse: Inverse, soft: JointSoftness) -> None:
-    """Choose the rows that act as far as is known, and factorise all blocks."""
+    """Choose the rows that act as far as is known, and factorise all blocks; limit what is corrected."""
     first, at = 0, joints.measured
     for i in range(len(joints.impulse)):
         acts = can_move(joints, i, inverse)
@@ -177,6 +209,8 @@ def factorise_joints(joints: Joints, inverse: Inverse, soft: JointSoftness) -> N
         at[i, STATE] = ACTIVE if acts else OFF
     for block in range(len(joints.ends)):
         factorise(joints, first, joints.ends[block], inverse, soft.spring)
+        if soft.rate > 0.0:
+            _limit_correction(joints, first, joints.ends[block], soft)
         first = joints.ends[block]
 
 
@@ -191,7 +225,7 @@ def _wanted(joints: Joints, i: int, soft: JointSoftness) -> float:
     return -soft.rate * error  # type: ignore[no-any-return]
 
 
-@inlined
+@always_inlined
 def _set_bounds(joints: Joints, first: int, end: int, motion: Motion, inverse: Inverse, h: float) -> bool:
     """Set impulses to their bounds that would go beyond; return whether any was."""
     at, found = joints.measured, False
@@ -207,7 +241,7 @@ def _set_bounds(joints: Joints, first: int, end: int, motion: Motion, inverse: I
     return found
 
 
-@inlined
+@always_inlined
 def _free(
     joints: Joints, first: int, end: int, motion: Motion, inverse: Inverse, soft: JointSoftness
 ) -> bool:

@@ -1,22 +1,19 @@
 """Every problem, in one explicit list; and reference problems that the engine cannot compute, and why."""
 
+from physicslab.lab.accuracy.andrews import ANDREWS
 from physicslab.lab.accuracy.fields import FIELDS
 from physicslab.lab.accuracy.friction import FRICTION
 from physicslab.lab.accuracy.impacts import IMPACTS
 from physicslab.lab.accuracy.joints import JOINED
+from physicslab.lab.accuracy.limits import LIMITED
 from physicslab.lab.accuracy.planets import ATTRACTED
 from physicslab.lab.accuracy.points import POINTS
 from physicslab.lab.case import Catalogue
 
-PROBLEMS = Catalogue((*POINTS, *FIELDS, *JOINED, *ATTRACTED, *IMPACTS, *FRICTION))
+PROBLEMS = Catalogue((*POINTS, *FIELDS, *JOINED, ANDREWS, *LIMITED, *ATTRACTED, *IMPACTS, *FRICTION))
 """Every problem by name, from the simplest on; families are those of one source."""
 
-_NO_RODS = "the engine has no rigid rods: a pendulum in it swings on a spring (see elastic_pendulum)"
-
 LEFT_OUT = {
-    "pendulum_period": _NO_RODS,
-    "pendulum_state": _NO_RODS,
-    "atwood": "the engine has no ropes over pulleys",
     "plummer100": "its figures do not contain the hundred places it starts from; see crowd100",
     "galperin_n5": "314,159 collisions, of which only the number is on record",
 }

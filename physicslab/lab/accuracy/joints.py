@@ -1,18 +1,51 @@
-"""Bodies on joints, whose motion has a closed form."""
+"""Bodies on joints: motion with a closed form, and some of which the reference is a run of many digits.
+
+No body has a shape, but for the bar of the compound pendulum: in mechanisms nothing touches.
+"""
 
 import math
 
-from physicslab.components import Mass, Pin, Shape, Transform, Velocity
+import numpy as np
+
+from physicslab.components import Gear, Mass, Pin, Rod, Shape, Slot, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.vector import rotated
 from physicslab.lab.accuracy.figures import number
 from physicslab.lab.accuracy.problem import Ladder, Problem, state_error
-from physicslab.lab.worlds import GRAVITY, empty_world
+from physicslab.lab.worlds import GRAVITY, empty_world, place, velocity
 from physicslab.world import World
 
 _LENGTH, _WIDTH, _ANGLE = 1.0, 0.1, 2.5
 """Of the bar [m], and its angle from the lowest at first [rad]."""
 _RATE = math.sqrt(0.5 * GRAVITY * _LENGTH / ((_LENGTH**2 + _WIDTH**2) / 12.0 + 0.25 * _LENGTH**2))
 """Of small oscillations [rad/s]."""
+_SWING = math.sqrt(GRAVITY)
+"""The rate of a pendulum of 1 m [rad/s]."""
+_MOMENTS = (1.0, 10.0)
+_CRANK, _ROD, _DRIVE = 0.5, 1.5, 3.0
+"""A slider-crank's lengths [m], and how fast it is driven [rad/s]."""
+_WEIGHTS, _WHEEL = (1.0, 1.5), 0.5
+"""Masses at a wheel [kg], and its moment of inertia over the square of its radius [kg]."""
+
+
+def _bar(
+    world: World, x: float, y: float, angle: float = 0.0, *, v: tuple[float, float] = (0.0, 0.0),
+    spin: float = 0.0, length: float = 1.0, name: str = "",
+) -> int:  # fmt: skip
+    """Return an even bar of 1 kg."""
+    mass = Mass(1.0, inertia=length**2 / 12.0)
+    return world.spawn(Transform((x, y), angle), Velocity(v, spin), mass, name=name or None)
+
+
+def _tip_error(world: World, name: str, arm: tuple[float, float], problem: str, i: int, rate: float) -> float:
+    """Return the largest error of a point of a body from the record, and of its velocity over a rate [m]."""
+    body = world.entity(name)
+    x, y = rotated(np.array(arm), world.component(body, Transform).angle)
+    spin, at, how = world.component(body, Velocity).angular, place(world, name), velocity(world, name)
+    keys = (number(problem, f"t={_MOMENTS[i]:.0f}", key) for key in ("x", "y", "vx", "vy"))
+    found = at.x + x, at.y + y, how.x - spin * y, how.y + spin * x
+    scales = 1.0, 1.0, rate, rate
+    return max(float(abs(x - y)) / scale for x, y, scale in zip(found, keys, scales, strict=True))
 
 
 def _compound_pendulum(simulation: SimulationConfig) -> World:
@@ -31,12 +64,153 @@ def _error(world: World, i: int) -> float:
     return state_error(world, "bar", (x, y), (vx, vy), _RATE)
 
 
+def _chain(simulation: SimulationConfig, links: int, angle: float, *, bars: bool) -> World:
+    """Return links of 1 m in a row, at an angle from below: even bars, or masses on rods."""
+    world, last = empty_world(simulation), None
+    x, y = math.sin(angle), -math.cos(angle)
+    for i in range(links):
+        name = "end" if i == links - 1 else f"link{i}"
+        if bars:
+            link = _bar(world, (i + 0.5) * x, (i + 0.5) * y, angle, name=name)
+            world.spawn(Pin(last, link, anchor_a=(0.0, -0.5 if i else 0.0), anchor_b=(0.0, 0.5)))
+        else:
+            link = world.spawn(Transform(((i + 1) * x, (i + 1) * y)), Velocity(), Mass(1.0), name=name)
+            world.spawn(Rod(last, link, length=1.0))
+        last = link
+    return world
+
+
+def _four_bar(simulation: SimulationConfig) -> World:
+    """Return two loops of bars on the ground, cranks upright, whose tops move at 1 m/s."""
+    world = empty_world(simulation)
+    cranks = [_bar(world, i, 0.5, v=(-0.5, 0.0), spin=1.0, name=f"crank{i}") for i in range(3)]
+    for i, crank in enumerate(cranks):
+        world.spawn(Pin(b=crank, anchor_a=(i, 0.0), anchor_b=(0.0, -0.5)))
+    for i in range(2):
+        top = _bar(world, i + 0.5, 1.0, v=(-1.0, 0.0), name=f"top{i}")
+        world.spawn(Pin(cranks[i], top, anchor_a=(0.0, 0.5), anchor_b=(-0.5, 0.0)))
+        world.spawn(Pin(top, cranks[i + 1], anchor_a=(0.5, 0.0), anchor_b=(0.0, 0.5)))
+    return world
+
+
+def _four_bar_error(world: World, i: int) -> float:
+    """Return the error of the first crank's top, and by how much others are elsewhere, or tops not level."""
+    angles = [world.component(world.entity(f"crank{n}"), Transform).angle for n in range(3)]
+    tilted = [world.component(world.entity(f"top{n}"), Transform).angle for n in range(2)]
+    apart = max(*(abs(angle - angles[0]) for angle in angles), *(abs(angle) for angle in tilted))
+    return max(_tip_error(world, "crank0", (0.0, 0.5), "four_bar", i, _SWING), apart)
+
+
+def _slider_crank(simulation: SimulationConfig, spin: float, *, driven: bool) -> World:
+    """Return a crank, a rod and a slider in a row, which a motor drives or that goes by itself."""
+    world, r = empty_world(simulation), _CRANK
+    crank = _bar(world, 0.5 * r, 0.0, v=(0.0, 0.5 * r * spin), spin=spin, length=r, name="crank")
+    tilt = -spin * r / _ROD
+    rod = _bar(world, r + 0.5 * _ROD, 0.0, v=(0.0, 0.5 * r * spin), spin=tilt, length=_ROD, name="rod")
+    slider = _bar(world, r + _ROD, 0.0, name="slider")
+    motor = spin if driven else None
+    world.spawn(Pin(b=crank, anchor_b=(-0.5 * r, 0.0), motor_speed=motor))
+    world.spawn(Pin(crank, rod, anchor_a=(0.5 * r, 0.0), anchor_b=(-0.5 * _ROD, 0.0)))
+    world.spawn(Pin(rod, slider, anchor_a=(0.5 * _ROD, 0.0)))
+    world.spawn(Slot(b=slider))
+    return world
+
+
+def _driven_error(world: World, i: int) -> float:
+    """Return the error of the slider's place and speed, by the angle of the crank at that time."""
+    s, c = math.sin(_DRIVE * _MOMENTS[i]), math.cos(_DRIVE * _MOMENTS[i])
+    w = math.sqrt(_ROD**2 - (_CRANK * s) ** 2)
+    where, speed = (_CRANK * c + w, 0.0), _DRIVE * (-_CRANK * s - _CRANK**2 * s * c / w)
+    return state_error(world, "slider", where, (speed, 0.0), _DRIVE)
+
+
+def _free_error(world: World, i: int) -> float:
+    x, vx, angle = (number("slider_crank", f"t={_MOMENTS[i]:.0f}", key) for key in ("x", "vx", "angle"))
+    turned = world.component(world.entity("crank"), Transform).angle
+    return max(state_error(world, "slider", (x, 0.0), (vx, 0.0), _SWING), abs(turned - angle))
+
+
+def _hoist(simulation: SimulationConfig, ratio: float) -> World:
+    """Return two weights on rails, coupled with a wheel: the second moves ``ratio`` times as fast."""
+    world, rails = empty_world(simulation), []
+    for x, mass, name in zip((-1.0, 1.0), _WEIGHTS, ("left", "right"), strict=True):
+        weight = world.spawn(Transform((x, 0.0)), Velocity(), Mass(mass, inertia=1.0), name=name)
+        rails.append(world.spawn(Slot(b=weight, anchor_a=(x, 0.0), axis=(0.0, 1.0))))
+    wheel = world.spawn(Transform(), Velocity(), Mass(1.0, inertia=_WHEEL), name="wheel")
+    axle = world.spawn(Pin(b=wheel))
+    world.spawn(Gear(first=rails[0], second=axle, ratio=1.0))
+    world.spawn(Gear(first=rails[0], second=rails[1], ratio=ratio))
+    return world
+
+
+def _hoist_error(world: World, i: int, key: str, ratio: float) -> float:
+    """Return the error of both weights, which are lifted evenly: (m + w + M r^2) a = -(m + M r) g."""
+    a, t, errors = number("hoist", key), _MOMENTS[i], []
+    for name, x, share in (("left", -1.0, 1.0), ("right", 1.0, ratio)):
+        way, speed = 0.5 * share * a * t * t, share * a * t
+        errors.append(state_error(world, name, (x, way), (0.0, speed)) / max(1.0, abs(way)))
+    return max(errors)
+
+
+def _links(name: str, title: str, links: int, angle: float, excellent: float, *, bars: bool) -> Problem:
+    """Return a chain that is let go at an angle from below, and of which the end is compared."""
+    arm = (0.0, -0.5 if bars else 0.0)
+    return Problem(
+        name=name, title=title, group="mechanism", times=_MOMENTS, good=1e-6, excellent=excellent,
+        compared="x, y, vx, vy of its end after 1 and 10 s", ladder=Ladder(1024),
+        measure="largest error of x, y and of vx, vy over sqrt(g / 1 m) [m]",
+        build=lambda simulation: _chain(simulation, links, angle, bars=bars),
+        error=lambda world, i: _tip_error(world, "end", arm, name, i, _SWING),
+    )  # fmt: skip
+
+
 JOINED = (
     Problem(
         name="compound_pendulum", title="A bar on a pin, let go 143 degrees from below", group="pendulum",
         compared="x, y, vx, vy of its middle after 1 and 10 s", times=(1.0, 10.0),
         measure="largest error of x, y and of vx, vy over sqrt(m g l / I) [m]",
         build=_compound_pendulum, error=_error, good=1e-6, excellent=1e-10, ladder=Ladder(512),
+    ),
+    _links("rod_pendulum", "A mass on a rod, let go 143 degrees from below", 1, 2.5, 1e-10, bars=False),
+    _links("double_pendulum", "Two masses on rods, let go at 57 degrees", 2, 1.0, 1e-9, bars=False),
+    _links("double_bars", "Two bars on pins, let go at 57 degrees", 2, 1.0, 1e-9, bars=True),
+    _links("ten_links", "Ten bars on pins, let go at 29 degrees", 10, 0.5, 1e-9, bars=True),
+    Problem(
+        name="four_bar", title="Two four-bar linkages in a row, which lie flat five times", group="mechanism",
+        compared="x, y, vx, vy of a crank's top, and that all are parallel, after 1 and 10 s", times=_MOMENTS,
+        measure="largest error of x, y, angles and of vx, vy over sqrt(g / 1 m) [m]",
+        build=_four_bar, error=_four_bar_error, good=1e-5, excellent=1e-7, ladder=Ladder(1024),
+        note="Where a linkage lies flat it could go on in two ways (IFToMM benchmark A02).",
+    ),
+    Problem(
+        name="slider_crank_driven", source="slider_crank", title="A slider-crank that a motor turns",
+        group="mechanism", compared="x, vx of the slider after 1 and 10 s", times=_MOMENTS,
+        measure="largest error of x, y and of vx, vy over the spin [m]",
+        build=lambda simulation: _slider_crank(simulation, _DRIVE, driven=True), error=_driven_error,
+        good=1e-6, excellent=1e-10, ladder=Ladder(1024), keeps=frozenset(),
+    ),
+    Problem(
+        name="slider_crank", title="A slider-crank that goes by itself, from 4 rad/s on", group="mechanism",
+        compared="x, vx of the slider and the crank's angle after 1 and 10 s", times=_MOMENTS,
+        measure="largest error of x, y, the angle and of vx, vy over sqrt(g / 1 m) [m]",
+        build=lambda simulation: _slider_crank(simulation, 4.0, driven=False), error=_free_error,
+        good=1e-6, excellent=1e-10, ladder=Ladder(1024),
+    ),
+    Problem(
+        name="atwood_wheel", source="hoist", title="Two weights over a wheel that has inertia",
+        group="mechanism", compared="y, vy of both weights after 1 and 10 s", times=_MOMENTS,
+        measure="largest error of x, y, vx, vy over the way [m]",
+        build=lambda simulation: _hoist(simulation, -1.0),
+        error=lambda world, i: _hoist_error(world, i, "atwood", -1.0),
+        good=1e-9, excellent=1e-13, ladder=Ladder(64),
+    ),
+    Problem(
+        name="block_and_tackle", source="hoist", title="Two weights, of which one moves a quarter",
+        group="mechanism", compared="y, vy of both weights after 1 and 10 s", times=_MOMENTS,
+        measure="largest error of x, y, vx, vy over the way [m]",
+        build=lambda simulation: _hoist(simulation, -0.25),
+        error=lambda world, i: _hoist_error(world, i, "tackle", -0.25),
+        good=1e-9, excellent=1e-13, ladder=Ladder(64),
     ),
 )  # fmt: skip
 """Every problem with joints."""

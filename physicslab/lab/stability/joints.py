@@ -131,7 +131,7 @@ _link = partial(
 JOINTS = (
     *(
         _link(
-            name=f"chain_{name}", measure=partial(_chain, 100, heavy), long_s=5.0,
+            name=f"chain_{name}", measure=partial(_chain, 100, heavy),
             title=f"chain of 100 bars of 1 kg let go level, {heavy:,.0f} kg at the end, soft, 3 s",
         )
         for name, heavy in (("100kg", 100.0), ("10t", 10_000.0))
@@ -146,7 +146,7 @@ JOINTS = (
     ),
     _link(
         name="bridge_ball", title="bridge of 30 planks of 10 kg, 1,000 kg fall on it, soft, 4 s",
-        measure=_bridge, long_s=2.0,
+        measure=_bridge,
     ),
     _case(
         name="motor_blocked", title="motor of 10 kN against the stop of a slot, 1 kg, soft, 10 s", unit="m",

@@ -73,7 +73,7 @@ def _mixed() -> World:
     pile(world, 6, (-6.0, 2.1), columns=3)
     circle(world, (3.0, 2.0), radius=0.25, restitution=1.0, friction=0.0, name="bouncing")
     box(world, (5.0, 0.25), name="resting")
-    pendulum(world, (8.0, 6.0), damping=0.0)
+    pendulum(world, (8.0, 6.0))
     return world
 
 

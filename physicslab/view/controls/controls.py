@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
@@ -185,6 +186,7 @@ CONTROLS: tuple[Control, ...] = (
             tool=tools.DRAWING["pendulum"], tip="New pendulums: click, or drag from pin to bob"),
     Control("S", "spring: hold, drag", "s", tools.begin_by_key, tools.end_by_key,
             tool=tools.DRAWING["spring"], tip="Springs: drag from a body"),
+    Control("Digits", "tools: see Draw", also=("shift+digits",), tip="The tools that draw: see the menu"),
     Control("Del", "remove", "delete", tools.remove_selected, also=("backspace",), group="edit",
             tip="Remove the selection, or the body under the cursor"),
     Control("Ctrl+D", "duplicate", "ctrl+d", actions.duplicate_selected, group="edit",
@@ -325,6 +327,7 @@ KEYS: dict[str, Action] = {
 }
 """The action of each key when it is pressed, by its name in SDL."""
 KEYS |= controls.ARROWS
+KEYS |= {key: partial(actions.choose_tool, tool=tools.TOOLS[name]) for key, name in tools.DIGITS.items()}
 
 RELEASES: dict[str, Action] = {
     control.key: control.release for control in CONTROLS if control.release is not None

@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
+from itertools import pairwise
 
 import pygame
 
@@ -16,8 +17,9 @@ from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Spawn
 from physicslab.state.joint_rows import KINDS
-from physicslab.view.controls.measure import LENGTH, Measure
+from physicslab.view.controls.measure import HANGING, LENGTH, Measure
 from physicslab.view.controls.picking import body_at
+from physicslab.view.controls.polygons import MOST, NotConvex, is_stroke
 from physicslab.view.window.edits import Recipe
 from physicslab.view.window.placing import outlines_of, refused_place, snapped_point
 from physicslab.view.window.sketch import Grip
@@ -31,6 +33,8 @@ _MIDDLE = 10.0
 """How near to the middle of a body a joint is put at the middle [px]."""
 _LEAST = 3.0
 """The least side of a box that is drawn [px]."""
+_CLOSING, _STEP = 10.0, 5.0
+"""How near to its first point a polygon is closed, and how far apart the points of a stroke are [px]."""
 
 type Build = Callable[[World, Sequence[Vector2], Recipe], None]
 """Makes bodies in a world of their own, through points [m]."""
@@ -49,7 +53,7 @@ class Drawn:
     usage : str
         How it is drawn.
     points : int
-        How many points make it.
+        How many points make it; 0: as many as are put down until it is closed at the first, or by a stroke.
     build, join : callable, optional
         Makes bodies; or returns the joint of what lies at the points.
     measure : Measure
@@ -82,7 +86,17 @@ class Drawn:
     @property
     def by_click(self) -> bool:
         """Whether a click makes it."""
-        return self.points == 1 or bool(self.ways)
+        return self.points < 2 or bool(self.ways)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it has any number of points."""
+        return self.points == 0
+
+    @property
+    def hangs(self) -> bool:
+        """Whether it hangs from its first point."""
+        return self.measure is HANGING
 
 
 # ---- points ------------------------------------------------------------------------------------------------
@@ -90,7 +104,7 @@ class Drawn:
 
 def _clicked(drawn: Drawn, window: Window, place: Vector2) -> list[Vector2]:
     """Return the points of what a click makes at a place [m]: as large as the last one drawn."""
-    if drawn.points == 1:
+    if drawn.points < 2:
         return [place]
     way = window.sketch.ways.get(drawn.name) or drawn.ways[(window.spawned + 1) % len(drawn.ways)]
     if window.recipe.size and drawn.per_size:
@@ -101,7 +115,7 @@ def _clicked(drawn: Drawn, window: Window, place: Vector2) -> list[Vector2]:
 def _at_cursor(world: World, drawn: Drawn, window: Window) -> Vector2:
     """Return where the next point would be put down now [m]: by the cursor, and by what was typed."""
     sketch, place = window.sketch, window.target
-    if not sketch.grips or len(sketch.grips) % 2 == 0:
+    if not sketch.grips or (len(sketch.grips) % 2 == 0 and not drawn.is_open):
         return place
     first = sketch.grips[-1].place(world)
     way = place - first
@@ -164,7 +178,9 @@ def release(world: World, window: Window, drawn: Drawn) -> None:
     if sketch.name != drawn.name:
         return
     sketch.held = 0
-    if _is_dragged(window):
+    if drawn.is_open and is_stroke(sketch.stroke) and not sketch.typed:
+        _finish(world, window, drawn, [Grip(None, place) for place in sketch.stroke])
+    elif _is_dragged(window):
         _put(world, window, drawn, _at_cursor(world, drawn, window))
     elif drawn.ways:
         places = _clicked(drawn, window, sketch.spot)
@@ -174,11 +190,33 @@ def release(world: World, window: Window, drawn: Drawn) -> None:
 
 def _put(world: World, window: Window, drawn: Drawn, place: Vector2) -> None:
     sketch = window.sketch
-    sketch.grips.append(_grip(world, drawn, window, place))
-    sketch.begin, sketch.typed = window.pointer, ""
-    if len(sketch.grips) < drawn.points:
-        return
-    grips = list(sketch.grips)
+    closes = drawn.is_open and _is_closed(window, place)
+    if not closes:
+        sketch.grips.append(_grip(world, drawn, window, place))
+    sketch.begin, sketch.typed, sketch.stroke = window.pointer, "", []
+    if closes or len(sketch.grips) == (drawn.points or MOST):
+        _finish(world, window, drawn, list(sketch.grips))
+
+
+def _is_closed(window: Window, place: Vector2) -> bool:
+    """Whether a place [m] is at the first point of a polygon that has at least three."""
+    grips = window.sketch.grips
+    near = _CLOSING / window.camera.scale
+    return len(grips) > 2 and (grips[0].anchor - place).magnitude <= near
+
+
+def follow(window: Window, drawn: Drawn | None) -> None:
+    """Note the way of a stroke: only the first point of a polygon begins one."""
+    sketch = window.sketch
+    if drawn is not None and drawn.is_open and sketch.held and len(sketch.grips) == 1:
+        last = sketch.stroke[-1] if sketch.stroke else sketch.grips[0].anchor
+        if (window.place - last).magnitude * window.camera.scale >= _STEP:
+            sketch.stroke += [last, window.place] if not sketch.stroke else [window.place]
+
+
+def _finish(world: World, window: Window, drawn: Drawn, grips: Sequence[Grip]) -> None:
+    """Make what is drawn of its points."""
+    sketch = window.sketch
     sketch.cancel()
     if drawn.join is not None:
         join(world, window, drawn.title, partial(drawn.join, world, window, grips))
@@ -216,6 +254,8 @@ def _build(world: World, window: Window, drawn: Drawn, places: Sequence[Vector2]
         made = [] if refused else _commands(drawn, places, window)
     except InvalidValue as error:
         refused = f"{error.field} must be {error.allowed}"
+    except NotConvex as error:
+        refused = str(error)
     if refused:
         window.notify(f"{drawn.title}: {refused}")
         return False
@@ -282,30 +322,40 @@ def ghost(world: World, drawn: Drawn, window: Window) -> tuple[Outlines, bool] |
     sketch = window.sketch
     if sketch.name == drawn.name and sketch.grips:
         places = [grip.anchor for grip in sketch.grips]
-        is_drag = _is_dragged(window)
-        places = (
-            [*places, _at_cursor(world, drawn, window)] if is_drag else _clicked(drawn, window, sketch.spot)
-        )
+        if is_stroke(sketch.stroke):
+            places = sketch.stroke
+        elif drawn.is_open or _is_dragged(window):
+            cursor = _at_cursor(world, drawn, window)
+            places = places if drawn.is_open and _is_closed(window, cursor) else [*places, cursor]
+        else:
+            places = _clicked(drawn, window, sketch.spot)
     else:
         places = _clicked(drawn, window, window.target)
     try:
         outlines = _outlines(drawn, places, window.recipe)
-    except InvalidValue:  # larger than anything may be
+    except (InvalidValue, NotConvex):  # larger than anything may be, or not a shape yet
         return None
     return outlines, not refused_place(world, outlines)
 
 
-def lines(world: World, drawn: Drawn, window: Window) -> list[Vector2]:
-    """Return the points of a joint in the making, the one at the cursor included [m]."""
+def lines(world: World, drawn: Drawn, window: Window) -> list[tuple[Vector2, Vector2]]:
+    """Return the lines of a joint or a polygon in the making, to the point at the cursor [m]."""
     places = [grip.place(world) for grip in window.sketch.grips]
-    return [*places, _grip(world, drawn, window, _at_cursor(world, drawn, window)).place(world)]
+    if drawn.hangs and not _is_dragged(window):
+        return []
+    if is_stroke(window.sketch.stroke):
+        return list(pairwise(window.sketch.stroke))
+    places.append(_grip(world, drawn, window, _at_cursor(world, drawn, window)).place(world))
+    return list(pairwise(places)) if drawn.is_open else list(zip(places[::2], places[1::2], strict=False))
 
 
 def reading(world: World, drawn: Drawn, window: Window) -> str:
     """Return what stands beside the cursor: the size of what is drawn, what is typed, or what to do next."""
     sketch = window.sketch
     begun = len(sketch.grips) if sketch.name == drawn.name else 0
-    if begun % 2 and drawn.points > 1 and _is_dragged(window):
+    if is_stroke(sketch.stroke):
+        return "Let go to close it"
+    if (begun % 2 or drawn.is_open) and begun and drawn.points != 1 and _is_dragged(window):
         first, place = sketch.grips[-1].place(world), _at_cursor(world, drawn, window)
         size = drawn.measure.said(place - first)
         return f"{sketch.typed}_   {size}" if sketch.typed else size

@@ -40,14 +40,19 @@ def body_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | N
     return next(iter(bodies_at(world, camera, pixel)), None)
 
 
-def bodies_at(world: World, camera: Camera, pixel: tuple[float, float]) -> list[int]:
-    """Return the bodies at a place on the screen [px], the upper ones first, as :func:`body_at` does."""
+def bodies_at(world: World, camera: Camera, pixel: tuple[float, float], reach: float = 0.0) -> list[int]:
+    """Return the bodies within a reach of a place on the screen [px], the upper ones first.
+
+    Otherwise the one that :func:`body_at` returns.
+    """
     place, rows = camera.to_world(pixel), body_rows(world)
     entities = world.entity_index.entities
     everything = rows.all
     gap = outlines_of(world, everything).gaps(place.x, place.y)
     gap[len(gap) - len(rows.points) :] -= POINT_RADIUS / camera.scale
-    hit: list[int] = entities[everything[np.flatnonzero(gap <= 0.0)[::-1]]].tolist()
+    gap[: len(rows.chains)] -= POINT_RADIUS / camera.scale
+    near = np.flatnonzero(gap <= reach / camera.scale)[::-1]
+    hit: list[int] = entities[everything[near]].tolist()
     if hit:
         return hit
     distance = _distance(world, everything, place)

@@ -9,8 +9,8 @@ from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import binary, box, capsule, chain, circle, container, pendulum, pile, pyramid, stack
 from physicslab.view.controls.drawing import Drawn
 from physicslab.view.controls.measure import CORNERS, HANGING, RADIUS
+from physicslab.view.controls.polygons import build_polygon, build_ramp
 from physicslab.view.window.edits import Recipe
-from physicslab.view.window.spring_tool import rod_stiffness
 from physicslab.world import World
 
 _RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
@@ -68,9 +68,7 @@ def _pendulum(world: World, places: Places, recipe: Recipe) -> None:
     way = places[1] - places[0]
     length, angle = way.magnitude, math.remainder(way.angle + 0.5 * math.pi, 2.0 * math.pi)
     radius = min(_THICKNESS, 0.25 * length)
-    pendulum(
-        world, places[0], length=length, angle=angle, radius=radius, stiffness=rod_stiffness(1.0, length)
-    )
+    pendulum(world, places[0], length=length, angle=angle, radius=radius)
 
 
 def _chain(world: World, places: Places, recipe: Recipe) -> None:
@@ -122,9 +120,17 @@ BODIES = (
     Drawn("capsule", "Capsule", "drag from end to end, or click", build=_capsule,
           ways=tuple(Vector2(size[0] + size[1], 0.0) for size in _SIZES), per_size=Vector2(3.0, 0.0),
           is_centred=True),
+    Drawn("polygon", "Polygon", "click its corners, the first one again to close it; or draw around it",
+          0, build=build_polygon, prompts=("Click a corner, or draw around it", "Click the next corner",
+                                           "Click the next corner", "... the first one closes it")),
+    Drawn("ramp", "Ramp", "drag from its foot to its top, or click; it is fixed", build=build_ramp,
+          ways=(Vector2(2.0, 0.8),)),
     PENDULUM,
     Drawn("chain", "Chain", "drag from its upper end to its lower one, or click", build=_chain,
           ways=(Vector2(1.2, -1.2),)),
+)  # fmt: skip
+"""Bodies, in the order of the tools."""
+GROUPS = (
     Drawn("stack", "Stack", "click at its foot", 1, build=_stack),
     Drawn("pyramid", "Pyramid", "click at its foot", 1, build=_pyramid),
     Drawn("heap", "Heap of discs", "click where it is to fall", 1, build=_heap),
@@ -132,4 +138,4 @@ BODIES = (
     Drawn("binary", "Planets", "click at the centre of their orbit", 1, build=_binary,
           remark="These two circle each other in planet mode: O turns it on"),
 )  # fmt: skip
-"""All bodies that are drawn, in the order of the tools."""
+"""Groups of bodies."""

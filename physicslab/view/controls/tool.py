@@ -39,12 +39,12 @@ class Tool:
 
 ICONS = {
     "select": "\uf25a", "circle": "\uf111", "box": "\uf0c8", "capsule": "\uf46b", "block": "\uf068",
-    "beam": "\uf7a4", "polygon": "\uf5ee", "ramp": "\uf5ee",
-    "pendulum": "\uf5cd", "chain": "\uf0c1", "spring": "\uf83e", "rod": "\uf547", "rope": "\uf5b7",
-    "pin": "\uf192", "motor": "\uf863", "slot": "\uf337", "weld": "\uf0fd", "pulley": "\uf1da",
+    "beam": "\uf7a4", "polygon": "\uf5ee", "ramp": "\uf0d8",
+    "pendulum": "\uf5cd", "chain": "\uf0c1", "spring": "\uf83e", "rod": "\uf715", "rope": "\uf4d7",
+    "pin": "\uf192", "motor": "\uf863", "slot": "\uf337", "weld": "\uf46a", "pulley": "\uf655",
     "gear": "\uf013", "remove": "\uf12d", "ruler": "\uf545",
     "protractor": "\uf568", "gate": "\uf11e", "note": "\uf249", "pan": "\uf0b2",
-    "more": "\uf141", "stack": "\uf5fd", "pyramid": "\uf5ee", "heap": "\uf1ce", "pit": "\uf5ee",
+    "more": "\uf141", "stack": "\uf5fd", "pyramid": "\uf6fc", "heap": "\uf1ce", "pit": "\uf01c",
     "binary": "\uf753", "play": "\uf04b", "pause": "\uf04c", "step": "\uf051", "back": "\uf048",
     "restart": "\uf2f9", "undo": "\uf0e2", "redo": "\uf01e",
 }  # fmt: skip

@@ -12,7 +12,7 @@ from physicslab.view.controls.drawing import Drawn
 from physicslab.view.controls.joining import JOINTS, SPRING
 from physicslab.view.controls.measuring import MEASURING_TOOLS, detached, take_instrument
 from physicslab.view.controls.picking import body_at, instrument_at, link_at, spring_at
-from physicslab.view.controls.spawning import BODIES
+from physicslab.view.controls.spawning import BODIES, GROUPS
 from physicslab.view.controls.tool import Tool
 from physicslab.view.picture.joints import joint_at
 from physicslab.view.window.spring_tool import pin_at
@@ -47,7 +47,7 @@ def take_hold(world: World, window: Window) -> bool:
         return True  # it lies over what is fixed
     if entity is None:
         window.pins.dragged = pin
-        spring = link_at(world, window.camera, window.pointer) if pin is None else pin
+        spring = link_at(world, window.camera, window.pointer) if pin is None else pin[0]
         if spring is not None:
             window.selection.take(spring, add=window.adding)
         return spring is not None
@@ -160,7 +160,7 @@ def end_by_key(world: World, window: Window) -> None:
     window.sketch.cancel()
 
 
-DRAWING = {drawn.name: drawing_tool(drawn) for drawn in (*BODIES, *JOINTS)}
+DRAWING = {drawn.name: drawing_tool(drawn) for drawn in (*BODIES, *JOINTS, *GROUPS)}
 """A tool for each thing that is drawn."""
 HAND = DRAWING["circle"]
 """The tool at the start: that of a new window."""
@@ -170,10 +170,23 @@ REMOVE = Tool(
 _USAGE = "Select: click a body to see its numbers; drag to move or throw it."
 SELECT = Tool("select", "Select", _USAGE, select, end_select)
 PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True, drags=True)
-_IN_SIGHT = ("circle", "box", "block", "pendulum", "spring", "pin")
+_IN_SIGHT = ("circle", "box", "polygon", "block", "pendulum", "spring", "rod", "rope", "pin")
 PALETTE = (SELECT, *(DRAWING[name] for name in _IN_SIGHT), *MEASURING_TOOLS, REMOVE, PAN)
 """The tools that are in sight, in their order."""
 MORE_TOOLS = tuple(tool for tool in DRAWING.values() if tool.name not in _IN_SIGHT)
 """Those behind one more button."""
 TOOLS = {tool.name: tool for tool in (*PALETTE, *MORE_TOOLS)}
 """Every tool, by the name that ``Window.tool`` holds."""
+_BY_DIGITS = ("circle", "box", "block", "beam", "capsule", "pendulum", "spring", "rod", "rope", "pin")
+_WITH_SHIFT = ("motor", "slot", "weld", "pulley", "gear", "polygon", "ramp", "chain")
+DIGITS = {
+    held + str((n + 1) % 10): name
+    for held, names in (("", _BY_DIGITS), ("shift+", _WITH_SHIFT))
+    for n, name in enumerate(names)
+}
+"""The tools that digits take up, alone and with Shift, by the names of these keys in SDL."""
+
+
+def key_of(tool: Tool) -> str:
+    """Return the key that takes a tool up, as it is shown; empty for none."""
+    return next((key.capitalize() for key, name in DIGITS.items() if name == tool.name), "")

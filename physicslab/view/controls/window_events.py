@@ -218,6 +218,7 @@ class WindowEvents:
             window.camera.pan(dx, dy)
         window.pointer = event.pos
         self._follow_snapping(world)
+        drawing.follow(window, TOOLS[window.sketch.name or window.tool].draws)
         if window.handles.dragged is not None and window.handled is not None:
             rounds = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
             snaps = rounds or (window.snapping.active and window.handles.dragged == "angle")

@@ -123,17 +123,19 @@ def draw_ghost(ghost: Outlines, colour: Colour, on: Drawing) -> None:
         on.canvas.lines(corners, np.roll(corners, -1, axis=0), colour, 1.4, _GHOST_OPACITY)
 
 
-_DASH, _END = 9.0, 4.0
-"""Length of a dash, and radius of the discs at the ends, of a joint in the making [px]."""
+_DASH, _END, _MAX_ENDS = 9.0, 4.0, 9
+"""Length of a dash, radius of the discs at the ends [px] and of how many lines, of what is being drawn."""
 
 
-def draw_dashes(places: Sequence[Vector2], on: Drawing) -> None:
-    """Draw a dashed line between each two of some points of the world [m], with a disc at each."""
-    spots = on.camera.project(np.array([tuple(place) for place in places]))
-    if not (np.abs(spots) < _FAR).all():
+def draw_dashes(lines: Sequence[tuple[Vector2, Vector2]], on: Drawing) -> None:
+    """Draw dashed lines between points of the world [m], with discs at their ends where they are few."""
+    spots = on.camera.project(np.array([tuple(place) for line in lines for place in line]).reshape(-1, 2))
+    if not len(spots) or not (np.abs(spots) < _FAR).all():
         return
-    for start, end in zip(spots[::2], spots[1::2], strict=False):
+    for start, end in zip(spots[::2], spots[1::2], strict=True):
         on.canvas.lines(*even_dashes(start, end, _DASH), on.theme.accent, 2.0)
+    if len(lines) > _MAX_ENDS:  # a stroke
+        return
     look = Look.plain(on.theme.accent, on.theme.accent, len(spots))
     on.canvas.discs(spots, np.full(len(spots), _END), np.zeros(len(spots)), look)
 

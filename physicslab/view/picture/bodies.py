@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Medium, Shape, Transform, Velocity
-from physicslab.components.shape import BOX, CIRCLE
+from physicslab.components.shape import BOX, CHAIN, CIRCLE
 from physicslab.contacts.outlines import Outlines, outlines_of
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look, Rounded
@@ -19,6 +19,8 @@ type Rows = NDArray[np.int64]
 
 POINT_RADIUS = 5.0
 """How large a body without a Shape appears [px]."""
+_CHAIN, _SHADE = 2.5, 4.0
+"""Width of a chain, and half of that of the shade on its solid side [px]."""
 _FAINT = 0.5
 """Share of its colour in the rim of a medium: bodies within it are to stand out."""
 _MIN_HALF = 0.9
@@ -31,10 +33,11 @@ class BodyRows:
 
     Attributes
     ----------
-    boxes, rounded, discs, points : int64 arrays
+    chains, boxes, rounded, discs, points : int64 arrays
         Drawn in this order, so that points lie on top; ``rounded`` are all other polygons.
     """
 
+    chains: Rows
     boxes: Rows
     rounded: Rows
     discs: Rows
@@ -43,7 +46,7 @@ class BodyRows:
     @property
     def all(self) -> Rows:
         """All of them, in this order (n,)."""
-        return np.concatenate((self.boxes, self.rounded, self.discs, self.points))
+        return np.concatenate((self.chains, self.boxes, self.rounded, self.discs, self.points))
 
 
 def body_rows(world: World) -> BodyRows:
@@ -53,10 +56,9 @@ def body_rows(world: World) -> BodyRows:
     rows = np.concatenate((rows[~moves], rows[moves]))
     kind = world.table(Shape)["kind"][rows]
     is_body = world.table(Velocity).present[rows] | world.table(Mass).present[rows]
-    boxes, discs = kind == BOX, kind == CIRCLE
-    return BodyRows(
-        rows[boxes], rows[(kind != 0) & ~boxes & ~discs], rows[discs], rows[(kind == 0) & is_body]
-    )
+    chains, boxes, discs = kind == CHAIN, kind == BOX, kind == CIRCLE
+    others = (kind != 0) & ~chains & ~boxes & ~discs
+    return BodyRows(rows[chains], rows[boxes], rows[others], rows[discs], rows[(kind == 0) & is_body])
 
 
 @lru_cache(maxsize=8)
@@ -108,6 +110,8 @@ def _on_screen(
 def draw_bodies(world: World, camera: Camera, theme: Theme, canvas: Canvas) -> None:
     """Draw every body that is on the screen, media behind all others."""
     rows, fluid = body_rows(world), world.table(Medium).present
+    for row in rows.chains.tolist():
+        _draw_chain(world, row, camera, theme, canvas)
     for layer in (True, False) if len(world.batch(Medium)) else (False,):
         boxes, rounded, discs = (
             part[fluid[part] == layer] for part in (rows.boxes, rows.rounded, rows.discs)
@@ -131,6 +135,17 @@ def _draw_boxes(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: 
     seen = _on_screen(centre, 0.5 * np.hypot(extent[:, 0], extent[:, 1]), camera.size) & np.isfinite(angle)
     if seen.any():
         canvas.boxes(centre[seen], extent[seen], angle[seen], _look(world, theme, rows[seen]))
+
+
+def _draw_chain(world: World, row: int, camera: Camera, theme: Theme, canvas: Canvas) -> None:
+    """Draw the segments of a chain, with a shade on the side that is solid."""
+    outline = outlines_of(world, np.array([row]))
+    corners = camera.project(outline.place + outline.corners[0, : outline.vertices[0] // 2 + 1])
+    start, end = corners[:-1], corners[1:]
+    along = (end - start) / np.maximum(np.hypot(*(end - start).T), 1e-9)[:, None]
+    aside = _SHADE * np.stack((along[:, 1], -along[:, 0]), axis=1)  # to the left, where y points down
+    canvas.lines(start + aside, end + aside, theme.static, 2.0 * _SHADE, 0.3)
+    canvas.lines(start, end, theme.static, _CHAIN)
 
 
 def _draw_rounded(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: Canvas) -> None:

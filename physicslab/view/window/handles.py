@@ -120,7 +120,8 @@ class Handles:
         if kind.own[1]:
             size = _size(corner.magnitude, snaps)
             factor = size / _corner(edits.world, entity).magnitude
-            edits.show(entity, Shape, "vertices", centred([factor * one for one in shape.core], shape.radius))
+            larger = tuple(factor * one for one in shape.vertices)
+            edits.show(entity, Shape, "vertices", larger if kind.part else centred(larger, shape.radius))
             self.words = f"{size:.3g} m"
             return
         if kind.radius:
@@ -149,6 +150,8 @@ def _corner(world: World, entity: int) -> Vector2:
     shape = world.component(entity, Shape)
     if len(shape.core) == 1:
         return Vector2.from_angle(-0.25 * math.pi, shape.radius)
+    if KINDS[shape.kind].part:
+        return max(shape.vertices, key=lambda vertex: vertex.magnitude)
     right, low = max(corner.x for corner in shape.core), min(corner.y for corner in shape.core)
     return Vector2(right, low - shape.rounding)
 

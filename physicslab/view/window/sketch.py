@@ -38,6 +38,8 @@ class Sketch:
         Where a click makes what is drawn [m].
     typed : str
         The numbers typed for the next point.
+    stroke : list of Vector2
+        Where the cursor went since the last point was put down, of what may be drawn with one stroke [m].
     ways : dict of str to Vector2
         From the first point to the second of what each tool drew last [m].
     """
@@ -48,12 +50,13 @@ class Sketch:
     begin: tuple[float, float] = (0.0, 0.0)
     spot: Vector2 = Vector2()
     typed: str = ""
+    stroke: list[Vector2] = field(default_factory=list)
     ways: dict[str, Vector2] = field(default_factory=dict)
 
     def cancel(self) -> bool:
         """Forget what was begun; return whether there was anything."""
         begun = bool(self.grips)
-        self.name, self.grips, self.held, self.typed = "", [], 0, ""
+        self.name, self.grips, self.held, self.typed, self.stroke = "", [], 0, "", []
         return begun
 
     def follow(self, world: World) -> None:

@@ -1,10 +1,11 @@
 """Springs by hand: between a body and another or a point of the world, and dragged by their pins."""
 
 import math
+from typing import Any
 
 import numpy as np
 
-from physicslab.components import Mass, Shape, Spring, Transform, Velocity
+from physicslab.components import Mass, Rod, Rope, Shape, Spring, Transform, Velocity
 from physicslab.contacts.outlines import outlines_of
 from physicslab.diagnostics.period import spring_state
 from physicslab.ecs.fields import InvalidValue
@@ -45,12 +46,10 @@ def local_point(world: World, body: int | None, place: Vector2) -> Vector2:
 _FREQUENCY = 2.0
 """How fast two bodies swing on a new spring [Hz]: soft enough to be seen, stiff enough to carry them."""
 _DAMPING_RATIO = 0.05
-_ROD_STRETCH, _EARTH = 1e-4, 9.81
-"""Share of its length by which the weight of the heavier body on the Earth [m/s^2] stretches a rod."""
 
 
 def spring_between(
-    world: World, one: int, other: int | None, places: tuple[Vector2, Vector2], *, stiff: bool = False
+    world: World, one: int, other: int | None, places: tuple[Vector2, Vector2]
 ) -> Spring | str:
     """Return a spring that is at rest now, or why there is none.
 
@@ -62,8 +61,6 @@ def spring_between(
         The body at its end; a fixed point of the world where there is none.
     places : two Vector2
         Where its ends are [m].
-    stiff : bool
-        Whether weight hardly stretches it, so that it serves as a rod.
     """
     inverse = _inverse_mass(world, one) + (_inverse_mass(world, other) if other is not None else 0.0)
     if inverse == 0.0:
@@ -74,19 +71,10 @@ def spring_between(
         return "No spring: its ends are at one place"
     rate = 2.0 * math.pi * _FREQUENCY
     stiffness, damping = rate * rate / inverse, 2.0 * _DAMPING_RATIO * rate / inverse
-    if stiff:
-        inverses = (_inverse_mass(world, end) for end in (one, other) if end is not None)
-        heaviest = max(1.0 / part for part in inverses if part > 0.0)
-        stiffness, damping = rod_stiffness(heaviest, length), 0.0
     return Spring(
         a=one, b=other, anchor_a=start, anchor_b=end, rest_length=length,
         stiffness=stiffness, damping=damping,
     )  # fmt: skip
-
-
-def rod_stiffness(mass: float, length: float) -> float:
-    """Return the stiffness [N/m] of a spring that serves as a rod for a mass [kg]."""
-    return mass * _EARTH / (_ROD_STRETCH * length)
 
 
 def _inverse_mass(world: World, entity: int) -> float:
@@ -103,18 +91,27 @@ _CATCH = 8.0
 """How near to a pin a press need be [px]."""
 
 
-def pin_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
-    """Return the entity of the spring whose fixed end is under the cursor [px], or ``None``."""
-    springs = world.batch(Spring)
-    table = world.table(Spring)
-    fixed = table["b"][springs.rows] == 0
-    if not fixed.any():
-        return None
-    pins = camera.project(table["anchor_b"][springs.rows[fixed]])
-    with np.errstate(all="ignore"):
-        distance = np.hypot(pins[:, 0] - pixel[0], pins[:, 1] - pixel[1])
-    nearest = int(np.argmin(distance))
-    return int(springs.entities[fixed][nearest]) if distance[nearest] <= _CATCH else None
+type Held = tuple[int, type[Any]]
+"""An entity, and which of its components has the fixed end."""
+_KINDS: tuple[type[Any], ...] = (Spring, Rod, Rope)
+"""What has a fixed end that can be dragged."""
+
+
+def pin_at(world: World, camera: Camera, pixel: tuple[float, float]) -> Held | None:
+    """Return the spring, the rod or the rope whose fixed end is under the cursor [px], or ``None``."""
+    best, found = _CATCH, None
+    for kind in _KINDS:
+        links, table = world.batch(kind), world.table(kind)
+        fixed = table["b"][links.rows] == 0
+        if not fixed.any():
+            continue
+        pins = camera.project(table["anchor_b"][links.rows[fixed]])
+        with np.errstate(all="ignore"):
+            distance = np.hypot(pins[:, 0] - pixel[0], pins[:, 1] - pixel[1])
+        nearest = int(np.argmin(distance))
+        if distance[nearest] <= best:
+            best, found = float(distance[nearest]), (int(links.entities[fixed][nearest]), kind)
+    return found
 
 
 class Pins:
@@ -122,41 +119,51 @@ class Pins:
 
     Attributes
     ----------
-    dragged : int, optional
-        The entity of its spring.
+    dragged : tuple of int and component type, optional
+        The entity of its spring, rod or rope, and which of these it is.
     words : str
-        How long the spring is, to stand beside the cursor.
+        How long that is, to stand beside the cursor.
     """
 
     def __init__(self) -> None:
-        self.dragged: int | None = None
+        self.dragged: Held | None = None
         self.words = ""
 
     def drag(self, edits: Edits, place: Vector2, *, paused: bool) -> None:
         """Let the pin follow the cursor, which is at a point of the world [m]."""
-        world, entity = edits.world, self.dragged
-        if entity is None:
+        world = edits.world
+        if self.dragged is None:
             return
-        if not world.has(entity, Spring) or world.component(entity, Spring).b is not None:
+        entity, kind = self.dragged
+        if not world.has(entity, kind) or world.component(entity, kind).b is not None:
             self.dragged = None
             return
         if not all(map(math.isfinite, (place.x, place.y))):
             return
+        part = world.component(entity, kind)
         try:
             if paused:
-                edits.show(entity, Spring, "anchor_b", place)
-            elif world.component(entity, Spring).anchor_b != place:
-                edits.write(SetField(entity, Spring.__name__, "anchor_b", place))
+                edits.show(entity, kind, "anchor_b", place)
+                gap = _gap(world, entity, part)
+                if kind is Rod or (kind is Rope and gap > part.length):
+                    edits.show(entity, kind, "length", gap)  # as placed: nothing is to jump
+            elif part.anchor_b != place:
+                edits.write(SetField(entity, kind.__name__, "anchor_b", place))
         except InvalidValue as error:
             self.words = f"must be {error.allowed}"
             return
-        state = spring_state(world, entity)
-        self.words = (
-            "" if state is None else f"{quantity(state.length, 'm')}, {quantity(abs(state.force), 'N')}"
-        )
+        self.words = quantity(_gap(world, entity, part), "m")
+        if kind is Spring and (state := spring_state(world, entity)) is not None:
+            self.words += f", {quantity(abs(state.force), 'N')}"
 
     def release(self, edits: Edits) -> None:
         """Let go of the pin: where it was dragged while time stood still, that becomes one edit."""
         if self.dragged is not None:
             edits.keep()
         self.dragged, self.words = None, ""
+
+
+def _gap(world: World, entity: int, part: Any) -> float:
+    """Return the distance of the ends of a spring, a rod or a rope whose second end is fixed [m]."""
+    end: Vector2 = part.anchor_b
+    return (end - point_of(world, part.a or entity, part.anchor_a)).magnitude

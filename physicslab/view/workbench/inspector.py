@@ -46,8 +46,8 @@ def build_derived(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
         _build_spring(ui, spring_state(world, entity))
         give = gives_way(world, entity)
         if give is not None:
-            tip = "This rod is a stiff spring: weight lengthens it by this much, a wide swing by more"
-            ui.row("Gives way", quantity(1e3 * give, "mm"), tip)
+            tip = "The weight of what hangs from it lengthens it by this much, a wide swing by more"
+            ui.row("Gives way", quantity(give, "m"), tip)
     for joint in joint_states(world):
         if joint.entity == entity:
             _build_joint(ui, joint)
@@ -247,7 +247,14 @@ def _build_components(ui: Ui, world: World, window: Window) -> None:
 
 def _build_buttons(ui: Ui, world: World, window: Window) -> None:
     ui.gap(0.2)
-    buttons = attachments(world, window.selection.entities) | {
+    joints = attachments(world, window.selection.entities)
+    if joints:
+        words = "Join ..." if len(window.selection.entities) > 1 else "Hang, pin ..."
+        with ui.list(words, "Rods, ropes, springs, pins, motors, welds") as shown:
+            for label, (tip, action) in (joints if shown else {}).items():
+                ui.item(label, action, tip=tip)
+        ui.same_line_if_room("Duplicate")
+    buttons = {
         "Duplicate": ("A copy beside it (Ctrl+D)", duplicate_selected),
         "Delete": ("Remove the selection (Del)", remove_selected),
         "Done": ("Select nothing (Esc)", lambda _, window: window.selection.clear()),

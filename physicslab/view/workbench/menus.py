@@ -12,8 +12,10 @@ from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import actions, file_actions
 from physicslab.view.controls.controls import CONTROLS, Control
 from physicslab.view.controls.file_actions import scene_files
+from physicslab.view.controls.joining import JOINTS
+from physicslab.view.controls.spawning import BODIES, GROUPS
 from physicslab.view.controls.tool import ICONS, Tool
-from physicslab.view.controls.tools import MORE_TOOLS, PALETTE
+from physicslab.view.controls.tools import DRAWING, MORE_TOOLS, PALETTE, key_of
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.window import Window
@@ -38,10 +40,11 @@ def build_menu_bar(ui: Ui, world: World, window: Window) -> None:
         with ui.menu(name) as shown:
             if shown:
                 _build_controls(ui, groups, world, window)
-        if name == "File":
-            with ui.menu("Scenes") as shown:
-                if shown:
-                    _build_scenes(ui, world, window)
+        for follows, title, build in (("File", "Scenes", _build_scenes), ("Edit", "Draw", _build_tools)):
+            if name == follows:
+                with ui.menu(title) as shown:
+                    if shown:
+                        build(ui, world, window)
     _build_right(ui, world, window)
     imgui.end_main_menu_bar()
 
@@ -87,6 +90,19 @@ def _build_recent(ui: Ui, window: Window) -> None:
         ui.faint("None was opened or saved yet", wrapped=False)
     for number, path in enumerate(there, start=1):
         ui.item(recent_label(number, path), file_actions.open_from_list, path, tip=printable(str(path)))
+
+
+def _build_tools(ui: Ui, world: World, window: Window) -> None:
+    """Build a line for each tool that draws: bodies, joints, groups of bodies."""
+    groups = (BODIES, JOINTS, GROUPS)
+    for n, group in enumerate(groups):
+        if n:
+            ui.rule()
+        for tool in (DRAWING[drawn.name] for drawn in group):
+            ui.item(
+                f"Draw {tool.title}", actions.choose_tool, tool, shown=_words(tool), keys=key_of(tool),
+                on=window.tool == tool.name, tip=tool.usage,
+            )  # fmt: skip
 
 
 def _build_scenes(ui: Ui, world: World, window: Window) -> None:
@@ -172,7 +188,7 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
         size = room.x, height
         for tool in shown:
             ui.button(
-                tool.title, tool.usage, actions.choose_tool, tool, shown=_words(tool),
+                tool.title, _tip(tool), actions.choose_tool, tool, shown=_words(tool),
                 on=window.tool == tool.name, size=size,
             )  # fmt: skip
         hidden = next((tool for tool in behind if tool.name == window.tool), None)
@@ -180,7 +196,10 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
         tip = "More to put into the world"
         with ui.list("More", tip, shown=words, on=hidden is not None, size=size) as is_open:
             for tool in behind if is_open else ():
-                ui.item(tool.title, actions.choose_tool, tool, on=window.tool == tool.name, tip=tool.usage)
+                ui.item(
+                    tool.title, actions.choose_tool, tool, shown=_words(tool), keys=key_of(tool),
+                    on=window.tool == tool.name, tip=tool.usage,
+                )  # fmt: skip
         imgui.pop_style_var()
 
 
@@ -188,6 +207,10 @@ def _shown(room: int) -> list[Tool]:
     """Return the tools for which there is room in sight; the others are behind one more button."""
     out_of_sight = _YIELDING[: max(len(PALETTE) - room, 0)]
     return [tool for tool in PALETTE if tool.name not in out_of_sight]
+
+
+def _tip(tool: Tool) -> str:
+    return f"{tool.usage}\nKey: {key_of(tool)}" if key_of(tool) else tool.usage
 
 
 def _words(tool: Tool) -> str:

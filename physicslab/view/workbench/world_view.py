@@ -132,10 +132,12 @@ class WorldView:
             marks.draw_ghost(shown[0], on.theme.accent if shown[1] else on.theme.error, on)
 
     def _draw_sketch(self, world: World, on: Drawing) -> None:
-        """Draw a joint in the making as a dashed line, and a line around the body that it would hold next."""
+        """Draw a joint or a polygon in the making, and a line around the body that a joint holds next."""
         window, drawn = self._window, TOOLS[self._window.sketch.name or self._window.tool].draws
         window.sketch.follow(world)
-        if drawn is None or drawn.join is None or window.pointer_on_panel or window.filming.running:
+        if drawn is None or window.pointer_on_panel or window.filming.running:
+            return
+        if drawn.join is None and not (drawn.is_open or drawn.hangs):
             return
         body = drawing.hovered(world, drawn, window)
         if body is not None:

@@ -1,0 +1,87 @@
+"""Ground to roll, slide and stand on: wedges, ramps, hills and loops."""
+
+import math
+from collections.abc import Sequence
+from typing import Unpack
+
+from physicslab.components import Shape
+from physicslab.components.vertices import regular
+from physicslab.ecs.vector import Vector2
+from physicslab.prefabs.body import BodyOptions, Pair, body, polygon
+from physicslab.world import World
+
+
+def wedge(
+    world: World, position: Pair, *, width: float = 1.0, height: float = 0.5, **options: Unpack[BodyOptions]
+) -> int:
+    """Spawn a triangle with a right angle, its left lower corner, at ``position`` [m]; return its entity.
+
+    Examples
+    --------
+    >>> world = World()
+    >>> slope = wedge(world, (0, 0), width=3, height=1.5, static=True)
+    >>> world.component(slope, Shape).vertices[0]
+    Vector2(x=-1.0, y=-0.5)
+    """
+    x, y = Vector2(*position)
+    corners = [(0.0, 0.0), (width, 0.0), (0.0, height)]
+    return polygon(world, (x + width / 3.0, y + height / 3.0), corners, **options)
+
+
+def regular_polygon(
+    world: World, position: Pair, *, corners: int = 6, radius: float = 0.25, **options: Unpack[BodyOptions]
+) -> int:
+    """Spawn a polygon of 3 to 8 equal sides in a circle of a radius [m]; one side is below."""
+    return polygon(world, position, regular(corners, radius), **options)
+
+
+def ground(
+    world: World, vertices: Sequence[Pair], position: Pair = (0.0, 0.0), **options: Unpack[BodyOptions]
+) -> int:
+    """Spawn fixed ground along 2 to 1,000 vertices [m] from ``position``; return its entity.
+
+    It is solid on its left: to have it below, go from right to left.
+
+    Examples
+    --------
+    >>> world = World()
+    >>> hill = ground(world, [(5, 0), (1, 0), (0, 1), (-1, 0), (-5, 0)], friction=0.8)
+    """
+    options["static"] = True
+    return body(world, Shape.chain(vertices), position, **options)
+
+
+def ramp(
+    world: World, position: Pair, *, length: float = 4.0, slope: float = 0.5, **options: Unpack[BodyOptions]
+) -> int:
+    """Spawn a fixed slope that goes down to the right from ``position`` [m], by ``slope`` [rad].
+
+    Returns
+    -------
+    entity : int
+        Its surface is ``length`` [m] long.
+    """
+    foot = Vector2.from_angle(-slope, length)
+    return ground(world, [foot, (0.0, 0.0)], position, **options)
+
+
+def loop(
+    world: World, position: Pair, *, radius: float = 1.0, run: float = 3.0, opening: float = 0.8,
+    segments: int = 400, **options: Unpack[BodyOptions],
+) -> int:  # fmt: skip
+    """Spawn a fixed loop-the-loop with its lowest point at ``position`` [m]; return its entity.
+
+    A level run leads in from the left, below the opening, and what has gone around drops onto it.
+
+    Parameters
+    ----------
+    radius, run : float
+        Of the loop, and the length of the run [m].
+    opening : float
+        Angle [rad] that the loop lacks on the left above the run, through which a body comes in.
+    segments : int
+        Of a whole turn, at most 900. On 200 to 1,000 what slides loses a tenth of its energy in one turn.
+    """
+    turns = [2.0 * math.pi - opening - 2.0 * math.pi * k / segments for k in range(segments)]
+    circle = [(radius * math.sin(t), radius - radius * math.cos(t)) for t in turns if t > 1e-9]
+    return ground(world, [*circle, (0.0, 0.0), (-run, 0.0)], position, **options)
