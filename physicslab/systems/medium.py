@@ -39,8 +39,10 @@ class MediumSystem(ForceSystem):
         """
         for entity in state.batch(Medium).entities.tolist():
             lacks = not (state.has(entity, Shape) and state.has(entity, Transform))
-            if lacks or state.has(entity, Velocity):
-                allowed = "on an entity with a Transform and a Shape, and without a Velocity: a medium stays"
+            if lacks or state.has(entity, Velocity) or state.component(entity, Shape).kind == "chain":
+                allowed = (
+                    "with a Transform and a Shape that is no chain, and without a Velocity: a medium stays"
+                )
                 density = state.component(entity, Medium).density
                 raise InvalidValue(f"{state.label(entity)}: Medium", "density", density, allowed)
 
