@@ -47,7 +47,7 @@ def only(world: World, words: str) -> ModelWarning:
 
 
 CROWDS = ("sandbox", "pyramid", "pile", "dominoes", "gas", "loop_the_loop")
-"""Built-in scenes of more bodies than rigid contacts take, under gravity."""
+"""Built-in scenes of more bodies than rigid contacts take, under gravity, or with a chain."""
 
 
 @pytest.mark.parametrize("name", SCENES)
