@@ -98,4 +98,4 @@ def test_a_joint_that_holds_what_is_held_is_told() -> None:
     for side in (-0.5, 0.5):
         world.spawn(Pin(b=bar, anchor_a=(side, 0.0), anchor_b=(side, 0.0)))
     world.run(seconds=0.1)
-    assert [one.value for one in find_warnings(world) if "hold what others hold" in one.what] == [1.0]
+    assert [one.value for one in find_warnings(world) if "joints hold already" in one.what] == [1.0]

@@ -8,7 +8,7 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from physicslab import World
@@ -16,7 +16,7 @@ from physicslab.components import Mass, Material, Pin, Pulley, Rope, Shape, Slot
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, save_scene
-from physicslab.kernels.accounts import CONTACT, ENERGY, JOINTS, MOTORS, PX
+from physicslab.kernels.accounts import CONTACT, ENERGY, HAND, JOINTS, MOTORS, PX
 from physicslab.stepping import rigid_motion
 from physicslab.stepping.accounting import balance_of
 from physicslab.stepping.rigid import Rigid
@@ -141,6 +141,21 @@ def test_two_bodies_that_part_on_a_rope_go_on_together() -> None:
     assert world.account.sums[JOINTS, ENERGY] == pytest.approx(-0.5 * 0.75 * 16.0, abs=1e-12)
 
 
+def test_what_a_moving_hook_begins_to_pull_is_paid_for_by_what_moves_the_hook() -> None:
+    world, rough = empty(), {"friction": 0.4, "restitution": 0.0}
+    world.spawn(Transform((0.0, -0.5)), Shape.box(20.0, 1.0), Material(**rough))
+    at = Transform((0.0, 0.25)), Velocity(), Mass(2.0)
+    crate = world.spawn(*at, Shape.box(0.5, 0.5), Material(**rough))
+    hook = world.spawn(Transform((1.0, 0.25)), Velocity((1.0, 0.0)))
+    world.spawn(Rope(a=hook, b=crate, anchor_b=(0.25, 0.0), length=1.0))
+    run(world, 1.0)
+    # Taut at .25 s: 2 N s at 1 m/s, of which one half is lost, then against friction.
+    assert went_by_events(world)
+    assert world.account.sums[HAND, ENERGY] == pytest.approx(2.0 + 0.8 * G * 0.75, abs=1e-12)
+    assert world.account.sums[JOINTS, ENERGY] == pytest.approx(-1.0, abs=1e-12)
+    assert world.joints.force[0] == pytest.approx(0.8 * G, rel=1e-12)
+
+
 # ---- limits ------------------------------------------------------------------------------------------------
 
 
@@ -183,6 +198,16 @@ def test_a_limit_is_left_as_soon_as_something_lifts_the_bar() -> None:
     world.run(seconds=0.02)
     assert world.component(bar, Transform).angle > 0.015
     assert went_by_events(world)
+
+
+def test_a_bar_beyond_its_limit_is_brought_back_softly_and_rests_there() -> None:
+    world, bar = bar_on_a_pin(-0.2, lower=0.0)
+    world.step()
+    rigid = world.steppers.usable[0]
+    assert isinstance(rigid, Rigid) and rigid.why_soft.startswith("bodies overlap, or are beyond what joints")
+    world.run(seconds=0.3)
+    assert isinstance(world.stepper, Rigid)
+    assert world.component(bar, Transform).angle == pytest.approx(0.0, abs=1e-15)
 
 
 @pytest.mark.parametrize("turns", [False, True])
@@ -296,6 +321,7 @@ def test_a_mass_that_lands_lets_the_other_fly_until_the_rope_is_taut_again() -> 
 # ---- any of them -------------------------------------------------------------------------------------------
 
 
+@settings(max_examples=10)
 @given(
     st.integers(2, 4), st.lists(st.floats(-1.0, 1.0), min_size=24, max_size=24), st.booleans(), st.booleans()
 )
@@ -387,6 +413,10 @@ def test_the_reason_for_rigid_and_for_soft_names_the_joint() -> None:
     world.synchronise()
     assert world.plan.contacts == "rigid"
     assert world.plan.contact_reason.startswith("a Rope has a limit")
+    world.simulation = replace(world.simulation, contacts="soft")
+    world.synchronise()
+    assert (world.plan.contacts, world.plan.contact_reason) == ("soft", "asked for")
+    world.simulation = replace(world.simulation, contacts="auto")
     for i in range(12):
         world.spawn(Transform((float(i), 5.0)), Velocity(), Mass(1.0))
     world.synchronise()

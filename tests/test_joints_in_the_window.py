@@ -3,10 +3,10 @@
 import numpy as np
 import pygame
 import pytest
-from desk import Desk, empty_world
+from desk import SETTLED, Desk, empty_world, fill
 from recording import RecordingCanvas
 
-from physicslab.components import Mass, Pin, Shape, Transform, Velocity
+from physicslab.components import Mass, Pin, Rod, Shape, Transform, Velocity
 from physicslab.diagnostics.joints import joint_states
 from physicslab.export.recording import RunRecorder
 from physicslab.view.controls.joining import attachments
@@ -58,6 +58,41 @@ def test_pins_are_made_from_the_list_drawn_selected_removed_and_undone() -> None
     window.edits.history.undo()
     world.synchronise()
     assert [state.entity for state in joint_states(world)] == [joined.entity, fixed.entity]
+    pygame.display.quit()
+
+
+def test_numbers_that_a_joint_may_be_without_are_named_set_and_taken_away() -> None:
+    world = empty_world()
+    one, _ = two_bars(world)
+    pin = world.spawn(Pin(b=one, anchor_b=(-0.5, 0.0)))
+    desk = Desk(world)
+    desk.window.selection.entities = (pin,)
+    desk.key("space")
+    desk.frames(SETTLED)
+    assert "none" in desk.ui.words and "From limit" in desk.ui.words
+    fill(desk, "Pin.lower", "-30 deg")
+    part = world.component(pin, Pin)
+    assert part.is_given("lower") and part.lower == pytest.approx(-np.pi / 6)
+    assert not part.is_given("upper")
+    fill(desk, "Pin.lower", "none")
+    assert not world.component(pin, Pin).is_given("lower")
+    fill(desk, "Pin.breaks", "100 N")
+    assert world.component(pin, Pin).breaks == 100.0
+    pygame.display.quit()
+
+
+def test_the_force_of_a_joint_stands_at_the_cursor() -> None:
+    canvas = RecordingCanvas((1280, 720))
+    world = empty_world()
+    bar = world.spawn(Transform((0, -1)), Velocity(), Mass(2.0), Shape.box(0.2, 0.2))
+    world.spawn(Rod(b=bar, anchor_a=(0.0, 1.0)))
+    desk = Desk(world, canvas)
+    desk.frames(3)
+    desk.window.tool = "select"
+    desk.move(0.0, 0.3)
+    canvas.calls.clear()
+    desk.frames(2)
+    assert f"Rod: {2 * 9.81:.2f} N" in canvas.words
     pygame.display.quit()
 
 

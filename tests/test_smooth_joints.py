@@ -11,6 +11,7 @@ from physicslab import World
 from physicslab.components import Gear, Mass, Pin, Rod, Slot, Transform, Velocity, Weld
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.diagnostics.joints import joint_states
+from physicslab.diagnostics.warnings import find_warnings
 from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, JOINTS, MOTORS, PX, SPIN
 from physicslab.kernels.joints import layout
 from physicslab.stepping.flow import Flow
@@ -158,6 +159,10 @@ def test_a_joint_too_many_is_found_and_moves_nothing_else() -> None:
     for world in worlds:
         world.run(seconds=1.0)
     assert (worlds[1].joints.rank, len(worlds[1].joints)) == (4, 5)
+    (told,) = find_warnings(worlds[1])
+    assert told.value == 1.0 and "other joints hold already" in told.what
+    assert told.number in [joint.entity for joint in worlds[1].joints.joints]
+    assert not find_warnings(worlds[0])
     places = [world.table(Transform)["position"][1:3] for world in worlds]
     np.testing.assert_allclose(places[0], places[1], atol=1e-13)
 
@@ -171,6 +176,7 @@ def test_rods_that_contradict_each_other_explode_nothing() -> None:
     for _ in range(60):
         world.step()
     assert largest_error(world) > 0.1
+    assert "does not hold what it joins" in find_warnings(world)[0].what
     assert measure_energy(world).kinetic < 1e3
     assert np.abs(world.table(Transform)["position"]).max() < 5.0
 

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.step_warnings import ModelWarning
 from physicslab.kernels.joints.blocks import GIVES
-from physicslab.state.joint_rows import Role
 from physicslab.stepping.soft import Soft
 from physicslab.world import World
 
@@ -25,19 +25,22 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
     worst = max(states, key=lambda joint: joint.stretch / joint.size)
     limit = STRETCH_LIMIT * worst.size
     if worst.stretch > limit:
-        what = "contradicts other joints: not all can be kept" if dependent else "does not hold what it joins"
-        setting = "" if dependent else f"simulation.substeps = {2 * world.simulation.substeps}"
+        told = bool(dependent.any())
+        what = "contradicts other joints: not all can be kept" if told else "does not hold what it joins"
+        setting = "" if told else f"simulation.substeps = {2 * world.simulation.substeps}"
         yield ModelWarning.about(world, worst.entity, what, worst.stretch, "m", limit, setting)
-    elif dependent:
-        what = "rows of joints hold what others hold already: how they share the load is not determined"
-        yield ModelWarning(None, what, float(dependent), "", 0.0, "one joint less")
+    elif dependent.any():
+        first = int(np.flatnonzero(dependent)[0])
+        joint = next(joint for joint in world.joints.joints if joint.own.start <= first < joint.own.stop)
+        what = "holds what other joints hold already: how they share the load is not determined (rows)"
+        count = float(np.count_nonzero(dependent))
+        yield ModelWarning.about(world, joint.entity, what, count, "", 0.0, "one joint less")
 
 
-def _dependent(world: World) -> int:
-    """Return how many rows of joints depend on others, as far as the last stepper found that."""
+def _dependent(world: World) -> NDArray[np.bool_]:
+    """Return which rows of joints (n,) depend on others, as far as the last stepper found that."""
     joints = world.joints
     if isinstance(world.stepper, Soft):
         known = len(joints.measured) == len(joints.scale)  # not before the first step
-        return int(np.count_nonzero(joints.measured[: len(joints), GIVES])) if known else 0
-    held = int(np.count_nonzero(joints.role == Role.HOLD))
-    return max(0, held - joints.rank) if joints.rank >= 0 else 0
+        return joints.measured[: len(joints), GIVES] != 0.0 if known else np.zeros(len(joints), np.bool_)
+    return joints.dependent

@@ -13,12 +13,13 @@ from physicslab.kernels.accounts import DAMPING, ENERGY, FIELDS, SPIN
 from physicslab.kernels.forces.bookings import ACCOUNTS, END
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT
-from physicslab.kernels.joints.layout import FIRST, RANK
+from physicslab.kernels.joints.layout import FIRST
 from physicslab.kernels.joints.rows import constrain, forces_of, project, set_going
 from physicslab.ode.bookings import BookKeeper, book_in_python
 from physicslab.state.packed import StateLayout, share_steepness
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
+from physicslab.systems.joint_forces import dependent_rows
 from physicslab.systems.system import ForceSystem, Stage
 
 _REAL = ctypes.POINTER(ctypes.c_double)
@@ -228,7 +229,7 @@ class OdeSystem:
         if self._joints is not None:
             add_forces(self.q, self.v, np.zeros(len(self.q)), self.calls)
             state.joints.force[:] = forces_of(*self.joints, len(state.joints))
-            state.joints.rank = int(self._joints.indices[RANK])
+            state.joints.dependent[:] = dependent_rows(*self.joints, len(state.joints))
 
     @property
     def joints(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -68,8 +68,8 @@ class Joints:
         (:mod:`physicslab.kernels.joints.blocks`).
     beside_contacts : bool
         Whether contacts are solved at all, and joints with them.
-    rank : int
-        How many rows are independent, where the last stepper found that; else -1.
+    dependent : bool array (n,)
+        Which rows hold what others hold already, where the equations of smooth motion were solved.
     edges : int64 array (k, 2)
         The pairs of rows that joints hold together; 0 is the world.
     apart : int64 array (k, 2)
@@ -100,7 +100,8 @@ class Joints:
         self.impulse, self.force, self.largest = np.zeros((3, len(rows)))
         self.measured: NDArray[np.float64] = np.zeros((0, 0))
         self.matrix, self.blocks = np.zeros(0), NO_BLOCKS
-        self.edges, self.apart, self.rank = np.zeros((0, 2), np.int64), np.zeros((0, 2), np.int64), -1
+        self.edges, self.apart = np.zeros((2, 0, 2), np.int64)
+        self.dependent = np.zeros(len(rows), np.bool_)
 
     def __len__(self) -> int:
         return len(self.role)
@@ -179,6 +180,11 @@ class Joints:
             (self.role == Role.MOTOR) & np.isinf(self.strongest)
         )
         return solved
+
+    @property
+    def rank(self) -> int:
+        """How many of these are independent."""
+        return int(self.solved.sum() - self.dependent.sum())
 
     def why_not_smooth(self) -> str | None:
         """Return which joint has other rows, or ``None``."""

@@ -188,10 +188,9 @@ def copy_joints(part: State, state: State) -> None:
     if len(part.joints):
         there = {(joint.entity, joint.kind): joint.own for joint in state.joints.joints}
         for joint in part.joints.joints:
-            for name in ("impulse", "force", "largest"):
+            for name in ("impulse", "force", "largest", "dependent"):
                 whole = getattr(state.joints, name)
                 whole[there[joint.entity, joint.kind]] = getattr(part.joints, name)[joint.own]
-        state.joints.rank = part.joints.rank
 
 
 def numbers_of(state: State) -> list[NDArray[Any]]:

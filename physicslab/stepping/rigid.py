@@ -82,7 +82,7 @@ class Rigid:
         within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
         self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
         steady = not any(force.sees_time(state) for force in schedule.smooth_forces)
-        self._motion = RigidMotion(self._ode, len(self._pairs), steady, driven=rows.driven)
+        self._motion = RigidMotion(self._ode, len(self._pairs), steady, rows)
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:

@@ -18,6 +18,7 @@ from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.rigid_bookings import book_overlap
+from physicslab.stepping.rigid_rows import RigidRows
 
 MAX_POINTS = 64
 """Largest number of points that touch at one time: their equations are dense."""
@@ -116,12 +117,12 @@ class RigidMotion:
         How many pairs may touch.
     steady : bool
         Whether forces depend on the state of motion alone.
-    driven : bool
-        Whether there are motors with a largest force.
+    rows : RigidRows
+        Which of the pairs are limits and motors.
     """
 
-    def __init__(self, ode: OdeSystem, pairs: int, steady: bool, *, driven: bool) -> None:
-        self._ode, self._steady, self._pairs, self._driven = ode, steady, pairs, driven
+    def __init__(self, ode: OdeSystem, pairs: int, steady: bool, rows: RigidRows) -> None:
+        self._ode, self._steady, self._pairs, self._rows = ode, steady, pairs, rows
         m = 2 * MAX_POINTS
         self._equations, self._room = (
             (
@@ -222,7 +223,7 @@ class RigidMotion:
             time_stepping.drift(q, v, 0.5 * h)
             gained = h * time_stepping.kick(scene, self._stages[-1], q, v, h)
             tolerance = _SLOW * gained
-            if self._driven:
+            if self._rows.driven:
                 stages, account = self._stages, state.account.sums
                 time_stepping.drive(scene, self._equations, stages[-1], stages[3], q, v, h, account)
             made.evaluations, made.closed = made.evaluations + 1, 0
@@ -299,7 +300,8 @@ class RigidMotion:
             before = q.copy() if before is None else before
             if deepest > allowed or not time_stepping.separate(scene, self._equations, count, q, v):
                 break
-        return f"bodies overlap by {deepest:.2g} of their size"
+        limits = ", or are beyond what joints allow," if len(self._rows) else ""
+        return f"bodies overlap{limits} by {deepest:.2g} of their size"
 
     def _resist(
         self, scene: tuple[Any, ...], state: State, time: float, h: float, tolerance: float, made: MadeStep

@@ -99,6 +99,17 @@ class JointForces(ForceSystem):
         return True
 
 
+def dependent_rows(numbers: NDArray[np.float64], whole: NDArray[np.int64], count: int) -> NDArray[np.bool_]:
+    """Return which rows of joints (count,) depend on others, as found last: they get no force."""
+    n, found = int(whole[packing.ROWS]), np.zeros(count, np.bool_)
+    places = whole[packing.FIRST : packing.FIRST + packing.PLACES * n].reshape(n, packing.PLACES)
+    factor = (packing.GIVEN + packing.STATE) * n + 2 * int(whole[packing.COORDINATES])
+    factor += int(whole[packing.ENTRIES])
+    pivots = factor + places[:, packing.AT] + np.arange(n) - places[:, packing.BEGIN]
+    found[places[:, packing.NUMBER]] = numbers[pivots] == 0.0
+    return found
+
+
 def _envelope(
     joints: Joints, layout: StateLayout, inverse: NDArray[np.float64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

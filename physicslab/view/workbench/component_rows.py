@@ -19,7 +19,7 @@ from physicslab.view.canvas.quantities import without_rounding
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.changing import change_fields, set_end
 from physicslab.view.window.window import Picking, Window
-from physicslab.view.workbench.number_field import NumberFields
+from physicslab.view.workbench.number_field import ABSENT, NumberFields
 from physicslab.world import World
 
 _VARIOUS = "various"
@@ -76,11 +76,17 @@ class ComponentRows:
                 case _:
                     if spec.unit in scales:
                         values = [without_rounding(value, scale) for value in values]
+                    if spec.derived == ABSENT:
+                        values = [
+                            value if part.is_given(spec.name) else ABSENT
+                            for value, part in zip(values, held, strict=True)
+                        ]
                     self._number(kind, spec, key, _common(values))
 
     def _number(self, kind: Kind, spec: Field, key: str, now: Any) -> None:
         def commit(new: object) -> None:
-            spec.check(new)
+            if new is not None:
+                spec.check(new)
             for entity in self.window.selection.entities:  # some fields depend on others: a radius is above 0
                 kind(**(self.world.component(entity, kind).given() | {spec.name: new}))
             self._set(kind, spec, new)
@@ -88,8 +94,12 @@ class ComponentRows:
         if spec.unit != "rad" or self.window.level != "Explore":
             self.numbers.row(self.ui, key, _label(spec), spec, now, commit)
             return
-        degrees, shown = None if now is None else math.degrees(now), replace(spec, unit="deg")
-        self.numbers.row(self.ui, key, _label(spec), shown, degrees, lambda new: commit(math.radians(new)))
+        degrees = math.degrees(now) if isinstance(now, float) else now
+
+        def commit_degrees(new: float | None) -> None:
+            commit(None if new is None else math.radians(new))
+
+        self.numbers.row(self.ui, key, _label(spec), replace(spec, unit="deg"), degrees, commit_degrees)
 
     def _vector(self, kind: Kind, spec: Field, key: str, values: Sequence[Vector2]) -> None:
         def commit(axis: int, new: float) -> None:
@@ -108,6 +118,8 @@ class ComponentRows:
         """Build the list of the bodies that a field can name; one can be clicked in the world as well."""
         ui, world, window = self.ui, self.world, self.window
         (entity,), none = window.selection.entities, _ABSENT.get(key, "none")
+        if kind in KINDS and not world.has(entity, Transform):
+            none = "a fixed point"
         self.numbers.label(ui, key, _label(spec), spec)
         room = imgui.get_content_region_avail().x - 3.6 * ui.size
         now = none if end is None else world.label(end)
@@ -160,6 +172,10 @@ ORDER: dict[Kind, int] = {
     for n, kind in enumerate((Transform, Velocity, Mass, Shape, Material, Drag, Spring, *KINDS, Trail))
 }
 """In which order components are shown; others come after these."""
+_JOINED = {
+    "lower": "From limit", "upper": "To limit", "motor_speed": "Motor speed", "max_torque": "Motor at most",
+    "max_force": "Motor at most", "breaks": "Breaks at", "breaks_torque": "or at",
+}  # fmt: skip
 _JOINING: tuple[type[Component], ...] = (Spring, *KINDS)
 """The components with two ends."""
 _NAMES = {
@@ -169,6 +185,15 @@ _NAMES = {
         for kind in _JOINING
         for field, words in (("a", "From"), ("b", "To"), ("anchor_a", "Holds at"), ("anchor_b", "Other end"))
     },
+    **{
+        (kind.__name__, spec.name): _JOINED[spec.name]
+        for kind in KINDS
+        for spec in kind.FIELDS
+        if spec.name in _JOINED
+    },
+    ("Slot", "axis"): "Way", ("Slot", "turns"): "What slides turns",
+    ("Gear", "first"): "First joint", ("Gear", "second"): "Second joint",
+    ("Pulley", "wheel_a"): "First wheel", ("Pulley", "wheel_b"): "Second wheel",
     ("Mass", "fixed_rotation"): "Keeps its angle",
     ("Drag", "linear"): "Drag of v", ("Drag", "quadratic"): "Drag of v²", ("Trail", "length"): "Trail of",
 }  # fmt: skip

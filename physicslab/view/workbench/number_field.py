@@ -37,6 +37,8 @@ _HALF_TURN = 180.0
 _LINES_SHOWN = 4
 """Lines of a longer text that a field shows at one time."""
 
+ABSENT = "none"
+"""How a number is ``derived`` that may be absent, as a limit; writing this takes it away."""
 type Commit = Callable[[Any], None]
 type CommitPart = Callable[[int, float], None]
 
@@ -126,9 +128,10 @@ class NumberFields:
         zero : str
             What is shown in place of 0, without a unit, where that has a meaning of its own.
         """
-        number = None if isinstance(value, str) else value
+        number = 0.0 if value == ABSENT else None if isinstance(value, str) else value
         self.label(ui, key, words, spec, number if drags else None, commit)
-        unit = "" if zero and number == 0.0 else _unit_shown(spec, number)
+        is_bare = (zero and number == 0.0) or value == ABSENT
+        unit = "" if is_bare else _unit_shown(spec, number)
         room = imgui.get_content_region_avail().x - _width(ui, unit)
         refusal = self.build(ui, key, value, spec, room, commit, zero)
         _finish(ui, unit, refusal)
@@ -249,8 +252,10 @@ def _shown(value: float | str | None, spec: Field, width: float) -> str:
     return next((text for text in texts if imgui.calc_text_size(text).x <= room), texts[-1])
 
 
-def _as_field(text: str, spec: Field) -> float | str | list[tuple[float, float]]:
+def _as_field(text: str, spec: Field) -> float | str | list[tuple[float, float]] | None:
     """Return what was written as a field takes it; raise ``InvalidText`` where it cannot be read."""
+    if spec.derived == ABSENT and text.strip().lower() == ABSENT:
+        return None
     if spec.kind == "text":
         return text
     if spec.kind == "points":

@@ -6,17 +6,21 @@ from typing import Any
 from numpy.typing import NDArray
 
 from physicslab.components import Transform
+from physicslab.diagnostics.joints import joint_states
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import is_within
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls import drawing
 from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
-from physicslab.view.controls.tools import TOOLS
+from physicslab.view.controls.tools import SELECT, TOOLS
 from physicslab.view.overlay import marks
 from physicslab.view.overlay.forces import draw_free_body, draw_vectors
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.instruments import draw_instruments, instruments_of
+from physicslab.view.picture.joints import joint_at
 from physicslab.view.picture.picture import draw_world
+from physicslab.view.window.changing import plain_kind
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -58,6 +62,7 @@ class WorldView:
             self._draw_snapping(on)
             if window.points_by_key:
                 marks.draw_cursor(window.pointer, theme.accent, canvas)
+            self._draw_joint(world, on)
         self._draw_sketch(world, on)
 
     def _draw_snapping(self, on: Drawing) -> None:
@@ -130,6 +135,23 @@ class WorldView:
         shown = drawing.ghost(world, drawn, window)
         if shown is not None:
             marks.draw_ghost(shown[0], on.theme.accent if shown[1] else on.theme.error, on)
+
+    def _draw_joint(self, world: World, on: Drawing) -> None:
+        """Write the force of the joint under the cursor, where the tool in hand draws nothing."""
+        window = self._window
+        idle = window.hand.entity is None and window.pins.dragged is None and not window.pointer_on_panel
+        if window.tool != SELECT.name or not idle or not world.joints.joints:
+            return
+        camera, at = on.camera, window.pointer
+        found = joint_at(world, camera, at)
+        if found is None and body_at(world, camera, at) is None:
+            found = joint_at(world, camera, at, lines=True)
+        for joint in joint_states(world) if found is not None else ():
+            if joint.entity == found:
+                words = f"{plain_kind(joint.kind)}: {quantity(joint.force.magnitude, 'N')}"
+                if joint.torque:
+                    words += f", {quantity(joint.torque, 'N m')}"
+                marks.draw_reading(words, at, on, window.room())
 
     def _draw_sketch(self, world: World, on: Drawing) -> None:
         """Draw a joint or a polygon in the making, and a line around the body that a joint holds next."""
