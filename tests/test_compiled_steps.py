@@ -92,7 +92,6 @@ def figures(world: World) -> tuple[object, ...]:
     near = (
         contacts.candidate_pairs,
         contacts.count,
-        contacts.left,
         contacts.impulse_dt,
         contacts.max_penetration,
     )

@@ -24,6 +24,7 @@ _NAMES = (
     "stack",
     "pyramid",
     "dominoes",
+    "loop_the_loop",
     "pile",
     "gas",
     "billiards",

@@ -86,7 +86,6 @@ class Contacts:
     scalar_count = _count(near_counts.SCALAR, "How many of these are solved one by one.")
     sleeping_count = _count(near_counts.SLEEPING, "How many inactive pairs have points.")
     active = _count(near_counts.ACTIVE, "How many scalar pairs have points.")
-    left = _count(near_counts.LEFT, "How many pairs the impacts of this substep have left to the solver.")
     logged = _count(near_counts.LOGGED, "How many impacts were ever logged.", of_pairs=False)
     restitutions_lowered = _count(
         near_counts.LOWERED,

@@ -17,9 +17,6 @@ from physicslab.stepping.fastest_body import fastest_body
 from physicslab.stepping.spring_flow import SpringFlow, why_no_spring_flow
 from physicslab.systems.system import ForceSystem, Stage
 
-OF_SPLIT_FORCES = frozenset({Stage.DRIFT, Stage.PREDICT})
-"""The stages in which they take part."""
-
 _MAX_PREDICTABLE = 1.0
 """omega h up to which a force hardly changes within a substep, so that contacts get its prediction."""
 _TOLERANCE = 1e-12
