@@ -275,7 +275,7 @@ def test_files_keep_media_and_refuse_those_that_move(tmp_path: Path) -> None:
     text = (tmp_path / "pool.json").read_text().replace('"Medium":', '"Velocity": {}, "Medium":')
     (tmp_path / "moving.json").write_text(text)
     with pytest.raises(
-        SceneError, match=r"Medium = .* must be with a Shape that is no chain without a Velocity"
+        SceneError, match=r"Medium = .* must be with a Shape that is no chain, and without a Velocity"
     ):
         load_scene(tmp_path / "moving.json")
     world.add(world.entity("pool"), Velocity())
