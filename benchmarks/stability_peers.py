@@ -26,6 +26,7 @@ import pymunk
 
 from physicslab import World
 from physicslab.components import Transform
+from physicslab.diagnostics.joints import joint_states
 from physicslab.lab.peers.mirrors import Box2DMirror, PymunkMirror
 from physicslab.lab.peers.peer import CannotBuild, Peer, find_contacts
 from physicslab.lab.stability.case import StabilityCase, run_case
@@ -76,8 +77,12 @@ def stepped_by(peer: type[Peer], substeps: int) -> Iterator[list[Peer]]:
             # The reason for PhysicsLab's own method does not hold for another engine.
             world.plan = replace(world.plan, reason=peer.__name__)
         mirror = mirrors[world]
-        for _ in range(steps * substeps):
-            mirror.step(dt / substeps)
+        for _ in range(steps):
+            for _ in range(substeps):
+                mirror.step(dt / substeps)
+            if world.joints.joints:
+                mirror.bring_back()
+                note_gaps(world)
         mirror.bring_back()
         world.time += steps * dt
         world.steps += steps
@@ -104,6 +109,12 @@ def stepped_by(peer: type[Peer], substeps: int) -> Iterator[list[Peer]]:
 
     with patch.multiple(World, step=step, stepping=stepping, run=run):
         yield made
+
+
+def note_gaps(world: World) -> None:
+    """Keep the largest distance of the points that a joint holds together, as PhysicsLab's solver does."""
+    for joint, state in zip(world.joints.joints, joint_states(world), strict=True):
+        world.joints.largest[joint.first] = max(world.joints.largest[joint.first], state.stretch)
 
 
 def passed(mirror: Peer) -> bool:

@@ -31,6 +31,7 @@ from physicslab.components import (
     Velocity,
 )
 from physicslab.diagnostics.energy import measure_energy
+from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import SceneError, load_scene, save_scene
 
 
@@ -95,6 +96,24 @@ def test_shapes_are_elastic_and_smooth(file: Path) -> None:
         world.component(disc, Material).restitution == 1.0 and world.component(disc, Material).friction == 0.0
     )
     assert losses == []
+
+
+def test_polygons_are_centred_and_those_that_are_not_convex_are_named(file: Path) -> None:
+    wedge = item(2, "Polygon", position="(1,2)", mass=2, inertia=1, vertexes="(0,3),(3,0),(0,0)", angle=1)
+    tip = item(3, "Spring", body1=2, body2=0, localPosition1="(3,0)", localPosition2="(9,9)")
+    arrow = item(4, "Polygon", position="(9,2)", vertexes="(0,0),(2,2),(0,1),(-2,2)")
+    world, losses = opened(file, wedge, tip, arrow, item(5, "Spring", body1=2, body2=4))
+    made = world.entity("Polygon2")
+    shape, place = world.component(made, Shape), world.component(made, Transform)
+    assert {tuple(vertex) for vertex in shape.vertices} == {(-1.0, 2.0), (2.0, -1.0), (-1.0, -1.0)}
+    corner = place.position + Vector2(-1.0, -1.0).rotated(place.angle)
+    assert tuple(corner) == pytest.approx((1.0, 2.0))
+    assert tuple(world.component(world.entity("Spring3"), Spring).anchor_a) == pytest.approx((2.0, -1.0))
+    assert losses == [
+        'Polygon "Polygon2" (line 4): its centre of mass is (-1, -1) m off that of its area; here it is not',
+        'Polygon "Polygon4" (line 19): its vertices must be convex; at number 3 these turn inwards',
+        'Spring "Spring5" (line 24): its body, item 4, is not taken',
+    ]
 
 
 def test_particles_are_small_discs_where_they_can_hit_something(file: Path) -> None:

@@ -275,12 +275,16 @@ def test_files_keep_media_and_refuse_those_that_move(tmp_path: Path) -> None:
     text = (tmp_path / "pool.json").read_text().replace('"Medium":', '"Velocity": {}, "Medium":')
     (tmp_path / "moving.json").write_text(text)
     with pytest.raises(
-        SceneError, match=r"Medium = .* must be on an entity with a Shape and without a Velocity"
+        SceneError, match=r"Medium = .* must be with a Shape that is no chain, and without a Velocity"
     ):
         load_scene(tmp_path / "moving.json")
     world.add(world.entity("pool"), Velocity())
     with pytest.raises(InvalidValue, match=r"pool: Medium.*a medium stays"):
         world.synchronise()
+    chained = World(*standard_systems())
+    chained.spawn(Transform(), Shape.chain(((0.0, 0.0), (1.0, 0.0))), Medium(WATER))
+    with pytest.raises(InvalidValue, match="a Shape that is no chain"):
+        chained.synchronise()
     with pytest.raises(InvalidValue, match=r"Medium\.density = -1"):
         Medium(density=-1.0)
 

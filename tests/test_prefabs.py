@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab import InvalidValue, Vector2, World
-from physicslab.components import Mass, Material, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import Mass, Material, Pin, Shape, Spring, Trail, Transform, Velocity
 from physicslab.diagnostics.energy import Audit, measure_momentum
+from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.scene import write_scene
 from physicslab.prefabs import (
@@ -25,6 +26,7 @@ from physicslab.prefabs import (
     pile,
     planets,
     pyramid,
+    ragdoll,
     stack,
 )
 from physicslab.systems.standard import standard_systems
@@ -205,3 +207,14 @@ def test_planets_keep_their_distance_and_the_star_takes_their_momentum() -> None
         assert math.dist(place(world, star), place(world, outer)) == pytest.approx(3.0, rel=0.05)
     with pytest.raises(ValueError, match="c: distance = 0"):
         planets(world, 1.0, [Planet("c", 1.0, 0)])
+
+
+def test_a_ragdoll_is_whole_and_bends_within_its_limits() -> None:
+    world = World()
+    parts = ragdoll(world, (3, 4), size=0.5, angle=1.0)
+    world.synchronise()
+    pins = [world.component(pin, Pin) for pin in world.batch(Pin).entities.tolist()]
+    assert len(parts) == 10 and len(pins) == 9
+    assert sum(world.component(part, Mass).mass for part in parts) == pytest.approx(71.0 / 4.0)
+    assert max(max(joint.stretch, joint.twist) for joint in joint_states(world)) < 1e-12
+    assert all(pin.is_given("lower") and pin.is_given("upper") for pin in pins)

@@ -12,6 +12,7 @@ from physicslab.components import Gear, Mass, Pin, Rod, Slot, Transform, Velocit
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import find_warnings
+from physicslab.ecs.config import SimulationConfig
 from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, JOINTS, MOTORS, PX, SPIN
 from physicslab.kernels.joints import layout
 from physicslab.stepping.flow import Flow
@@ -181,8 +182,9 @@ def test_rods_that_contradict_each_other_explode_nothing() -> None:
     assert np.abs(world.table(Transform)["position"]).max() < 5.0
 
 
-def test_a_linkage_passes_where_it_lies_flat_and_goes_on_as_it_came() -> None:
-    world, rods = World(), []
+@pytest.mark.parametrize("dt", [1 / 60, 1.5])
+def test_a_linkage_passes_where_it_lies_flat_and_goes_on_as_it_came(dt: float) -> None:
+    world, rods = World(simulation=SimulationConfig(dt=dt)), []
     for x in (0.0, 1.0):
         rods.append(body(world, x, 1.0, vx=-3.0, spin=3.0))
         world.spawn(Pin(b=rods[-1], anchor_a=(x, 0.0), anchor_b=(0.0, -1.0)))

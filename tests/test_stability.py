@@ -20,7 +20,7 @@ from physicslab.state.masses import Diverged
 SLOW = {
     "steps_1e4_memory", "cradle_amplitude", "cradle_amplitude_damped", "crowd_1000_speed", "net_energy",
     "step_10s_spring_touching", "chain_touching_energy", "chain_touching_bounded",
-    "tower_15x15cm_rigid", "dt_1e-06_x1_rigid",
+    "tower_15x15cm_rigid", "dt_1e-06_x1_rigid", "ragdolls_gap", "ragdolls_rest",
 }  # fmt: skip
 """Cases that take more than a second of processor time each."""
 SHORT = {

@@ -46,8 +46,8 @@ def only(world: World, words: str) -> ModelWarning:
     return found
 
 
-CROWDS = ("sandbox", "pyramid", "pile", "dominoes", "gas")
-"""Built-in scenes of more bodies than rigid contacts take, under gravity."""
+CROWDS = ("sandbox", "pyramid", "pile", "dominoes", "gas", "loop_the_loop")
+"""Built-in scenes of more bodies than rigid contacts take, under gravity, or with a chain."""
 
 
 @pytest.mark.parametrize("name", SCENES)

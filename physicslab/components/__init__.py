@@ -10,6 +10,7 @@ from physicslab.components.mass import Mass
 from physicslab.components.material import Material
 from physicslab.components.medium import Medium
 from physicslab.components.meter import Meter
+from physicslab.components.molecule import Molecule
 from physicslab.components.name import Name
 from physicslab.components.note import Note
 from physicslab.components.pin import Pin
@@ -31,6 +32,6 @@ from physicslab.components.weld import Weld
 
 __all__ = [
     "Charge", "Drag", "Gate", "Gear", "Graph", "GraphLine", "Held", "Mass", "Material", "Medium", "Meter",
-    "Name", "Note", "Pin", "Protractor", "Pulley", "Rod", "Rope", "Ruler", "Shape", "Slider", "Slot",
-    "Spring", "Strobe", "Thrust", "Trail", "Transform", "Velocity", "Weld",
+    "Molecule", "Name", "Note", "Pin", "Protractor", "Pulley", "Rod", "Rope", "Ruler", "Shape", "Slider",
+    "Slot", "Spring", "Strobe", "Thrust", "Trail", "Transform", "Velocity", "Weld",
 ]  # fmt: skip

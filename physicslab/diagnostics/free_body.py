@@ -20,7 +20,8 @@ type Kind = Literal["field", "normal", "friction"]
 _DAMPING = "damping"
 _NAMES = {
     "GravitySystem": "weight", "SpringSystem": "springs", "DragSystem": "air", "CoulombSystem": "charges",
-    "ElectricFieldSystem": "electric field", "MagneticFieldSystem": "magnetic field", "MediumSystem": "fluid",
+    "ElectricFieldSystem": "electric field", "MagneticFieldSystem": "magnetic field",
+    "MediumSystem": "fluid", "MoleculeSystem": "molecules",
 }  # fmt: skip
 """Names of forces, by their system."""
 _LONGEST = 1.5

@@ -209,8 +209,8 @@ def _check_together(components: Sequence[Component], entity: Mapping[str, Any], 
                 f"{where}: {name} = {checks.shown(entity[name])}: must have a Transform beside it"
             )
     of: dict[type[Any], Any] = {type(component): component for component in components}
-    if Medium in of and (Shape not in of or Velocity in of):
-        allowed = "on an entity with a Shape and without a Velocity: a medium stays where it is"
+    if Medium in of and (Shape not in of or of[Shape].kind == "chain" or Velocity in of):
+        allowed = "with a Shape that is no chain, and without a Velocity: a medium stays where it is"
         raise checks.refusal(f"{where}: Medium", entity[Medium.__name__], allowed)
     if Mass in of and Shape in of:
         _check_inertia(of[Mass], of[Shape], where)

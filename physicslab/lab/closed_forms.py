@@ -164,3 +164,26 @@ def repelled(strength: float, axis: float, excess: float, t: float) -> tuple[com
     goes /= 1.0 + excess * math.cosh(found)
     place = complex(excess + math.cosh(found), narrow * math.sinh(found))
     return axis * place, goes * complex(math.sinh(found), narrow * math.cosh(found))
+
+
+def molecules_period(share: float, rate: float) -> tuple[float, float]:
+    """Return the least distance of two molecules that oscillate, and their period [s].
+
+    By the trapezoidal rule over the phase of the oscillation, which converges faster than any power.
+
+    Parameters
+    ----------
+    share : float
+        Their energy, as a share of the depth, from -1 (at rest) to 0 (they part).
+    rate : float
+        sqrt(depth / reduced mass) over the distance at which they rest, in units of which lengths are [1/s].
+    """
+    root = math.sqrt(1.0 + share)
+    near, far = (1.0 + root) ** (-1.0 / 6.0), (1.0 - root) ** (-1.0 / 6.0)
+    total, parts = 0.0, 400
+    for k in range(parts):
+        r = 0.5 * (near + far) - 0.5 * (far - near) * math.cos(math.pi * (k + 0.5) / parts)
+        s = r**-6.0
+        # E - V = (s_near - s) (s - s_far): the roots are divided out before they are small.
+        total += math.sqrt((r - near) * (far - r) / ((1.0 + root - s) * (s - 1.0 + root)))
+    return near, total * math.pi / parts * math.sqrt(2.0) / rate

@@ -10,10 +10,11 @@ from physicslab.prefabs.container import container
 from physicslab.prefabs.gas import gas
 from physicslab.prefabs.pile import pile, pyramid, stack
 from physicslab.prefabs.planets import Planet, binary, planets
+from physicslab.prefabs.ragdoll import ragdoll
 from physicslab.prefabs.terrain import ground, loop, ramp, regular_polygon, wedge
 
 __all__ = [
     "BodyOptions", "Planet", "binary", "body", "box", "capsule", "chain", "circle", "container", "gas",
-    "ground", "loop", "pendulum", "pile", "planets", "polygon", "pyramid", "ramp", "regular_polygon", "stack",
-    "wedge",
+    "ground", "loop", "pendulum", "pile", "planets", "polygon", "pyramid", "ragdoll", "ramp",
+    "regular_polygon", "stack", "wedge",
 ]  # fmt: skip

@@ -18,6 +18,9 @@ from physicslab.systems.schedule import Schedule
 _PROJECTED = 16
 """Steps after which what joints hold together is put there again, by a method that chooses its steps: it is
 apart by no more than the method errs by then."""
+_LONGEST = 0.27
+"""The longest span [s] after which that is done, be steps longer: linkages that lie flat on their way would
+else go on wrongly."""
 
 
 class NotSmooth(ArithmeticError):
@@ -63,9 +66,12 @@ class Flow:
         """Make all of the steps in one compiled loop."""
         exact = self._method.chooses_steps or math.isinf(self._method.order)
         parts = 1 if exact else divisions(state, h)
+        if self._joined and self._method.chooses_steps:
+            parts = max(1, math.ceil(h / _LONGEST))
         together = parts * steps
         if self._joined:
-            together = _PROJECTED if self._method.chooses_steps else 1
+            spans = int(_LONGEST * parts / h) if self._method.chooses_steps else 1
+            together = max(1, min(_PROJECTED, spans))
         start = state.time
         try:
             for made in range(0, parts * steps, together):

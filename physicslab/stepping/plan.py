@@ -38,6 +38,9 @@ _WELL_RESOLVED = 0.5
 _RESOLVED_BESIDE_CONTACTS = 0.26
 """omega h of the steps of spring_splitting. Its phase is then right to 4e-10, and what it adds to the error
 of contacts within four substeps is 1e-5 of that (docs/decisions/springs-beside-contacts.md)."""
+_CROWD, _RESOLVED_IN_CROWDS = 32, 0.2
+"""Number of molecules from which on ``auto`` keeps their energy by leapfrog, and omega h of its steps: the
+energy of 1,000 that collide at once swings by 1e-4 of what is exchanged."""
 MAX_STEPS = 1000
 """Largest number of steps of a method that ``auto`` makes of a step of the world."""
 _STIFF = 1.0
@@ -287,6 +290,11 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
         return StepPlan(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
     if planets:
         return StepPlan(DOP853, f"{_why_singular(state, forces)}: the step follows them", 1, smooth=True)
+    crowd = max((force.crowd for force in forces), default=0)
+    if crowd >= _CROWD and not _sees_velocity(state, forces):
+        needed = _steps(rate, h, _RESOLVED_IN_CROWDS)
+        how = f"{crowd} molecules: symplectic; {needed} steps of omega h = {rate * h / needed:.2g}"
+        return StepPlan(LEAPFROG, how, needed, smooth=True)
     if _sees_velocity(state, forces):
         tolerance = f"tolerance {tolerance_for(state, forces):.0e}"
         return StepPlan(DOP853, f"forces depend on velocities, and {why}; {tolerance}", 1, smooth=True)
@@ -329,6 +337,9 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     elif turned and not _sees_velocity(state, [force for force in forces if force.gyration(state) is None]):
         method = BLANES_MOAN if attractors < _SAMPLED_LIMIT else LEAPFROG
         how = f"the magnetic field turns velocities exactly; steps of omega h = {rate * half / needed:.2g}"
+    elif max(force.crowd for force in forces) >= _CROWD and not _sees_velocity(state, forces):
+        method, needed = LEAPFROG, _steps(rate, half, _RESOLVED_IN_CROWDS)
+        how = f"many molecules; {needed} steps of omega h = {rate * half / needed:.2g}"
     elif attractors > 1 or _sees_velocity(state, forces) or _why_singular(state, forces):
         method, needed, how = DOP853, 1, "the step follows the motion"
     else:

@@ -7,9 +7,8 @@ from physicslab.components import Mass, Medium, Shape, Transform, Velocity
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.vector import rotated
 from physicslab.kernels.accounts import DAMPING, FIELDS
-from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.immersion import OUTLINE
-from physicslab.kernels.forces.medium import NUMBERS, ROOM, STORED, medium
+from physicslab.kernels.forces.medium import NUMBERS, ROOM, medium
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.shapes import cores_of
 from physicslab.state.state import State
@@ -40,8 +39,10 @@ class MediumSystem(ForceSystem):
         """
         for entity in state.batch(Medium).entities.tolist():
             lacks = not (state.has(entity, Shape) and state.has(entity, Transform))
-            if lacks or state.has(entity, Velocity):
-                allowed = "on an entity with a Transform and a Shape, and without a Velocity: a medium stays"
+            if lacks or state.has(entity, Velocity) or state.component(entity, Shape).kind == "chain":
+                allowed = (
+                    "with a Transform and a Shape that is no chain, and without a Velocity: a medium stays"
+                )
                 density = state.component(entity, Medium).density
                 raise InvalidValue(f"{state.label(entity)}: Medium", "density", density, allowed)
 
@@ -138,15 +139,7 @@ class MediumSystem(ForceSystem):
 
     def potential_energy(self, state: State) -> float:
         """Return the sum of density times the integral of g . x - level over what is displaced [J]."""
-        self.calls(state)
-        transform = state.table(Transform)
-        q = np.concatenate((transform["position"].ravel(), transform["angle"], (state.time,)))
-        room = np.zeros((2, len(q)))
-        quiet = self._packed.indices[-3:].copy()
-        self._packed.indices[-3:] = -1
-        add_forces(q, room[0], room[1], self._calls)
-        self._packed.indices[-3:] = quiet
-        return float(self._packed.parameters[STORED])
+        return self.energy_found(state)
 
 
 def _outlines(state: State, rows: NDArray[np.int64]) -> NDArray[np.float64]:

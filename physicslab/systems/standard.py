@@ -11,6 +11,7 @@ from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.joint import JointSystem
 from physicslab.systems.medium import MediumSystem
+from physicslab.systems.molecule import MoleculeSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.spring import SpringSystem
@@ -27,6 +28,7 @@ PHYSICS_SYSTEMS: tuple[type[System], ...] = (
     CoulombSystem,
     ElectricFieldSystem,
     MagneticFieldSystem,
+    MoleculeSystem,
     MediumSystem,
     IntegrateSystem,
     JointSystem,

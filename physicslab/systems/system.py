@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.force_calls import add_forces
@@ -247,6 +248,11 @@ class ForceSystem(System):
         return self.uniform_acceleration(state) if type(self).packs() and not self.turns else None
 
     @property
+    def crowd(self) -> int:
+        """How many bodies collide by this force, so that many small steps suit them; 0 where none do."""
+        return 0
+
+    @property
     def attractors(self) -> int:
         """How many bodies attract each other by this force; 0 for one that is no attraction of pairs."""
         return 0
@@ -323,6 +329,15 @@ class ForceSystem(System):
         """Add the packed force at the present state."""
         bodies = state.bodies
         add_forces(bodies.packed[0], bodies.packed[1], bodies.pull, self.calls(state))
+
+    def energy_found(self, state: State) -> float:
+        """Return the energy [J] that the packed force leaves as the first of its parameters, at present."""
+        self.calls(state)
+        transform = state.table(Transform)
+        q = np.concatenate((transform["position"].ravel(), transform["angle"], (state.time,)))
+        room = np.zeros((2, len(q)))
+        add_forces(q, room[0], room[1], self._calls)
+        return float(self._packed.parameters[0])
 
     def calls(self, state: State) -> NDArray[np.int64]:
         """Return the addresses (1, 3) of the packed force; what it is made of is looked at once a step."""

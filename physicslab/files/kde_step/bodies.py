@@ -3,13 +3,19 @@
 import math
 import random
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
+from physicslab.components.shape import KINDS
+from physicslab.components.vertices import centre_of_mass, centred, why_not_convex
+from physicslab.ecs.vector import Vector2
 from physicslab.files.kde_step.draft import Body, Draft, turned
 from physicslab.files.kde_step.item import Item, Pair
 
 _SURFACE = {"restitution": 1.0, "friction": 0.0}
 """Step's collisions: nothing is lost, nothing rubs."""
+_ROUNDED = 1e-4
+"""How far off the origin the middle of a polygon is by rounding, as a share of its extent: six digits."""
 _POINT_SHARE = 0.005
 """Radius of a particle that can touch something, as a share of the extent of the world."""
 
@@ -33,15 +39,26 @@ def take_box(item: Item, draft: Draft) -> None:
 
 
 def take_polygon(item: Item, draft: Draft) -> None:
-    """Take a polygon."""
+    """Take a convex polygon; a rectangle along its axes is a box."""
     vertices = item.pairs("vertexes")
     rectangle = _rectangle(vertices)
-    if rectangle is None:
-        draft.lose(item, "there is no polygon")
+    if rectangle is not None:
+        (x0, y0), (x1, y1) = rectangle
+        shape: dict[str, Any] = {"kind": "box", "width": x1 - x0, "height": y1 - y0}
+        _take(item, draft, shape, centre=(0.5 * (x0 + x1), 0.5 * (y0 + y1)))
         return
-    (x0, y0), (x1, y1) = rectangle
-    shape = {"kind": "box", "width": x1 - x0, "height": y1 - y0}
-    _take(item, draft, shape, centre=(0.5 * (x0 + x1), 0.5 * (y0 + y1)))
+    corners = [Vector2(x, y) for x, y in vertices]
+    if len(corners) > 2 and sum(one.cross(other) for one, other in pairwise((*corners, corners[0]))) < 0.0:
+        corners.reverse()  # Step takes them either way round
+    refused = why_not_convex(corners, *KINDS["polygon"].own)
+    if refused is not None:
+        draft.lose(item, f"its vertices must be {refused}")
+        return
+    middle = centre_of_mass(corners)
+    if middle.magnitude <= _ROUNDED * max(corner.magnitude for corner in corners):
+        middle = Vector2()
+    outline = [[vertex.x, vertex.y] for vertex in centred(corners)]
+    _take(item, draft, {"kind": "polygon", "vertices": outline}, centre=(middle.x, middle.y))
 
 
 BODIES: Mapping[str, Callable[[Item, Draft], None]] = {

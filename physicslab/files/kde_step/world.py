@@ -1,5 +1,6 @@
 """A Step file as a world, with what of it a scene has no place for."""
 
+import math
 from collections.abc import Iterator
 
 from physicslab.files.checks import SceneError, refusal, shown
@@ -117,7 +118,8 @@ def _view(draft: Draft) -> list[float] | None:
     corners = list(draft.points)
     for body in draft.bodies.values():
         shape = body.entity.get("Shape", {})
-        reach = max(shape.get(size, 0.0) for size in ("radius", "width", "height"))
+        vertices = [math.hypot(*vertex) for vertex in shape.get("vertices", ())]
+        reach = max(*(shape.get(size, 0.0) for size in ("radius", "width", "height")), *vertices)
         x, y = body.place
         corners += [(x - reach, y - reach), (x + reach, y + reach)]
     if not corners:

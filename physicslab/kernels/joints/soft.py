@@ -172,28 +172,29 @@ def _limit_correction(joints: Joints, first: int, end: int, inverse: Inverse, so
     """Lessen the errors of a block where correcting them gives bodies more energy than its springs have.
 
     A straight chain that is too long for its fixed ends can close its gaps by bending alone: the straighter
-    it is, the faster its links would have to move, without a bound. The springs are those of the heaviest
-    body, which the gap of a light one can be about.
+    it is, the faster its links would have to move, without a bound. What a light link holds may be heavy: its
+    spring is as stiff as for the heaviest body of the block.
     """
     at, stored, given, stiffness = joints.measured, 0.0, 0.0, soft.rate / (soft.h * soft.spring)
-    lightest, heaviest = 0.0, math.inf  # as inverse masses [1/kg]
+    lightest, heaviest = 0.0, math.inf
     for n in range(first, end):
         i = joints.order[n]
-        for body in (joints.a[i], joints.b[i]):
-            if inverse.mass[body] > 0.0:
-                lightest, heaviest = max(lightest, inverse.mass[body]), min(heaviest, inverse.mass[body])
         corrected = at[i, STATE] == ACTIVE and joints.role[i] != MOTOR and at[i, DIAGONAL] > 0.0
         if not corrected or (joints.role[i] == LIMIT and at[i, ERROR] > 0.0):
             at[i, CHANGE] = 0.0
             continue
+        for body in (joints.a[i], joints.b[i]):
+            if inverse.mass[body] > 0.0:
+                lightest = max(lightest, inverse.mass[body])
+                heaviest = min(heaviest, inverse.mass[body])
         at[i, CHANGE] = -soft.rate * at[i, ERROR]
         stored += stiffness * at[i, ERROR] * at[i, ERROR] / at[i, DIAGONAL]
     if stored == 0.0:
         return
+    stored *= lightest / heaviest
     substitute(joints, first, end)
     for n in range(first, end):
         given -= soft.rate * at[joints.order[n], ERROR] * at[joints.order[n], CHANGE]
-    stored *= lightest / heaviest
     if given > stored:
         share = math.sqrt(stored / given)
         for n in range(first, end):

@@ -3,11 +3,11 @@
 import math
 from functools import partial
 
-from physicslab.components import Charge, Drag, Spring, Thrust
+from physicslab.components import Charge, Drag, Molecule, Spring, Thrust
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.accuracy.problem import Ladder, Problem, distance, state_error
-from physicslab.lab.closed_forms import crossed, driven, repelled
+from physicslab.lab.closed_forms import crossed, driven, molecules_period, repelled
 from physicslab.lab.worlds import empty_world, spawn_point
 from physicslab.world import World
 
@@ -90,6 +90,30 @@ def _rutherford_error(world: World, i: int) -> float:
     )
 
 
+# ---- molecules ---------------------------------------------------------------------------------------------
+
+_DEPTH, _DISTANCE, _BOUND = 2.0, 0.5, -0.75
+"""Of two molecules of 1 kg [J], [m]; their energy as a share of the depth."""
+_NEAREST, _PERIOD = molecules_period(_BOUND, math.sqrt(2.0 * _DEPTH) / _DISTANCE)
+
+
+def _two_molecules(simulation: SimulationConfig) -> World:
+    world = empty_world(simulation, gravity=None)
+    for sign in (-1.0, 1.0):
+        start = 0.5 * sign * _NEAREST * _DISTANCE, 0.0
+        spawn_point(
+            world, start, (0.0, 0.0), Molecule(_DEPTH, _DISTANCE), name="left" if sign < 0.0 else "right"
+        )
+    return world
+
+
+def _molecules_error(world: World, i: int) -> float:
+    x, rate = 0.5 * _NEAREST * _DISTANCE, 2.0 * math.pi / _PERIOD
+    return max(
+        state_error(world, name, (s * x, 0.0), (0.0, 0.0), rate) for name, s in (("left", -1), ("right", 1))
+    )
+
+
 FIELDS = (
     _driven(0.5, "A damped mass on a spring, driven at half its own frequency"),
     _driven(1.0, "The same at resonance"),
@@ -116,6 +140,20 @@ FIELDS = (
         times=(1.0, 3.0),
         compared="places when they are nearest, and 2 s later",
         measure="largest distance from the true place [m]",
+        keeps={"energy", "momentum", "angular_momentum"},
+    ),
+    Problem(
+        name="two_molecules",
+        title="Two molecules that oscillate, ten periods",
+        group="molecules",
+        build=_two_molecules,
+        error=_molecules_error,
+        times=(10.0 * _PERIOD,),
+        good=1e-6,
+        excellent=1e-10,
+        compared="x, y, vx, vy after ten periods, which are found by quadrature",
+        ladder=Ladder(2048),
+        measure="largest error of x, y and of vx, vy over the rate [m]",
         keeps={"energy", "momentum", "angular_momentum"},
     ),
 )

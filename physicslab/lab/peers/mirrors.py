@@ -56,6 +56,8 @@ class PymunkMirror(Peer):
         """
         if shape.kind == "circle":
             made = self.engine.Circle(body, shape.radius)
+        elif shape.kind == "capsule":
+            made = self.engine.Segment(body, *map(tuple, shape.core), shape.radius)
         else:
             made = self.engine.Poly(body, list(map(tuple, shape.core)), radius=shape.rounding)
         e = material.restitution
@@ -270,6 +272,8 @@ class Box2D3Mirror(Peer):
     def add_shape(self, body: Any, shape: Shape, material: Material) -> None:
         if shape.kind == "circle":
             made = self.engine.circle(center=(0.0, 0.0), radius=shape.radius)
+        elif shape.kind == "capsule":
+            made = self.engine.capsule(*map(tuple, shape.core), shape.radius)
         else:
             made = self.engine.polygon(list(map(tuple, shape.core)), radius=shape.rounding)
         body.create_shape(self._surface(material.friction, material.restitution), made)

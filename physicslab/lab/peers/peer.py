@@ -146,7 +146,10 @@ class Peer(ABC):
             made = self._bodies[entity] = self.add_body(body)
             if world.has(entity, Shape):
                 surface = world.component(entity, Material) if world.has(entity, Material) else Material()
-                self.add_shape(made, world.component(entity, Shape), surface)
+                shape = world.component(entity, Shape)
+                if shape.kind == "chain":
+                    raise CannotBuild("no chain")
+                self.add_shape(made, shape, surface)
             if body.kind == "dynamic":  # after its shape, which changes its mass
                 self.weigh(made, body.mass, body.inertia)
         for entity in world.batch(Spring).entities.tolist():

@@ -3,6 +3,7 @@
 from collections.abc import Hashable, Sequence
 
 from physicslab.lab.case import Catalogue
+from physicslab.lab.stability.assemblies import ASSEMBLIES
 from physicslab.lab.stability.case import StabilityCase, run_case
 from physicslab.lab.stability.contacts import SQUEEZED, STANDING
 from physicslab.lab.stability.impacts import IMPACTS
@@ -12,7 +13,9 @@ from physicslab.lab.stability.ranges import RANGES
 from physicslab.lab.stability.springs import SPRINGS
 from physicslab.lab.stability.steps import STEPS
 
-CASES = Catalogue((*SPRINGS, *CHAINS, *JOINTS, *STANDING, *SQUEEZED, *IMPACTS, *STEPS, *ATTRACTION, *RANGES))
+CASES = Catalogue(
+    (*SPRINGS, *CHAINS, *JOINTS, *ASSEMBLIES, *STANDING, *SQUEEZED, *IMPACTS, *STEPS, *ATTRACTION, *RANGES)
+)
 """Every case by name; families are groups."""
 
 

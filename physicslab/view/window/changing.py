@@ -10,6 +10,7 @@ from physicslab.components import (
     Mass,
     Material,
     Medium,
+    Molecule,
     Name,
     Pin,
     Rod,
@@ -188,6 +189,7 @@ _MEANINGS: dict[type[Component], str] = {
     Slot: "it slides along a fixed rail",
     Weld: "it is fixed to the world",
     Thrust: "it is pushed and turned from within, as by a rocket or a motor",
+    Molecule: "near ones attract each other, and repel each other when they are too near",
     Strobe: "it leaves pictures of its past positions",
     Trail: "its past path is shown",
 }
