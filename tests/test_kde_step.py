@@ -18,6 +18,7 @@ from physicslab.components import (
     Mass,
     Material,
     Meter,
+    Molecule,
     Note,
     Pin,
     Rod,
@@ -387,3 +388,29 @@ def test_one_that_is_dropped_on_the_window_opens_and_is_never_overwritten(file: 
     tap(desk, "return")
     desk.frames(SETTLED)
     assert file.read_text("utf-8") == content
+
+
+def gas(number: int, *places: float, **force: object) -> str:
+    """Return a gas of particles on the x axis, with a force of Lennard and Jones."""
+    particles = (
+        item(number + 2 + n, "GasParticle", position=f"({x},0)", mass=1) for n, x in enumerate(places)
+    )
+    inside = item(number + 1, "GasLJForce", **force) + "".join(particles)
+    return f'  <item class="Gas" id="{number}">\n    <name>gas</name>\n{inside}  </item>\n'
+
+
+def test_particles_of_a_gas_are_molecules(file: Path) -> None:
+    world, losses = opened(file, gas(2, 0.0, 0.05, depth=0.1, rmin=0.05, cutoff="inf"), item(9, "Particle"))
+    molecules = [world.component(world.entity(f"GasParticle{n}"), Molecule) for n in (4, 5)]
+    assert [(one.depth, one.distance) for one in molecules] == [(0.1, 0.05)] * 2
+    assert not world.has(world.entity("Particle9"), Molecule)
+    assert losses == []
+
+
+def test_a_force_of_a_gas_that_ends_near_is_named_and_so_is_a_second_gas(file: Path) -> None:
+    near, far = gas(2, 0.0, 1.0, rmin=1.0, cutoff=1.5), gas(12, 9.0, 9.5, depth=2.0, rmin=0.5)
+    _, losses = opened(file, near, far)
+    assert [loss.split(": ")[1] for loss in losses] == [
+        "it ends at 1.5 m; here at 2.23 m",
+        "molecules of all gases act on each other here, as on GasParticle4",
+    ]

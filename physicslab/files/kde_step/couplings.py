@@ -1,13 +1,17 @@
 """What acts on bodies of Step: springs, joints, motors and laws of force."""
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from physicslab.files.kde_step.draft import Body, Draft, turned
 from physicslab.files.kde_step.item import Item, Pair
+from physicslab.kernels.forces.molecules import CUT2
 
 _ROUNDED = 1e-4
 """Share of a length by which Step's files, of six digits, may be off: the length is then as placed."""
+LENNARD_JONES = "GasLJForce"
+"""The class of the force of Lennard and Jones."""
 _WEIGHT, _GRAVITATION, _COULOMB = 9.80665, 6.67428e-11, 8.987551787e9
 """Step's constants where a file has none [m/s^2], [N m^2/kg^2], [N m^2/C^2]."""
 
@@ -137,6 +141,27 @@ def take_coulomb(item: Item, draft: Draft) -> None:
     """Take the force of charges."""
     strength = item.number_of("coulombConst", _COULOMB)
     draft.physics["coulomb_constant"] = draft.physics.get("coulomb_constant", 0.0) + strength
+
+
+def take_molecules(group: Item, draft: Draft) -> None:
+    """Take the forces of Lennard and Jones in a group, which act among its own particles of gas."""
+    own = [draft.bodies[item.number].entity for item in group.items if item.kind == "GasParticle"]
+    others = [body.entity for body in draft.bodies.values() if "Molecule" in body.entity]
+    for item in group.items:
+        if item.kind != LENNARD_JONES:
+            continue
+        if any("Molecule" in entity for entity in own):
+            draft.lose(item, "its particles have such a force already")
+            continue
+        depth, distance = item.number_of("depth", 1.0), item.number_of("rmin", 1.0)
+        cut = item.number_of("cutoff", math.inf, infinite=True)
+        ends = math.sqrt(CUT2) * distance
+        if cut < ends:
+            draft.lose(item, f"it ends at {cut:g} m; here at {ends:.3g} m")
+        if others and own:
+            draft.lose(item, f"molecules of all gases act on each other here, as on {others[0]['id']}")
+        for entity in own:
+            entity["Molecule"] = {"depth": depth, "distance": distance}
 
 
 HOLDS: Mapping[str, Callable[[Item, Draft], None]] = {"Pin": take_pin, "Anchor": take_anchor}

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from physicslab.files.checks import SceneError, refusal, shown
 from physicslab.files.kde_step.bodies import BODIES, give_points_extent
-from physicslab.files.kde_step.couplings import COUPLINGS, HOLDS
+from physicslab.files.kde_step.couplings import COUPLINGS, HOLDS, LENNARD_JONES, take_molecules
 from physicslab.files.kde_step.draft import Draft
 from physicslab.files.kde_step.instruments import INSTRUMENTS
 from physicslab.files.kde_step.item import Item
@@ -68,7 +68,7 @@ def _draft(content: bytes, source: str) -> Draft:
     draft = Draft(world.number)
     items = list(_all(world))
     _check_numbers(items, draft.world)
-    known = (*_GROUPS, *BODIES, *HOLDS, *COUPLINGS, *INSTRUMENTS)
+    known = (*_GROUPS, *BODIES, *HOLDS, *COUPLINGS, LENNARD_JONES, *INSTRUMENTS)
     for item in items:
         if item.kind not in known:
             draft.lose(item, f"there is no {shown(item.kind)}")
@@ -76,6 +76,8 @@ def _draft(content: bytes, source: str) -> Draft:
         for item in items:
             if item.kind in table:
                 table[item.kind](item, draft)
+    for group in (world, *(item for item in items if item.kind in _GROUPS)):
+        take_molecules(group, draft)
     give_points_extent(draft)
     _lose_settings(world, draft)
     draft.time = max(world.number_of("time", 0.0), 0.0)
