@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import json
 import multiprocessing
+import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
@@ -39,6 +40,7 @@ NOT_COMPARABLE = {
     "steps_1e4_memory": "measures Python's memory",
     "steps_1e6_memory": "measures Python's memory",
     "steps_1e6_pace": "times PhysicsLab",
+    **{name: "looks at PhysicsLab's contacts" for name in CASES if re.fullmatch("wedges_.*_depth_.*", name)},
 }
 """Groups and cases that cannot measure another engine."""
 

@@ -70,11 +70,16 @@ def seconds_to_lean(rate2: mpmath.mpf, start: mpmath.mpf, end: mpmath.mpf) -> mp
     return mpmath.quad(slowness, [0, mpmath.sqrt(end - start)])
 
 
-@pytest.mark.parametrize("key", ["cube", "tall", "lean"])
+@pytest.mark.parametrize("key", ["cube", "tall", "lean", "box", "hexagon"])
 def test_equations_of_motion_pass_through_the_angles_on_record(key: str) -> None:
     with mpmath.workdps(50):
         g = mpmath.mpf("9.81")
+        over = {name: mpmath.atan(tan * mpmath.mpf("1.001")) - mpmath.atan(tan) for name, tan in (
+            ("box", mpmath.mpf("0.5")), ("hexagon", 1 / mpmath.sqrt(3)),
+        )}  # fmt: skip
         family, rate2, start, t = {
+            "box": ("topple_threshold", g * 3 / (4 * mpmath.sqrt(mpmath.mpf("0.3125"))), over["box"], "1"),
+            "hexagon": ("topple_threshold", g * 24 / 17, over["hexagon"], "1"),
             "cube": ("box_pivot", g * 3 / (2 * mpmath.sqrt(2)), "0.3", "0.4"),
             "tall": ("box_pivot", g * 3 / (2 * mpmath.sqrt(mpmath.mpf("2.5"))), "0.05", "0.4"),
             "lean": ("rolling_over_a_hill", g * 4 / 21, "0.1", "1.5"),
@@ -247,7 +252,8 @@ def test_a_family_of_cases_is_named_like_one_of_problems(capsys: pytest.CaptureF
     assert main(["accuracy", "toppling"]) == 0
     out = capsys.readouterr().out
     assert "pivot_cube:" in out and "pivot_tall:" in out
-    assert "rigid contacts: 2 of 2 cases are within what is wanted" in out
+    assert "topple_at_box:" in out and "topple_at_hexagon:" in out
+    assert "rigid contacts: 4 of 4 cases are within what is wanted" in out
     assert main(["accuracy", "slide_stup"]) == 2
     assert "slide_stop" in capsys.readouterr().err
 

@@ -10,12 +10,16 @@ from physicslab.lab.stability.impacts import IMPACTS
 from physicslab.lab.stability.joints import JOINTS
 from physicslab.lab.stability.many_bodies import ATTRACTION, CHAINS
 from physicslab.lab.stability.ranges import RANGES
+from physicslab.lab.stability.shapes import SHAPES
 from physicslab.lab.stability.springs import SPRINGS
 from physicslab.lab.stability.steps import STEPS
 
 CASES = Catalogue(
-    (*SPRINGS, *CHAINS, *JOINTS, *ASSEMBLIES, *STANDING, *SQUEEZED, *IMPACTS, *STEPS, *ATTRACTION, *RANGES)
-)
+    (
+        *SPRINGS, *CHAINS, *JOINTS, *ASSEMBLIES, *STANDING, *SQUEEZED, *SHAPES, *IMPACTS, *STEPS, *ATTRACTION,
+        *RANGES,
+    )
+)  # fmt: skip
 """Every case by name; families are groups."""
 
 

@@ -163,7 +163,7 @@ _TOWERS = ((10, 0.1), (10, 0.05), (10, 0.02), (5, 0.01), (15, 0.15), (7, 0.02))
 """How many cubes, and their size [m]."""
 _TOWER_S, _ROD_S = 60.0, 10.0
 _ROD, _THICK = 2.0, 0.002
-_WANTED = {"soft": 0.1, "rigid": 1e-6}
+WANTED = {"soft": 0.1, "rigid": 1e-6}
 """Largest distance of a cube from its place, of its size."""
 
 
@@ -233,8 +233,8 @@ STANDING = (
         StabilityCase(
             name=f"tower_{count}x{100 * size:g}cm_{contacts}", group="towers",
             title=f"{count} cubes of {100 * size:g} cm, {model}, {_TOWER_S:g} s",
-            right=f"it stands: no cube is off by {_WANTED[contacts]:g} of its size",
-            figure="farthest from its place, of a cube", limit=_WANTED[contacts],
+            right=f"it stands: no cube is off by {WANTED[contacts]:g} of its size",
+            figure="farthest from its place, of a cube", limit=WANTED[contacts],
             measure=partial(_share_off, contacts, count, size, size, _TOWER_S),
         )
         for count, size in _TOWERS

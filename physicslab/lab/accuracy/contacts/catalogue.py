@@ -2,9 +2,10 @@
 
 from physicslab.lab.accuracy.contacts.sliding import ROLLING, SLIDING
 from physicslab.lab.accuracy.contacts.striking import ALIKE, STRIKING
+from physicslab.lab.accuracy.contacts.thresholds import THRESHOLDS
 from physicslab.lab.case import Catalogue
 
-CONTACTS = Catalogue((*SLIDING, *ROLLING, *STRIKING, *ALIKE))
+CONTACTS = Catalogue((*SLIDING, *ROLLING, *THRESHOLDS, *STRIKING, *ALIKE))
 """Every case by name; families are groups."""
 
 CONVERGENCE = (
