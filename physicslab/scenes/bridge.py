@@ -3,6 +3,7 @@
 import math
 
 from physicslab.components import Pin
+from physicslab.ecs.config import SimulationConfig
 from physicslab.prefabs import box, circle
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
@@ -40,4 +41,5 @@ BRIDGE = Scene(
     description="Twenty planks on pins carry what falls on them: each pin tells the force that it holds.",
     fill=_fill,
     view=(-5.2, -2.6, 5.2, 3.4),
+    simulation=SimulationConfig(substeps=8),
 )
