@@ -3,7 +3,6 @@
 import math
 
 from physicslab.components import Pin
-from physicslab.ecs.config import SimulationConfig
 from physicslab.prefabs import box, circle
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
@@ -25,7 +24,7 @@ def _fill(world: World) -> None:
         angle = (n + 0.5 - 0.5 * _PLANKS) * one
         place = middle * math.sin(angle), top - middle * math.cos(angle)
         plank = box(
-            world, place, width=_LENGTH, height=_THICKNESS, mass=2.0, angle=angle, name=f"plank {n + 1}"
+            world, place, width=_LENGTH, height=_THICKNESS, mass=10.0, angle=angle, name=f"plank {n + 1}"
         )
         world.spawn(Pin(before, plank, end, (-0.5 * _LENGTH, 0.0)))
         before, end = plank, (0.5 * _LENGTH, 0.0)
@@ -41,5 +40,4 @@ BRIDGE = Scene(
     description="Twenty planks on pins carry what falls on them: each pin tells the force that it holds.",
     fill=_fill,
     view=(-5.2, -2.6, 5.2, 3.4),
-    simulation=SimulationConfig(substeps=8),
 )
