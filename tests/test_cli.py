@@ -84,12 +84,12 @@ def test_the_numbers_are_those_of_the_world(capsys: pytest.CaptureFixture[str]) 
     from physicslab.components import Transform
     from physicslab.diagnostics.energy import measure_energy, measure_momentum
 
-    report = document(capsys, "run", "pendulum", "--seconds", "2.5")
-    world = load_scene("pendulum")
+    report = document(capsys, "run", "spring_chain", "--seconds", "2.5")
+    world = load_scene("spring_chain")
     for _ in world.stepping(seconds=2.5, stride=1):
         pass
-    bob = world.entity("bob")
-    assert report["entities"]["bob"]["position"] == list(world.component(bob, Transform).position)
+    bob = next(entity for entity in world.entities() if world.label(entity) == "circle 3")
+    assert report["entities"]["circle 3"]["position"] == list(world.component(bob, Transform).position)
     energy = measure_energy(world)
     assert report["energy"]["final"] == energy.total
     assert report["energy"]["potential_spring"] == energy.potential["spring"] > 0.0
@@ -274,8 +274,8 @@ def test_a_run_that_diverges_says_where_and_when(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)  # where the last good state is saved
-    world = load_scene("pendulum")
-    spring = world.component(world.entity("bob"), physicslab.components.Spring)
+    world = load_scene("resonance")
+    spring = world.component(world.entity("1 Hz"), physicslab.components.Spring)
     spring.stiffness = 1e9
     world.simulation = dataclasses.replace(world.simulation, integrator="leapfrog")
     save_scene(world, tmp_path / "stiff.json")
@@ -283,7 +283,7 @@ def test_a_run_that_diverges_says_where_and_when(
     line = complaint(
         capsys, "run", str(tmp_path / "stiff.json"), "--json", str(report), "--csv", str(table), status=1
     )
-    assert line.startswith("pendulum: ") and "no longer finite at t = " in line
+    assert line.startswith("resonance: ") and "no longer finite at t = " in line
     assert not report.exists(), "a report of a run that failed would be taken for one that did not"
     rows = table.read_text().splitlines()
     assert len(rows) > 2, "what led there can be looked at"

@@ -378,3 +378,12 @@ def test_a_ramp_has_the_length_and_the_angle_of_its_slope(desk: Desk) -> None:
     width, height = np.ptp(np.array([tuple(vertex) for vertex in shape.vertices]), axis=0)
     assert (width, height) == pytest.approx((2 * math.cos(math.pi / 9), 2 * math.sin(math.pi / 9)))
     assert not len(desk.world.batch(Velocity))
+
+
+def test_what_is_drawn_holds_and_nothing_that_was_not_given_is_set() -> None:
+    desk = Desk(empty_world(gravity=(0.0, -9.81)))
+    desk.move(0.5, 2.0)
+    desk.key("p")
+    desk.frames(20)
+    (bob,) = desk.world.entities()
+    assert desk.world.component(bob, Rod).given()["breaks"] is None

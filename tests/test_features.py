@@ -10,7 +10,7 @@ from recording import RecordingCanvas
 from test_arrows import lines_in
 from test_hud import row
 
-from physicslab.components import Held, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import Held, Rod, Shape, Trail, Transform, Velocity
 from physicslab.contacts.report import count_near_pairs
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import WindowConfig
@@ -209,7 +209,7 @@ def test_p_spawns_a_pendulum_at_the_cursor() -> None:
     desk.key("p")
     desk.frames()
     (bob,) = desk.world.entities()
-    assert desk.world.component(bob, Spring).anchor_b == Vector2(0.5, 2.0)
+    assert desk.world.component(bob, Rod).anchor_b == Vector2(0.5, 2.0)
     before = place(desk, bob)
     desk.frames(20)
     assert (place(desk, bob) - before).magnitude > 0.1
@@ -229,7 +229,7 @@ def test_r_clears_bodies_springs_trails_and_sparks() -> None:
     world = collision()
     desk, canvas = watched(world, "t", "p")
     desk.frames(4)
-    assert world.batch(Spring).entities.size and world.batch(Trail).entities.size and len(desk.window.sparks)
+    assert world.batch(Rod).entities.size and world.batch(Trail).entities.size and len(desk.window.sparks)
     desk.key("r")
     last_frame(desk, canvas)
     assert world.entities() == [] and not len(desk.window.sparks)

@@ -242,7 +242,7 @@ def test_the_table_has_the_energies_and_momenta_of_the_run(
     capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     document = tmp_path / "run.json"
-    last = rows(capsys, "pendulum", "--seconds", "1.3", "--json", str(document))[-1]
+    last = rows(capsys, "resonance", "--seconds", "1.3", "--json", str(document))[-1]
     told = json.loads(document.read_text())
     names = ("kinetic_linear", "kinetic_angular", "potential_gravity", "potential_spring")
     for name in names:

@@ -264,7 +264,7 @@ def test_what_takes_too_long_is_given_up(tmp_path: Path, monkeypatch: pytest.Mon
 
 @pytest.mark.parametrize("deed, shown", [
     ("write()", "11 digits"),
-    ("write(horizon=0.0)", "one of many possible futures"),
+    ("write(horizon=0.0)", "many futures"),  # the menus leave no room for more
 ])  # fmt: skip
 def test_it_lies_within_a_small_window_with_large_text(tmp_path: Path, deed: str, shown: str) -> None:
     desk = sized((800, 600), text_scale=1.75)

@@ -46,7 +46,7 @@ def only(world: World, words: str) -> ModelWarning:
     return found
 
 
-CROWDS = ("sandbox", "pyramid", "pile", "dominoes", "gas", "loop_the_loop")
+CROWDS = ("sandbox", "pyramid", "pile", "dominoes", "gas", "bridge", "loop_the_loop")
 """Built-in scenes of more bodies than rigid contacts take, under gravity, or with a chain."""
 
 

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.report import ContactPoint, contacts_of
-from physicslab.diagnostics.joints import joint_states
-from physicslab.ecs.vector import Vector2
+from physicslab.ecs.vector import Vector2, rotated
+from physicslab.state.joint_figures import forces_of
+from physicslab.state.joints import Joint
 from physicslab.state.masses import quiet
 from physicslab.stepping.forces import forces_by_system
 from physicslab.world import World
@@ -82,10 +83,12 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
     if damping > 0.0:
         velocity, mass = world.component(entity, Velocity).linear, world.component(entity, Mass).mass
         found.append(NamedForce(_DAMPING, -damping * mass * velocity, centre, "field"))
-    for joint in joint_states(world):
-        if entity in (joint.a, joint.b):
-            force = joint.force if entity == joint.b else -joint.force
-            found.append(NamedForce(world.label(joint.entity), force, joint.place, "field"))
+    for joint in world.joints.joints:
+        force_of_joint = forces_of(world, joint).get(row)
+        if force_of_joint is not None:
+            found.append(
+                NamedForce(world.label(joint.entity), force_of_joint, _end(world, joint, row), "field")
+            )
     for contact in contacts_of(world, entity):
         on_b = contact.b == entity
         other = world.label(contact.a if on_b else contact.b) if contact.a and contact.b else "the wall"
@@ -204,8 +207,17 @@ def net_force(forces: tuple[NamedForce, ...]) -> Vector2:
 
 
 def applied_forces(world: World) -> NDArray[np.float64]:
-    """Return the sum of all forces but those of contacts on each row (n, 2) [N], at the present state."""
+    """Return the sum of all forces on each row (n, 2) [N] but those of contacts and joints, at present."""
     return sum(_fields(world).values(), np.zeros_like(world.bodies.force))
+
+
+def joint_forces(world: World) -> NDArray[np.float64]:
+    """Return the forces of joints on each row (n, 2) [N], as in :func:`forces_on`."""
+    total = np.zeros_like(world.bodies.force)
+    for joint in world.joints.joints:
+        for row, force in forces_of(world, joint).items():
+            total[row] += tuple(force)
+    return total
 
 
 def contact_forces(world: World) -> NDArray[np.float64]:
@@ -241,6 +253,13 @@ def _field_name(world: World, system: str) -> str:
     if system == "GravitySystem" and world.physics.gravity_mode == "planet":
         return "gravity of the others"
     return _NAMES.get(system, system.removesuffix("System").lower())
+
+
+def _end(world: World, joint: Joint, row: int) -> Vector2:
+    """Return where a joint holds a body [m]."""
+    joints, transform = world.joints, world.table(Transform)
+    anchor = joints.anchor_a[joint.first] if row == joints.a[joint.first] else joints.anchor_b[joint.first]
+    return Vector2(*(transform["position"][row] + rotated(anchor, transform["angle"][row])).tolist())
 
 
 def _place(points: tuple[ContactPoint, ...]) -> Vector2:

@@ -24,7 +24,7 @@ def _fill(world: World) -> None:
         angle = (n + 0.5 - 0.5 * _PLANKS) * one
         place = middle * math.sin(angle), top - middle * math.cos(angle)
         plank = box(
-            world, place, width=_LENGTH, height=_THICKNESS, mass=2.0, angle=angle, name=f"plank {n + 1}"
+            world, place, width=_LENGTH, height=_THICKNESS, mass=10.0, angle=angle, name=f"plank {n + 1}"
         )
         world.spawn(Pin(before, plank, end, (-0.5 * _LENGTH, 0.0)))
         before, end = plank, (0.5 * _LENGTH, 0.0)

@@ -3,8 +3,6 @@
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from physicslab.ecs.vector import Vector2
 from physicslab.state.joint_rows import Measure, Role, measured
 from physicslab.state.joints import Joint
@@ -21,9 +19,29 @@ class JointFigures(NamedTuple):
     largest_stretch: float
 
 
+def forces_of(state: State, joint: Joint) -> dict[int, Vector2]:
+    """Return the force of a joint [N] on the row of each body that it holds, as in :func:`figures_of`."""
+    joints, found = state.joints, dict[int, Vector2]()
+    for row in range(joint.first, joint.first + joint.size):
+        for n in (row, int(joints.second[row])):
+            if n < 0:
+                continue
+            one, pull = (
+                measured(joints.term(n), state.entity_index),
+                float(joints.scale[n] * joints.force[row]),
+            )
+            for body, gradient in (
+                (int(joints.a[n]), (one.ax, one.ay)),
+                (int(joints.b[n]), (one.bx, one.by)),
+            ):
+                if body:
+                    found[body] = found.get(body, Vector2()) + pull * Vector2(*gradient)
+    return found
+
+
 def figures_of(state: State, joint: Joint) -> JointFigures:
     """Return the figures of a joint, at the end of the last step or as their mean, where bodies are now."""
-    joints, force, torque, largest = state.joints, np.zeros(2), 0.0, 0.0
+    joints, torque, largest = state.joints, 0.0, 0.0
     squares = {True: 0.0, False: 0.0}
     for row in range(joint.first, joint.first + joint.size):
         error = -float(joints.offset[row])
@@ -32,12 +50,9 @@ def figures_of(state: State, joint: Joint) -> JointFigures:
                 continue
             one, scale = measured(joints.term(n), state.entity_index), float(joints.scale[n])
             error += scale * one.value
-            pull = scale * float(joints.force[row])
-            ends = (joints.a[n], (one.ax, one.ay), -1.0), (joints.b[n], (one.bx, one.by), 1.0)
-            for end, gradient, sign in ends:
-                if end == joint.b:
-                    force += pull * np.array(gradient)
-                    torque += sign * pull if joints.measure[n] == Measure.ANGLE else 0.0
+            for end, sign in ((joints.a[n], -1.0), (joints.b[n], 1.0)):
+                if end == joint.b and joints.measure[n] == Measure.ANGLE:
+                    torque += sign * scale * float(joints.force[row])
         if joints.role[row] == Role.LIMIT:
             error = min(error, 0.0)
         if joints.measure[row] != Measure.ANGLE:
@@ -45,4 +60,10 @@ def figures_of(state: State, joint: Joint) -> JointFigures:
         if joints.role[row] != Role.MOTOR:
             squares[bool(joints.measure[row] == Measure.ANGLE)] += error * error
     stretch, twist = math.sqrt(squares[False]), math.sqrt(squares[True])
-    return JointFigures(Vector2(*force.tolist()), torque, stretch, twist, max(largest, stretch))
+    return JointFigures(_force_on_b(state, joint), torque, stretch, twist, max(largest, stretch))
+
+
+def _force_on_b(state: State, joint: Joint) -> Vector2:
+    """Return the force on B [N]; on the world it is what A gets with the other sign."""
+    forces = forces_of(state, joint)
+    return forces.get(joint.b, Vector2()) if joint.b else -sum(forces.values(), Vector2())

@@ -136,6 +136,8 @@ class JointSystem(System):
         Impulses keep the speeds of anchors equal. While a body turns by an angle w h in a substep, an anchor
         at a distance r leaves the straight way by r (w h)^2 / 2: that is to be a small share of r.
         """
+        if not (state.has_forces and state.bodies.unequal):
+            return 1
         joints, spin = state.joints, state.table(Velocity)["angular"]
         squares = [
             np.hypot(anchor[:, 0], anchor[:, 1]) * spin[body] ** 2

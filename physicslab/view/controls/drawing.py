@@ -295,7 +295,7 @@ def _renumbered[C: Component](part: C, number: dict[int, int]) -> C:
         for spec in part.FIELDS
         if spec.kind == "entity" and getattr(part, spec.name) is not None
     }
-    return type(part)(**{**part.values(), **ends})
+    return type(part)(**{**part.given(), **ends})
 
 
 def _outlines(drawn: Drawn, places: Sequence[Vector2], recipe: Recipe) -> Outlines:

@@ -28,14 +28,19 @@ type Places = Sequence[Vector2]
 """The points through which something is made [m]."""
 
 
+def _size(length: float) -> float:
+    """Return a length [m] without the rounding of the places between which it lies: .11, not .1100...01."""
+    return float(f"{length:.12g}")
+
+
 def _circle(world: World, places: Places, recipe: Recipe) -> None:
-    radius = (places[1] - places[0]).magnitude
+    radius = _size((places[1] - places[0]).magnitude)
     circle(world, places[0], radius=radius, **recipe.body(math.pi * radius * radius))
 
 
 def _box(world: World, places: Places, recipe: Recipe) -> None:
     way = places[1] - places[0]
-    width, height = abs(way.x), abs(way.y)
+    width, height = _size(abs(way.x)), _size(abs(way.y))
     box(world, places[0] + way * 0.5, width=width, height=height, **recipe.body(width * height))
 
 
@@ -50,7 +55,7 @@ def _capsule(world: World, places: Places, recipe: Recipe) -> None:
 
 def _bar(world: World, places: Places, recipe: Recipe, *, static: bool) -> None:
     way = places[1] - places[0]
-    length = way.magnitude
+    length = _size(way.magnitude)
     height = min(_THICKNESS, 0.25 * length)
     options = recipe.body(length * height)
     options["angle"], options["static"] = _along(way), static

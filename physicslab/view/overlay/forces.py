@@ -22,7 +22,7 @@ NORMAL_LENGTH = 26.0
 def draw_vectors(world: World, overlays: Overlays, on: Drawing) -> None:
     """Draw the velocity of each body that moves, the sum of the forces on it, and the normals of contacts."""
     applied = free_body.applied_forces(world)
-    force = applied + free_body.contact_forces(world)
+    force = applied + free_body.joint_forces(world) + free_body.contact_forces(world)
     rows = world.batch(Transform, Velocity).rows
     position = world.table(Transform)["position"][rows]
     linear = world.table(Velocity)["linear"][rows]
