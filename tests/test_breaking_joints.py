@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from physicslab import World, save_scene
+from physicslab import World, load_scene, save_scene
 from physicslab.cli import main
-from physicslab.components import Gear, Mass, Pin, Rope, Shape, Transform, Velocity, Weld
+from physicslab.components import Gear, Mass, Pin, Rod, Rope, Shape, Transform, Velocity, Weld
 from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import SimulationConfig
@@ -99,3 +99,16 @@ def test_a_joint_that_holds_what_is_held_is_told() -> None:
         world.spawn(Pin(b=bar, anchor_a=(side, 0.0), anchor_b=(side, 0.0)))
     world.run(seconds=0.1)
     assert [one.value for one in find_warnings(world) if "joints hold already" in one.what] == [1.0]
+
+
+def test_what_joints_contradict_about_can_be_saved_and_read_again(tmp_path: Path) -> None:
+    world = World()
+    bob = world.spawn(Transform((1.0, 0.0)), Velocity(), Mass(1.0), name="bob")
+    for side in (0.0, 5.0):
+        world.spawn(Rod(None, bob, anchor_a=(side, 0.0), length=1.0))
+    for _ in range(4):
+        world.run(steps=3)
+        save_scene(world, tmp_path / "kept.json")
+        again = load_scene(tmp_path / "kept.json")
+        places = [one.component(one.entity("bob"), Transform).position for one in (world, again)]
+        assert places[0] == places[1]

@@ -273,7 +273,7 @@ class Cluster:
 
     def place(self, random: np.random.Generator) -> None:
         """Let all touch: two discs, or a corner, or two faces, and the third where it touches the second."""
-        rows, q, (half_x, half_y, radius, reaches) = self.scene[0], self._ode.q, self.scene[4][1]
+        rows, q, (half_x, half_y, radius, reaches, *_) = self.scene[0], self._ode.q, self.scene[4][1]
         size = 10.0 ** random.uniform(-0.5, 0.5, 3)
         for number, kind in enumerate(self.kinds):
             row = 1 + number
@@ -307,7 +307,7 @@ class Cluster:
         mass = 10.0 ** random.uniform(-3.0, 3.0, 3)
         for number, kind in enumerate(self.kinds):
             row = 1 + number
-            half_x, half_y, radius, _ = self.scene[4][1][:, row]
+            half_x, half_y, radius, *_ = self.scene[4][1][:, row]
             square = radius**2 / 2.0 if kind == "o" else (half_x**2 + half_y**2) / 3.0
             free = not (self.fixed and number == 0)
             inverse[2 * row] = inverse[2 * row + 1] = 1.0 / mass[number] if free else 0.0

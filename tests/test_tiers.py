@@ -60,7 +60,7 @@ def test_one_ball_is_interpreted_with_the_bits_of_compiled_code(tmp_path: Path) 
 @pytest.mark.parametrize(
     ("arguments", "needed"),
     [
-        (("pendulum", "--seconds", "200"), "split"),
+        (("pendulum", "--seconds", "200"), "dop853"),
         (("two_planets", "--integrator", "rk4", "--dt", "0.0005"), "rk4"),
     ],
 )

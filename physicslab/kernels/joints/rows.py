@@ -266,7 +266,7 @@ def project(q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, numbers: Num
             back = 0.5 * share if share > _HALVED else share
             share -= back
             for i in range(m):
-                q[i] -= back * numbers[room + i]
+                q[i], q_low[i] = add(q[i], q_low[i], -back * numbers[room + i])
             continue
         if share == 0.0 or largest <= _ROUNDING * size or (turn > 2 and largest > 0.5 * before):
             break

@@ -171,7 +171,7 @@ def _width(lines: Sequence[tuple[str, str]], columns: int) -> float:
 
 _LOWEST = 1.1
 """Height of a button at least, in heights of the text."""
-_YIELDING = ("protractor", "note", "chain", "gate", "block", "ruler")
+_YIELDING = ("protractor", "note", "rope", "gate", "polygon", "block", "ruler")
 """Tools that are not in sight where there is little room, the first ones first."""
 
 
