@@ -6,6 +6,8 @@ as a user does, and prints for each run and as medians, wall and CPU time [s] si
 - window: the first picture is in the window, a bar of progress or the scene
 - first step: a picture of the world is shown that has made a step
 - moves after: how long after the window that is
+- life's speed: how long after the window the world has first moved for a second in at most 1.05 s, and as
+  CPU time of the window's own process; "held" is its speed from then on, until every kernel is compiled
 - all kernels: every kernel is compiled, and in the cache (with ``--cold``, which waits for it)
 - all CPU: of all processes until the window is closed, those that compile included
 - slowest: the longest time [ms] between two pictures from then on, and how many exceeded 33 ms
@@ -33,7 +35,7 @@ ROOT = Path(__file__).resolve().parent.parent
 HOOK = """
 import atexit, importlib.abc, importlib.machinery, json, os, sys, time
 
-moments, state = {"flips": []}, {"stepped": False, "until": None}
+moments, state = {"flips": [], "times": []}, {"world": None}
 SECONDS = float(os.environ["STARTUP_SECONDS"])
 PATIENCE = float(os.environ["STARTUP_PATIENCE"])
 
@@ -47,9 +49,10 @@ def watch_display():
         flip()
         wall, cpu = now()
         moments.setdefault("window", (wall, cpu))
-        if state["stepped"]:
+        if state["world"] is not None:
             moments.setdefault("first_step", (wall, cpu))
             moments["flips"].append(wall)
+            moments["times"].append((wall, cpu, state["world"].time))
             done = "all_kernels" in moments or wall > PATIENCE
             if done and wall > moments["first_step"][0] + SECONDS:
                 pygame.event.post(pygame.Event(pygame.QUIT))
@@ -59,7 +62,7 @@ def watch_world():
     world = sys.modules["physicslab.world"].World
     step = world.step
     def watched(self, *arguments, **named):
-        state["stepped"] = True
+        state["world"] = self
         return step(self, *arguments, **named)
     world.step = watched
 
@@ -111,6 +114,7 @@ def start(scene: str, cache: Path, seconds: float, patience: float = 0.0) -> dic
         cpu = _children_cpu() - before
         moments = json.loads(reported.read_text())
     flips = moments["flips"]
+    until = moments.get("all_kernels", (flips[-1],))[0]
     gaps = [1e3 * (after - before) for before, after in itertools.pairwise(flips)]
     return {
         "window": moments["window"][0],
@@ -119,11 +123,33 @@ def start(scene: str, cache: Path, seconds: float, patience: float = 0.0) -> dic
         "first step CPU": moments["first_step"][1],
         "moves after": moments["first_step"][0] - moments["window"][0],
         "moves after, CPU": moments["first_step"][1] - moments["window"][1],
+        **_life(moments["times"], moments["window"], until),
         **({"all kernels": moments["all_kernels"][0]} if "all_kernels" in moments else {}),
         "all CPU": cpu,
         "slowest, ms": max(gaps),
         "above 33 ms": sum(gap > 33.4 for gap in gaps),
     }
+
+
+def _life(
+    times: list[tuple[float, float, float]], opened: tuple[float, float], until: float
+) -> dict[str, float]:
+    """Return when the world first moved at life's speed for a second, and how fast it was from then on."""
+    first = 0
+    for wall, cpu, time_now in times:
+        while time_now - times[first][2] > 1.0:
+            first += 1
+        began, _, time_then = times[first]
+        if time_now - time_then > 0.9 and wall - began <= 1.05 * (time_now - time_then):
+            ends = max((one for one in times if one[0] <= max(until, wall)), default=times[-1])
+            held = (ends[2] - time_then) / max(ends[0] - began, 1e-9)
+            return {
+                "life's speed": began - opened[0],
+                "life's speed, CPU": times[first][1] - opened[1],
+                "held": held,
+                "CPU for a second": (cpu - times[first][1]) / (time_now - time_then),
+            }
+    return {}
 
 
 def _children_cpu() -> float:
@@ -156,7 +182,8 @@ def main() -> None:
             )
             print("  ".join(f"{name} {value:.3f}" for name, value in rows[-1].items()), flush=True)
     print(
-        "median:  " + "  ".join(f"{name} {statistics.median(r[name] for r in rows):.3f}" for name in rows[0])
+        "median:  "
+        + "  ".join(f"{name} {statistics.median(r[name] for r in rows if name in r):.3f}" for name in rows[0])
     )
 
 

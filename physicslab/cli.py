@@ -93,9 +93,14 @@ def _dispatch(arguments: list[str]) -> int:
 def _open(arguments: list[str]) -> int:
     """Open the window, on a scene if one is named."""
     parser = _WindowParser("physicslab", "Open the desktop sandbox, or do one of the commands.")
-    parser.add_argument("scene", metavar="SCENE", nargs="?", help="a built-in scene's name, or a path")
+    words = "a built-in scene's name, or a path; or that of a lesson, which ends in .md"
+    parser.add_argument("scene", metavar="SCENE", nargs="?", help=words)
     scene = parser.parse_args(arguments).scene
-    if scene is not None and scene not in SCENES:
+    if scene is not None and scene.endswith(".md"):
+        from physicslab.lessons.reader import read_lesson
+
+        read_lesson(scene)
+    elif scene is not None and scene not in SCENES:
         from physicslab.files.scene import load_scene
 
         load_scene(scene)  # a bad file is refused before a window flickers up

@@ -17,15 +17,18 @@ from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
 from physicslab.state.state import State
 from physicslab.stepping.accounting import book_account, close_account, open_account
+from physicslab.stepping.breaks import Overloaded, time_of_break
 from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.forces import add_up_forces
 from physicslab.stepping.islands import Islands
 from physicslab.stepping.plan import StepPlan, default_plan, plan_for_jumps
 from physicslab.stepping.run import run_length, strides
 from physicslab.stepping.select import Steppers, choose, remake, resume
+from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Advance, Advancer
-from physicslab.stepping.undo import Undoing
+from physicslab.stepping.undo import Undoing, go_back
 from physicslab.systems.accelerate import AccelerateSystem
+from physicslab.systems.breaking import BreakSystem, load_of
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.standard import standard_systems
@@ -129,7 +132,35 @@ class World(State):
         """Make ``steps`` steps of ``h`` seconds, or fewer, with the best stepper; return how many.
 
         The clock is the caller's. Where that fails or is broken off, the world goes back to before the step.
+        A step in which a joint breaks is two: until then, and without it.
         """
+        try:
+            return self._attempt(h, steps, 1.0)
+        except Overloaded as found:
+            at = time_of_break(self._load_after, h, found.load)
+        start = self.time
+        self._attempt(at, 1, math.inf)
+        if h - at < MIN_TIME:
+            return 1
+        self.steps -= 1
+        self.time = start + at
+        try:
+            self._synchronise()
+            return self.advance(h - at, 1)
+        finally:
+            self.time = start
+
+    def _load_after(self, h: float) -> float:
+        """Return the load of joints after ``h`` seconds, and go back."""
+        self._synchronise()
+        try:
+            self._attempt(h, 1, -math.inf)
+        except Overloaded as found:
+            return found.load
+        return 0.0
+
+    def _attempt(self, h: float, steps: int, bears: float) -> int:
+        """Advance, unless that ends with a load on joints beyond ``bears`` that is known at any time."""
         with Undoing(self, self._motion):
             if self.account.start is None:
                 open_account(self, self.schedule.forces)
@@ -138,6 +169,10 @@ class World(State):
             made = self._advance(h, steps)
             if self.account.is_open:
                 close_account(self, self.schedule.forces)
+            if self.joints.joints and bears < math.inf and self.schedule.find(BreakSystem) is not None:
+                load = load_of(self)
+                if load > bears and not any(isinstance(part.stepper, Soft) for part in self.parts):
+                    raise Overloaded(load)
             self.schedule.run(Stage.FINISH, self, h * steps)
         self.steps += made.steps
         self.step_divisions = made.divisions
@@ -151,7 +186,9 @@ class World(State):
             self._choose()
             made = self._make(h, steps)
         except NotSmooth:
-            self._choose(plan_for_jumps(self, self.schedule, self.plan))
+            go_back(self)
+            plan = plan_for_jumps(self, self.schedule, self.plan)
+            self.plan, self.steppers = remake(self, self.schedule, plan)
             made = self._make(h, steps)
         start, begun = self.time, 0.0
         try:

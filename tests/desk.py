@@ -50,6 +50,7 @@ class Desk:
         if canvas is None:
             canvas = PygameCanvas(pygame.display.set_mode((1280, 720)))
         self.window = Window(canvas, config)
+        self.window.reduced_motion = True  # a picture shows at once what was done
         self.sandbox = Sandbox(world, self.window, clock=lambda: 0.0)
         self.window.camera.look_at((0.0, 0.0, 0.0, 0.0), 100.0)
         self._held: set[str] = set()

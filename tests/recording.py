@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -38,9 +39,18 @@ class RecordingCanvas:
         """Everything that was written."""
         return [given["words"] for given in self.called("text")]
 
-    def clear(self, colour: Colour) -> None:
-        """Note the colour."""
-        self.calls.append(("clear", {"colour": colour}))
+    def clear(self, top: Colour, bottom: Colour, grain: int = 0) -> None:
+        """Note the colours."""
+        self.calls.append(("clear", {"top": top, "bottom": bottom, "grain": grain}))
+
+    def keep(self, key: Hashable, draw: Callable[[], None]) -> None:
+        """Draw: nothing is kept."""
+        draw()
+
+    def glows(self, centre: Points, radius: Numbers, colour: Colour, strength: Numbers) -> None:
+        """Note the lights."""
+        given = {"centre": centre, "radius": radius, "colour": colour, "strength": strength}
+        self.calls.append(("glows", given))
 
     def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
         """Note the discs."""

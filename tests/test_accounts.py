@@ -48,7 +48,7 @@ ERRORS = {"sandbox": 1e-8, "pendulum": 1e-11, "droplets": 2e-4}
 """Where springs or molecules act that are not solved in closed form: the error of their method."""
 TWO_POINTS = {
     "pyramid": 1e-4, "pile": 1e-4, "bridge": 1e-4, "dominoes": 1e-5, "billiards": 1e-5, "gas": 1e-5,
-    "sandbox": 1e-6
+    "sandbox": 1e-6, "seesaw": 1e-4, "crane": 1e-4, "ragdoll": 1e-4,
 }  # fmt: skip
 """Scenes with soft contacts: how much the angular momentum is off."""
 EXACT = 1e-9

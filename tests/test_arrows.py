@@ -224,7 +224,7 @@ def test_rendering_with_overlays_changes_nothing() -> None:
 
 
 @pytest.mark.parametrize("size", [(1280, 720), (800, 600), (1920, 1080)])
-@pytest.mark.parametrize("keys", ["v", "e", "ve"])
+@pytest.mark.parametrize("keys", ["v", "e", "ve", "veo[[[["])
 def test_the_legend_lies_over_nothing(size: tuple[int, int], keys: str) -> None:
     canvas = MeasuringCanvas(size)
     desk = Desk(load_scene("bounces"), canvas)

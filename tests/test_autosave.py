@@ -175,7 +175,7 @@ def test_restoring_opens_the_last_state(tmp_path: Path) -> None:
     lost = crashed(tmp_path, "stack")
     own = Session.begin(tmp_path)
     desk = Desk(empty_world())
-    desk.window.recovery = Recovery(Session.abandoned(tmp_path), own.path)
+    desk.window.scenes.recovery = Recovery(Session.abandoned(tmp_path), own.path)
     desk.frames(10)
     assert desk.world.name != "stack", "nothing is applied without being asked"
     desk.key("space")
@@ -183,7 +183,7 @@ def test_restoring_opens_the_last_state(tmp_path: Path) -> None:
     assert [desk.window.pace.paused] == [True], "keys stay with the scene"
     click(desk, "Restore it")
     assert desk.world.name == "stack" and bits(desk.world) == bits(lost) and desk.window.pace.paused
-    assert not desk.window.recovery.offered and "Discard" not in desk.ui.places
+    assert not desk.window.scenes.recovery.offered and "Discard" not in desk.ui.places
     assert own.path.exists(), "it would be offered again after another crash"
     own.end()
     assert not list(tmp_path.iterdir())
@@ -195,7 +195,7 @@ def test_discarding_offers_the_one_before(tmp_path: Path) -> None:
         time.sleep(0.02)
     desk = Desk(empty_world())
     world = desk.world
-    desk.window.recovery = Recovery(Session.abandoned(tmp_path))
+    desk.window.scenes.recovery = Recovery(Session.abandoned(tmp_path))
     desk.frames(10)
     click(desk, "Discard")
     assert {"Restore it", "Discard"} <= set(desk.ui.places)
@@ -210,11 +210,11 @@ def test_a_state_that_cannot_be_read_is_reported_and_kept(tmp_path: Path) -> Non
     path.write_text("{ half")
     desk = Desk(empty_world())
     world = desk.world
-    desk.window.recovery = Recovery(Session.abandoned(tmp_path))
+    desk.window.scenes.recovery = Recovery(Session.abandoned(tmp_path))
     desk.frames(10)
     click(desk, "Restore it")
     assert "Not restored" in desk.window.notice and desk.world is world and path.exists()
-    desk.window.recovery.leave()
+    desk.window.scenes.recovery.leave()
 
 
 def test_a_window_that_closes_leaves_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -182,7 +182,7 @@ def test_a_run_that_diverges_is_reported_at_the_end(
         (
             ["qqqq"],
             '"qqqq": is no scene; the groups are pyramids, piles, gases, ten_discs, moving, funnels, '
-            "untuned, edits; ",
+            "untuned, joints, edits; ",
         ),
         (["pile_1000", "--json", "none/x.json"], "--json none/x.json: cannot be written"),
     ],

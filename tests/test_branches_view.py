@@ -14,7 +14,7 @@ from physicslab.components import Transform
 from physicslab.files.scene import load_scene
 from physicslab.history import SetField
 from physicslab.prefabs import circle
-from physicslab.view.controls import actions, file_actions
+from physicslab.view.controls import actions, saving
 
 
 @pytest.fixture
@@ -101,9 +101,11 @@ def test_a_recording_that_cannot_be_saved_is_a_sentence_and_nothing_is_lost(
     assert desk.window.notice == "The recording could not be saved: No space left on device"
     assert desk.window.notice_failed and list(tmp_path.iterdir()) == []
     assert bits(desk.world) == there and desk.sandbox.history.entries == entries
-    monkeypatch.setattr("physicslab.files.scene.create_file", full)
-    file_actions.save(desk.world, desk.window)
-    assert "could not be saved" in desk.window.notice and "No space left on device" in desk.window.notice
+    monkeypatch.setattr("physicslab.view.controls.saving.create_file", full)
+    saving.save(desk.world, desk.window)
+    saving.save(desk.world, desk.window)  # under the name that is offered
+    assert desk.window.scenes.naming is not None
+    assert desk.window.scenes.naming.refused == "The scene could not be saved: No space left on device"
 
 
 @pytest.mark.parametrize("cut", [0.0, 0.3, 0.999])

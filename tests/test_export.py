@@ -19,6 +19,7 @@ from physicslab import World, cli, load_scene, save_scene
 from physicslab.components import Drag, Mass, Shape, Spring, Trail, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.export.packing import pack
+from physicslab.export.parts import springs_of
 from physicslab.export.recording import RunRecorder, frame_run
 from physicslab.prefabs import gas
 from physicslab.systems.standard import standard_systems
@@ -45,11 +46,13 @@ def unpack(text: str, rows: int) -> NDArray[np.float32]:
 
 
 def document(page: bytes) -> dict[str, Any]:
-    """Return what the player of a page is given."""
+    """Return what the player of a page with one run is given."""
     found = re.search(r'<script id="run" type="application/json">(.*?)</script>', page.decode(), re.DOTALL)
     assert found is not None
     read: dict[str, Any] = json.loads(found[1])
-    return read
+    assert len(read["runs"]) == 1
+    run: dict[str, Any] = read["runs"][0]
+    return run | {"view": read["view"]}
 
 
 # ---- what a page holds -------------------------------------------------------------------------------------
@@ -131,7 +134,7 @@ def test_bodies_springs_and_laws_are_described() -> None:
         {"name": "mark", "kind": "none", "entity": 3, "pose": [5.0, 5.0, 0.0]},
         {"name": "lift", "kind": "point", "entity": 4, "moves": 1},
     ]  # fmt: skip
-    assert recorder.springs(world) == [{"a": 1, "b": None, "anchor_a": [0.0, 0.0], "anchor_b": [0.0, 9.0]}]
+    assert springs_of(world) == [{"a": 1, "b": None, "anchor_a": [0.0, 0.0], "anchor_b": [0.0, 9.0]}]
     assert recorder.energies == ("kinetic", "gravity", "spring", "total")
 
 
@@ -165,6 +168,16 @@ def test_twenty_bodies_for_ten_seconds_take_less_than_300_kilobytes(tmp_path: Pa
         page = exported(tmp_path / "page.html", scene)
         assert sum("moves" in body for body in document(page)["bodies"]) == 20
         assert len(page) < 300_000, scene
+
+
+@pytest.mark.slow
+def test_the_page_is_the_same_in_however_many_processes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    vary = ["--seconds", "0.2", "--vary", "ball.Velocity.linear.x=1:5:16"]
+    apart = exported(tmp_path / "apart.html", "drop", *vary)
+    monkeypatch.setattr("os.cpu_count", lambda: 1)
+    assert exported(tmp_path / "one.html", "drop", *vary) == apart
 
 
 # ---- what is shown of it -----------------------------------------------------------------------------------
@@ -238,6 +251,33 @@ REFUSED = [
         "seconds, or a longer --every than 0.0167 s",
     ),
     (["drop", "--html", "x.html", "--seconds", "1e9"], "--seconds 1e+09: 60,000,000,000 instants of 1"),
+    *(
+        (["drop", "--html", "x.html", "--vary", text], line)
+        for text, line in (
+            ("ball.Mass.mass=1", "must be ID.Component.field=START:STOP:COUNT"),
+            ("ball.Mass.mass=1:2:41", "a count from 2 to 40"),
+            ("ball.Mass.mass=1:1:3", "two numbers that differ"),
+            ("ball.Mass.mass=1:x:3", "must be START:STOP:COUNT"),
+            ("bal.Mass.mass=1:2:3", 'there is no such entity; must be one of floor, ball; did you mean'),
+            ("ball.Mas.mass=1:2:3", "unknown component Mas"),
+            ("ball.Velocity.linear=1:2:3", "must be a part of it, .x or .y"),
+            ("ball.Mass.mass.x=1:2:3", "must be a number, or a part of a vector"),
+            ("ball.Shape.kind=1:2:3", "must be a number, or a part of a vector"),
+            ("ball.Material.restitution=0:2:3", "2.0: must be a finite number from 0 to 1"),
+            ("ball.Mass.mass=0:2:3", '0.0: must be a finite number >= 1e-300 kg'),
+        )
+    ),
+    (
+        ["drop", "--html", "x.html", *2 * ["--vary", "ball.Velocity.linear.x=1:2:3"]],
+        "Velocity.linear: is varied twice; two sliders must be of two quantities",
+    ),
+    (["drop", "--html", "x.html", *3 * ["--vary", "ball.Mass.mass=1:2:3"]], "at most 2 sliders"),
+    (
+        ["drop", "--html", "x.html", "--seconds", "100",
+         "--vary", "ball.Mass.mass=1:2:40", "--vary", "ball.Material.restitution=0:1:40"],
+        "6,000 instants of 1 bodies in 1600 runs; a page must hold at most 2,000,000 poses",
+    ),
+    (["drop", "--gif", "x.gif", "--vary", "ball.Mass.mass=1:2:3"], "--vary: is for --html"),
     (["drop", "--html", "x.html", "--set", "ball.Mass.mass=0"], 'Mass.mass = "0": must be a finite number'),
 ]  # fmt: skip
 

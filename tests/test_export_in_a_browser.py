@@ -11,8 +11,27 @@ from browser import CHROMIUM, Browser
 from exporting import exported, recorded
 
 from physicslab import World, load_scene, save_scene
-from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.commands.assignments import assign
+from physicslab.components import (
+    Charge,
+    Colour,
+    Gate,
+    Graph,
+    GraphLine,
+    Mass,
+    Medium,
+    Note,
+    Rod,
+    Rope,
+    Shape,
+    Thrust,
+    Transform,
+    Velocity,
+    Weld,
+)
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
+from physicslab.prefabs import box, circle
 from physicslab.systems.standard import standard_systems
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="not installed: chromium")
@@ -190,3 +209,87 @@ def test_a_name_that_looks_like_markup_is_text(tmp_path: Path, browser: Browser)
     browser.key("b", shift=True)
     assert browser.value("player.selected") == "<img src=x onerror=alert(1)>"
     assert browser.value("document.images.length") == 0 and browser.complaints == []
+
+
+# ---- pages with sliders ------------------------------------------------------------------------------------
+
+
+def test_a_slider_moved_by_the_mouse_shows_the_run_of_its_value(tmp_path: Path, browser: Browser) -> None:
+    vary = ["--vary", "ball.Velocity.linear.x=1:5:5", "--vary", "ball.Material.restitution=0:0.8:3"]
+    exported(tmp_path / "page.html", "drop", "--seconds", "1", *vary)
+    browser.requests.clear()
+    browser.complaints.clear()
+    browser.open(tmp_path / "page.html", still=True)
+    browser.value("player.seek(1)")
+    assert browser.value("player.chosen") == [2, 1], "the middle of each"
+    for which, chosen, speed, restitution in ((0, [4, 1], "5", "0.4"), (1, [4, 2], "5", "0.8")):
+        box = f"document.getElementById('slider-{which}').getBoundingClientRect()"
+        right, middle = browser.value(f"[{box}.right - 3, {box}.y + {box}.height / 2]")
+        browser.click(right, middle)
+        browser.until(f"JSON.stringify(player.chosen) === '{json.dumps(chosen, separators=(',', ':'))}'")
+        world = load_scene("drop")
+        for part, field, value in (
+            ("Velocity", "linear", f"[{speed},0]"),
+            ("Material", "restitution", restitution),
+        ):
+            assign(world, [f"ball.{part}.{field}={value}"])
+        world.run(seconds=1.0)
+        transform = world.component(world.entity("ball"), Transform)
+        shown = browser.value("player.at('ball', player.times.length - 1)")[:2]
+        assert shown == np.array([*transform.position], np.float32).tolist()
+        assert browser.value("player.time") == 1.0, "the moment stays"
+    browser.key("ArrowLeft")
+    browser.until("player.chosen[1] === 1")
+    assert browser.requests == [(tmp_path / "page.html").as_uri()] and browser.complaints == []
+
+
+def test_a_value_that_no_run_can_have_says_why_and_shows_no_other_run(
+    tmp_path: Path, browser: Browser
+) -> None:
+    exported(tmp_path / "page.html", "drop", "--seconds", "0.2", "--vary", "ball.Shape.radius=0:0.5:3")
+    browser.complaints.clear()
+    browser.open(tmp_path / "page.html", still=True)
+    browser.value("document.getElementById('slider-0').focus()")
+    browser.key("ArrowLeft")
+    browser.until("document.getElementById('failure').textContent.includes('Shape.radius')")
+    assert browser.value("getComputedStyle(document.getElementById('world')).visibility") == "hidden"
+    browser.key("ArrowRight")
+    browser.until("document.getElementById('failure').textContent === ''")
+    assert browser.value("getComputedStyle(document.getElementById('world')).visibility") == "visible"
+    assert browser.complaints == []
+
+
+def test_notes_gates_graphs_joints_and_fields_are_shown(tmp_path: Path, browser: Browser) -> None:
+    world = World(
+        *standard_systems(), physics=PhysicsConfig(magnetic_field=1.0, electric_field=Vector2(0, 1))
+    )
+    bodies = [circle(world, (0.6 * n, 2.0), radius=0.2, velocity=(0, -1)) for n in range(6)]
+    world.add(bodies[0], Charge(1.0))
+    world.add(bodies[1], Colour("#ff8000"))
+    world.add(bodies[2], Thrust((0, 3)))
+    pool = box(world, (0, -3), width=8, height=2, static=True)
+    world.add(pool, Medium(1000.0))
+    for joint in (
+        Rod(a=bodies[3], anchor_b=(1.8, 4.0)),
+        Rope(a=bodies[4], b=bodies[5]),
+        Weld(a=bodies[1], b=bodies[2]),
+    ):
+        world.spawn(joint)
+    world.spawn(Note("Watch\nthis", (0, 3)))
+    world.spawn(Gate((-1, 1.8), (4, 1.8)), name="light")
+    graph = world.spawn(Graph())
+    world.spawn(GraphLine(graph, "speed", bodies[1]))
+    save_scene(world, tmp_path / "scene.json")
+    exported(tmp_path / "page.html", str(tmp_path / "scene.json"), "--seconds", "0.5")
+    browser.complaints.clear()
+    browser.open(tmp_path / "page.html", still=True)
+    browser.key("End")
+    browser.value("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    words = browser.value("document.body.innerText")
+    assert "Graph 1 (m/s)" in words and "circle 2: speed" in words and "through light" in words
+    assert "momentum y" in words and "kg m\u00b2/s" in words
+    assert browser.value("player.run.bodies[1].paint") == "#ff8000"
+    assert browser.value("player.run.texts.map(note => note.text)") == ["Watch\nthis"]
+    kinds = ["Rod", "Rope", "Weld"]
+    assert sorted(browser.value("player.run.joints.map(joint => joint.kind)")) == kinds
+    assert browser.complaints == [] and len(browser.picture()) > 10_000

@@ -357,6 +357,7 @@ def test_the_hud_shows_what_there_is() -> None:
     circle(world, (-1, 0.25), radius=0.25, mass=2.0, velocity=(1, 0), angular_velocity=-4.0)
     circle(world, (2, 3))
     desk, _ = watched(world)
+    desk.window.level = "Engineer"
     desk.frames(20)
     desk.key("space")  # so that the figures are of now
     desk.frames(30)

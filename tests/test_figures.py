@@ -229,7 +229,7 @@ def test_a_place_on_the_time_line_has_the_accounts_of_then() -> None:
 
 def test_a_scene_that_is_started_again_has_new_accounts() -> None:
     desk, canvas = recorded(load_scene("slope"))
-    desk.window.source = "slope"
+    desk.window.scenes.source = "slope"
     desk.frames(60)
     desk.key("space")
     frame(desk, canvas)

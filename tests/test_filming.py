@@ -35,7 +35,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
 def middle(desk: Desk, picture: NDArray[np.uint8]) -> float:
     """Return where the ball is in a picture of a film [m]."""
     coloured = picture.max(axis=2).astype(int) - picture.min(axis=2) > 60
-    left, _, width, _ = desk.window.room()
+    left, _, width, _ = desk.window.framing.room()
     pixel = left + np.flatnonzero(coloured.any(axis=0)).mean() * width / picture.shape[1]
     return float((pixel - 640.0) / 100.0)
 
@@ -134,7 +134,7 @@ def test_a_film_of_what_comes_is_kept_where_another_scene_is_opened(desk: Desk, 
     toggle_film(desk.world, desk.window)
     desk.frames(SETTLED)
     click(desk, "Make the film")
-    desk.window.next_world = empty_world()
+    desk.window.scenes.next_world = empty_world()
     desk.frames(3)
     assert not desk.window.filming.running
     assert len(shown_pictures((tmp_path / "scene-1.gif").read_bytes()).pictures) == 1
@@ -151,14 +151,15 @@ def test_what_cannot_be_filmed_is_said_at_the_field(
     for name, words in (
         ("", "A name is needed"),
         ("a.png", "The name of a film ends in .gif or .mp4"),
-        ("taken.gif", "There is a file taken.gif already"),
+        ("taken.gif", "taken.gif is there already"),
         ("none/a.gif", "There is no directory"),
         ("a\0b.gif", ""),
         ("a.mp4", "An MP4 film needs ffmpeg, which is not installed: pip install 'physicslab[video]'"),
     ):
-        desk.window.filming.name = name
+        desk.window.filming.naming.text = name
         begin_film(desk.world, desk.window)
-        assert desk.window.filming.refused.startswith(words) and desk.window.filming.refused
+        refused = desk.window.filming.naming.refused
+        assert refused.startswith(words) and refused
         assert not desk.window.filming.running and desk.window.filming.choosing
     assert sorted(path.name for path in tmp_path.iterdir()) == ["taken.gif"]
     tap(desk, "escape")
@@ -172,7 +173,7 @@ def test_where_nothing_was_run_there_is_nothing_to_film(desk: Desk) -> None:
     toggle_film(fresh.world, fresh.window)
     fresh.frames(SETTLED)
     click(fresh, "Make the film")
-    assert fresh.window.filming.refused.startswith("There are no steps to film")
+    assert fresh.window.filming.naming.refused.startswith("There are no steps to film")
     assert list(Path.cwd().iterdir()) == []
 
 

@@ -81,10 +81,10 @@ def test_few_colours_stay_as_they_are() -> None:
 def test_many_colours_become_those_that_are_near() -> None:
     picture = MovingPicture((640, 360), (-4, -1, 4, 3)).pixels(load_scene("pyramid"))
     pixels = picture.reshape(-1, 4)[:, :3]
-    assert len(np.unique(pixels, axis=0)) > 255
+    assert len(np.unique(pixels, axis=0)) > 3000  # bodies are lit
     palette, chosen = find_palette(pixels, 255)
     error = np.abs(palette[chosen].astype(int) - pixels)
-    assert len(palette) <= 255 and error.max() <= 24 and error.mean() < 0.2
+    assert len(palette) <= 255 and error.max() <= 32 and error.mean() < 0.9
 
 
 def test_a_film_is_shown_as_it_was_made() -> None:

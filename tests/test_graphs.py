@@ -8,6 +8,7 @@ import pytest
 from desk import SETTLED, Desk, click, click_at, empty_world, point, sized, tap
 from plotting import CTRL, SHIFT, ball_of, drawn_lines, graph_of, in_plot, pause
 
+from physicslab import World
 from physicslab.components import Graph, GraphLine, Transform
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.history import SetField
@@ -326,6 +327,6 @@ def test_a_graph_knows_what_was_before_it_and_every_step_of_it() -> None:
 def test_a_line_has_the_colour_of_its_body_and_the_next_of_the_same_a_tint() -> None:
     one, two = (LineShown(20 + n, (body, "speed")) for n, body in enumerate((5, 9)))
     graph = GraphShown(1, 1, None, "right", (two, one, LineShown(23, (9, "x"))))
-    colours = colours_of(DARK, graph)
+    colours = colours_of(World(), DARK, graph)
     assert colours[:2] == [DARK.body(9), DARK.body(5)]
     assert colours[2] not in DARK.bodies and len(set(colours)) == 3

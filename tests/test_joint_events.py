@@ -19,6 +19,7 @@ from physicslab.files.scene import load_scene, save_scene
 from physicslab.kernels.accounts import CONTACT, ENERGY, HAND, JOINTS, MOTORS, PX
 from physicslab.stepping import rigid_motion
 from physicslab.stepping.accounting import balance_of
+from physicslab.stepping.plan import WITHOUT_END
 from physicslab.stepping.rigid import Rigid
 
 G = 9.81
@@ -390,6 +391,7 @@ def test_single_steps_a_run_and_a_saved_scene_give_the_same_bits(tmp_path: Path)
 def test_short_steps_hold_what_events_would() -> None:
     """Where events accumulate, the rest of a step is made by impulses: limits hold, caps are caps."""
     world, bar = bar_on_a_pin(0.0, lower=-0.2, motor_speed=-1.0, max_torque=1.5)
+    world.simulation = replace(world.simulation, contacts="rigid")
     world.synchronise()
     rigid = next(stepper for stepper in world.steppers.usable if isinstance(stepper, Rigid))
     inertia = (1.0 + 0.01) / 12.0 + 0.25
@@ -403,6 +405,21 @@ def test_short_steps_hold_what_events_would() -> None:
         world.run(seconds=0.4)
     assert world.component(bar, Transform).angle == pytest.approx(-0.2, abs=1e-6)
     assert world.component(bar, Velocity).angular == pytest.approx(0.0, abs=1e-6)
+
+
+def test_where_events_accumulate_auto_takes_soft_joints_from_there_on() -> None:
+    ways = []
+    for single in (True, False):
+        world, bar = bar_on_a_pin(0.0, lower=-0.2, motor_speed=-1.0, max_torque=1.5)
+        world.run(steps=2)
+        with patch.object(rigid_motion, "_MAX_EVENTS", 0):
+            for _ in range(30 if single else 1):
+                world.run(steps=1 if single else 30)
+        assert (world.plan.contacts, world.plan.contact_reason) == ("soft", WITHOUT_END)
+        assert world.component(bar, Transform).angle == pytest.approx(-0.2, abs=1e-4)
+        assert world.steps == 32
+        ways.append(world.table(Transform)["angle"].tobytes())
+    assert ways[0] == ways[1]
 
 
 # ---- which worlds ------------------------------------------------------------------------------------------

@@ -163,7 +163,7 @@ def test_a_body_is_made_moved_and_given_a_size_by_keys(desk: Desk) -> None:
     keys(desk, "return")
     (ball,) = desk.world.entities()
     shown = desk.window.camera.to_screen(desk.world.component(ball, Transform).position)
-    assert shown == pytest.approx(desk.window.middle, abs=1), "in the middle of the view"
+    assert shown == pytest.approx(desk.window.framing.middle, abs=1), "in the middle of the view"
     keys(desk, "n", "right", "right")
     moved = desk.window.camera.to_screen(desk.world.component(ball, Transform).position)
     assert moved[0] == pytest.approx(shown[0] + 2, abs=1e-6)

@@ -21,7 +21,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
-from physicslab.view.controls import actions, file_actions
+from physicslab.view.controls import actions, file_actions, saving
 from physicslab.view.picture.bodies import body_rows
 from physicslab.view.picture.extent import _reach
 from physicslab.view.workbench.number_field import shown_vector_part
@@ -162,13 +162,9 @@ def test_undo_redo_and_the_time_line_give_the_bits_of_the_run() -> None:
             assert state_hash(desk.world) == known[step]
     actions.seek(desk.world, desk.window, 60)
     end = state_hash(desk.world)
-    desk.key("z", CTRL)  # the run after the click
-    desk.frames(2)
-    desk.key("z", CTRL)  # what was made
+    desk.key("z", CTRL)  # what was made, and the run after it
     desk.frames(2)
     assert state_hash(desk.world) == known[40]
-    desk.key("y", CTRL)
-    desk.frames(2)
     desk.key("y", CTRL)
     desk.frames(2)
     assert state_hash(desk.world) == end and desk.window.pace.paused
@@ -313,11 +309,11 @@ def test_the_gallery_has_a_card_with_a_picture_for_each_scene_and_opens_it() -> 
         assert len(np.unique(pygame.surfarray.array2d(surface))) > 3, "something is to be seen in it"
     click(desk, f"Scene: {SCENES['drop'].title}")
     desk.frames(3)
-    assert desk.world.name == "drop" and not desk.window.shows_gallery
+    assert desk.world.name == "drop" and not desk.window.scenes.shows_gallery
     desk.key("l")
     desk.key("escape")
     desk.frames(2)
-    assert not desk.window.shows_gallery and not desk.window.closing
+    assert not desk.window.scenes.shows_gallery and not desk.window.closing
 
 
 def test_a_place_that_is_taken_or_beyond_the_walls_is_refused_in_the_inspector() -> None:
@@ -342,7 +338,7 @@ def test_what_was_being_written_of_a_body_goes_with_the_scene_that_is_replaced(d
     paused_on(desk, body)
     click(desk, "Mass.mass")
     write(desk, "7")
-    desk.window.next_world = empty_world(gravity=(0, 0))
+    desk.window.scenes.next_world = empty_world(gravity=(0, 0))
     desk.frames()
     desk.press(2.0, 0.0)
     desk.frames(2)
@@ -404,20 +400,20 @@ def test_a_name_that_no_file_can_have_is_refused(
 ) -> None:
     (tmp_path / "folder").mkdir()
     monkeypatch.chdir(tmp_path)
-    file_actions.begin_save_as(desk.world, desk.window)
-    file_actions.save_under(desk.world, desk.window, name)
-    assert desk.window.naming is not None
-    assert desk.window.naming_refused
+    saving.begin_copy(desk.world, desk.window)
+    saving.save_under(desk.world, desk.window, name)
+    assert desk.window.scenes.naming is not None
+    assert desk.window.scenes.naming.refused
     assert list(tmp_path.iterdir()) == [tmp_path / "folder"]
 
 
 def test_an_untouched_view_follows_the_room_that_text_of_another_size_leaves() -> None:
     desk = Desk(load_scene("sandbox"))
-    desk.window.go_home(desk.world)
+    desk.window.framing.go_home(desk.world)
     desk.frames(2)
     desk.window.text_scale = 2.0
     desk.frames(2)
-    left, _, width, _ = desk.window.room()
+    left, _, width, _ = desk.window.framing.room()
     for x, y in ((-5.8, 0.0), (5.8, 0.0)):
         assert left <= desk.pixel(x, y)[0] <= left + width
 
@@ -429,7 +425,7 @@ def test_numbers_of_vectors_are_short_enough_for_their_fields() -> None:
 
 def test_an_edited_scene_that_another_one_replaced_comes_back_with_its_history() -> None:
     desk = Desk(load_scene("drop"))
-    desk.window.source = "drop"
+    desk.window.scenes.source = "drop"
     desk.key("space")
     desk.frames(2)
     edited = desk.world
@@ -441,7 +437,7 @@ def test_an_edited_scene_that_another_one_replaced_comes_back_with_its_history()
     tap(desk, "z", CTRL)
     assert desk.world is edited and bits(edited) == before
     assert len(desk.sandbox.history.entries) == entries
-    assert desk.window.has_unsaved(edited)
+    assert desk.window.has_unsaved
     tap(desk, "z", CTRL)
     assert "Undone: made" in desk.window.notice
 
@@ -451,4 +447,4 @@ def test_a_scene_that_was_left_alone_is_not_kept() -> None:
     desk.frames(5)
     file_actions.open_scene(desk.window, "pendulum")
     desk.frames(5)
-    assert desk.window.left is None and "Ctrl+Z" not in desk.window.notice
+    assert desk.window.scenes.left is None and "Ctrl+Z" not in desk.window.notice

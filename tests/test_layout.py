@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 import pygame
@@ -47,15 +48,21 @@ def test_the_legend_lies_in_the_world_beside_the_panels(size: tuple[int, int], s
         assert legend.w * legend.h <= 0.5 * visible.w * visible.h, "most of the world is seen"
 
 
-@pytest.mark.parametrize("scale", [1.0, 1.75])
-@pytest.mark.parametrize("size", SIZES)
-def test_the_history_opens_over_the_world_and_over_no_panel(size: tuple[int, int], scale: float) -> None:
-    desk = sized(size, None, scale)
-    before = {tuple(rect) for rect in desk.sandbox.interface.covered}
-    tap(desk, "u")
-    desk.frames(SETTLED)
-    (opened,) = (rect for rect in desk.sandbox.interface.covered if tuple(rect) not in before)
-    assert pygame.Rect(desk.sandbox.interface.visible).contains(pygame.Rect(opened))
+@pytest.mark.parametrize(("size", "scale"), [((800, 600), 1.0), ((800, 600), 1.5), ((1280, 720), 1.5)])
+@pytest.mark.parametrize("name", ["pulleys", "carts"])
+def test_words_meters_and_legend_over_the_world_overlap_nowhere(
+    name: str, size: tuple[int, int], scale: float
+) -> None:
+    desk = sized(size, load_scene(name), scale)
+    tap(desk, "space")
+    desk.window.notify("Undone: made a circle", 60.0)
+    for keys in ("[", "v"):
+        tap(desk, keys)
+        desk.frames(3)
+        over = [pygame.Rect(rect) for rect in desk.window.overlays.covered if rect[2] and rect[3]]
+        assert len(over) > 7, "panels, meters, scale bar, and words"
+        for one, two in itertools.combinations(over, 2):
+            assert not one.colliderect(two), f"{one} lies over {two}"
 
 
 def test_a_size_of_zero_is_written_as_what_it_means() -> None:

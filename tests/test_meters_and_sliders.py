@@ -10,6 +10,7 @@ from plotting import CTRL, SHIFT, ball_of, pause
 from physicslab.components import Mass, Meter, Slider, Spring, Transform
 from physicslab.history import AddComponent, History
 from physicslab.view.controls import dashboard_actions
+from physicslab.view.workbench.panel_places import Small, places
 
 
 @pytest.fixture
@@ -80,6 +81,10 @@ def test_a_slider_for_gravity_works_while_time_runs_and_the_run_is_the_same_agai
     slide(desk, "Slider 1", 0.9)
     assert 15.0 < -desk.world.physics.gravity.y <= 20.0
     desk.frames(20)
+    tap(desk, "z", CTRL)
+    assert -desk.world.physics.gravity.y == 0.0, "one press takes the drag back"
+    tap(desk, "y", CTRL)
+    assert 15.0 < -desk.world.physics.gravity.y <= 20.0
     pause(desk)
     history, last = desk.window.edits.history, desk.window.edits.history.step_count
     place = desk.world.component(desk.world.entity("ball"), Transform).position
@@ -110,3 +115,14 @@ def test_the_slider_of_a_spring_is_for_its_stiffness_and_can_be_given_other_ends
     desk.window.selection.take(ball)
     tap(desk, "delete")
     assert "The body is gone" in desk.ui.words
+
+
+def test_small_panels_from_two_corners_do_not_cover_each_other_where_others_leave_room() -> None:
+    small = [Small(n, "top right" if n == 3 else "top left", (150, 60)) for n in (1, 2, 3)]
+    for width in (1000, 460):
+        first, second, third = (
+            pygame.Rect(place) for place in places((0, 0, width, 400), 16.0, small).values()
+        )
+        assert not any(
+            one.colliderect(other) for one, other in ((first, second), (first, third), (second, third))
+        )

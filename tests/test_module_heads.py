@@ -10,7 +10,8 @@ import pytest
 PACKAGE = Path(__file__).parent.parent / "physicslab"
 FOLDERS = (
     "commands", "components", "contacts", "desktop", "diagnostics", "ecs", "export", "files", "history",
-    "integrators", "lab", "ode", "prefabs", "scenes", "state", "stepping", "systems", "view",
+    "integrators", "lab", "languages", "lessons", "ode", "prefabs", "scenes", "state", "stepping",
+    "systems", "view",
     "kernels/constraint", "kernels/forces", "kernels/joints", "kernels/ode", "kernels/sleep", "kernels/wide",
 )  # fmt: skip
 """The folders that hold to it; the others follow."""

@@ -12,6 +12,7 @@ from desk import Desk, bits, click, empty_world, tap
 
 from physicslab.files.replace import create_file
 from physicslab.files.scene import file_stem, load_scene, save_last_good, save_scene
+from physicslab.view.controls import saving
 
 AT_ONCE = """
 import sys, time
@@ -19,7 +20,7 @@ from pathlib import Path
 from physicslab.files.scene import save_last_good
 from physicslab.files.scene import save_new_scene
 from physicslab.files.scene import load_scene
-from physicslab.view.controls.file_actions import new_scene_paths
+from physicslab.view.controls.saving import new_scene_paths
 folder, start = Path(sys.argv[1]), float(sys.argv[2])
 world = load_scene("drop")
 time.sleep(max(0.0, start - time.time()))
@@ -67,8 +68,9 @@ def test_saving_follows_no_link(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "scene-1.json").symlink_to(tmp_path / "elsewhere.json")
     desk = Desk(empty_world())
-    desk.key("s", pygame.KMOD_LCTRL)
-    desk.frames()
+    for name in ("scene-1", "scene-2"):
+        saving.begin_copy(desk.world, desk.window)
+        saving.save_under(desk.world, desk.window, name)
     assert sorted(os.listdir(tmp_path)) == ["scene-1.json", "scene-2.json"]
     assert not (tmp_path / "elsewhere.json").exists()
 
@@ -99,4 +101,5 @@ def test_a_file_name_that_is_not_utf_8_is_listed_opened_and_told(
     tap(desk, "escape")
     desk.key("o", pygame.KMOD_LCTRL)
     desk.frames(3)
+    click(desk, "caf\\udce9.json")
     assert desk.world.name == "two_planets" and desk.window.notice.endswith("caf\\udce9.json")

@@ -19,10 +19,11 @@ from physicslab.components import Mass, Name, Slider, Spring, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle
 from physicslab.view.controls import file_actions
+from physicslab.view.controls.tools import TOOLS
 from physicslab.view.toolkit.windows import widget_label
+from physicslab.view.window.context import Picking
 from physicslab.view.window.impacts import COLUMNS, ImpactList
 from physicslab.view.window.lab_process import LabProcess
-from physicslab.view.window.window import Picking
 
 LEFT, SIDE = 1, 6
 
@@ -42,7 +43,7 @@ def desk(shared: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Desk:
 
 
 def show(desk: Desk, world: World) -> World:
-    desk.window.next_world = world
+    desk.window.scenes.next_world = world
     desk.frames(4)
     desk.window.pace.halt()
     return world
@@ -72,6 +73,7 @@ def test_random_events_end_nothing(
     hands = Hands(sized((960, 600), with_hostile_words(load_scene("spring_chain"))), files, seed)
     for _ in range(count):
         hands.act()
+    assert not list(tmp_path.rglob("*.physicslab-tmp")), "what was written is there whole"
 
 
 # ---- what a widget is called is not its identity -----------------------------------------------------------
@@ -90,15 +92,15 @@ def test_labels_are_told_apart_whatever_they_hold() -> None:
 def test_the_gallery_the_menu_and_the_list_show_files_of_any_name(desk: Desk, tmp_path: Path) -> None:
     for path in hostile_folder(tmp_path):
         if path.is_file():
-            desk.window.recent.note(path)
+            desk.window.scenes.recent.note(path)
     tap(desk, "l")
-    desk.frames(len(HOSTILE_NAMES))
+    desk.frames(len(HOSTILE_NAMES) + 4)
     assert any("caf" in words for words in desk.ui.words)
-    tap(desk, "l")
-    tap(desk, "o", pygame.KMOD_CTRL | pygame.KMOD_SHIFT)
-    desk.frames(2)
-    assert sum("caf" in words for words in desk.ui.words) == 1
-    desk.window.opening = None
+    tap(desk, "escape")
+    tap(desk, "o", pygame.KMOD_CTRL)
+    desk.frames(len(HOSTILE_NAMES))
+    assert sum("caf" in words for words in desk.ui.words) == 2, "among the last few, and in its folder"
+    desk.window.scenes.opening = None
 
 
 def test_the_end_of_a_spring_is_chosen_by_what_it_is_and_not_by_what_it_is_called(desk: Desk) -> None:
@@ -258,8 +260,9 @@ def test_tab_after_a_press_in_the_world_ended_the_writing(desk: Desk) -> None:
     desk.frames()
 
 
-def test_points_snap_too(desk: Desk) -> None:
-    desk.window.tool, desk.window.snapping.on = "binary", True
+@pytest.mark.parametrize("tool", TOOLS)
+def test_points_snap_too(tool: str, desk: Desk) -> None:
+    desk.window.tool, desk.window.snapping.on = tool, True
     post(pygame.MOUSEMOTION, pos=(500, 300), rel=(0, 0), buttons=(0, 0, 0), touch=False)
     desk.frames(2)
     desk.window.snapping.on = False
@@ -272,12 +275,12 @@ def test_no_key_ends_the_window_in_a_folder_that_was_removed(
     gone.mkdir()
     monkeypatch.chdir(gone)
     gone.rmdir()
-    for name in ("s", "shift+s", "o", "shift+o", "l"):
+    for name in ("n", "o", "l", "s", "shift+s"):
         *held, key = name.split("+")
         tap(desk, key, pygame.KMOD_CTRL | (pygame.KMOD_SHIFT if held else 0))
     assert not desk.window.closing and desk.window.notice_failed
-    desk.window.naming = desk.window.opening = None
-    desk.window.shows_gallery = False
+    desk.window.scenes.naming = desk.window.scenes.opening = None
+    desk.window.scenes.shows_gallery = False
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes with names")
@@ -288,8 +291,12 @@ def test_what_never_ends_or_never_begins_is_refused_at_once(desk: Desk, tmp_path
         with deadline(path.name, seconds=10):
             post(pygame.DROPFILE, file=str(path), window=None)
             desk.frames(4)
+            file_actions.begin_open(desk.world, desk.window)
+            opening = desk.window.scenes.opening
+            assert opening is not None
             file_actions.open_named(desk.world, desk.window, str(path))
-            assert "must be a plain file" in desk.window.notice and "must be" in desk.window.opening_refused
+            assert "must be a plain file" in desk.window.notice and "must be" in opening.refused
+            desk.frames(3)
+            desk.window.scenes.opening = None
             tap(desk, "l")
             tap(desk, "l")
-    desk.window.opening_refused = ""

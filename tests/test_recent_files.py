@@ -12,10 +12,10 @@ from recording import RecordingCanvas
 
 from physicslab.desktop.preferences import load_preferences, save_preferences
 from physicslab.files.scene import load_scene, save_scene
-from physicslab.view.controls import file_actions
+from physicslab.view.controls import file_actions, saving
 from physicslab.view.window.window import Window
 
-OPEN = pygame.KMOD_CTRL | pygame.KMOD_SHIFT
+OPEN = pygame.KMOD_CTRL
 
 
 @pytest.fixture
@@ -36,8 +36,10 @@ def drop(desk: Desk, path: Path) -> None:
 def test_what_was_opened_and_saved_is_in_the_menu_the_last_first(desk: Desk, tmp_path: Path) -> None:
     drop(desk, tmp_path / "drop.json")
     drop(desk, tmp_path / "stack.json")
-    tap(desk, "s", pygame.KMOD_CTRL)
-    assert [path.name for path in desk.window.recent.there] == ["stack-1.json", "stack.json", "drop.json"]
+    saving.begin_copy(desk.world, desk.window)
+    saving.save_under(desk.world, desk.window, "stack-1")
+    names = [path.name for path in desk.window.scenes.recent.there]
+    assert names == ["stack-1.json", "stack.json", "drop.json"]
     drop(desk, tmp_path / "stack.json")
     (tmp_path / "stack-1.json").unlink()
     click(desk, "File")
@@ -59,15 +61,15 @@ def test_a_file_is_opened_by_keyboard_alone(desk: Desk, tmp_path: Path) -> None:
         write(desk, text)
         tap(desk, "return")
         desk.frames(SETTLED)
-        assert desk.world.name == name and desk.window.opening is None
+        assert desk.world.name == name and desk.window.scenes.opening is None
         assert "File to open" not in desk.ui.places
     tap(desk, "o", OPEN)
     tap(desk, "escape")
     tap(desk, "escape")
-    assert desk.window.opening is None and not desk.window.closing and desk.world.name == "drop"
+    assert desk.window.scenes.opening is None and not desk.window.closing and desk.world.name == "drop"
 
 
-@pytest.mark.parametrize("text", ["", "none.json", "7", "a\0b", "~nobody-at-all/x", "."])
+@pytest.mark.parametrize("text", ["", "none.json", "7", "a\0b", "~nobody-at-all/x"])
 def test_what_cannot_be_opened_is_said_at_the_field(text: str, desk: Desk) -> None:
     before = bits(desk.world)
     tap(desk, "o", OPEN)
@@ -77,10 +79,11 @@ def test_what_cannot_be_opened_is_said_at_the_field(text: str, desk: Desk) -> No
     else:
         file_actions.open_named(desk.world, desk.window, text)
     desk.frames(SETTLED)
-    refused = desk.window.opening_refused
-    assert refused and "\n" not in refused and desk.window.opening is not None
+    assert desk.window.scenes.opening is not None
+    refused = desk.window.scenes.opening.refused
+    assert refused and "\n" not in refused
     assert any(refused[:20] in words for words in desk.ui.words)
-    assert bits(desk.world) == before and desk.window.recent.paths == []
+    assert bits(desk.world) == before and desk.window.scenes.recent.paths == []
 
 
 @pytest.mark.parametrize(
@@ -106,7 +109,7 @@ def test_a_file_that_is_no_scene_dropped_on_the_window_changes_nothing(
     before = bits(desk.world)
     drop(desk, path)
     assert desk.window.notice.startswith("Not opened: ") and "\n" not in desk.window.notice
-    assert desk.window.notice_failed and bits(desk.world) == before and desk.window.recent.paths == []
+    assert desk.window.notice_failed and bits(desk.world) == before and desk.window.scenes.recent.paths == []
 
 
 def test_ten_files_are_kept_from_one_start_to_the_next(tmp_path: Path) -> None:
@@ -117,12 +120,13 @@ def test_ten_files_are_kept_from_one_start_to_the_next(tmp_path: Path) -> None:
     )
     for number in range(12):
         (tmp_path / f"{number}.json").write_text("{}")
-        chosen.recent.note(tmp_path / f"{number}.json")
+        chosen.scenes.recent.note(tmp_path / f"{number}.json")
     save_preferences(path, chosen)
     load_preferences(path, next_one)
     (tmp_path / "5.json").unlink()
-    assert [found.stem for found in next_one.recent.there] == ["11", "10", "9", "8", "7", "6", "4", "3", "2"]
+    stems = [found.stem for found in next_one.scenes.recent.there]
+    assert stems == ["11", "10", "9", "8", "7", "6", "4", "3", "2"]
     for broken in ('{"recent": 7}', '{"recent": [1, null, "", "x\\u0000y"]}'):
         path.write_text(broken)
         load_preferences(path, next_one)
-        assert next_one.recent.there == [] or broken == '{"recent": 7}'
+        assert next_one.scenes.recent.there == [] or broken == '{"recent": 7}'

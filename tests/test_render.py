@@ -10,15 +10,21 @@ from desk import FRAME, Desk, bits, empty_world
 from recording import RecordingCanvas
 
 from physicslab.components import Held, Mass, Transform, Velocity
+from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
 from physicslab.systems.frame.render import RenderSystem
+from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.canvas import Finish
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK
 from physicslab.view.picture.backdrop import grid_spacing
+from physicslab.view.picture.bodies import body_rows, point_radii
 from physicslab.view.picture.extent import extent_of
+from physicslab.view.picture.picture import draw_world
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.world_view import WorldView
 from physicslab.world import World
@@ -39,9 +45,26 @@ def only(canvas: RecordingCanvas, name: str) -> dict[str, Any]:
     return call
 
 
-def test_the_picture_begins_with_the_background() -> None:
+def test_the_picture_begins_with_the_sky() -> None:
     canvas = drawn(empty_world())
-    assert canvas.calls[0] == ("clear", {"colour": DARK.background})
+    sky = {"top": DARK.sky_top, "bottom": DARK.sky_bottom, "grain": DARK.grain}
+    assert canvas.calls[0] == ("clear", sky)
+
+
+def test_in_space_there_are_stars_and_no_grid_and_a_heavy_star_shines() -> None:
+    world = World(*standard_systems(), physics=PhysicsConfig(gravity_mode="planet"))
+    for x, mass in ((0.0, 8.0), (1.0, 1e-3), (2.0, 8e-3)):
+        world.spawn(Transform((x, 0)), Velocity(), Mass(mass))
+    canvas = RecordingCanvas((1280, 720))
+    draw_world(world, Camera(canvas.size), DARK, canvas)
+    assert {call["colour"] for call in canvas.called("lines")} == {DARK.text}  # the stars
+    discs = only(canvas, "discs")
+    assert discs["radius"].tolist() == [14.0, 3.5, 3.5] and len(canvas.called("glows")) == 2
+    assert discs["look"].finish.tolist() == [Finish.FLAT, Finish.POINT, Finish.POINT]
+    radii = point_radii(world, world.entity_index.rows_of(np.array(world.entities())))
+    assert radii.tolist() == [14.0, 3.5, 3.5]
+    world.component(world.entities()[1], Mass).mass = 1.0
+    assert point_radii(world, body_rows(world).points)[1] == pytest.approx(7.0)  # an eighth of the mass
 
 
 def test_bodies_are_drawn_where_and_as_large_as_they_are() -> None:
@@ -65,7 +88,7 @@ def test_what_cannot_move_is_hatched_and_has_its_own_colour() -> None:
     held = box(world, (3, 0))
     world.add(held, Held())
     look = only(drawn(world), "boxes")["look"]
-    assert look.hatched.tolist() == [True, False, False, False]
+    assert look.finish.tolist() == [Finish.GROUND, Finish.LIT, Finish.LIT, Finish.LIT]
     rims = [tuple(rim) for rim in look.rim.tolist()]
     assert rims[0] == DARK.static and rims[1] in DARK.bodies
     assert rims[2] == DARK.kinematic and rims[3] == DARK.held
@@ -98,7 +121,7 @@ def test_points_without_shape_have_a_size_of_their_own(scale: float) -> None:
     points = only(drawn(world, scale), "discs")
     assert points["radius"].tolist() == [5.0, 5.0]
     assert all(tuple(rim) in DARK.bodies for rim in points["look"].rim.tolist())
-    assert not points["look"].hatched.any()
+    assert not points["look"].finish.any()
 
 
 @pytest.mark.filterwarnings("error")
@@ -118,10 +141,16 @@ def test_lost_bodies_are_left_out() -> None:
     assert len(only(canvas, "discs")["centre"]) == 2
 
 
-def test_walls_of_the_world_are_drawn() -> None:
-    canvas = drawn(empty_world(bounds=(-1, -2, 3, 2)))
-    (walls,) = [call for call in canvas.called("lines") if call["colour"] == DARK.bounds]
-    assert walls["start"].tolist() == [[540, 560], [940, 560], [940, 160], [540, 160]]
+@pytest.mark.parametrize(("gravity", "floor"), [((0, -9.81), 40.0), ((0, 9.81), 7.0)])
+def test_the_world_ends_in_ground_and_thin_walls(gravity: tuple[float, float], floor: float) -> None:
+    canvas = drawn(empty_world(bounds=(-1, -2, 3, 2), gravity=gravity))
+    (edge,) = [call for call in canvas.called("lines") if call["colour"] == DARK.static]
+    assert edge["start"].tolist() == [[540, 160], [940, 160], [940, 560], [540, 560]]
+    walls = only(canvas, "boxes")
+    low, high = walls["centre"] - 0.5 * walls["extent"], walls["centre"] + 0.5 * walls["extent"]
+    assert low.tolist() == [[533, 160], [940, 160], [533, 153], [533, 560]]
+    assert high.tolist() == [[540, 560], [947, 560], [947, 160], [947, 560 + floor]]
+    assert set(walls["look"].finish.tolist()) == {Finish.GROUND}
 
 
 @pytest.mark.parametrize("scale", [1e-12, 1e-3, 0.7, 100.0, 12345.0])
@@ -174,7 +203,7 @@ def test_every_built_in_scene_can_be_drawn(name: str) -> None:
     canvas = PygameCanvas(pygame.Surface((640, 360), 0, 32))
     window = Window(canvas)
     world.install(RenderSystem(WorldView(window).draw))
-    window.fit(world)
+    window.framing.fit(world)
     world.frame(Stage.RENDER, FRAME)
     picture = pygame.surfarray.array2d(canvas.surface)
     assert len(np.unique(picture)) > 20

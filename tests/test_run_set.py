@@ -194,7 +194,8 @@ REFUSED = [
     ("ball.Velocity.linear=[1, 2, 3]", "is no pair; must be two finite numbers [x, y] m/s"),
     ("ball.Velocity.linear=[1, 2 kg]", "'2 kg' is in kg; this is in m/s; must be two finite numbers"),
     ("ball.Shape.kind=bx", f': {BALL}Shape.kind = "bx": must be one of "circle", "box"'),
-    ("ball.Shape.kind=box", f": {BALL}Shape.radius = 0.25: must be left out: a box has no radius"),
+    ("ball.Shape.kind=box", f': {BALL}Shape.kind = "box": with it radius = 0.25 must be left out: a box has'
+    ),
     ("ball.Name.id=egg", "unknown component Name"),
     ("ball.Mass=3", ' "ball.Mass=3": must be ID.Component.field=VALUE'),
     ("3", ' "3": must be ID.Component.field=VALUE'),

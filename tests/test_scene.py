@@ -80,7 +80,7 @@ def test_a_contributors_component_is_read_and_checked_like_any_other() -> None:
         partner: int | None = field(default=None)
 
     values = {"charge": 0.5, "dipole": [1, 2], "partner": "ball"}
-    world = read_scene(scene({"id": "x", "Charge": values}, {"id": "ball"}))
+    world = read_scene(scene({"id": "x", "Transform": {}, "Charge": values}, {"id": "ball"}))
     charge = world.component(1, Charge)
     assert (charge.charge, charge.dipole, charge.partner) == (0.5, Vector2(1.0, 2.0), 2)
     wrong: list[tuple[dict[str, object], str]] = [

@@ -96,6 +96,14 @@ ENTITIES = [
     ([{"Shape": {"kind": "circle", "radius": 1}}], "entity 1: Shape = {"),
     ([{"Material": {}}], "entity 1: Material = {}: must have a Transform beside it"),
     ([{"Trail": {}}], "entity 1: Trail = {}: must have a Transform beside it"),
+    ([{"Thrust": {}}], "entity 1: Thrust = {}: must have a Transform beside it"),
+    ([{"Charge": {}}], "entity 1: Charge = {}: must have a Transform beside it"),
+    ([{"Molecule": {}}], "entity 1: Molecule = {}: must have a Transform beside it"),
+    ([BALL | {"Pin": {"upper": 1e10}}], 'entity "ball": Pin.upper = 10000000000.0: must be a finite number'),
+    (
+        [{"Transform": {}, "Shape": {"kind": "chain", "vertices": [[0, 0], [1e-200, 0]]}}],
+        "entity 1: Shape.vertices = [[0.0, 0.0], [1e-200, 0.0]]: must be vertices of which one is at least",
+    ),
     (
         [{"id": "s", "Spring": {}}],
         'entity "s": Spring.a = null: must be the id of an entity with a Transform',
@@ -125,6 +133,7 @@ SECTIONS = [
     ({"name": 3}, "name = 3: must be a text"),
     ({"title": "a\nb"}, 'title = "a\\nb": must be a text on one line'),
     ({"time": -1}, "time = -1: must be a finite number >= 0 s"),
+    ({"time": 1e13}, "time = 10000000000000.0: must be at most 4.69125e+12 s: a clock counts"),
     ({"time": "now"}, 'time = "now": must be a finite number >= 0 s'),
     ({"physics": []}, "physics = []: must be an object of settings"),
     ({"physics": {"gravty": 1}}, "physics.gravty = 1: unknown setting; must be one of gravity_mode, gravity"),

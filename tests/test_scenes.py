@@ -14,9 +14,17 @@ from physicslab.ecs.vector import Vector2
 from physicslab.scenes import SCENES
 
 
+def place(world: World, name: str) -> Vector2:
+    return world.component(world.entity(name), Transform).position
+
+
+def velocity(world: World, name: str) -> Vector2:
+    return world.component(world.entity(name), Velocity).linear
+
+
 def x(world: World, name: str) -> float:
     """Return an entity's horizontal place."""
-    return world.component(world.entity(name), Transform).position.x
+    return place(world, name).x
 
 
 def speeds(world: World) -> list[float]:
@@ -31,6 +39,7 @@ def test_every_scene_is_there_with_its_texts(name: str) -> None:
     world = load_scene(name)
     assert (world.name, name.isidentifier()) == (name, True)
     assert world.title and len(world.description) > 30
+    assert SCENES[name].teaches
     assert printable(world.title + world.description) == world.title + world.description
     assert world.entities()
 
@@ -213,3 +222,73 @@ def test_weights_on_pulleys_fall_as_slowly_as_their_scene_says() -> None:
     for name, start, acceleration in (("right 1", 1.4, 0.2 / 2.2), ("right 2", 0.8, 0.4 / 6.4)):
         fallen = start - world.component(world.entity(name), Transform).position.y
         assert fallen == pytest.approx(0.5 * acceleration * 9.81, abs=1e-11)
+
+
+def test_carts_keep_their_momentum_and_part_by_their_restitution() -> None:
+    world = load_scene("carts")
+    world.run(seconds=2.0)
+    first, second = (velocity(world, f"cart {n}").x for n in (1, 2))
+    assert 1.0 * first + 2.0 * second == pytest.approx(2.0, abs=1e-12)
+    assert second - first == pytest.approx(0.8 * 2.0, abs=1e-12)
+
+
+def test_only_the_seesaw_that_the_law_of_the_lever_says_is_in_balance() -> None:
+    world = load_scene("seesaw")
+    world.run(seconds=1.0)
+    tilts = {
+        name: world.component(world.entity(f"plank {name}"), Transform).angle
+        for name in ("too near", "in balance", "too far")
+    }
+    assert tilts["too near"] < -0.2 and tilts["too far"] > 0.2 and abs(tilts["in balance"]) < 1e-4
+
+
+def test_the_pen_of_the_linkage_draws_a_line_for_half_of_each_turn() -> None:
+    world = load_scene("four_bar")
+    pen = world.component(world.entity("pen"), Transform)
+    line = []
+    for _ in world.stepping(seconds=4.0):
+        line += [pen.position.x] if abs(pen.position.y - 1.602) < 0.002 else []
+    assert len(line) >= 120 and max(line) - min(line) > 1.7
+
+
+def test_trains_of_gears_with_the_same_ends_turn_alike() -> None:
+    world = load_scene("gear_train")
+    world.run(seconds=1.0)
+    spins = world.table(Velocity)["angular"][world.batch(Velocity).rows]
+    assert spins == pytest.approx([1.0, -4.0, 3.0, 1.0, -2.4, 1.5, -3.0], abs=1e-11)
+
+
+def test_the_crane_stops_its_trolley_and_not_its_ball() -> None:
+    world = load_scene("crane")
+    world.run(seconds=2.3)
+    assert abs(velocity(world, "trolley").x) < 1e-3
+    ball, swung = velocity(world, "ball"), place(world, "ball").y - 1.4
+    assert 0.5 * ball.magnitude**2 + 9.81 * swung == pytest.approx(0.5 * 1.6**2, rel=0.01)
+
+
+def test_the_car_climbs_as_far_as_its_motors_carry_it_and_does_not_tip() -> None:
+    world, steepest, farthest = load_scene("car"), 0.0, 0.0
+    car = world.component(world.entity("car"), Transform)
+    for _ in world.stepping(seconds=20.0):
+        steepest, farthest = max(steepest, abs(car.angle)), max(farthest, car.position.x)
+    assert steepest < 1.0 and 7.0 < farthest < 11.0
+    assert car.position.x > 5.0, "it stays on the last hill"
+
+
+def test_the_catapult_throws_its_stone_at_three_times_the_speed_of_its_weight() -> None:
+    world = load_scene("catapult")
+    arm = world.component(world.entity("arm"), Velocity)
+    world.run(seconds=0.7)
+    assert velocity(world, "stone").magnitude == pytest.approx(3.0 * 0.7 * abs(arm.angular), rel=0.05)
+    world.run(seconds=1.1)
+    assert x(world, "stone") > 2.0
+
+
+def test_the_ragdoll_falls_down_the_stairs_in_one_piece_and_comes_to_rest() -> None:
+    world = load_scene("ragdoll")
+    world.run(seconds=6.0)
+    rows = world.batch(Velocity).rows
+    assert np.hypot(*world.table(Velocity)["linear"][rows].T).max() < 0.02
+    assert (world.table(Transform)["position"][rows, 0] > 2.0).all(), "at the foot of the stairs"
+    world.synchronise()
+    assert max(joint.stretch for joint in joint_states(world)) < 0.005

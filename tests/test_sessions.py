@@ -11,7 +11,7 @@ from types import SimpleNamespace
 
 import pygame
 import pytest
-from desk import bits
+from desk import Desk, bits
 
 from physicslab.desktop import session_window
 from physicslab.desktop.app import open_window
@@ -244,5 +244,6 @@ def test_a_screenshot_is_whole_or_reported_as_failed(
 def test_a_title_of_any_length_fits_over_the_window() -> None:
     world = load_scene("drop")
     world.title = "x\n" * 5_000
-    title = session_window._title(world)
+    desk = Desk(world)
+    title = session_window._title(world, desk.window)
     assert len(title) < 250 and title.isprintable() and title.endswith("... - PhysicsLab")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from physicslab import World
-from physicslab.components import Transform, Velocity
+from physicslab.components import Transform, Velocity, Weld
 from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
@@ -125,3 +125,18 @@ def test_all_that_an_impact_takes_is_booked_as_impacts(way: dict[str, str]) -> N
     found = measure_account(world).energy
     assert world.collisions == 1 and found["friction"] == 0.0
     assert found["impacts"] == pytest.approx(-2 / 3, rel=1e-12)
+
+
+@pytest.mark.parametrize("welded", [False, True])
+def test_what_is_welded_together_is_one_body(*, welded: bool) -> None:
+    world = empty(gravity=False, contacts="rigid")
+    plank = box(world, (0, 0), width=4, height=0.5, mass=2, restitution=0.5, friction=0.3)
+    feet = [
+        box(world, (x, 1), width=0.5, height=0.5, velocity=(0, -1), restitution=0.5, friction=0.3)
+        for x in (-1, 1)
+    ]
+    if welded:
+        world.spawn(Weld(feet[0], feet[1], (1, 0), (-1, 0)))
+    world.run(seconds=1.0)
+    assert world.component(plank, Velocity).linear.y < -0.1 and world.contacts.logged >= 2
+    assert bool(told(world)) is not welded

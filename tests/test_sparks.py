@@ -10,16 +10,17 @@ from recording import RecordingCanvas
 from physicslab.components import Velocity
 from physicslab.contacts.report import ImpactReader
 from physicslab.prefabs import box, circle, stack
-from physicslab.view.canvas.theme import DARK
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.theme import DARK, PROJECTOR
 from physicslab.view.picture.sparks import Sparks
 from physicslab.world import World
 
 
-def meeting(speed: float, mass: float = 1.0) -> World:
+def meeting(speed: float, mass: float = 1.0, restitution: float = 0.5) -> World:
     """Return a world where two balls meet head-on at the origin, a few frames from now."""
     world = empty_world(gravity=(0, 0))
     for side in (-1, 1):
-        ball = circle(world, (0.3 * side, 0), radius=0.25, mass=mass, restitution=1.0)
+        ball = circle(world, (0.3 * side, 0), radius=0.25, mass=mass, restitution=restitution)
         world.component(ball, Velocity).linear = (-0.5 * side * speed, 0)
     return world
 
@@ -51,7 +52,7 @@ def first_sparks(world: World, frames: int = 60) -> Sparks:
 
 def test_an_impact_makes_sparks_where_it_was() -> None:
     sparks = first_sparks(meeting(4.0))
-    assert 3 <= len(sparks) <= 18
+    assert 3 <= len(sparks) <= 22
     assert np.allclose(sparks.place, (0, 0), atol=0.05)
 
 
@@ -59,6 +60,38 @@ def test_a_harder_impact_makes_more_and_faster_sparks() -> None:
     soft, hard = first_sparks(meeting(2.0, mass=0.2)), first_sparks(meeting(8.0, mass=3.0))
     assert len(hard) > 2 * len(soft) > 0
     assert np.hypot(*hard.velocity.T).max() > np.hypot(*soft.velocity.T).max()
+
+
+def test_an_impact_that_takes_no_energy_has_a_ring_and_no_sparks() -> None:
+    watched = Watched(meeting(6.0, restitution=1.0))
+    while not len(watched.sparks.rings):
+        watched.frames()
+        assert watched.world.steps < 60
+    assert not len(watched.sparks) and np.allclose(watched.sparks.rings[0, :2], (0, 0), atol=0.05)
+    canvas = RecordingCanvas((400, 300))
+    watched.sparks.draw(Camera(canvas.size), DARK, canvas)
+    (ring,) = canvas.called("lines")
+    assert ring["colour"] == DARK.spark and 3.0 <= np.hypot(*(ring["start"] - (200, 150)).T).max() <= 16.0
+    watched.frames(12)
+    assert not len(watched.sparks.rings)
+
+
+def test_no_spark_flies_into_a_floor() -> None:
+    world = empty_world()
+    box(world, (0, -0.5), width=20, height=1, static=True, restitution=0.5)
+    for x in range(-3, 4):
+        ball = circle(world, (x, 1), radius=0.2, mass=3.0, restitution=0.2)
+        world.component(ball, Velocity).linear = (1.0, -5.0)
+    sparks = first_sparks(world)
+    assert len(sparks) > 20 and (sparks.place[:, 1] >= -1e-6).all() and (sparks.velocity[:, 1] >= -1e-9).all()
+
+
+def test_sparks_are_light_on_dark_and_ink_on_paper() -> None:
+    sparks = first_sparks(meeting(6.0, mass=3.0))
+    for theme, lights in ((DARK, 1), (PROJECTOR, 0)):
+        canvas = RecordingCanvas((400, 300))
+        sparks.draw(Camera(canvas.size), theme, canvas)
+        assert len(canvas.called("glows")) == lights and canvas.called("lines")
 
 
 def test_contacts_at_rest_and_faint_ones_make_none() -> None:
@@ -107,7 +140,7 @@ def test_there_are_never_too_many() -> None:
     world = empty_world(gravity=(0, 0))
     for n in range(150):
         for side in (-1, 1):
-            ball = circle(world, (0.28 * side, 0.6 * n), radius=0.25, mass=5.0, restitution=1.0)
+            ball = circle(world, (0.28 * side, 0.6 * n), radius=0.25, mass=5.0, restitution=0.3)
             world.component(ball, Velocity).linear = (-4 * side, 0)
     assert len(first_sparks(world)) == 400
 
@@ -126,6 +159,18 @@ def test_they_stand_still_with_the_world_and_r_puts_them_out() -> None:
     desk.key("r")
     desk.frames()
     assert not len(desk.window.sparks)
+
+
+def test_they_go_out_where_time_is_set_back() -> None:
+    watched = Watched(meeting(6.0))
+    while not len(watched.sparks):
+        watched.frames()
+        assert watched.world.steps < 60
+    none = watched.world.contacts.impacts[:0]
+    watched.sparks.advance(none, watched.world.time, 100.0)
+    assert len(watched.sparks)
+    watched.sparks.advance(none, 0.0, 100.0)
+    assert not len(watched.sparks) and not len(watched.sparks.rings)
 
 
 @pytest.mark.parametrize("zoom", [0.1, 1.0, 30.0])

@@ -24,14 +24,8 @@ SLOW = {
 }  # fmt: skip
 """Cases that take more than a second of processor time each."""
 SHORT = {
-    "rods_10_soft": "they sink by what cubes of 1 m do, which is half their thickness",
-    "gravity_10000_soft": "the sink grows with the weight",
     "piston_0.2_speed_rigid": "where discs overlap by nine tenths, soft contacts go on: one slips out",
-    "hexagons_1000_soft": "soft contacts make energy where 1 kg is between 1,000 kg, and the stack falls",
-    "boxes_1000_soft": "the same: the stack jumps",
     "wedges_100_depth_soft": "they come 0.4 m in a substep",
-    "loop_400": "at each corner of the loop an impact takes energy",
-    "loop_900": "the same, less",
 }  # fmt: skip
 """Cases that fall short so far, and why: they stand in the table of docs/stability.md."""
 

@@ -7,10 +7,14 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pygame
 import pytest
 
 import physicslab
-from physicslab.view.canvas.theme import DARK, THEMES, Colour, Theme
+from physicslab.view.canvas.canvas import Finish, Look
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.canvas.theme import DARK, LEGIBLE, LIGHT, THEMES, Colour, Theme, contrast
+from physicslab.view.controls.tools import TOOLS
 from physicslab.view.overlay.arrows import (
     CONTACT_NORMAL,
     FORCE,
@@ -18,6 +22,7 @@ from physicslab.view.overlay.arrows import (
     NORMAL_IMPULSE,
     VELOCITY,
 )
+from physicslab.view.workbench.menus import ICON_BODIES, ICON_COLOURS
 
 # What the three common kinds of colour blindness make of linear RGB (Machado, Oliveira & Fernandes, 2009).
 SEEN_BY = {
@@ -29,18 +34,6 @@ SEEN_BY = {
 
 
 HASHED = re.compile(r"#[0-9a-fA-F]{3,8}$")
-
-
-def luminance(colour: Colour) -> float:
-    """Return the relative luminance of sRGB (WCAG 2)."""
-    parts = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in (p / 255 for p in colour)]
-    return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
-
-
-def contrast(a: Colour, b: Colour) -> float:
-    """Return the contrast ratio (WCAG 2)."""
-    darker, lighter = sorted((luminance(a), luminance(b)))
-    return (lighter + 0.05) / (darker + 0.05)
 
 
 def test_a_theme_cannot_be_changed() -> None:
@@ -98,7 +91,7 @@ def test_bodies_differ_for_all_eyes(eyes: str, theme: Theme) -> None:
 
 @every_theme
 def test_bodies_and_arrows_stand_out_from_the_background(theme: Theme) -> None:
-    for rim in (*theme.bodies, theme.static, theme.kinematic, theme.held, theme.spring, theme.bounds):
+    for rim in (*theme.bodies, theme.static, theme.kinematic, theme.held, theme.spring):
         assert contrast(rim, theme.background) >= 3.0
     for kind in ARROWS:
         assert contrast(kind.colour(theme), theme.background) >= 3.0
@@ -112,4 +105,57 @@ def test_no_two_arrows_are_distinguished_by_colour_alone() -> None:
 def test_another_theme_is_one_record_away() -> None:
     light = dataclasses.replace(DARK, background=(250, 250, 250))
     assert isinstance(light, Theme)
-    assert light.fill((0, 0, 0)) == (120, 120, 120)
+    assert light.fill((0, 0, 0)) == (45, 45, 45)
+    assert not LIGHT.is_dark and DARK.is_dark
+
+
+def painted(theme: Theme, rim: Colour) -> Colour:
+    """Return the mean colour inside a box of a moving body, as it is painted."""
+    canvas = PygameCanvas(pygame.Surface((60, 60), 0, 32))
+    fill, edge = (np.array([colour], np.uint8) for colour in (theme.fill(rim), rim))
+    look = Look(fill, edge, np.array([Finish.LIT], np.int64))
+    canvas.boxes(np.array([[30.0, 30.0]]), np.array([[50.0, 50.0]]), np.zeros(1), look)
+    red, green, blue = pygame.surfarray.array3d(canvas.surface)[8:52, 8:52].mean(axis=(0, 1)).tolist()
+    return red, green, blue
+
+
+@every_theme
+def test_bodies_as_they_are_painted_stand_out_from_the_sky(theme: Theme) -> None:
+    assert 0.75 <= theme.fill_share <= 0.85
+    for rim in theme.bodies:
+        for sky in (theme.sky_top, theme.sky_bottom):
+            assert contrast(painted(theme, rim), sky) >= 4.5
+
+
+@every_theme
+def test_rims_of_bodies_stand_out_all_around_from_sky_and_ground(theme: Theme) -> None:
+    """The law: fills are lit and dim, so that the rim, at least 2 px wide, has the contrast everywhere."""
+    chosen = [theme.edge((n, n, n)) for n in range(0, 256, 15)]
+    for rim in (*theme.bodies, theme.kinematic, theme.held, *chosen):
+        assert min(contrast(rim, sky) for sky in (theme.sky_top, theme.sky_bottom)) >= LEGIBLE
+    for rim in (*theme.bodies, theme.kinematic, theme.held):
+        assert contrast(rim, theme.earth) >= LEGIBLE
+    canvas = PygameCanvas(pygame.Surface((60, 60), 0, 32))
+    canvas.clear(theme.sky_top, theme.sky_bottom)
+    for n, rim in enumerate(theme.bodies):
+        fill, edge = (np.array([colour], np.uint8) for colour in (theme.fill(rim), rim))
+        look = Look(fill, edge, np.array([Finish.LIT], np.int64))
+        canvas.discs(np.array([[30.0, 30.0]]), np.array([20.0]), np.zeros(1), look)
+        for x, y in ((30, 11), (30, 48), (11, 30), (48, 30)):
+            red, green, blue, _ = canvas.surface.get_at((x, y))
+            assert contrast((red, green, blue), theme.sky_top) >= LEGIBLE, n
+
+
+@every_theme
+def test_grid_and_axes_are_seen_and_stay_behind(theme: Theme) -> None:
+    for sky in (theme.sky_top, theme.sky_bottom):
+        assert 1.3 <= contrast(theme.grid, sky) < 1.8 <= contrast(theme.axis, sky) < 3.0
+
+
+def test_icons_of_tools_have_the_colours_of_their_things() -> None:
+    assert {*ICON_COLOURS, *ICON_BODIES} <= set(TOOLS)
+    for theme in THEMES:
+        for name in ICON_COLOURS.values():
+            assert contrast(getattr(theme, name), theme.key) >= 2.2  # an icon beside its word
+        for number in ICON_BODIES.values():
+            assert contrast(theme.bodies[number], theme.key) >= 3.0

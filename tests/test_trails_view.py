@@ -3,12 +3,14 @@
 from typing import Any
 
 import numpy as np
+import pygame
 import pytest
 from desk import FRAME, Desk, bits, empty_world
 from recording import RecordingCanvas
 
 from physicslab.components import Trail, Velocity
 from physicslab.files.scene import load_scene
+from physicslab.history import AddComponent, SetField
 from physicslab.prefabs import box, circle
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
@@ -81,6 +83,30 @@ def test_trails_of_the_scene_come_back_as_long_as_they_were() -> None:
     assert {entity: world.component(entity, Trail).length for entity in worn(world)} == lengths
 
 
+def test_trails_are_as_they_were_set_last_wherever_undo_goes() -> None:
+    desk = Desk(empty_world(gravity=(0, 0)))
+    ball = circle(desk.world, (0, 0))
+    desk.frames(2)
+    history = desk.window.edits.history
+
+    def press(key: str, mod: int = 0) -> None:
+        desk.key(key, mod)
+        desk.frames(3)
+
+    press("t")
+    history.do(SetField(ball, "Velocity", "linear", (1.0, 0.0)))
+    press("z", pygame.KMOD_LCTRL)
+    assert worn(desk.world) == [ball]
+    press("y", pygame.KMOD_LCTRL)
+    press("t")
+    for key in ("z", "y"):
+        press(key, pygame.KMOD_LCTRL)
+        assert worn(desk.world) == []
+    history.do(AddComponent(ball, Trail()))
+    desk.frames(2)
+    assert worn(desk.world) == [ball], "one that is given to a body stays"
+
+
 def test_a_trail_is_drawn_from_where_the_body_was_and_fades() -> None:
     world = empty_world(gravity=(0, 0))
     ball = circle(world, (-3, 0), radius=0.2)
@@ -94,7 +120,7 @@ def test_a_trail_is_drawn_from_where_the_body_was_and_fades() -> None:
     assert np.allclose(starts[1:], ends[:-1])
     far = np.abs(trails["colour"].astype(int) - DARK.background).sum(axis=1).tolist()
     assert far == sorted(far) and far[0] < 0.1 * far[-1]
-    assert trails["width"][-1] > trails["width"][0] >= 1.0
+    assert trails["width"][-1] > 4.0 * trails["width"][0] >= 4.0 * 0.7
     assert tuple(trails["colour"][-1]) == mixed(DARK.background, rim, 0.85 * (1 - 0.5 / 16))
 
 

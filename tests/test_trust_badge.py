@@ -170,7 +170,7 @@ def test_an_edit_drops_what_was_found_and_begins_again_from_there(tmp_path: Path
 def test_digits_of_a_scene_that_is_opened_count_from_its_start(tmp_path: Path) -> None:
     desk = watched(tmp_path)
     desk.frames(20)
-    world = desk.window.next_world = load_scene("two_planets")
+    world = desk.window.scenes.next_world = load_scene("two_planets")
     desk.frames(20)
     assert desk.world is world and world.time > 0.0 and desk.window.trust.since == 0.0
 

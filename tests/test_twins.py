@@ -14,8 +14,22 @@ from typing import Any
 import pytest
 
 from physicslab.cli import main
-from physicslab.components import Drag, Mass, Spring, Transform, Velocity
-from physicslab.ecs.config import SimulationConfig
+from physicslab.components import (
+    Charge,
+    Drag,
+    Mass,
+    Medium,
+    Pin,
+    Rod,
+    Shape,
+    Slot,
+    Spring,
+    Thrust,
+    Transform,
+    Velocity,
+)
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, read_scene, write_scene
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error, find_order
@@ -289,6 +303,30 @@ def test_the_mirror_image_of_a_scene_without_contacts_is_the_same_scene() -> Non
     mirrored, nudged = found["mirrored"], found["nudged"]
     assert mirrored is not None and mirrored.position < 1e-12 and mirrored.angle < 1e-12
     assert nudged is not None and 0.0 < nudged.position < 1e-12
+
+
+def test_joints_fields_and_polygons_are_mirrored_too() -> None:
+    world = World(
+        physics=PhysicsConfig(coulomb_constant=1.0, electric_field=Vector2(0.3, 0.2), magnetic_field=0.5)
+    )
+    wedge = Shape.polygon([(-0.5, -0.2), (0.7, -0.2), (-0.5, 0.6)])
+    bar = world.spawn(Transform((1.0, 0.0), 0.2), Velocity(), Mass(2.0), wedge, Charge(0.2))
+    world.spawn(Pin(b=bar, anchor_b=(-0.3, 0.1), lower=-1.0, upper=0.4))
+    bob = world.spawn(Transform((2.0, 0.3)), Velocity((0.0, 1.0)), Mass(1.0), Charge(-0.3))
+    world.spawn(Rod(a=bar, b=bob, anchor_a=(0.2, 0.0)))
+    cart = world.spawn(Transform((-2.0, 0.0)), Velocity(), Mass(1.0), Thrust((1.0, 0.5), 0.2, at=(0.1, 0.0)))
+    world.spawn(Slot(b=cart, axis=(1.0, 0.4), anchor_a=(-2.0, 0.0)))
+    world.spawn(Transform((1.0, -0.5)), Shape.box(4.0, 0.6), Medium(1.0, viscosity=0.5, flow=(0.4, 0.0)))
+    world.synchronise()
+    mirror = next(twin for twin in TWINS if twin.name == "mirrored")
+    image = mirror.make(write_scene(world), world)
+    assert image is not None
+    for each in (world, image):
+        each.run(seconds=0.7)
+    for body in (bar, bob, cart):
+        (x, y), (u, v) = (each.component(body, Transform).position for each in (world, image))
+        assert (-u, v) == pytest.approx((x, y), abs=1e-11)
+    assert image.component(bar, Transform).angle == pytest.approx(-world.component(bar, Transform).angle)
 
 
 def _loose() -> tuple[Any, ...]:

@@ -3,7 +3,6 @@
 import itertools
 import json
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -46,8 +45,8 @@ def only(world: World, words: str) -> ModelWarning:
     return found
 
 
-CROWDS = ("sandbox", "pyramid", "pile", "dominoes", "gas", "bridge", "loop_the_loop")
-"""Built-in scenes of more bodies than rigid contacts take, under gravity, or with a chain."""
+CROWDS = ("sandbox", "pyramid", "pile", "dominoes", "gas", "bridge")
+"""Built-in scenes of more bodies than rigid contacts take, under gravity."""
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -306,7 +305,7 @@ def test_without_gravity_nothing_carries_and_the_setting_that_is_named_was_check
             assert found.setting == "simulation.substeps = 13"
         counts.append(world.collisions)
     assert not any("impacts after the first" in warning.what for warning in warnings.all)
-    assert counts[0] != 804 and counts[1] == 804, "as many as there are"
+    assert counts == [803, 803], "as many as there are by then, hundreds of them in one substep"
     world = squeezed(4, "auto")
     world.run(seconds=6.0)
     assert (world.collisions, find_warnings(world)) == (804, ()), "the last of them at its time, 5.97 s"
@@ -369,13 +368,22 @@ def test_soft_contacts_hold_heavy_boxes_in_substeps_that_are_short_enough() -> N
     world = heavy_boxes()
     for _ in world.stepping(seconds=1.0):
         assert find_warnings(world) == ()
-    assert world.substeps == 2 * world.simulation.substeps
+    assert world.substeps == 5 * world.simulation.substeps
     heights = world.table(Transform)["position"][2:, 1]
-    assert heights == pytest.approx([0.5, 1.5, 2.5], abs=0.2)
+    assert heights == pytest.approx([0.5, 1.5, 2.5], abs=0.03)
 
 
-@pytest.mark.parametrize("build", [thin_rods, heavy_load])
-def test_what_soft_contacts_do_not_hold_rigid_ones_do_as_is_said(build: Callable[[], World]) -> None:
+def test_soft_contacts_hold_thin_rods_in_such_substeps() -> None:
+    world = thin_rods()
+    world.synchronise()
+    before = world.table(Transform)["position"][2:].copy()
+    for _ in world.stepping(seconds=1.0):
+        assert find_warnings(world) == ()
+    assert world.table(Transform)["position"][2:] == pytest.approx(before, abs=5e-5), "half a thickness"
+
+
+def test_what_soft_contacts_do_not_hold_rigid_ones_do_as_is_said() -> None:
+    build = heavy_load
     world, worst = build(), WorstWarnings()
     for _ in world.stepping(seconds=2.0):
         worst.add(find_warnings(world))
@@ -508,6 +516,17 @@ def test_at_most_three_are_said_and_the_rest_counted() -> None:
     assert all(canvas.text_size(word, style)[0] <= 300 for word in words)
     assert draw_advice([], (250, 50, 300, 550), on) is None
     assert math.isinf(ModelWarning(None, "x", None, "", None, "").excess[0])
+
+
+def test_an_error_smaller_than_half_a_pixel_is_no_warning_to_a_pupil() -> None:
+    canvas = RecordingCanvas((800, 600))
+    on = Drawing(canvas, Camera(canvas.size, scale=100.0), THEMES[0], 12)
+    for off, plainly, drawn in ((1.7e-4, True, False), (1.7e-4, False, True), (6e-3, True, True)):
+        advice = [ModelWarning(None, "contacts are soft", off, "m", 0.0, "")]
+        rect = draw_advice(advice, (100, 50, 600, 500), on, plainly=plainly)
+        assert (rect is not None) is drawn
+    beyond = [ModelWarning(None, "a joint gives way", 1e-4, "m", 1e-5, "")]
+    assert draw_advice(beyond, (100, 50, 600, 500), on, plainly=True) is not None
 
 
 def test_of_warnings_without_a_limit_the_largest_is_kept() -> None:

@@ -36,16 +36,17 @@ from physicslab.view.controls.controls import CONTROLS, Control
 from physicslab.view.controls.spawning import BODIES, GROUPS
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import DRAWING, HAND, MORE_TOOLS, PALETTE, PAN, TOOLS
+from physicslab.view.window.desk import LEVELS
 from physicslab.view.window.recent import Recovery
-from physicslab.view.window.window import LEVELS, Window
+from physicslab.view.window.window import Window
 from physicslab.world import World
 
 SIZES = [(640, 480), (800, 600), (1280, 720), (1920, 1080)]
 SCALES = [1.0, 1.75]
 ROW = ("Restart", "Step back", "Pause", "Play", "Step", "Speed", "Time line")
 """What stands in the transport."""
-BY_DRAGGING = {"Arrows"}
-"""Controls that do what the mouse does by dragging."""
+BY_DRAGGING = {"Arrows", "Menu"}
+"""Controls that do what the mouse does by dragging, or with its right button held."""
 TRANSPORT = {"Space", ".", "B", "Ctrl+R", "Tab", "[", "]"}
 """Controls of the transport: the tests below do each of them by the mouse."""
 
@@ -190,13 +191,15 @@ def test_menus_do_what_keys_do(desk: Desk) -> None:
     do(desk, "F1")
     assert window.help and "Keys and buttons" in desk.ui.words
     do(desk, "F1")
-    before, middle = window.camera.scale, window.camera.to_world(window.middle)
+    before, middle = window.camera.scale, window.camera.to_world(window.framing.middle)
     do(desk, "+")
     assert window.camera.scale > before
-    assert (window.camera.to_world(window.middle) - middle).magnitude < 1e-9
+    assert (window.camera.to_world(window.framing.middle) - middle).magnitude < 1e-9
     do(desk, "-")
     assert window.camera.scale == pytest.approx(before)
     window.tool = PAN.name
+    do(desk, "Esc")
+    assert not window.closing, "what was made is not saved: it is pressed again"
     do(desk, "Esc")
     assert window.closing, "the line of the menu quits, whatever Esc would leave first"
 
@@ -282,11 +285,11 @@ def test_nothing_overlaps_and_nothing_is_cut(
         written.check()
         check_panels(desk)
     desk.window.selection.clear()
-    desk.window.recovery = offer(tmp_path)
+    desk.window.scenes.recovery = offer(tmp_path)
     desk.frames(2 * SETTLED)
     written.check()
     check_panels(desk)
-    desk.window.recovery.leave()
+    desk.window.scenes.recovery.leave()
     desk.window.help = True
     desk.frames(2 * SETTLED)
     written.check()
@@ -388,7 +391,7 @@ def test_no_click_on_a_panel_reaches_the_world(desk: Desk, button: str, first: i
     desk.frames(SETTLED)
     centre = desk.window.camera.centre
     window = Window(desk.window.canvas)
-    changes = ("Delete", "Duplicate", "Hang, pin ...", "Plot", "Step back", "Time line")
+    changes = ("Delete", "Duplicate", "Hang, pin ...", "Plot", "Restart", "Step back", "Time line")
     for label in [label for label in desk.ui.places if label not in changes][first::3]:
         click(desk, label, button)
         tap(desk, "escape")
@@ -505,6 +508,7 @@ def test_escape_leaves_the_menu_then_the_tool_then_the_window(desk: Desk) -> Non
     closed = "A ball on a floor"
     assert closed in desk.ui.places
     for expected in ("menu", "tool", "window"):
+        desk.frames(70 if expected == "window" else 0)
         tap(desk, "escape")
         assert closed not in desk.ui.places
         assert (desk.window.tool == HAND.name) == (expected != "menu")
@@ -561,13 +565,15 @@ def test_more_files_than_fit_are_reached_by_the_wheel(
     screen, last = pygame.Rect(0, 0, 640, 480), "a-rather-long-name-of-a-scene-0.json"
     assert len([label for label in desk.ui.places if label.endswith(".json")]) == 60
     assert not screen.contains(rects(desk)[last])
-    point(desk, middle_of(desk, SCENES["stack"].title))
+    point(desk, middle_of(desk, "a-rather-long-name-of-a-scene-59.json"))  # own files come first
     for _ in range(60):
+        if screen.contains(rects(desk)[last]):
+            break
         pygame.event.post(pygame.Event(pygame.MOUSEWHEEL, x=0, y=-2, precise_x=0.0, precise_y=-2.0))
         desk.frames(2)
     assert screen.contains(rects(desk)[last])
     click(desk, last)
-    assert desk.window.scene_file == tmp_path / last
+    assert desk.window.scenes.source == tmp_path / last
 
 
 # ---- tools -----------------------------------------------------------------------------------------------
@@ -700,15 +706,30 @@ def offer(folder: Path) -> Recovery:
     return Recovery(Session.abandoned(folder))
 
 
+def test_the_world_lies_below_the_offer(tmp_path: Path) -> None:
+    desk = sized((1280, 720), load_scene("stack"))
+    desk.window.framing.fit(desk.world)
+    before = desk.window.framing.room()
+    desk.window.scenes.recovery = offer(tmp_path)
+    desk.frames(SETTLED)
+    _, top, _, height = desk.ui.places["Discard"]
+    room = desk.window.framing.room()
+    assert room[1] >= top + height and room[1] + room[3] == before[1] + before[3]
+    assert desk.window.camera.to_screen(Vector2(0.0, 0.0))[1] > top + height
+    desk.window.scenes.recovery.leave()
+    desk.frames(SETTLED)
+    assert desk.window.framing.room() == before
+
+
 @pytest.mark.parametrize("scale", SCALES)
 @pytest.mark.parametrize("size", SIZES)
 def test_the_offer_lies_over_no_words(size: tuple[int, int], scale: float, tmp_path: Path) -> None:
     desk = sized(size, None, scale)
-    desk.window.recovery = offer(tmp_path)
+    desk.window.scenes.recovery = offer(tmp_path)
     desk.window.pace.paused = True
     desk.frames(3 * SETTLED)
     left, top, width, height = desk.sandbox.interface.visible
-    assert desk.window.recovery.words in desk.ui.words
+    assert desk.window.scenes.recovery.words in desk.ui.words
     for label in ("Restore it", "Discard"):
         rect = rects(desk)[label]
         assert rect.bottom <= top and left <= rect.left and rect.right <= left + width
@@ -716,17 +737,17 @@ def test_the_offer_lies_over_no_words(size: tuple[int, int], scale: float, tmp_p
                for taken in desk.window.overlays.covered
                if tuple(taken) not in map(tuple, desk.sandbox.interface.covered))  # fmt: skip
     click(desk, "Discard")
-    assert not desk.window.recovery.offered and "Discard" not in desk.ui.places
+    assert not desk.window.scenes.recovery.offered and "Discard" not in desk.ui.places
     assert desk.sandbox.interface.visible[1] < top and not list(tmp_path.iterdir())
 
 
 def test_a_click_beside_the_offer_leaves_it(desk: Desk, tmp_path: Path) -> None:
-    desk.window.recovery = offer(tmp_path / "state")
+    desk.window.scenes.recovery = offer(tmp_path / "state")
     desk.frames(SETTLED)
     at(desk, 0, 0)
     tap(desk, "space")
-    assert desk.window.recovery.offered and desk.window.pace.paused, "keys stay with the scene"
-    desk.window.recovery.leave()
+    assert desk.window.scenes.recovery.offered and desk.window.pace.paused, "keys stay with the scene"
+    desk.window.scenes.recovery.leave()
 
 
 # ---- idle ------------------------------------------------------------------------------------------------

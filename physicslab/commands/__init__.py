@@ -39,7 +39,10 @@ class Command(Protocol):
         """Do it, and return the exit status."""
 
 
-COMMANDS = ("run", "replay", "accuracy", "stability", "bench", "scenes", "import", "export", "kernels")
+COMMANDS = (
+    "run", "replay", "accuracy", "stability", "bench", "scenes", "lesson", "grade", "import", "export",
+    "kernels",
+)  # fmt: skip
 """Every command, by the name of its module, which has an underscore behind a keyword of Python."""
 
 

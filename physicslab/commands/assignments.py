@@ -3,6 +3,7 @@
 import re
 from argparse import ArgumentParser
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from physicslab.commands import CommandError
@@ -48,9 +49,7 @@ def assign(world: World, texts: Sequence[str]) -> None:
     """
     if not texts:
         return
-    names: dict[str, int] = {}
-    for entity in world.entities():
-        names[unique_name(world.label(entity), names)] = entity
+    names = _names(world)
     given: dict[tuple[str, type[Component]], dict[str, tuple[str, Any]]] = {}
     for text in texts:
         name, kind, spec, value = _assignment(world, names, text)
@@ -63,13 +62,41 @@ def assign(world: World, texts: Sequence[str]) -> None:
         _check_held(world.component(names[name], kind), name, fields)
 
 
-def _assignment(world: World, names: Mapping[str, int], text: str) -> tuple[str, type[Component], Field, str]:
+def _names(world: World) -> dict[str, int]:
+    """Return every entity by its id, or by what it is and its number."""
+    names: dict[str, int] = {}
+    for entity in world.entities():
+        names[unique_name(world.label(entity), names)] = entity
+    return names
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A field of an entity's component, as the command line names it, and how messages begin that name it."""
+
+    name: str
+    entity: int
+    kind: type[Component]
+    spec: Field
+    words: str
+
+
+def find_place(world: World, option: str, path: str, value: str) -> Place:
+    """Return the field of a path ``ID.Component.field``, or raise a CommandError with the ``value``."""
+    names = _names(world)
+    name, kind, spec, _ = _assignment(world, names, f"{path}={value}", option)
+    return Place(name, names[name], kind, spec, _place(name, kind, spec, option))
+
+
+def _assignment(
+    world: World, names: Mapping[str, int], text: str, option: str = "--set"
+) -> tuple[str, type[Component], Field, str]:
     """Return the entity's name, the component, the field and the text of the value."""
     splits = list(_splits(text))
     if not splits:
-        raise CommandError(f"--set {shown(text)}: must be {_FORM}")
+        raise CommandError(f"{option} {shown(text)}: must be {_FORM}")
     name, component, field, value = next((split for split in splits if split[0] in names), splits[0])
-    where = f"--set: entity {shown(name)}: {_shown(component)}.{_shown(field)} = {shown(value)}"
+    where = f"{option}: entity {shown(name)}: {_shown(component)}.{_shown(field)} = {shown(value)}"
     if name not in names:
         raise CommandError(f"{where}: there is no such entity{_known(name, names)}")
     present = {type(part).__name__: type(part) for part in world.components(names[name])}
@@ -130,9 +157,15 @@ def _replace(
     try:
         made = kind(**{**held.given(), **{field: value for field, (_, value) in fields.items()}})
     except InvalidValue as error:
-        text = fields[error.field][0] if error.field in fields else error.value
-        where = f"--set: entity {shown(name)}: {error.component}.{error.field}"
-        raise CommandError(f"{where} = {shown(text)}: must be {error.allowed}") from error
+        where, (first, (text, _)) = (
+            f"--set: entity {shown(name)}: {error.component}",
+            next(iter(fields.items())),
+        )
+        if error.field in fields:
+            what = f"{error.field} = {shown(fields[error.field][0])}:"
+        else:
+            what = f"{first} = {shown(text)}: with it {error.field} = {shown(error.value)}"
+        raise CommandError(f"{where}.{what} must be {error.allowed}") from error
     world.add(entity, made)
 
 
@@ -146,8 +179,8 @@ def _check_held(held: Component, name: str, fields: Mapping[str, tuple[str, Any]
             raise CommandError(f"{where} = {shown(text)}: must be {kept} beside the entity's other fields")
 
 
-def _place(name: str, kind: type[Component], spec: Field) -> str:
-    return f"--set: entity {shown(name)}: {kind.__name__}.{spec.name}"
+def _place(name: str, kind: type[Component], spec: Field, option: str = "--set") -> str:
+    return f"{option}: entity {shown(name)}: {kind.__name__}.{spec.name}"
 
 
 def _known(word: str, known: Mapping[str, object]) -> str:

@@ -1,8 +1,12 @@
 """Export a run as a page of HTML that plays it in any browser, or as a film (GIF, MP4)."""
 
 import argparse
+import json
 import os
+import sys
 from argparse import ArgumentParser, Namespace
+from collections.abc import Sequence
+from typing import Any
 
 from physicslab.commands import FAILED, CommandError
 from physicslab.commands.arguments import (
@@ -15,12 +19,18 @@ from physicslab.commands.arguments import (
 )
 from physicslab.commands.assignments import add_assignments
 from physicslab.commands.measured_run import MeasuredRun
-from physicslab.commands.output import Output, reason_of
+from physicslab.commands.output import Output
+from physicslab.commands.progress import Progress
+from physicslab.commands.variations import Variation, add_variations, combinations, variations
+from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
 from physicslab.export.film import Film, NoEncoder
-from physicslab.export.page import page
+from physicslab.export.page import page, run_document
 from physicslab.export.recording import Box, NotShown, RunRecorder, extent_of_run
+from physicslab.files.replace import reason_of
+from physicslab.files.scene import SceneError
 from physicslab.kernels.tiers import Tiers
+from physicslab.lab.jobs import in_processes
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
@@ -115,8 +125,6 @@ _EVERY_S = 1.0 / 60.0
 _SIZE = (960, 540)
 """Width and height of a film [px]."""
 _MAX_RATE = 1000.0
-_LIMIT = 2_000_000
-"""Poses that a page may hold, bodies times instants: some 30 MB, which a browser unpacks within seconds."""
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -136,9 +144,13 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--size", metavar="WxH", type=film_size, help="width and height of a film [px] (960x540)")
     add_budget(parser)
     add_assignments(parser)
+    add_variations(parser)
+    words = "write to stderr how far it is, where that is no terminal too"
+    add("--progress", action="store_true", help=words)
     parser.epilog = (
-        f"A page holds bodies times instants of at most {_LIMIT:,}, positions to 7 digits. A scene of 20 "
-        "bodies takes less than 300 kB for 10 s. A film with --every 0.02 --fps 25 plays at half the speed."
+        f"A page holds bodies times instants, of all runs, of at most {POSES:,}, positions to 7 digits. A "
+        "scene of 20 bodies takes less than 300 kB for 10 s. A film with --every 0.02 --fps 25 plays at half "
+        "the speed."
     )
 
 
@@ -158,6 +170,8 @@ def execute(arguments: Namespace) -> int:
     for option in ("gif", "mp4"):
         path = getattr(arguments, option)
         if path is not None:
+            if arguments.vary:
+                raise CommandError("--vary: is for --html: a film has no sliders")
             arguments.size = arguments.size or _SIZE
             make_film(f"--{option}", path, arguments)
             return 0
@@ -167,47 +181,99 @@ def execute(arguments: Namespace) -> int:
                 f"--{option}: is for --gif and --mp4; a page has a size and a speed of its own"
             )
     arguments.every = arguments.every or _EVERY_S
-    output = Output("--html", arguments.html)
-    check_output(output, arguments)
-    world = opened(arguments)
-    with Tiers(is_small(world)) as tiers:
-        content, recorder, stopped = _recorded(world, arguments, tiers)
-    output.write(content)
-    if stopped:
-        raise CommandError(f"{stopped}: the page ends there", FAILED)
-    if not output.to_stdout:
-        bodies = "1 body that moves" if recorder.moving == 1 else f"{recorder.moving:,} bodies that move"
-        size = f"{len(content) / 1000:,.0f} kB"
-        length = f"{arguments.seconds:g} s, {recorder.count:,} instants"
-        print(f"{printable(output.path)}: {length}, {bodies}, {size}")
+    make_page(arguments)
     return 0
 
 
-def _recorded(world: World, arguments: Namespace, tiers: Tiers) -> tuple[bytes, RunRecorder, str]:
-    """Return the page of a run of the world, what was recorded, and where it was stopped, if it was."""
-    name = name_of(world, arguments)
-    label = shortened(printable(name))
-    recorder = RunRecorder(world)
-    _check_size(world, recorder, arguments)
+POSES = 2_000_000
+"""Poses that a page may hold, bodies times instants: some 30 MB, which a browser unpacks within seconds."""
+
+
+def make_page(arguments: Namespace) -> None:
+    """Run the scene, once or for each value that is varied, and write the page.
+
+    Raises
+    ------
+    CommandError
+        If the page cannot be written, or a run fails that is the only one.
+    """
+    output = Output("--html", arguments.html)
+    check_output(output, arguments)
+    world = opened(arguments)
+    varied = variations(world, arguments.vary)
+    tasks = [{"set": [*arguments.set, *texts]} for texts in combinations(varied)]
+    _check_size(world, len(tasks), arguments)
+    shared = {key: getattr(arguments, key) for key in ("scene", "seconds", "every", "at_most")}
+    label = shortened(printable(name_of(world, arguments)))
+    names = [json.dumps(shared | task) for task in tasks]
+    runs = _runs(names, Progress(label, sys.stderr, always=arguments.progress))
+    made = [run for run in runs if "document" in run]
+    if not made:
+        raise CommandError(f"{label}: {runs[0]['failure']}; no page was written", FAILED)
+    documents = [run.get("document") or {"failure": run["failure"]} for run in runs]
+    content = page(world, name_of(world, arguments), documents, [one.varied for one in varied])
+    output.write(content)
+    stopped = next((run["stopped"] for run in made if run["stopped"]), "")
+    if stopped:
+        raise CommandError(f"{label}: {stopped}: the page ends there", FAILED)
+    if not output.to_stdout:
+        _tell(output, documents, varied, arguments, len(content))
+
+
+def _tell(
+    output: Output, documents: Sequence[Any], varied: Sequence[Variation], arguments: Namespace, size: int
+) -> None:
+    """Say what the page holds."""
+    shown = next(document for document in documents if "instants" in document)
+    moving = sum("moves" in body for body in shown["bodies"])
+    bodies = "1 body that moves" if moving == 1 else f"{moving:,} bodies that move"
+    failed = sum("failure" in document for document in documents)
+    runs = f", {len(documents)} runs" if varied else ""
+    runs += f" of which {failed} failed" if failed else ""
+    length = f"{arguments.seconds:g} s, {shown['instants']:,} instants{runs}"
+    print(f"{printable(output.path)}: {length}, {bodies}, {size / 1000:,.0f} kB")
+
+
+def _runs(names: Sequence[str], progress: Progress) -> list[dict[str, Any]]:
+    """Make all runs, in processes where there are many; return what came of each."""
+    found: list[dict[str, Any]] = []
     try:
-        run = MeasuredRun(world, name, tiers, arguments.at_most, recorder.write, arguments.every)
-        run.go(arguments.seconds, None)
-    except (Diverged, NotShown) as error:
-        raise CommandError(f"{label}: {error}; no page was written", FAILED) from error
-    stopped = f"{label}: {run.stopped}" if run.stopped else ""
-    return page(world, name, recorder, _notes(world, run)), recorder, stopped
+        for done in in_processes(make_run, names, [[name] for name in names]):
+            if isinstance(done, dict):
+                found.append(done)
+            progress.show(len(found) / len(names) if isinstance(done, dict) else done)
+    finally:
+        progress.clear()
+    return found
 
 
-def _check_size(world: World, recorder: RunRecorder, arguments: Namespace) -> None:
+def make_run(task: str) -> dict[str, Any]:
+    """Make a run, which a JSON text describes; return its document and notes, or its error."""
+    arguments = Namespace(**json.loads(task))
+    try:
+        world = opened(arguments, again=True)
+        name = name_of(world, arguments)
+        recorder = RunRecorder(world)
+        with Tiers(is_small(world)) as tiers:
+            run = MeasuredRun(world, name, tiers, arguments.at_most, recorder.write, arguments.every)
+            run.go(arguments.seconds, None)
+    except (Diverged, NotShown, CommandError, SceneError, InvalidValue) as error:
+        return {"failure": str(error)}
+    return {"document": run_document(world, recorder, _notes(world, run)), "stopped": run.stopped}
+
+
+def _check_size(world: World, runs: int, arguments: Namespace) -> None:
     """Refuse a run of which no browser would show a page."""
     dt, seconds = world.simulation.dt, arguments.seconds
     check_seconds(seconds, dt)
     instants = seconds / max(arguments.every, dt)
-    bodies = max(recorder.moving, 1)
-    if instants * bodies > _LIMIT:
+    bodies = max(RunRecorder(world).moving, 1)
+    if instants * bodies * runs > POSES:
+        times = f" in {runs} runs" if runs > 1 else ""
         raise CommandError(
-            f"--seconds {seconds:g}: {instants:,.0f} instants of {bodies:,} bodies; a page must hold at most "
-            f"{_LIMIT:,} poses: fewer seconds, or a longer --every than {max(arguments.every, dt):.3g} s"
+            f"--seconds {seconds:g}: {instants:,.0f} instants of {bodies:,} bodies{times}; a page must hold "
+            f"at most {POSES:,} poses: fewer seconds, or a longer --every than "
+            f"{max(arguments.every, dt):.3g} s"
         )
 
 

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from physicslab.commands import FAILED, CommandError
 from physicslab.commands.arguments import tell_losses
-from physicslab.commands.output import Output, reason_of
+from physicslab.commands.output import Output
 from physicslab.ecs.text import printable, shortened
-from physicslab.files.replace import create_file
+from physicslab.files.replace import create_file, reason_of
 from physicslab.files.scene import is_step, load_scene, scene_bytes
 
 

@@ -5,9 +5,10 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from physicslab.commands import FAILED, CommandError
-from physicslab.commands.output import Output, reason_of
+from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable
+from physicslab.files.replace import reason_of
 from physicslab.kernels import cache_directory
 from physicslab.kernels.archive import ArchiveError, pack, unpack
 from physicslab.kernels.keys import platform_key

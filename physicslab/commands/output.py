@@ -12,7 +12,7 @@ from typing import BinaryIO, TextIO
 from physicslab.commands import FAILED, CommandError
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
-from physicslab.files.replace import check_writable, replace_file, replacing
+from physicslab.files.replace import check_writable, reason_of, replace_file, replacing
 
 
 class Output:
@@ -158,8 +158,3 @@ def _stdout() -> BinaryIO:
         raise CommandError("-: stdout is closed")
     sys.stdout.flush()
     return sys.stdout.buffer
-
-
-def reason_of(error: Exception) -> str:
-    """Return in a few words why a file could not be read or written."""
-    return (error.strerror if isinstance(error, OSError) else None) or str(error)

@@ -1,11 +1,14 @@
 """The components of bodies and of what is measured with, one file each. Presence decides what a thing is."""
 
 from physicslab.components.charge import Charge
+from physicslab.components.colour import Colour
 from physicslab.components.drag import Drag
 from physicslab.components.gate import Gate
 from physicslab.components.gear import Gear
 from physicslab.components.graph import Graph, GraphLine
 from physicslab.components.held import Held
+from physicslab.components.layer import Layer
+from physicslab.components.made_of import MadeOf
 from physicslab.components.mass import Mass
 from physicslab.components.material import Material
 from physicslab.components.medium import Medium
@@ -31,7 +34,8 @@ from physicslab.components.velocity import Velocity
 from physicslab.components.weld import Weld
 
 __all__ = [
-    "Charge", "Drag", "Gate", "Gear", "Graph", "GraphLine", "Held", "Mass", "Material", "Medium", "Meter",
-    "Molecule", "Name", "Note", "Pin", "Protractor", "Pulley", "Rod", "Rope", "Ruler", "Shape", "Slider",
-    "Slot", "Spring", "Strobe", "Thrust", "Trail", "Transform", "Velocity", "Weld",
+    "Charge", "Colour", "Drag", "Gate", "Gear", "Graph", "GraphLine", "Held", "Layer", "MadeOf", "Mass",
+    "Material", "Medium", "Meter", "Molecule", "Name", "Note", "Pin", "Protractor", "Pulley", "Rod", "Rope",
+    "Ruler", "Shape", "Slider", "Slot", "Spring", "Strobe", "Thrust", "Trail", "Transform", "Velocity",
+    "Weld",
 ]  # fmt: skip

@@ -1,6 +1,6 @@
 """A gear, which couples two joints."""
 
-from physicslab.components.joint_ends import as_placed, breaks_at, collides
+from physicslab.components import joint_ends as ends
 from physicslab.ecs.component import Component, Derived, InvalidValue, component, field
 
 COUPLED = "an entity with a Pin or a Slot, and not both"
@@ -19,9 +19,9 @@ class Gear(Component):
     first: int | None = field(fixed=True, meaning="entity with the first Pin or Slot")
     second: int | None = field(fixed=True, meaning="entity with the second Pin or Slot")
     ratio: float = field(default=-1.0, meaning="change of the second coordinate by that of the first")
-    offset: Derived = as_placed("1", "the second coordinate less ratio times the first")
-    collide: bool = collides()
-    breaks: Derived = breaks_at()
+    offset: Derived = ends.as_placed("1", "the second coordinate less ratio times the first")
+    collide: bool = ends.collides()
+    breaks: Derived = ends.breaks_at()
 
     def validate(self) -> None:
         """Check that there are two joints, and that they are coupled."""

@@ -8,6 +8,9 @@ from physicslab.components.lengths import point
 from physicslab.ecs.component import InvalidValue, field
 from physicslab.ecs.fields import LENGTH_LIMIT
 
+_LIMITS = {"m": LENGTH_LIMIT, "rad": 1e9, "rad/s": 1e9, "m/s": 1e9}
+"""The largest numbers of joints by their units: of larger turns and speeds rounding leaves nothing."""
+
 type End = tuple[int, Sequence[float]]
 """A body and its anchor [m]; 0 is the world."""
 
@@ -40,13 +43,13 @@ def collides() -> Any:
 
 def as_placed(unit: str, meaning: str, above: float = -math.inf) -> Any:
     """Describe a number that is what it is when the joint is made, unless it is given."""
-    limit = LENGTH_LIMIT if unit == "m" else math.inf
+    limit = _LIMITS.get(unit, math.inf)
     return field(default=None, unit=unit, above=above, limit=limit, derived="as placed", meaning=meaning)
 
 
 def optional(unit: str, meaning: str, minimum: float = -math.inf) -> Any:
     """Describe a number that a joint may be without."""
-    limit = LENGTH_LIMIT if unit == "m" else math.inf
+    limit = _LIMITS.get(unit, math.inf)
     return field(default=None, unit=unit, minimum=minimum, limit=limit, derived="none", meaning=meaning)
 
 

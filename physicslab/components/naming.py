@@ -3,8 +3,11 @@
 from collections.abc import Iterable
 from typing import Any
 
+from physicslab.components.colour import Colour
 from physicslab.components.drag import Drag
 from physicslab.components.held import Held
+from physicslab.components.layer import Layer
+from physicslab.components.made_of import MadeOf
 from physicslab.components.mass import Mass
 from physicslab.components.material import Material
 from physicslab.components.name import Name
@@ -14,7 +17,7 @@ from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 from physicslab.ecs.text import in_words
 
-_OF_BODIES = (Transform, Velocity, Mass, Material, Drag, Trail, Held, Name)
+_OF_BODIES = (Transform, Velocity, Mass, Material, Drag, Trail, Held, Name, Colour, Layer, MadeOf)
 """Components that do not say what an entity is."""
 
 

@@ -1,17 +1,6 @@
 """A pin, about which two bodies turn, with limits and a motor."""
 
-from physicslab.components.joint_ends import (
-    anchor_of_first,
-    anchor_of_second,
-    breaks_at,
-    breaks_at_torque,
-    check_limits,
-    collides,
-    first_end,
-    optional,
-    second_end,
-    strongest,
-)
+from physicslab.components import joint_ends as ends
 from physicslab.ecs.component import Component, Derived, Vector, component
 
 
@@ -23,18 +12,20 @@ class Pin(Component):
     of A.
     """
 
-    a: int | None = first_end()
-    b: int | None = second_end()
-    anchor_a: Vector = anchor_of_first()
-    anchor_b: Vector = anchor_of_second()
-    lower: Derived = optional("rad", "the smallest angle of B less that of A; any where absent")
-    upper: Derived = optional("rad", "the largest angle of B less that of A; any where absent")
-    motor_speed: Derived = optional("rad/s", "how fast its motor turns B against A; no motor where absent")
-    max_torque: Derived = strongest("N m")
-    collide: bool = collides()
-    breaks: Derived = breaks_at()
-    breaks_torque: Derived = breaks_at_torque()
+    a: int | None = ends.first_end()
+    b: int | None = ends.second_end()
+    anchor_a: Vector = ends.anchor_of_first()
+    anchor_b: Vector = ends.anchor_of_second()
+    lower: Derived = ends.optional("rad", "the smallest angle of B less that of A; any where absent")
+    upper: Derived = ends.optional("rad", "the largest angle of B less that of A; any where absent")
+    motor_speed: Derived = ends.optional(
+        "rad/s", "how fast its motor turns B against A; no motor where absent"
+    )
+    max_torque: Derived = ends.strongest("N m")
+    collide: bool = ends.collides()
+    breaks: Derived = ends.breaks_at()
+    breaks_torque: Derived = ends.breaks_at_torque()
 
     def validate(self) -> None:
         """Check that the limits do not cross."""
-        check_limits(self)
+        ends.check_limits(self)

@@ -1,14 +1,6 @@
 """A rope over two wheels."""
 
-from physicslab.components.joint_ends import (
-    anchor_of_first,
-    anchor_of_second,
-    as_placed,
-    breaks_at,
-    collides,
-    first_end,
-    second_end,
-)
+from physicslab.components import joint_ends as ends
 from physicslab.components.lengths import point
 from physicslab.ecs.component import Component, Derived, Vector, component, field
 
@@ -20,13 +12,13 @@ class Pulley(Component):
     l_a + ratio l_b is at most its length, with the distances of the anchors from the wheels.
     """
 
-    a: int | None = first_end()
-    b: int | None = second_end()
-    anchor_a: Vector = anchor_of_first()
-    anchor_b: Vector = anchor_of_second()
+    a: int | None = ends.first_end()
+    b: int | None = ends.second_end()
+    anchor_a: Vector = ends.anchor_of_first()
+    anchor_b: Vector = ends.anchor_of_second()
     wheel_a: Vector = point(0.0, 0.0, "the point of the world over which A hangs")
     wheel_b: Vector = point(0.0, 0.0, "the point of the world over which B hangs")
     ratio: float = field(default=1.0, above=0.0, meaning="how often the rope goes to B")
-    length: Derived = as_placed("m", "the largest l_a + ratio l_b", above=0.0)
-    collide: bool = collides()
-    breaks: Derived = breaks_at()
+    length: Derived = ends.as_placed("m", "the largest l_a + ratio l_b", above=0.0)
+    collide: bool = ends.collides()
+    breaks: Derived = ends.breaks_at()

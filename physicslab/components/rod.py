@@ -1,14 +1,6 @@
 """A rod, which keeps a distance."""
 
-from physicslab.components.joint_ends import (
-    anchor_of_first,
-    anchor_of_second,
-    as_placed,
-    breaks_at,
-    collides,
-    first_end,
-    second_end,
-)
+from physicslab.components import joint_ends as ends
 from physicslab.ecs.component import Component, Derived, Vector, component
 
 
@@ -16,10 +8,10 @@ from physicslab.ecs.component import Component, Derived, Vector, component
 class Rod(Component):
     """Keeps the distance of A's anchor and B's."""
 
-    a: int | None = first_end()
-    b: int | None = second_end()
-    anchor_a: Vector = anchor_of_first()
-    anchor_b: Vector = anchor_of_second()
-    length: Derived = as_placed("m", "distance of the anchors", above=0.0)
-    collide: bool = collides()
-    breaks: Derived = breaks_at()
+    a: int | None = ends.first_end()
+    b: int | None = ends.second_end()
+    anchor_a: Vector = ends.anchor_of_first()
+    anchor_b: Vector = ends.anchor_of_second()
+    length: Derived = ends.as_placed("m", "distance of the anchors", above=0.0)
+    collide: bool = ends.collides()
+    breaks: Derived = ends.breaks_at()

@@ -11,6 +11,10 @@ _ROUNDING = 1e-9
 """Share of the largest distance of two vertices below which a length is zero, and the sine of a turn is."""
 
 
+_LEAST = 1e-100
+"""The least extent of a chain [m]: squares of it are not zero."""
+
+
 def why_not_convex(vertices: Sequence[Vector2], least: int, most: int) -> str | None:
     """Return in words what the vertices of a convex polygon must be that these [m] are not, or ``None``."""
     count = len(vertices)
@@ -40,6 +44,8 @@ def why_no_chain(vertices: Sequence[Vector2], least: int, most: int) -> str | No
     if not least <= count <= most:
         return f"{least} to {most} vertices; these are {count}"
     size = max(vertex.magnitude for vertex in vertices)
+    if size < _LEAST:
+        return f"vertices of which one is at least {_LEAST:g} m from the centre"
     for k, (one, after) in enumerate(pairwise(vertices), start=1):
         if (after - one).magnitude <= _ROUNDING * size:
             return f"vertices at different places; number {k} and number {k + 1} are at one"

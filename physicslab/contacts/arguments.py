@@ -76,6 +76,7 @@ def near_in(state: State) -> NearTuple:
     if len(contacts.rotations) != rows:
         contacts.rotations = np.full((rows, 3), np.nan)
         contacts.linear_before, contacts.angular_before = np.zeros((rows, 2)), np.zeros(rows)
+        contacts.moments = np.full((rows, 2), -np.inf)
     if len(contacts.noted) < len(contacts.points):
         contacts.noted = np.zeros((len(contacts.points), 4))
     return (
@@ -83,7 +84,7 @@ def near_in(state: State) -> NearTuple:
         contacts.wide.discs.slots, contacts.wide.boxes.slots,
         contacts.proximity, contacts.activation_distance, state.entity_index.entities,
         contacts.rotations, state.account.table, contacts.noted, contacts.linear_before,
-        contacts.angular_before,
+        contacts.angular_before, contacts.moments,
     )  # fmt: skip
 
 

@@ -12,6 +12,8 @@ from physicslab.state.contacts import Contacts
 
 _NO_ROWS = ("entity_a", "entity_b", "a", "b", "gap", "slot")
 _KEPT = tuple(name for name in MANIFOLD.names or () if name not in _NO_ROWS)
+_OF_POINT = tuple(name for name in POINT.names or () if name != "bend")
+"""What a file holds of a point; how a chain bends there is found again in each substep."""
 _WARM = ("feature", "normal_impulse", "tangent_impulse")
 
 
@@ -48,7 +50,7 @@ def kept_rows(contacts: Contacts) -> Iterator[list[float] | None]:
             kept = [manifold[name].item() for name in _KEPT[1:]]
             if manifold["found"] == AS_FOUND:  # a file's next step finds all points again
                 kept[_KEPT.index("found") - 1] = 0
-            both = [value for j in (2 * p, 2 * p + 1) for value in contacts.points[j].item()]
+            both = [contacts.points[j][name].item() for j in (2 * p, 2 * p + 1) for name in _OF_POINT]
             yield [*pair, *kept, *both, *slot]
         else:
             warm = [contacts.points[j][name].item() for j in (2 * p, 2 * p + 1) for name in _WARM]
@@ -79,7 +81,7 @@ def restore_contacts(contacts: Contacts, rows: Sequence[Sequence[float]]) -> Non
         If a row has not the right number of values.
     """
     contacts.make_room(max(64, len(rows)))
-    light, heavy = 3 + 2 * len(_WARM), 2 + len(_KEPT) + 2 * len(POINT.names or ())
+    light, heavy = 3 + 2 * len(_WARM), 2 + len(_KEPT) + 2 * len(_OF_POINT)
     ordered = sorted(rows, key=lambda row: tuple(row[:3]))
     for p, row in enumerate(ordered):
         if len(row) not in (light, heavy, light + 1, light + 2, heavy + 2):
@@ -94,7 +96,7 @@ def restore_contacts(contacts: Contacts, rows: Sequence[Sequence[float]]) -> Non
             for name, value in zip(_KEPT[1:], row[3:], strict=False):
                 manifold[name] = value
             values = iter(row[2 + len(_KEPT) :])
-            names: Sequence[str] = POINT.names or ()
+            names: Sequence[str] = _OF_POINT
         else:
             manifold["count"] = 1  # it had points: if it has none now, their impulses are dropped
             values, names = iter(row[3:]), _WARM

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +24,7 @@ _PARALLEL = 1e-9
 """Sine of the angle of two normals up to which they are one axis."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Outlines:
     """Rounded polygons, a row each: a disc has one corner, its middle, and a radius; a box four and none.
 
@@ -57,11 +59,22 @@ class Outlines:
         place, corners, vertices = self.place[own].copy(), self.corners[own], self.vertices[own]
         return Outlines(place, corners, vertices, self.radius[own], self.size[own], self.line[own])
 
-    @property
+    @cached_property
     def reach(self) -> Numbers:
         """Half of the width and height of what is taken up along the axes of the world (n, 2) [m]."""
         reach: Numbers = np.abs(self.corners).max(axis=1) + self.radius[:, None]
         return reach
+
+    @property
+    def area(self) -> Numbers:
+        """What is within each of them (n,) [m^2]; 0 of a chain."""
+        around = np.roll(self.corners, -1, axis=1)
+        core = 0.5 * (self.corners[:, :, 0] * around[:, :, 1] - self.corners[:, :, 1] * around[:, :, 0]).sum(
+            axis=1
+        )
+        length = np.hypot(*(around - self.corners).transpose(2, 0, 1)).sum(axis=1)
+        area: Numbers = core + self.radius * (length + np.pi * self.radius)
+        return np.where(self.line, 0.0, area)
 
     def gaps(self, x: float, y: float) -> Numbers:
         """Return how far a place [m] is from each outline (n,) [m]; negative within."""
@@ -74,6 +87,16 @@ class Outlines:
         within = (self.vertices > 2) & (across >= 0.0).all(axis=1)
         gaps: Numbers = np.where(within, -distance, distance) - self.radius
         return gaps
+
+
+def discs_at(places: Sequence[Vector2], radius: float) -> Outlines:
+    """Return discs of a radius [m] at places [m]."""
+    count = len(places)
+    middle = np.array([tuple(place) for place in places]).reshape(-1, 2)
+    return Outlines(
+        middle, np.zeros((count, 8, 2)), np.ones(count, np.int64), np.full(count, radius),
+        np.full(count, 2.0 * radius), np.zeros(count, np.bool_),
+    )  # fmt: skip
 
 
 def outlines_of(state: State, rows: Rows) -> Outlines:

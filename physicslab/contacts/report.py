@@ -11,6 +11,7 @@ from physicslab.components import Shape, Transform, Velocity
 from physicslab.contacts.outlines import outlines_of
 from physicslab.ecs.vector import Vector2
 from physicslab.state.contacts import Contacts
+from physicslab.state.solid import is_any_apart, may_touch
 from physicslab.state.state import State
 
 
@@ -132,8 +133,8 @@ def count_near_pairs(state: State) -> int:
 
     def count(a: NDArray[np.int64], b: NDArray[np.int64]) -> int:
         near = ((low[a] <= high[b]) & (low[b] <= high[a])).all(axis=1) & (moves[a] | moves[b])
-        if len(state.joints.apart):
-            near &= state.joints.may_touch(rows[a], rows[b])
+        if is_any_apart(state):
+            near &= may_touch(state, rows[a], rows[b])
         return int(near.sum())
 
     large = extent > _LARGE * np.median(extent) if len(rows) else extent > 0.0

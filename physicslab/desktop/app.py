@@ -10,10 +10,8 @@ from physicslab.ecs.config import WindowConfig
 from physicslab.view.canvas.display import Display, NoScreen, wants_to_leave
 from physicslab.view.canvas.theme import DARK
 
-__all__ = ["FIRST_SCENE", "NoScreen", "open_window"]
+__all__ = ["NoScreen", "open_window"]
 
-FIRST_SCENE = "sandbox"
-"""The scene that is opened where none is named."""
 _PATIENCE = 0.5
 """Time [s] after which it is said that something is being loaded: later starts are there sooner."""
 
@@ -37,9 +35,9 @@ def open_window(scene: str | None) -> int:
     with Display.open(config, "PhysicsLab") as display:
         if not _load(display, "physicslab.desktop.session_window"):
             return 0
-        from physicslab.desktop.session_window import run_window
+        from physicslab.desktop.session_window import FIRST_SCENE, run_window
 
-        return run_window(display, config, FIRST_SCENE if scene is None else scene)
+        return run_window(display, config, FIRST_SCENE if scene is None else scene, welcomes=scene is None)
 
 
 def _load(display: Display, module: str) -> bool:

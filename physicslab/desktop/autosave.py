@@ -3,12 +3,12 @@
 import gc
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 from physicslab.files.checks import SceneError
 from physicslab.files.replace import replace_file
-from physicslab.files.writer import WorldSnapshot, text_pieces
+from physicslab.files.writer import SceneText, WorldSnapshot
 from physicslab.world import World
 
 
@@ -49,8 +49,7 @@ class Autosave:
         self._period, self._share, self._clock = period, share, clock
         self._due = clock() + period
         self._saved: tuple[object, ...] = ()
-        self._writing: Iterator[bytes | None] | None = None
-        self._content: list[bytes] = []
+        self._writing: SceneText | None = None
         self._collected = False  # whether garbage was collected before
         self._thread: threading.Thread | None = None
         self._outcome: list[OSError] = []
@@ -73,28 +72,23 @@ class Autosave:
             if state == self._saved:
                 self._due = self._clock() + self._period
             else:
-                self._saved, self._content = state, []
+                self._saved = state
                 self._collected = gc.isenabled()
                 gc.disable()
-                self._writing = text_pieces(WorldSnapshot(world))
+                self._writing = SceneText(WorldSnapshot(world), self._clock)
 
     def _write(self) -> None:
         """Write as much as there is time for in a frame; at the end, hand it to the disk."""
-        deadline = self._clock() + self._share
         assert self._writing is not None
         try:
-            for piece in self._writing:
-                if piece is not None:
-                    self._content.append(piece)
-                if self._clock() >= deadline:
-                    return
+            content = self._writing.go_on(self._share)
         except (SceneError, ValueError) as error:  # ValueError: a number that is not finite
             self._finish(str(error))
             return
+        if content is None:
+            return
         self._let_go()
-        self._outcome = []
-        content, outcome = b"".join(self._content), self._outcome
-        self._content = []
+        outcome = self._outcome = []
 
         def store() -> None:
             try:
@@ -114,7 +108,6 @@ class Autosave:
 
     def _finish(self, failure: str) -> None:
         self._let_go()
-        self._content = []
         self._due = self._clock() + self._period
         self.failure = failure
         if failure:
@@ -135,9 +128,7 @@ class Autosave:
         if not under_way and _state(world) == self._saved and not self._outcome:
             return
         try:
-            replace_file(
-                self.path, b"".join(piece for piece in text_pieces(WorldSnapshot(world)) if piece is not None)
-            )
+            replace_file(self.path, SceneText(WorldSnapshot(world)).go_on() or b"")
         except (OSError, SceneError, ValueError) as error:
             self.failure = str(error)
 

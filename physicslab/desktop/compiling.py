@@ -210,7 +210,7 @@ class Compiling:
         if wanted == self._drawn:
             return
         self._drawn = wanted
-        share, so_far = progress.done / progress.total, f"{progress.done} of {progress.total} parts"
+        share, so_far = progress.share, f"{progress.done} of {progress.total} parts"
         if self._frames:
             draw_waiting(canvas, self._theme, share, f"{so_far}, {seconds} s")
         else:
@@ -225,8 +225,7 @@ class Compiling:
         if self._warmup is not None and compiles and not self._warmup.finished:
             self._progress = self._start().poll()
             self._warmup.yield_to_others(True)
-            share = self._progress.done / self._progress.total
-            draw_corner(self._display.canvas, theme, share)
+            draw_corner(self._display.canvas, theme, self._progress.share)
         if interpreter.is_forced():
             return
         pending = self.scenes.pending()
@@ -236,6 +235,14 @@ class Compiling:
             self._load_announced(pending)
         elif self._display.left > _ROOM or self._frames % _LOAD_EVERY == 0:
             self._load_one(KERNELS)
+
+    @property
+    def seconds_left(self) -> float | None:
+        """How long [s] it takes about until what moves the scene is compiled; ``None`` where it is."""
+        pending = self.scenes.pending()
+        if self._warmup is None or not pending:
+            return None
+        return self._warmup.seconds_left([name_of(jitted) for jitted in pending])
 
     def time_for_steps(self, longest: float) -> float:
         """Return how long [s] the steps of the coming frame may take, at most ``longest``.

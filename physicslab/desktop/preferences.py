@@ -9,10 +9,12 @@ from physicslab.ecs.text import printable
 from physicslab.files.checks import SceneError
 from physicslab.files.replace import replace_file
 from physicslab.files.scene import read_bytes
+from physicslab.languages.catalogue import languages
 from physicslab.view.canvas.drawable_text import encodable
 from physicslab.view.canvas.theme import THEMES
+from physicslab.view.window.desk import LEVELS
 from physicslab.view.window.recent import RecentFiles
-from physicslab.view.window.window import LEVELS, Window
+from physicslab.view.window.window import Window
 
 _MIN_SCALE, _MAX_SCALE = 0.5, 3.0
 """The sizes of text that are taken from a file, as shares of the usual."""
@@ -45,9 +47,13 @@ def load_preferences(path: Path, window: Window) -> None:
         window.text_scale = float(scale)
     if isinstance(level, str) and level in LEVELS:
         window.level = level
+    window.welcomed = found.get("welcomed") is True
+    window.reduced_motion = found.get("reduced motion") is True
+    window.sounds.on = found.get("sound") is True
+    window.language = next((code for code in languages() if code == found.get("language")), window.language)
     recent = found.get("recent")
     if isinstance(recent, list):
-        window.recent = RecentFiles(Path(path) for path in recent if isinstance(path, str) and path)
+        window.scenes.recent = RecentFiles(Path(path) for path in recent if isinstance(path, str) and path)
     if isinstance(arrangement, str) and len(arrangement) <= _MAX_ARRANGEMENT:
         window.arrangement = encodable(arrangement)
 
@@ -74,8 +80,10 @@ def save_preferences(path: Path, window: Window) -> None:
     """
     chosen = {
         "colours": window.theme.name, "text": window.text_scale, "level": window.level,
-        "recent": [os.fspath(path) for path in window.recent.paths],
-        "panels": window.arrangement,
+        "reduced motion": window.reduced_motion, "sound": window.sounds.on,
+        "recent": [os.fspath(path) for path in window.scenes.recent.paths],
+        "language": window.language,
+        "panels": window.arrangement, "welcomed": window.welcomed,
     }  # fmt: skip
     path.parent.mkdir(parents=True, exist_ok=True)
     if os.path.exists(path) and not path.is_file():  # a pipe without a reader would wait for ever

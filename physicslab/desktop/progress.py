@@ -13,7 +13,7 @@ _MARGIN = 10
 def draw_loading(canvas: Canvas, theme: Theme, remark: str) -> None:
     """Draw the name of the program, and a remark."""
     width, height = canvas.size
-    canvas.clear(theme.background)
+    canvas.clear(theme.sky_top, theme.sky_bottom, theme.grain)
     canvas.text(
         "PhysicsLab", (width // 2, height // 2 - 110), TextStyle(34, theme.heading, bold=True), "centre"
     )
@@ -21,9 +21,11 @@ def draw_loading(canvas: Canvas, theme: Theme, remark: str) -> None:
         canvas.text(remark, (width // 2, height // 2 + 28), TextStyle(14, theme.faint), "centre")
 
 
-def _draw_bar(canvas: Canvas, theme: Theme, left: int, top: int, width: int, share: float) -> None:
-    canvas.panel((left, top, width, _HEIGHT), theme.panel, theme.outline)
-    canvas.panel((left, top, round(width * share), _HEIGHT), theme.accent, theme.accent)
+def _draw_bar(
+    canvas: Canvas, theme: Theme, left: int, top: int, width: int, share: float, height: int = _HEIGHT
+) -> None:
+    canvas.panel((left, top, width, height), theme.panel, theme.outline)
+    canvas.panel((left, top, round(width * share), height), theme.accent, theme.accent)
 
 
 def draw_waiting(canvas: Canvas, theme: Theme, share: float, remark: str) -> None:
@@ -39,12 +41,13 @@ def draw_waiting(canvas: Canvas, theme: Theme, share: float, remark: str) -> Non
 
 
 def draw_corner(canvas: Canvas, theme: Theme, share: float) -> None:
-    """Draw at the bottom how far the compiling of what this scene does not need has come."""
-    words, style = f"Compiling the rest: {share:.0%}", TextStyle(12, theme.faint)
-    width, height = canvas.text_size(words, style)
-    left, top = canvas.size[0] - width - 3 * _MARGIN, canvas.size[1] - height - 2 * _MARGIN
-    canvas.panel((left, top, width + 2 * _MARGIN, height + _MARGIN), theme.panel, theme.outline)
+    """Draw at the bottom how far compiling has come."""
+    words, style = f"Compiling: {share:.0%}", TextStyle(12, theme.faint)
+    width, height = canvas.text_size("Compiling: 100%", style)
+    left, top = canvas.size[0] - width - 3 * _MARGIN, canvas.size[1] - height - 3 * _MARGIN
+    canvas.panel((left, top, width + 2 * _MARGIN, height + 2 * _MARGIN), theme.panel, theme.outline)
     canvas.text(words, (left + _MARGIN, top + _MARGIN // 2), style)
+    _draw_bar(canvas, theme, left + _MARGIN, top + height + _MARGIN, width, share, _MARGIN // 2)
 
 
 def draw_progress(canvas: Canvas, theme: Theme, share: float, remark: str) -> None:

@@ -8,21 +8,27 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from physicslab.components import Gate, Held, Transform
+from physicslab.components import Gate, Graph, Held, Meter, Slider, Transform
 from physicslab.desktop.autosave import Autosave
 from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.files.scene import SceneError, save_last_good
-from physicslab.history import History, RemoveComponent
+from physicslab.history import Changes, History, RemoveComponent
+from physicslab.state.attached import INSTRUMENTS
 from physicslab.state.masses import Diverged
 from physicslab.systems.frame.hud import HudSystem
 from physicslab.systems.frame.input import InputSystem
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
+from physicslab.view.controls.lesson_actions import end_lesson
+from physicslab.view.controls.tools import SELECT
 from physicslab.view.controls.window_events import WindowEvents
+from physicslab.view.picture.backdrop import is_in_space
+from physicslab.view.window.desk import restore_desk
+from physicslab.view.window.ends import Pins
 from physicslab.view.window.handles import Handles
 from physicslab.view.window.measuring import Measuring
-from physicslab.view.window.spring_tool import Pins
-from physicslab.view.window.window import Left, Window
+from physicslab.view.window.scenes import Left
+from physicslab.view.window.window import Window
 from physicslab.view.workbench.hud import Hud
 from physicslab.view.workbench.interface import Interface
 from physicslab.view.workbench.world_view import WorldView
@@ -80,13 +86,14 @@ class Sandbox:
         self._rested = self._undrawn = 0.0  # how long nothing has moved, or was drawn [s]
         self._owed = 0.0  # time that is to be shown of steps that were made once [s]
         self._places = np.empty((0, 3))
-        self._titles, self._source = ("", ""), window.source
+        self._source = window.scenes.source
         self.world = world
         self.interface = Interface(window)
-        window.room = self.interface.room
+        window.framing.room = self.interface.room
         hud = Hud(window, self.interface)
+        self._events = WindowEvents(window, self.interface.take)
         self._systems = (
-            InputSystem(pygame.event.get, WindowEvents(window, self.interface.take)),
+            InputSystem(pygame.event.get, self._events),
             RenderSystem(WorldView(window).draw),
             HudSystem(lambda: window.now, hud.readings, hud.draw),
         )
@@ -100,9 +107,10 @@ class Sandbox:
         A world that was shown before comes with its history.
         """
         self.window.filming.end()
-        titles, self._titles = self._titles, (world.name, world.title)
-        is_again = titles == self._titles and self.window.source == self._source
+        is_again, self.window.scenes.starts_again = self.window.scenes.starts_again, False
         before = self.world if is_again and world is not self.world else None
+        if not is_again and (is_in_space(world) or is_in_space(self.world)):
+            self.window.grid = not is_in_space(world)
         self.world = world
         if self._shown is not None:
             self._shown(world)
@@ -117,8 +125,10 @@ class Sandbox:
         window.sketch.cancel()
         window.overlays.forget()
         window.sparks.clear()
+        window.dust.clear()
+        window.squash.clear()
         window.selection.clear()
-        window.naming, window.picking, window.band, window.measuring = None, None, None, Measuring()
+        window.scenes.naming, window.picking, window.band, window.measuring = None, None, None, Measuring()
         window.handles, window.pins = Handles(), Pins()
         if not is_again:  # what was found of another scene is not for this one
             window.error_study.abandon()
@@ -127,9 +137,13 @@ class Sandbox:
         self.interface.forget()
         window.microscope.forget()
         window.shows_stopwatch = bool(len(world.batch(Gate)))
-        window.error, window.next_world = "", None
-        window.go_home(world)
-        window.unchanged = world.motion_edits
+        if world.desk is not None:
+            restore_desk(window, world.desk)
+        if not is_again and any(len(world.batch(kind)) for kind in (*INSTRUMENTS, Graph, Meter, Slider)):
+            window.tool = SELECT.name  # a stray click is to make nothing in an experiment
+        window.error, window.scenes.next_world = "", None
+        window.framing.go_home(world)
+        window.scenes.saved = Changes()
         window.trust.follow(world, window.now)  # before it is stepped: digits count from here
 
     def frame(self, elapsed: float) -> bool:
@@ -138,11 +152,11 @@ class Sandbox:
         While nothing in it moves it is drawn a few times a second; return whether it was.
         """
         self.window.pace.begin(elapsed)
-        if self.window.next_world is None:
-            self._source = self.window.source  # another, once the scene was saved under another name
+        if self.window.scenes.next_world is None:
+            self._source = self.window.scenes.source  # another, once the scene was saved under another name
         self.world.frame(Stage.INPUT, elapsed)
-        if self.window.next_world is not None:
-            self._go_on_to(self.window.next_world)
+        if self.window.scenes.next_world is not None:
+            self._go_on_to(self.window.scenes.next_world)
         self._advance()
         self.window.filming.advance(self.history)
         self._follow_entities()
@@ -151,7 +165,7 @@ class Sandbox:
         if drawn:
             self._places = self._places_now()
             self.world.frame(Stage.RENDER, elapsed)
-            self.window.filming.take(self.world, self.window.canvas, self.window.room())
+            self.window.filming.take(self.world, self.window.canvas, self.window.framing.room())
             self.world.frame(Stage.HUD, elapsed)
             self._undrawn = 0.0
         if self._autosave is not None:
@@ -168,7 +182,7 @@ class Sandbox:
     def _rests(self, elapsed: float) -> bool:
         """Whether only the clock changes in the picture: for a while nothing has moved or was done."""
         window = self.window
-        shown = window.notice or len(window.sparks) or window.error_study.running or window.filming.running
+        shown = window.notice or len(window.sparks) or len(window.dust) or window.works
         done = window.touched or window.hand.entity is not None
         still = not (shown or done) and np.array_equal(self._places, self._places_now())
         self._rested = self._rested + elapsed if still else 0.0
@@ -182,29 +196,44 @@ class Sandbox:
 
     def _go_on_to(self, world: World) -> None:
         """Show another world; the one that is left can be had back if there are unsaved edits in it."""
-        window, back = self.window, self.window.left
+        window, back, lesson = self.window, self.window.scenes.left, self.window.lesson
         window.hand.drop(self.world)
-        window.edits.take_back_shown()
-        edited = window.has_unsaved(self.world)
-        window.left = Left(self.history, self._source, window.unchanged) if edited else None
+        window.edits.keep()
+        if lesson is not None and lesson.world is world:
+            window.scenes.source = None
+            self.show(world)
+            return
+        left = Left(self.history, self._source, window.scenes.saved)
+        if lesson is not None:
+            left = lesson.before
+            end_lesson(window, lesson)
+            if left.history.world is world:
+                self._show_again(left)
+                return
+        edited = left.is_edited
+        window.scenes.left = left if edited else None
         if back is not None and back.history.world is world:
-            self.show(world, back.history)
-            window.source, window.unchanged = back.source, back.unchanged
+            self._show_again(back)
             return
         self.show(world)
         if edited:
             window.notify(f"{window.notice} - Ctrl+Z at its start brings back what was edited before", 6.0)
 
+    def _show_again(self, left: Left) -> None:
+        """Show a scene that was shown before, as it was."""
+        self.show(left.history.world, left.history)
+        self.window.scenes.source, self.window.scenes.saved = left.source, left.saved
+
     def is_still(self) -> bool:
         """Whether the next frame would show what this one does, unless the user does something."""
         window = self.window
-        works = window.error_study.running or window.filming.running
-        busy = works or window.pending or window.closing or window.next_world is not None
+        busy = window.works or window.pending or window.closing or window.scenes.next_world is not None
+        busy = busy or self._events.waits
         return not (busy or window.is_moving(self.world) or self.interface.toolkit.unsettled)
 
     def _keep(self, autosave: Autosave) -> None:
         """Let the state be saved where that is due; say once where it cannot be."""
-        autosave.advance(self.world)
+        autosave.advance(self.window.own.history.world)
         if autosave.failure and not self._reported:
             words = f"The state cannot be kept for the case of a crash: {autosave.failure}"
             self.window.notify(words, 8.0, failed=True)
@@ -216,10 +245,17 @@ class Sandbox:
         None is begun once they have taken as long as a frame may make up for: a world too heavy for the
         machine runs slowly, and the window stays awake.
         """
-        pace, dt, microscope = self.window.pace, self.world.simulation.dt, self.window.microscope
+        window, dt = self.window, self.world.simulation.dt
+        pace, microscope = window.pace, window.microscope
         began = self._clock()
         deadline = began + pace.max_dt
         made, due = 0, pace.due(dt)
+        if due and window.lesson is not None and window.lesson.waits:
+            window.notify("First your prediction: lock it in, and the run is open")
+            pace.halt()
+            due = 0
+        if due:
+            self.window.edits.keep_for_run()  # no step is made with what is only shown
         try:
             while made < due and (made == 0 or self._clock() < deadline):
                 logged, before = self.world.contacts.logged, self.world.time
@@ -230,6 +266,9 @@ class Sandbox:
                 if microscope.sees_impact(self.world, logged, before):
                     pace.halt()
                     self.history.divide()
+                    break
+                if window.lesson is not None and window.lesson.follow(self.world):
+                    pace.halt()
                     break
         except Diverged as error:
             pace.halt()

@@ -6,6 +6,7 @@ import signal
 import threading
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Any
@@ -22,7 +23,10 @@ from physicslab.files.scene import load_scene
 from physicslab.kernels import working_ns
 from physicslab.scenes import SCENES
 from physicslab.view.canvas.display import Display, ask_to_leave, forget_clicks
+from physicslab.view.controls.lesson_actions import open_lesson
+from physicslab.view.controls.saving import scene_words
 from physicslab.view.window.recent import Recovery
+from physicslab.view.window.scenes import stamp_of
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -84,6 +88,8 @@ class Termination:
 # ---- the window --------------------------------------------------------------------------------------------
 
 
+FIRST_SCENE = "sandbox"
+"""The scene that is opened where none is named, and that stands behind a lesson."""
 _PREFERENCES = "preferences.json"
 _STILL = 0.5
 """Time [s] between two frames where nothing moves and nothing is done: a laptop lives on its battery."""
@@ -91,37 +97,44 @@ _TITLE_LIMIT = 200
 """Characters of the window's title that come from the scene."""
 
 
-def run_window(display: Display, config: WindowConfig, scene: str) -> int:
-    """Show a scene until the window is closed; return the exit status.
+def run_window(display: Display, config: WindowConfig, scene: str, *, welcomes: bool = False) -> int:
+    """Show a scene, or a lesson, until the window is closed; return the exit status.
 
+    Where it ``welcomes``, the cards of the first minute are shown, unless they were used before.
     Where a signal ends the program (a logout, ``kill``), the state is saved and offered at the next start.
 
     Raises
     ------
     SceneError
-        If there is no such scene or it is not allowed.
+        If there is no such scene, or it is not allowed.
     """
+    lesson = scene if scene.endswith(".md") else ""
+    scene = FIRST_SCENE if lesson else scene
+    source = Path(scene) if scene not in SCENES else scene
+    stamp = stamp_of(source)
     world = load_scene(scene)
-    display.title = _title(world)
     window = Window(display.canvas, config)
-    window.source = Path(scene) if scene not in SCENES else scene
+    window.scenes.source = source
     session, abandoned = _begin_session(window)
     with suppress(OSError):
         load_preferences(session_folder().with_name(_PREFERENCES), window)
-    if isinstance(window.source, Path):
-        window.recent.note(window.source)
+    offered = window.shows_cards = welcomes and not window.welcomed
+    window.scenes.note(source, stamp)
     autosave = None if session is None else Autosave(session.path)
-    window.recovery = Recovery(abandoned, None if session is None else session.path)
+    window.scenes.recovery = Recovery(abandoned, None if session is None else session.path)
     sandbox: Sandbox | None = None
     try:
         with Termination(ask_to_leave) as termination:
             try:
                 with Compiling(display) as compiling:
+                    window.has_kernels = partial(getattr, compiling, "finished")
                     with loading():
                         # What is waited for a kernel is no time that steps took.
                         sandbox = Sandbox(
                             world, window, lambda: 1e-9 * working_ns(), autosave, compiling.scenes.follow
                         )
+                        if lesson:
+                            open_lesson(world, window, lesson)
                         forget_clicks()
                         sandbox.frame(0.0)
                         forget_clicks()
@@ -129,12 +142,14 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
             except Left:  # the window was closed while it waited for kernels
                 pass
             if termination.signal and autosave is not None and sandbox is not None:
-                autosave.save(sandbox.world)
+                autosave.save(window.own.history.world)
     finally:
         window.error_study.stop()
+        window.sharing.stop()
         window.trust.stop()
         window.filming.end()
-        window.recovery.leave()
+        window.scenes.recovery.leave()
+        window.welcomed = window.welcomed or (offered and not window.shows_cards)
         with suppress(OSError):  # a window without preferences is the usual one
             save_preferences(session_folder().with_name(_PREFERENCES), window)
     if session is not None and termination.signal:
@@ -142,8 +157,8 @@ def run_window(display: Display, config: WindowConfig, scene: str) -> int:
     elif autosave is not None and session is not None:
         # Closed by the user: an edited world that was not saved is offered at the next start, as after an
         # error or a signal; the rest can be had again.
-        if sandbox is not None and window.has_unsaved(sandbox.world):
-            autosave.save(sandbox.world)
+        if sandbox is not None and window.has_unsaved:
+            autosave.save(window.own.history.world)
             session.release()
         else:
             autosave.stop()
@@ -172,8 +187,9 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
     while not window.closing:
         drawn = sandbox.frame(elapsed)
         compiling.advance(window.theme)
+        window.preparing = compiling.seconds_left
         window.pace.max_dt = compiling.time_for_steps(window.config.max_dt)
-        display.title = _title(sandbox.world)
+        display.title = _title(sandbox.world, window)
         if window.wants_screenshot:
             window.wants_screenshot = False
             _keep_screenshot(display, window)
@@ -182,9 +198,9 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
             display.rest(_STILL)
 
 
-def _title(world: World) -> str:
-    """Return what the window is called: a world made by a program may have a title of any length."""
-    return f"{shortened(printable(world.title or world.name or 'A scene'), _TITLE_LIMIT)} - PhysicsLab"
+def _title(world: World, window: Window) -> str:
+    """Return the words of the title bar; a world made by a program may have a title of any length."""
+    return f"{shortened(printable(scene_words(world, window)), _TITLE_LIMIT)} - PhysicsLab"
 
 
 def _keep_screenshot(display: Display, window: Window) -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Velocity
 from physicslab.diagnostics.step_warnings import ModelWarning
 from physicslab.stepping.contact_model import why_not_rigid
+from physicslab.stepping.plan import WITHOUT_END
 from physicslab.stepping.rigid import Rigid
 from physicslab.world import World
 
@@ -126,7 +127,8 @@ def contact_warnings(world: World, rigid: Rigid | None) -> Iterator[ModelWarning
 
 def rigid_setting(world: World, touching: int) -> str:
     """Return the setting for rigid contacts, nothing where they are chosen, not possible, or too many."""
-    if world.plan.contacts == "rigid" or touching > RIGID_LIMIT:
+    tried = world.plan.contacts == "rigid" or world.plan.contact_reason == WITHOUT_END
+    if tried or touching > RIGID_LIMIT:
         return ""
     return 'simulation.contacts = "rigid"' if why_not_rigid(world, world.schedule) is None else ""
 
@@ -157,6 +159,7 @@ def _undetermined(world: World) -> Iterator[ModelWarning]:
 
     Newton's law gives what a pair does alone. Whether several impulses on one body act together, or one
     after the other, is a choice: together where pairs approach together, in turn where one passes it on.
+    What is welded together counts as one body.
     """
     log, logged = world.contacts.log, world.contacts.logged
     count = min(logged, len(log), _LATEST)
@@ -168,8 +171,12 @@ def _undetermined(world: World) -> Iterator[ModelWarning]:
     index = np.arange(len(records))
     free_a, free_b = records["inverse_mass_a"] > 0.0, records["inverse_mass_b"] > 0.0
     of = np.concatenate((index[free_a], index[free_b]))
-    body = np.concatenate((records["entity_a"][free_a], records["entity_b"][free_b]))
-    other = np.concatenate((records["entity_b"][free_a], records["entity_a"][free_b]))
+    wholes = world.joints.wholes
+    one, two = (
+        np.array([wholes.get(entity, entity) for entity in records[end].tolist()], np.int64)
+        for end in ("entity_a", "entity_b")
+    )
+    body, other = np.concatenate((one[free_a], two[free_b])), np.concatenate((two[free_a], one[free_b]))
     order = np.lexsort((of, body, moment[of]))
     of, body, other = of[order], body[order], other[order]
     first, second = of[:-1], of[1:]

@@ -10,7 +10,7 @@ from physicslab.components import Mass, Transform, Velocity
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.report import ContactPoint, contacts_of
 from physicslab.ecs.vector import Vector2, rotated
-from physicslab.state.joint_figures import forces_of
+from physicslab.state import joint_figures
 from physicslab.state.joints import Joint
 from physicslab.state.masses import quiet
 from physicslab.stepping.forces import forces_by_system
@@ -83,12 +83,10 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
     if damping > 0.0:
         velocity, mass = world.component(entity, Velocity).linear, world.component(entity, Mass).mass
         found.append(NamedForce(_DAMPING, -damping * mass * velocity, centre, "field"))
-    for joint in world.joints.joints:
-        force_of_joint = forces_of(world, joint).get(row)
-        if force_of_joint is not None:
-            found.append(
-                NamedForce(world.label(joint.entity), force_of_joint, _end(world, joint, row), "field")
-            )
+    for number, pull in joint_figures.forces_on(world, row).items():
+        joint = world.joints.joints[number]
+        name, at = world.label(joint.entity), _end(world, joint, row)
+        found.append(NamedForce(name, Vector2(*pull.tolist()), at, "field"))
     for contact in contacts_of(world, entity):
         on_b = contact.b == entity
         other = world.label(contact.a if on_b else contact.b) if contact.a and contact.b else "the wall"
@@ -174,13 +172,15 @@ def last_step(world: World, entity: int) -> LastStep | None:
 def _fields_before(world: World) -> dict[str, NDArray[np.float64]]:
     """Return the force of each system on each row (n, 2) [N] as it was before the last step."""
     columns = motion_of(world)
-    now = [column.copy() for column in columns]
-    try:
-        world.checkpoint.restore(columns)
-        return _fields(world)
-    finally:
-        for column, kept in zip(columns, now, strict=True):
-            column[...] = kept
+    with world.active():
+        world.synchronise()
+        now = [column.copy() for column in columns]
+        try:
+            world.checkpoint.restore(columns)  # of which nothing is told: it is no edit for islands to follow
+            return forces_by_system(world, world.schedule)
+        finally:
+            for column, kept in zip(columns, now, strict=True):
+                column[...] = kept
 
 
 def _impacts(world: World, entity: int) -> dict[str, Vector2]:
@@ -213,10 +213,8 @@ def applied_forces(world: World) -> NDArray[np.float64]:
 
 def joint_forces(world: World) -> NDArray[np.float64]:
     """Return the forces of joints on each row (n, 2) [N], as in :func:`forces_on`."""
-    total = np.zeros_like(world.bodies.force)
-    for joint in world.joints.joints:
-        for row, force in forces_of(world, joint).items():
-            total[row] += tuple(force)
+    total = joint_figures.forces_on_all(world)
+    total[0] = 0.0
     return total
 
 

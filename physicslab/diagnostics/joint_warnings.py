@@ -5,9 +5,19 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.diagnostics.joints import joint_states
+from physicslab.components import Held, Rod, Transform
 from physicslab.diagnostics.step_warnings import ModelWarning
-from physicslab.kernels.joints.blocks import GIVES
+from physicslab.kernels.joints.blocks import ACTIVE, GIVES, STATE
+from physicslab.kernels.joints.measured import AX, BX, BY, TURN_A
+from physicslab.state.joint_figures import (
+    errors_of_rows,
+    figures_of,
+    joints_of_rows,
+    measured_terms,
+    rows_of_terms,
+)
+from physicslab.state.joint_rows import Measure, Role
+from physicslab.stepping.plan import WITHOUT_END
 from physicslab.stepping.soft import Soft
 from physicslab.world import World
 
@@ -16,31 +26,111 @@ STRETCH_LIMIT = 0.01
 10,000 times the load of a link, and two pins that contradict each other are as far apart as they are made."""
 
 
+LEVERAGE_LIMIT = 1e6
+"""Mass times arm squared over the moment of inertia up to which the equations of joints keep seven digits of
+the energy and more; each tenfold beyond costs four, until a row is taken for that of a flat linkage."""
+_MOST_ROWS, _TURNS = 100, 12
+"""Number of rows up to which it is looked for contradictions, and how often it is tried to close them."""
+
+
 def joint_warnings(world: World) -> Iterator[ModelWarning]:
-    """Yield the joint that is farthest apart, with the reason; and which are redundant."""
-    states = joint_states(world)
-    if not states:
+    """Yield a joint that does nothing, the one that is farthest apart with the reason, and redundant ones."""
+    joints = world.joints.joints
+    if not joints:
         return
-    dependent = _dependent(world)
-    worst = max(states, key=lambda joint: joint.stretch / joint.size)
-    limit = STRETCH_LIMIT * worst.size
-    if worst.stretch > limit:
-        told = bool(dependent.any())
+    world.joints.refresh(world.entity_index)
+    moves = _moves(world)
+    if not moves.all():
+        idle, what = joints[int(np.argmin(moves))].entity, "joins what no force moves, and does nothing"
+        yield ModelWarning.about(world, idle, what, None, "", None, "a Mass and a Velocity at one end")
+    if not moves.any():
+        return
+    yield from _light_to_turn(world)
+    figures, dependent = figures_of(world), _dependent(world) & moves[joints_of_rows(world)]
+    worst = int(np.argmax(np.where(moves, figures.stretch / figures.size, -1.0)))
+    stretch, limit = float(figures.stretch[worst]), STRETCH_LIMIT * float(figures.size[worst])
+    if stretch > limit:
+        # Other steppers than the soft one close what can be closed, to rounding.
+        told = bool(dependent.any()) or not isinstance(world.stepper, Soft) or _contradict(world, limit)
         what = "contradicts other joints: not all can be kept" if told else "does not hold what it joins"
         setting = "" if told else f"simulation.substeps = {2 * world.simulation.substeps}"
-        yield ModelWarning.about(world, worst.entity, what, worst.stretch, "m", limit, setting)
+        yield ModelWarning.about(world, joints[worst].entity, what, stretch, "m", limit, setting)
     elif dependent.any():
-        first = int(np.flatnonzero(dependent)[0])
-        joint = next(joint for joint in world.joints.joints if joint.own.start <= first < joint.own.stop)
+        first = int(np.argmax(dependent))
+        joint = joints[int(joints_of_rows(world)[first])]
+        if joint.kind is Rod and not measured_terms(world)[first, AX : BY + 1].any():
+            what = "has both ends in one place, where a distance has no direction"
+            yield ModelWarning.about(world, joint.entity, what, None, "", None, "a Pin")
+            return
         what = "holds what other joints hold already: how they share the load is not determined (rows)"
         count = float(np.count_nonzero(dependent))
         yield ModelWarning.about(world, joint.entity, what, count, "", 0.0, "one joint less")
 
 
+def _moves(world: World) -> NDArray[np.bool_]:
+    """Return of each joint (n,) whether a force can move what it joins; a hand may let go of it."""
+    bodies, joints, owner = world.bodies, world.joints, joints_of_rows(world)[rows_of_terms(world)]
+    free = (bodies.inverse_mass > 0.0) | (bodies.inverse_inertia > 0.0) | world.table(Held).present
+    moves = np.zeros(len(joints.joints), np.bool_)
+    np.logical_or.at(moves, owner, free[joints.a] | free[joints.b])
+    return moves
+
+
+def _light_to_turn(world: World) -> Iterator[ModelWarning]:
+    """Yield the body with the smallest moment of inertia for the arm on which exact joints hold it."""
+    if isinstance(world.stepper, Soft) and world.plan.contact_reason != WITHOUT_END:
+        return
+    joints, bodies = world.joints, world.bodies
+    ends = np.concatenate((joints.a, joints.b))
+    arms = np.hypot(*np.concatenate((joints.anchor_a, joints.anchor_b)).T)
+    mass, inertia = bodies.inverse_mass[ends], bodies.inverse_inertia[ends]
+    held = np.where(np.concatenate((joints.measure, joints.measure)) == Measure.ANGLE, 0.0, arms * arms)
+    leverage = np.where(mass > 0.0, held * inertia / np.where(mass > 0.0, mass, 1.0), 0.0)
+    worst = int(np.argmax(leverage))
+    if leverage[worst] > LEVERAGE_LIMIT:
+        what = "turns too easily for its joints to be solved with all digits (mass * arm^2 / inertia)"
+        setting = f"Mass.inertia = {1.01 * leverage[worst] / (LEVERAGE_LIMIT * inertia[worst]):.3g}"
+        entity = int(world.entity_index.entities[ends[worst]])
+        yield ModelWarning.about(world, entity, what, float(leverage[worst]), "", LEVERAGE_LIMIT, setting)
+
+
+def _contradict(world: World, limit: float) -> bool:
+    """Whether the rows that hold cannot all be closed, from where bodies are."""
+    joints, transform = world.joints, world.table(Transform)
+    held, owner = joints.role == Role.HOLD, rows_of_terms(world)
+    if np.count_nonzero(held) > _MOST_ROWS:
+        return False
+    position, angle = transform["position"].copy(), transform["angle"].copy()
+    bodies = world.bodies
+    give = np.sqrt(np.stack((bodies.inverse_mass, bodies.inverse_mass, bodies.inverse_inertia), axis=1))
+    for _ in range(_TURNS):
+        terms = measured_terms(world, position, angle)
+        error = np.where(held, errors_of_rows(world, terms), 0.0)
+        if np.abs(error).max() < 0.5 * limit:
+            return False
+        gradient = np.zeros((len(joints), len(angle), 3))
+        pulls = joints.scale[:, None] * terms
+        np.add.at(gradient, (owner, joints.a), pulls[:, AX : TURN_A + 1])
+        np.add.at(gradient, (owner, joints.b), pulls[:, BX:])
+        moved = (gradient * give)[held].reshape(-1, give.size)
+        closing = np.linalg.lstsq(moved, -error[held], rcond=1e-6)[0].reshape(give.shape) * give
+        # No farther at once than errors reach: rods in line do not say which way they would close.
+        closing *= min(1.0, np.abs(error).sum() / max(np.abs(closing[:, :2]).max(), 1e-300))
+        position += closing[:, :2]
+        angle += closing[:, 2]
+    return True
+
+
 def _dependent(world: World) -> NDArray[np.bool_]:
     """Return which rows of joints (n,) depend on others, as far as the last stepper found that."""
     joints = world.joints
-    if isinstance(world.stepper, Soft):
-        known = len(joints.measured) == len(joints.scale)  # not before the first step
-        return joints.measured[: len(joints), GIVES] != 0.0 if known else np.zeros(len(joints), np.bool_)
-    return joints.dependent
+    if not isinstance(world.stepper, Soft):
+        return joints.dependent
+    if len(joints.measured) != len(joints.scale):
+        return np.zeros(len(joints), np.bool_)  # not before the first step
+    measured, owner = joints.measured[: len(joints)], joints_of_rows(world)
+    # A motor that stands at a limit of its own joint holds the same as that, which is meant.
+    bounds = joints.role != Role.HOLD
+    acting = np.bincount(owner[bounds & (measured[:, STATE] == ACTIVE)], minlength=len(joints.joints))
+    dependent: NDArray[np.bool_] = (measured[:, GIVES] != 0.0) & ~(bounds & (acting[owner] > 1))
+    return dependent

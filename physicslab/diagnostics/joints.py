@@ -1,14 +1,13 @@
 """Joints as people and programs read them: where they are, their forces, how far they are apart."""
 
-import math
 from dataclasses import dataclass
 from typing import Any
+
+import numpy as np
 
 from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2, rotated
 from physicslab.state.joint_figures import figures_of
-from physicslab.state.joint_rows import Measure
-from physicslab.state.joints import Joint
 from physicslab.state.state import State
 
 
@@ -53,11 +52,6 @@ class JointState:
     largest_stretch: float
     size: float
 
-    @property
-    def is_fixed(self) -> bool:
-        """Whether it holds a body to the world."""
-        return not (self.a and self.b)
-
 
 def joint_states(state: State) -> list[JointState]:
     """Return all joints, as the structure of the world was when it was last followed."""
@@ -65,22 +59,14 @@ def joint_states(state: State) -> list[JointState]:
     if not joints.joints:
         return []
     joints.refresh(state.entity_index)
-    found = []
-    for joint in joints.joints:
-        a, b, anchor = joint.a, joint.b, joints.anchor_a[joint.first]
-        place = transform["position"][a] + rotated(anchor, transform["angle"][a])
-        angle = float(transform["angle"][b or a])
-        ends = int(state.entity_index.entities[a]), int(state.entity_index.entities[b])
-        kind, at = joint.kind, Vector2(*place.tolist())
-        figures, size = figures_of(state, joint), _size(state, joint)
-        found.append(JointState(joint.entity, kind, at, angle, *ends, *figures, size))  # type: ignore[arg-type]
-    return found
-
-
-def _size(state: State, joint: Joint) -> float:
-    """Return the length that the error of a joint is compared with [m]."""
-    joints, n = state.joints, joint.first
-    arms = [joints.anchor_a[n] if joint.a else (0.0, 0.0), joints.anchor_b[n] if joint.b else (0.0, 0.0)]
-    length = abs(float(joints.offset[n])) if joints.measure[n] == Measure.DISTANCE else 0.0
-    reach = [float(state.bodies.shapes.reach[body]) for body in (joint.a, joint.b) if body]
-    return max([length, *(math.hypot(x, y) for x, y in arms)]) or max(reach, default=0.0) or 1.0
+    figures = figures_of(state)
+    first, a, b = (np.array([joint[k] for joint in joints.joints], np.int64) for k in (2, 4, 5))
+    angle, entities = transform["angle"], state.entity_index.entities
+    places = (transform["position"][a] + rotated(joints.anchor_a[first], angle[a])).tolist()
+    angles, forces = angle[np.where(b > 0, b, a)].tolist(), figures.force.tolist()
+    ends, numbers = np.stack((entities[a], entities[b]), axis=1), np.stack(figures[1:], axis=1)
+    every = zip(joints.joints, places, angles, ends.tolist(), forces, numbers.tolist(), strict=True)
+    return [
+        JointState(one.entity, one.kind, Vector2(*at), turned, *both, Vector2(*force), *own)  # type: ignore[call-arg]
+        for one, at, turned, both, force, own in every
+    ]

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from physicslab.components import Spring
 from physicslab.integrators import Integrator
+from physicslab.state.joint_rows import Role
 from physicslab.state.packed import spring_ends
+from physicslab.systems.joint_forces import JointForces
 from physicslab.systems.system import ForceSystem
 from physicslab.world import World
 
@@ -106,6 +108,10 @@ PHASE_LIMIT = 0.05
 """Phase that oscillations may have lost by now [rad]: places are then wrong by 5 % of the amplitude."""
 _AUTO_RATE_LIMIT = 500.0
 """omega dt up to which ``auto`` divides a step until it follows an oscillation."""
+EVALUATIONS_LIMIT = 20_000
+"""Force evaluations in a step, as a mean over the run: of two bodies they take longer than a step lasts."""
+_DAMPED_LIMIT = 50.0
+"""Rate times the step from which on what is followed is a fast decay or oscillation."""
 SUBSTEPS_LIMIT = 10_000
 """From a scene's configuration."""
 
@@ -123,6 +129,21 @@ def step_warnings(world: World) -> Iterator[ModelWarning]:
         yield from _rates(world, *followed)
         yield from _phase(world, followed[0])
     yield from _order(world)
+    yield from _cost(world)
+
+
+def _cost(world: World) -> Iterator[ModelWarning]:
+    """Yield how many force evaluations a step takes, if that is slower than the motion."""
+    made = world.force_evaluations / max(world.steps, 1)
+    if made <= EVALUATIONS_LIMIT:
+        return
+    rate, system = fastest_force(world)
+    stiff = system is not None and rate * world.simulation.dt > _DAMPED_LIMIT
+    setting = f"simulation.tolerance = {max(1e-12, 1e3 * world.simulation.tolerance):.0e}"
+    if stiff:
+        setting = 'simulation.integrator = "implicit_midpoint"'
+    what = "force evaluations are made in a step: something is followed that is too fast to be seen"
+    yield ModelWarning(None, what, made, "", EVALUATIONS_LIMIT, setting)
 
 
 def _rates(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarning]:
@@ -215,7 +236,12 @@ def _order(world: World) -> Iterator[ModelWarning]:
     method = plan.integrator if plan.smooth else plan.stages
     if world.simulation.integrator == "auto" or plan.collisions == "exact" or not method.positions_only:
         return
+    turned = any(force.gyration(world) is not None for force in world.schedule.smooth_forces)
+    damped = world.physics.linear_damping > 0.0 or world.physics.angular_damping > 0.0
+    # Along rows that hold it drifts exactly, if nothing else turns velocities (integrators/along_joints.py).
+    along = plan.smooth and not (turned or damped or (world.joints.role != Role.HOLD).any())
     forces = [force for force in world.schedule.smooth_forces if force.gyration(world) is None]
+    forces = [force for force in forces if not (along and isinstance(force, JointForces))]
     seeing = next((force for force in forces if force.sees_velocity(world)), None)
     if seeing is not None:
         name = seeing.name.removesuffix("System")

@@ -5,8 +5,9 @@ import math
 import operator
 import re
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 from physicslab.ecs.text import printable, shortened
 from physicslab.ecs.vector import Vector2
@@ -26,8 +27,8 @@ class InvalidText(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class _Quantity:
-    """A value, the powers of its unit, and whether a unit is named: what a function returns has none."""
+class Quantity:
+    """A value in SI, the powers of its unit, and whether a unit is named: a pure number fits any."""
 
     value: float
     dimension: Dimension = (0, 0, 0, 0)
@@ -37,8 +38,8 @@ class _Quantity:
 _L, _M, _T, _Q, _ONE = (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1), (0, 0, 0, 0)
 _V, _N, _J, _W = (1, 0, -1, 0), (1, 1, -2, 0), (2, 1, -2, 0), (2, 1, -3, 0)
 _PA, _HZ, _VOLT, _TESLA = (-1, 1, -2, 0), (0, 0, -1, 0), (2, 1, -2, -1), (0, 1, -1, -1)
-_UNITS: dict[str, _Quantity] = {
-    name: _Quantity(value, dimension, has_unit=True)
+_UNITS: dict[str, Quantity] = {
+    name: Quantity(value, dimension, has_unit=True)
     for value, dimension, names in (
         (1.0, _L, "m"), (1e3, _L, "km"), (0.1, _L, "dm"), (1e-2, _L, "cm"), (1e-3, _L, "mm"),
         (1e-6, _L, "um µm"), (1e-9, _L, "nm"), (0.0254, _L, "inch"), (0.3048, _L, "ft foot"),
@@ -59,11 +60,16 @@ _UNITS: dict[str, _Quantity] = {
     for name in names.split()
 }  # fmt: skip
 """The units there are, in SI."""
-_CONSTANTS = {"pi": _Quantity(math.pi), "π": _Quantity(math.pi), "e": _Quantity(math.e)}
+_CONSTANTS = {"pi": Quantity(math.pi), "π": Quantity(math.pi), "e": Quantity(math.e)}
 _FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sqrt": math.sqrt, "sin": math.sin, "cos": math.cos, "tan": math.tan,
     "asin": math.asin, "acos": math.acos, "atan": math.atan, "exp": math.exp, "log": math.log, "abs": abs,
+    "tanh": math.tanh, "floor": math.floor,
 }  # fmt: skip
+_OF_TWO: dict[str, Callable[[float, float], float]] = {
+    "min": min, "max": max, "agm": lambda a, b: _arithmetic_geometric_mean(a, b),
+}  # fmt: skip
+"""Functions of two quantities of one dimension, which their value has."""
 _SUPERSCRIPTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _SIGNS = {0x2212: "-", 0xD7: "*"}
 """The signs of print for minus and times."""
@@ -110,27 +116,154 @@ def evaluate(text: str, unit: str = "1") -> float:
         ...
     physicslab.ecs.quantity_text.InvalidText: '3 kg' is in kg; this is in m
     """
-    shown = shortened(printable(text.strip()), _SHOWN_LIMIT)
-    if not shown:
-        raise InvalidText("a number is needed")
-    if len(text) > _DEPTH_LIMIT:
-        raise InvalidText(f"'{shown}' is too long")
-    for pattern, why in _UNCLEAR:
-        if pattern.search(text):
-            raise InvalidText(f"'{shown}' {why}")
-    found = _evaluated(text, shown)
-    wanted = _evaluated(unit, unit) if unit not in ("", "1") else _Quantity(1.0)
+    return in_unit(Expression(text).value(), unit, text)
+
+
+def in_unit(found: Quantity, unit: str, text: str) -> float:
+    """Return the value in an SI unit of what a text stands for, as :func:`evaluate` does."""
+    shown = _shown(text)
+    wanted = Expression(unit).value() if unit not in ("", "1") else Quantity(1.0)
     if not found.has_unit:
         value = found.value
     elif found.dimension == wanted.dimension:
         value = found.value / wanted.value
     else:
         raise InvalidText(
-            f"'{shown}' is in {_in_words(found.dimension)}; this is in {unit if unit != '1' else 'no unit'}"
+            f"'{shown}' is in {in_words(found.dimension)}; this is in {unit if unit != '1' else 'no unit'}"
         )
     if not math.isfinite(value):
         raise InvalidText(f"'{shown}' is not finite")
     return value
+
+
+class Scope(Protocol):
+    """What an expression may refer to beside units, constants and functions of numbers."""
+
+    def named(self, name: str) -> Quantity | None:
+        """Return what a name stands for, as ``th`` or ``ball.x``; ``None`` for a name of no such thing."""
+
+    def called(self, name: str, arguments: list[ast.expr], whole: "Expression") -> Quantity | None:
+        """Return the value of a function of expressions; ``None`` where there is no such function."""
+
+
+class Expression:
+    """A text like ``v0^2 sin(2 th)/gravity``, read once and evaluated for any values of its names.
+
+    Parameters
+    ----------
+    text : str
+        As :func:`evaluate` takes it, with names and functions of a :class:`Scope`.
+    node : ast.expr, optional
+        The part of the text that it is; all of it where absent.
+
+    Raises
+    ------
+    InvalidText
+        If it is no expression.
+    """
+
+    __slots__ = ("node", "text")
+
+    def __init__(self, text: str, node: ast.expr | None = None) -> None:
+        self.text = text
+        self.node = _parsed(text) if node is None else node
+
+    def value(self, scope: Scope | None = None) -> Quantity:
+        """Return what it stands for, or raise :class:`InvalidText`."""
+        try:
+            return self._value(self.node, scope)
+        except (OverflowError, ZeroDivisionError):
+            raise InvalidText(f"'{_shown(self.text)}' is not finite") from None
+        except ValueError as error:
+            raise error if isinstance(error, InvalidText) else self._no_number() from None
+
+    def names(self) -> Iterator[str]:
+        """Yield what it refers to that is neither a unit nor a constant: ``th``, ``ball.x``, ``period``."""
+        inner: set[ast.AST] = set()
+        for node in ast.walk(self.node):
+            if isinstance(node, ast.Attribute):
+                inner.add(node.value)
+            if isinstance(node, ast.Name | ast.Attribute) and node not in inner:
+                name = dotted(node)
+                if not is_known(name):
+                    yield name
+
+    def _no_number(self) -> InvalidText:
+        return InvalidText(f"'{_shown(self.text)}' is no number")
+
+    def _value(self, node: ast.expr, scope: Scope | None) -> Quantity:
+        match node:
+            case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
+                return Quantity(float(number))
+            case ast.Name() | ast.Attribute():
+                return self._named(dotted(node), scope)
+            case ast.UnaryOp(op=ast.USub() | ast.UAdd() as sign, operand=operand):
+                inner = self._value(operand, scope)
+                return replace(inner, value=-inner.value if isinstance(sign, ast.USub) else inner.value)
+            case ast.BinOp(left=left, op=kind, right=right):
+                return _combined(kind, self._value(left, scope), self._value(right, scope), _shown(self.text))
+            case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]):
+                return self._called(name, arguments, scope)
+        raise self._no_number()
+
+    def _called(self, name: str, arguments: list[ast.expr], scope: Scope | None) -> Quantity:
+        found = None if scope is None else scope.called(name, arguments, self)
+        if found is not None:
+            return found
+        if name in _OF_TWO and len(arguments) == 2:
+            first, second = (self._value(argument, scope) for argument in arguments)
+            same_dimension(first, second, self.text)
+            value = _OF_TWO[name](first.value, second.value)
+            return replace(first if first.has_unit else second, value=value)
+        if name not in _FUNCTIONS or len(arguments) != 1:
+            raise self._no_number()
+        inner = self._value(arguments[0], scope)
+        if name == "abs":
+            return replace(inner, value=abs(inner.value))
+        if name == "sqrt" and not any(power % 2 for power in inner.dimension):
+            return Quantity(
+                math.sqrt(inner.value), tuple(power // 2 for power in inner.dimension), inner.has_unit
+            )
+        if inner.dimension != _ONE:
+            raise InvalidText(f"{name} takes a pure number, not one in {in_words(inner.dimension)}")
+        return Quantity(float(_FUNCTIONS[name](inner.value)))
+
+    def _named(self, name: str, scope: Scope | None) -> Quantity:
+        given = None if scope is None else scope.named(name)
+        found = given or _CONSTANTS.get(name) or _UNITS.get(name)
+        if "." in name and found is None:
+            raise self._no_number()
+        if name.lower() in ("inf", "infinity", "nan"):
+            raise InvalidText(f"'{_shown(self.text)}' is not finite")
+        if found is None:
+            raise InvalidText(f"'{name}' is no unit that is known: m, kg, s, km/h, deg, N, J, ...")
+        return found
+
+
+def is_known(name: str) -> bool:
+    """Whether a name is a unit, a constant or a function, so that nothing else can have it."""
+    return name in _UNITS or name in _CONSTANTS or name in _FUNCTIONS or name in _OF_TWO
+
+
+def dotted(node: ast.expr) -> str:
+    """Return a name with its parts, ``ball.x``; empty for what is none.
+
+    >>> dotted(ast.parse("ball.x", mode="eval").body)
+    'ball.x'
+    """
+    match node:
+        case ast.Name(id=name):
+            return name
+        case ast.Attribute(value=inner, attr=part) if dotted(inner):
+            return f"{dotted(inner)}.{part}"
+    return ""
+
+
+def same_dimension(first: Quantity, second: Quantity, text: str) -> None:
+    """Refuse two quantities that cannot be compared; a pure number is in the unit of the other."""
+    if first.has_unit and second.has_unit and first.dimension != second.dimension:
+        words = f"{in_words(first.dimension)} and {in_words(second.dimension)}"
+        raise InvalidText(f"'{_shown(text)}': {words} cannot be compared")
 
 
 def evaluate_pair(text: str, unit: str = "1") -> tuple[float, float]:
@@ -170,7 +303,20 @@ def points_text(points: Iterable[Vector2]) -> str:
     return repr([[int(x) if x == round(x) and abs(x) < 1e15 else x for x in point] for point in points])
 
 
-def _evaluated(text: str, shown: str) -> _Quantity:
+def _shown(text: str) -> str:
+    return shortened(printable(text.strip()), _SHOWN_LIMIT)
+
+
+def _parsed(text: str) -> ast.expr:
+    """Return the tree of an expression, with the signs of Python in place of those of print."""
+    shown = _shown(text)
+    if not shown:
+        raise InvalidText("a number is needed")
+    if len(text) > _DEPTH_LIMIT:
+        raise InvalidText(f"'{shown}' is too long")
+    for pattern, why in _UNCLEAR:
+        if pattern.search(text):
+            raise InvalidText(f"'{shown}' {why}")
     prepared = re.sub(r"(?<=\d),(?=\d)", ".", text.strip())
     prepared = re.sub(r"[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda found: f"^{found.group().translate(_SUPERSCRIPTS)}", prepared)
     prepared = prepared.replace("°", " deg").replace("%", " percent").translate(_SIGNS)
@@ -178,56 +324,32 @@ def _evaluated(text: str, shown: str) -> _Quantity:
     prepared = re.sub(r"\b(\d+\.?\d*|\.\d+)\*[eE](?=[+-]?\d)", r"\1e", prepared)
     try:
         with warnings.catch_warnings(action="ignore"):  # of strange literals, for programmers
-            tree = ast.parse(prepared, mode="eval")
-        return _value(tree.body, shown)
-    except (SyntaxError, RecursionError, MemoryError, ValueError) as error:
-        if isinstance(error, InvalidText):
-            raise
+            return ast.parse(prepared, mode="eval").body
+    except (SyntaxError, RecursionError, MemoryError, ValueError):
         raise InvalidText(f"'{shown}' is no number") from None
-    except (OverflowError, ZeroDivisionError):
-        raise InvalidText(f"'{shown}' is not finite") from None
 
 
-def _value(node: ast.expr, shown: str) -> _Quantity:
-    match node:
-        case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
-            return _Quantity(float(number))
-        case ast.Name(id=name):
-            return _named(name, shown)
-        case ast.UnaryOp(op=ast.USub() | ast.UAdd() as sign, operand=operand):
-            inner = _value(operand, shown)
-            return replace(inner, value=-inner.value if isinstance(sign, ast.USub) else inner.value)
-        case ast.BinOp(left=left, op=kind, right=right):
-            return _combined(kind, _value(left, shown), _value(right, shown), shown)
-        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in _FUNCTIONS:
-            inner = _value(argument, shown)
-            if inner.dimension != _ONE:
-                raise InvalidText(f"{name} takes a pure number, not one in {_in_words(inner.dimension)}")
-            return _Quantity(float(_FUNCTIONS[name](inner.value)))
-    raise InvalidText(f"'{shown}' is no number")
+def _arithmetic_geometric_mean(a: float, b: float) -> float:
+    """Return the limit of a, b = (a + b)/2, sqrt(a b), which a pendulum's period is given by."""
+    for _ in range(64):  # each doubles the number of digits, unless one of them is nearly zero
+        a, b = 0.5 * (a + b), math.sqrt(a * b)
+    return a
 
 
-def _named(name: str, shown: str) -> _Quantity:
-    found = _CONSTANTS.get(name) or _UNITS.get(name)
-    if found is None:
-        raise InvalidText(f"'{name}' is no unit that is known: m, kg, s, km/h, deg, N, J, ...")
-    return found
-
-
-def _combined(kind: ast.operator, left: _Quantity, right: _Quantity, shown: str) -> _Quantity:
+def _combined(kind: ast.operator, left: Quantity, right: Quantity, shown: str) -> Quantity:
     has_unit = left.has_unit or right.has_unit
     match kind:
         case ast.Mult() | ast.Div():
             sign = 1 if isinstance(kind, ast.Mult) else -1
-            deed = operator.mul if sign == 1 else operator.truediv
+            combine = operator.mul if sign == 1 else operator.truediv
             powers = tuple(p + sign * q for p, q in zip(left.dimension, right.dimension, strict=True))
-            return _Quantity(deed(left.value, right.value), powers, has_unit)
+            return Quantity(combine(left.value, right.value), powers, has_unit)
         case ast.Add() | ast.Sub():
             if left.dimension != right.dimension:
-                words = f"{_in_words(left.dimension)} and {_in_words(right.dimension)}"
+                words = f"{in_words(left.dimension)} and {in_words(right.dimension)}"
                 raise InvalidText(f"'{shown}': {words} cannot be added")
-            deed = operator.add if isinstance(kind, ast.Add) else operator.sub
-            return _Quantity(deed(left.value, right.value), left.dimension, has_unit)
+            combine = operator.add if isinstance(kind, ast.Add) else operator.sub
+            return Quantity(combine(left.value, right.value), left.dimension, has_unit)
         case ast.Pow() if right.dimension == _ONE and abs(right.value) <= _POWER_LIMIT:
             raised_to = [p * right.value for p in left.dimension]
             if not all(power.is_integer() for power in raised_to):
@@ -235,11 +357,12 @@ def _combined(kind: ast.operator, left: _Quantity, right: _Quantity, shown: str)
             raised = left.value**right.value
             if isinstance(raised, complex):
                 raise InvalidText(f"'{shown}' is no real number")
-            return _Quantity(raised, tuple(map(int, raised_to)), has_unit)
+            return Quantity(raised, tuple(map(int, raised_to)), has_unit)
     raise InvalidText(f"'{shown}' is no number")
 
 
-def _in_words(dimension: Dimension) -> str:
+def in_words(dimension: Dimension) -> str:
+    """Return the powers of a unit in words: ``"m kg s^-2"``."""
     if dimension == _ONE:
         return "no unit"
     parts = [

@@ -3,11 +3,21 @@
 import html
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any
 
 from physicslab.ecs.text import printable
 from physicslab.export.packing import pack
+from physicslab.export.parts import (
+    fields_of,
+    gates_of,
+    joints_of,
+    notes_of,
+    quantity_words,
+    springs_of,
+    thrusts_of,
+)
 from physicslab.export.recording import RunRecorder, extent_of_run
 from physicslab.world import World
 
@@ -15,27 +25,63 @@ _SCRIPTS = ("run.js", "picture.js", "figures.js", "controls.js")
 """The player, in order: one script, whose parts see the names of those before."""
 
 
-def page(world: World, name: str, recorder: RunRecorder, notes: Sequence[str]) -> bytes:
+_WORDS = {"linear": "velocity", "angular": "angular velocity"}
+"""What fields are called whose names do not say it without their components."""
+
+
+def field_words(field: str, part: str) -> str:
+    """Return what a field is called, or its ``part`` x or y.
+
+    >>> field_words("linear", "x"), field_words("rest_length", "")
+    ('velocity x', 'rest length')
+    """
+    return f"{_WORDS.get(field, field.replace('_', ' '))} {part}".strip()
+
+
+@dataclass(frozen=True, slots=True)
+class Varied:
+    """A quantity that differs from run to run: what a slider of the page says, and its values."""
+
+    label: str
+    unit: str
+    values: Sequence[float]
+
+
+def page(
+    world: World,
+    name: str,
+    runs: Sequence[Mapping[str, Any]],
+    varied: Sequence[Varied] = (),
+) -> bytes:
     """Return the page that plays what was recorded, in UTF-8.
 
     Parameters
     ----------
     world : World
-        At the end of the run.
+        The scene, for its title and its description.
     name : str
         What the scene is called where it has no title.
-    recorder : RunRecorder
-        What kept the run.
-    notes : sequence of str
-        Lines for the foot of the page: how it was computed, and what is not to be trusted.
+    runs : sequence of dict
+        As :func:`run_document` returns them, or ``{"failure": why}``: one, or one for each combination of
+        values, those of the last quantity next to each other.
+    varied : sequence of Varied
+        What differs between the runs.
     """
     title = printable(world.title or name)
+    views = [run["view"] for run in runs if "view" in run]
+    low, high = (
+        [best(view[k] for view in views) for k in ends] for best, ends in ((min, (0, 1)), (max, (2, 3)))
+    )
+    document = {
+        "view": [*low, *high], "runs": runs,
+        "sliders": [{"label": one.label, "unit": one.unit, "values": one.values} for one in varied],
+    }  # fmt: skip
     texts = {
         "TITLE": html.escape(title),
         "DESCRIPTION": html.escape(printable(world.description.replace("\n", " "))),
         "STYLE": _part("style.css"),
         "PLAYER": "".join(map(_part, _SCRIPTS)),
-        "RUN": _json(_document(world, recorder, notes)),
+        "RUN": _json(document),
     }
     filled = _part("page.html")
     head, *rest = filled.split("{{")
@@ -46,24 +92,35 @@ def page(world: World, name: str, recorder: RunRecorder, notes: Sequence[str]) -
     return "".join(pieces).encode()
 
 
-def _document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> dict[str, Any]:
-    """Return what the player is given."""
-    columns, bodies, springs = recorder.columns, recorder.bodies(world), recorder.springs(world)
+def run_document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> dict[str, Any]:
+    """Return what the player is given of a run; ``world`` is at the end of it.
+
+    ``notes`` are lines for the foot of the page: how it was computed, and what is not to be trusted.
+    """
     physics = world.physics
-    bounds = None if physics.bounds is None else list(physics.bounds)
     uniform = physics.gravity_mode == "linear" and "gravity" in recorder.energies
+    index = {key: number for number, key in enumerate(recorder.quantities)}
     return {
         "start": recorder.start,
         "instants": recorder.count,
         "energies": recorder.energies,
-        "bodies": bodies,
-        "springs": springs,
-        "joints": recorder.joints(world),
+        "quantities": [quantity_words(world, key) for key in recorder.quantities],
+        "graphs": [
+            {"across": None if across is None else index[across], "lines": [index[line] for line in lines]}
+            for across, lines in recorder.graphs
+        ],
+        "bodies": recorder.bodies(world),
+        "springs": springs_of(world),
+        "joints": joints_of(world),
+        "fields": fields_of(world),
+        "thrusts": thrusts_of(world),
+        "texts": notes_of(world),
+        "gates": gates_of(world, recorder.start),
         "gravity": list(physics.gravity) if uniform else None,
-        "bounds": bounds,
-        "view": world.view or extent_of_run(world, recorder),
+        "bounds": None if physics.bounds is None else list(physics.bounds),
         "notes": notes,
-        "data": pack(columns),
+        "view": world.view or extent_of_run(world, recorder),
+        "data": pack(recorder.columns),
     }
 
 

@@ -8,6 +8,8 @@ type Colours = NDArray[np.uint8]
 
 _BITS = 6
 """Bits of a channel by which colours are told apart."""
+_RARE = 0.65
+"""Power of a colour's count by which it is weighed: a large sky leaves colours to small, lit bodies."""
 
 
 def find_palette(pixels: Colours, limit: int) -> tuple[Colours, NDArray[np.uint8]]:
@@ -38,7 +40,7 @@ def find_palette(pixels: Colours, limit: int) -> tuple[Colours, NDArray[np.uint8
     weights = counts[used].astype(np.float64)
     sums = [np.bincount(cells, pixels[:, channel], len(counts))[used] for channel in range(3)]
     means = np.stack(sums, axis=1) / weights[:, None]
-    boxes = _divided(means, weights, limit)
+    boxes = _divided(means, weights**_RARE, limit)
     palette = np.empty((len(boxes), 3))
     number = np.zeros(len(counts), np.uint8)
     for k, box in enumerate(boxes):

@@ -7,16 +7,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Mass, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components import Charge, Colour, Mass, Medium, Shape, Trail, Transform, Velocity
 from physicslab.components.shape import KINDS
 from physicslab.diagnostics.energy import Accounts
+from physicslab.diagnostics.quantities import Reading
 from physicslab.diagnostics.run_report import body_names
+from physicslab.export.parts import Key, graphs_of, springs_of
 from physicslab.state.shapes import cores_of
 from physicslab.world import World
 
 type Columns = NDArray[np.float32]
 """A float32 array (instants, columns)."""
 
+_MOMENTA: tuple[Key, ...] = ((None, "momentum x"), (None, "momentum y"), (None, "angular momentum"))
 BODY_COLUMNS = 6
 """Numbers of a moving body at an instant: x, y, angle and their rates."""
 _LARGEST = float(np.finfo(np.float32).max)
@@ -42,6 +45,10 @@ class RunRecorder:
         What the energies of an instant are called, the total last.
     start : float
         The time at the first instant [s].
+    graphs : list of pairs
+        What stands across each graph, and its lines.
+    quantities : tuple of Key
+        What else is kept of an instant: the momentum of the world, and what graphs show.
     """
 
     def __init__(self, world: World) -> None:
@@ -50,8 +57,11 @@ class RunRecorder:
         self.moving = len(self._rows)
         stored = (force.potential for force in world.schedule.forces)
         self._potentials = tuple(dict.fromkeys(filter(None, stored)))
-        self.energies = ("kinetic", *self._potentials, "total")
+        self.energies: tuple[str, ...] = ("kinetic", *self._potentials, "total")
         self.start = world.time
+        self.graphs = graphs_of(world)
+        plotted = [key for across, lines in self.graphs for key in (*((across,) if across else ()), *lines)]
+        self.quantities: tuple[Key, ...] = tuple(dict.fromkeys([*_MOMENTA, *plotted]))
         self._instants: list[Columns] = []
 
     def write(self, world: World, account: Accounts) -> None:
@@ -66,6 +76,9 @@ class RunRecorder:
         energy = account.parts
         stored = [energy.potential.get(name, 0.0) for name in self._potentials]
         sums = [world.time - self.start, energy.kinetic, *stored, energy.total]
+        reading = Reading(world)
+        others = np.array([reading.value(name, body) for body, name in self.quantities])
+        others[~(np.abs(others) <= _LARGEST)] = np.nan  # where it is not defined
         bodies = np.column_stack(
             (transform["position"][rows], transform["angle"][rows], velocity["linear"][rows],
              velocity["angular"][rows])
@@ -79,7 +92,8 @@ class RunRecorder:
                 f"{what} at t = {world.time:.9g} s: {values[column]:.3g} is more than a page can hold, "
                 f"{_LARGEST:.2g} at most"
             )
-        self._instants.append(values.astype(np.float32))
+        whole = np.concatenate((values[: len(sums)], others, values[len(sums) :]))
+        self._instants.append(whole.astype(np.float32))
 
     @property
     def count(self) -> int:
@@ -88,13 +102,16 @@ class RunRecorder:
 
     @property
     def columns(self) -> Columns:
-        """Time since the start [s], energies [J] and bodies: float32 (instants, 1 + energies + 6 moving)."""
+        """Time since the start [s], energies [J], quantities and bodies: float32 (instants, columns).
+
+        There are 1 + energies + quantities + 6 moving columns.
+        """
         return np.stack(self._instants)
 
     @property
     def motion(self) -> Columns:
         """Of each instant and moving body, x, y, angle and their rates: float32 (instants, moving, 6)."""
-        bodies = self.columns[:, 1 + len(self.energies) :]
+        bodies = self.columns[:, 1 + len(self.energies) + len(self.quantities) :]
         return bodies.reshape(len(bodies), self.moving, BODY_COLUMNS)
 
     def bodies(self, world: World) -> list[dict[str, Any]]:
@@ -104,6 +121,7 @@ class RunRecorder:
         place of a body among those that move.
         """
         transform, shape, mass, trail = map(world.table, (Transform, Shape, Mass, Trail))
+        colour, medium, charge = map(world.table, (Colour, Medium, Charge))
         moves = {row: place for place, row in enumerate(self._rows.tolist())}
         found: list[dict[str, Any]] = []
         for (entity, name), row in zip(
@@ -119,6 +137,12 @@ class RunRecorder:
                 body["radius"] = float(radius[0])
             if mass.present[row]:
                 body["mass"], body["inertia"] = float(mass["mass"][row]), float(mass["inertia"][row])
+            if colour.present[row]:
+                body["colour"] = world.component(entity, Colour).colour
+            if medium.present[row]:
+                body["fluid"] = True
+            if charge.present[row] and charge["charge"][row]:
+                body["charge"] = float(charge["charge"][row])
             if trail.present[row]:
                 body["trail"] = float(trail["length"][row])
             if row in moves:
@@ -127,31 +151,6 @@ class RunRecorder:
                 body["pose"] = [*transform["position"][row].tolist(), float(transform["angle"][row])]
             found.append(body)
         return found
-
-    def joints(self, world: World) -> list[dict[str, Any]]:
-        """Return every joint: the body that its mark turns with, by place among the bodies, and where."""
-        place = {entity: number for number, entity in enumerate(world.batch(Transform).entities.tolist())}
-        joints, entities, found = world.joints, world.entity_index.entities, []
-        for joint in joints.joints:
-            n, a, b = joint.first, joint.a, joint.b
-            anchor = joints.anchor_b[n] if b else joints.anchor_a[n]
-            body = place[int(entities[b or a])]
-            found.append({"body": body, "anchor": anchor.tolist(), "fixed": not (a and b)})
-        return found
-
-    def springs(self, world: World) -> list[dict[str, Any]]:
-        """Return every spring: its ends by place among the bodies, and its anchors; no B is a fixed point."""
-        place = {entity: number for number, entity in enumerate(world.batch(Transform).entities.tolist())}
-        spring, batch = world.table(Spring), world.batch(Spring)
-        return [
-            {
-                "a": place[int(spring["a"][row]) or own],
-                "b": place.get(int(spring["b"][row])),
-                "anchor_a": spring["anchor_a"][row].tolist(),
-                "anchor_b": spring["anchor_b"][row].tolist(),
-            }
-            for own, row in zip(batch.entities.tolist(), batch.rows.tolist(), strict=True)
-        ]
 
 
 type Boxes = NDArray[np.float64]
@@ -172,7 +171,7 @@ _EMPTY: Box = (-5.0, -3.0, 5.0, 3.0)
 
 def extent_of_run(world: World, recorder: RunRecorder) -> Box:
     """Return xmin, ymin, xmax, ymax [m] of what is to be seen of a run that was recorded."""
-    bounds, springs = world.physics.bounds, recorder.springs(world)
+    bounds, springs = world.physics.bounds, springs_of(world)
     fixed = [[*spring["anchor_b"], *spring["anchor_b"]] for spring in springs if spring["b"] is None]
     return frame_run(recorder.bodies(world), recorder.motion, [*fixed, *([bounds] if bounds else [])])
 

@@ -94,6 +94,10 @@ def checked_rows(value: object, where: str, allowed: str) -> Iterator[tuple[str,
         yield f"{where}[{index}]", row
 
 
+_LISTED = 24
+"""Names that a message lists."""
+
+
 def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequence[str]) -> None:
     """Refuse the first key that is not ``known``; ``noun`` is what keys are called there."""
     for key, value in given.items():
@@ -101,7 +105,8 @@ def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequenc
             plain = isinstance(key, str) and key.isidentifier() and len(key) <= SHORT
             name = key if plain else shown(key)
             likely = suggestion(str(key), known)
-            allowed = ", ".join(known) or "none"
+            more = f", or of {len(known) - _LISTED} more" if len(known) > _LISTED else ""
+            allowed = (", ".join(known[:_LISTED]) or "none") + more
             raise SceneError(
                 f"{where}{name} = {shown(value)}: unknown {noun}; must be one of {allowed}{likely}"
             )

@@ -9,15 +9,22 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from physicslab.components import (
+    Charge,
+    Colour,
+    Drag,
     Gear,
     Held,
+    Layer,
+    MadeOf,
     Mass,
     Material,
     Medium,
+    Molecule,
     Pin,
     Shape,
     Slot,
     Spring,
+    Thrust,
     Trail,
     Transform,
     Velocity,
@@ -37,7 +44,9 @@ UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""
 
 type _Expected = tuple[tuple[str, ...], tuple[str, ...], str]
-_NEED_TRANSFORM = (Velocity, Mass, Shape, Material, Medium, Trail)
+_NEED_TRANSFORM = (
+    Velocity, Mass, Shape, Material, Drag, Thrust, Charge, Molecule, Medium, Trail, Layer, MadeOf, Colour,
+)  # fmt: skip
 _PLACED = "the id of an entity with a Transform"
 _MAY_REST = (Velocity, Mass, Shape)
 
@@ -82,13 +91,11 @@ def check_entities(
         ]
         _check_together(components, entity, where)
         for component in components:
+            _check_references(component, entities, where)
             if isinstance(component, Spring):
                 _check_ends(component, number, entities, where)
             elif type(component) in KINDS:
                 _check_joint(component, number, entities, where, joined.setdefault(type(component), {}))
-            elif isinstance(component, INSTRUMENTS):
-                _check_points(component, entities, where)
-            _check_references(component, entities, where)
         made.append((entity.get("id"), components))
     return made
 
@@ -239,35 +246,28 @@ def _check_inertia(mass: Mass, shape: Shape, where: str) -> None:
 
 
 def _check_references(component: Component, entities: Sequence[Mapping[str, Any]], where: str) -> None:
-    for name, needed in component.references().items():
+    """Refuse to refer to an entity that has not what is needed: a point of an instrument needs a place."""
+    references = component.references()
+    if isinstance(component, INSTRUMENTS):
+        references = {f"{name}_body": "Transform" for name in component.POINTS}
+    elif type(component) in KINDS and not isinstance(component, Gear):
+        references = {"a": "Transform", "b": "Transform"}
+    for name, needed in references.items():
         other = getattr(component, name)
         if other is not None and needed not in entities[other - 1]:
             place = f"{where}: {type(component).__name__}.{name}"
             raise checks.refusal(place, entities[other - 1].get("id"), f"the id of an entity with a {needed}")
 
 
-def _check_points(part: Component, entities: Sequence[Mapping[str, Any]], where: str) -> None:
-    """Refuse a point of an instrument that is attached to an entity without a position."""
-    for name in type(part).POINTS:  # type: ignore[attr-defined]
-        body = getattr(part, f"{name}_body")
-        if body is not None and "Transform" not in entities[body - 1]:
-            place = f"{where}: {type(part).__name__}.{name}_body"
-            raise checks.refusal(place, entities[body - 1].get("id"), "the id of an entity with a Transform")
-
-
 def _check_joint(
     joint: Any, number: int, entities: Sequence[Mapping[str, Any]], where: str,
     joined: dict[tuple[Any, ...], str],
 ) -> None:  # fmt: skip
-    """Refuse a joint whose ends are not two points with places, or are those of another of its kind."""
+    """Refuse a joint whose ends are not two points, or are those of another of its kind."""
     kind = type(joint).__name__
     if isinstance(joint, Gear):
         _check_gear(joint, number, entities, where, joined)
         return
-    for name in ("a", "b"):
-        end = getattr(joint, name)
-        if end is not None and "Transform" not in entities[end - 1]:
-            raise checks.refusal(f"{where}: {kind}.{name}", entities[end - 1].get("id"), _PLACED)
     carrier = number if "Transform" in entities[number - 1] else 0
     ends = (joint.a or carrier, joint.anchor_a), (joint.b or 0, joint.anchor_b)
     refused = why_not_joined(*ends, joined)

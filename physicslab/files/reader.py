@@ -1,7 +1,7 @@
 """From a scene document, the parsed JSON, to a world, with every check."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import esper
@@ -20,11 +20,17 @@ from physicslab.ecs.config import (
 from physicslab.ecs.fields import Field
 from physicslab.files import checks
 from physicslab.files.entities import check_contacts, check_entities, check_ids, check_joints, check_rests
+from physicslab.files.numbers import (
+    check_numbers,
+    renumbered,
+    renumbered_islands,
+    renumbered_rows,
+)
 from physicslab.files.remainders import check_remainders
 from physicslab.integrators import SPLIT_METHODS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.state.remainders import Remainders
-from physicslab.state.state import View
+from physicslab.state.state import LEVELS, SHOWN, Desk, View
 from physicslab.stepping.island import KeptIsland
 from physicslab.stepping.plan import MAX_STEPS
 from physicslab.systems.standard import standard_systems
@@ -38,9 +44,15 @@ NAME_LIMIT = 1_000
 TITLE_LIMIT = 200
 """Characters that its title may have: it stands over the window, and on a line of the menu."""
 
+SCENE_TEXTS: Mapping[str, int | None] = {"name": NAME_LIMIT, "title": TITLE_LIMIT, "description": None}
+"""The texts of a scene, and the characters that those on one line may have."""
+
+_MOST_STEPS = 2.0**48
+"""Steps after which the clock still tells a sixteenth of a step from none."""
+
 _KEYS = (
-    "format", "name", "title", "description", "view", "time", "physics", "simulation", "entities", "contacts",
-    "joints", "rests", "solver", "remainders", "islands",
+    "format", "name", "title", "description", "view", "desk", "numbers", "time", "physics", "simulation",
+    "entities", "contacts", "joints", "rests", "solver", "remainders", "islands",
 )  # fmt: skip
 
 
@@ -54,6 +66,8 @@ class SceneDraft:
         What the scene is called and about.
     view : View, optional
         What a window shows of it at first.
+    desk : Desk, optional
+        What it shows beside that.
     time : float
         Where its clock stands [s].
     physics, simulation : PhysicsConfig, SimulationConfig
@@ -66,6 +80,8 @@ class SceneDraft:
         Of each joint its entity, its kind, and its impulses in the last substep [N s].
     rests : list of lists of numbers
         What sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
+    numbers : list of int
+        Those of the entities, in order.
     remainders : dict of int to two lists of six numbers
         Of entities x, y, angle and their rates, and what rounding left out of each.
     solver : tuple of float, int and tuple
@@ -79,6 +95,7 @@ class SceneDraft:
     title: str
     description: str
     view: View | None
+    desk: Desk | None
     time: float
     physics: PhysicsConfig
     simulation: SimulationConfig
@@ -87,6 +104,7 @@ class SceneDraft:
     joints: list[tuple[int, str, list[float]]]
     rests: list[list[Any]]
     remainders: dict[int, tuple[list[float], list[float]]]
+    numbers: list[int]
     solver: tuple[float, int, tuple[str, str, int] | None]
     islands: list[KeptIsland] | None
 
@@ -120,8 +138,8 @@ def read_scene(document: object, source: str = "scene") -> World:
     before = esper.current_world
     world = World(*standard_systems(), physics=draft.physics, simulation=draft.simulation)
     world.name, world.title, world.description = draft.name, draft.title, draft.description
-    world.view, world.time = draft.view, draft.time
-    for number, (id_, components) in enumerate(draft.entities, start=1):
+    world.view, world.desk, world.time = draft.view, draft.desk, draft.time
+    for number, (id_, components) in zip(draft.numbers, draft.entities, strict=True):
         world.spawn(*components, name=id_, entity=number)  # by which springs name bodies that are yet to come
     world.islands.paused = True
     world.contacts.impulse_dt, world.contacts.substep_factor, chosen = draft.solver
@@ -158,12 +176,12 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
     ids = check_ids(scene["entities"], source)
     simulation = _config(SimulationConfig, scene.get("simulation", {}), source)
     entities = check_entities(scene["entities"], ids, source)
-    return SceneDraft(
-        name=checks.checked_title(scene.get("name", ""), f"{source}: name", NAME_LIMIT),
-        title=checks.checked_title(scene.get("title", ""), f"{source}: title", TITLE_LIMIT),
-        description=checks.checked_text(scene.get("description", ""), f"{source}: description", lines=True),
+    numbers = check_numbers(scene.get("numbers", []), len(entities), source)
+    draft = SceneDraft(
+        **{key: checked_scene_text(key, scene.get(key, ""), f"{source}: ") for key in SCENE_TEXTS},
         view=_view(scene.get("view"), source),
-        time=_time(scene.get("time", 0.0), f"{source}: time"),
+        desk=_desk(scene["desk"], f"{source}: desk") if "desk" in scene else None,
+        time=_time(scene.get("time", 0.0), simulation.dt, f"{source}: time"),
         physics=_config(PhysicsConfig, scene.get("physics", {}), source),
         simulation=simulation,
         entities=entities,
@@ -171,9 +189,33 @@ def check_scene(document: object, source: str = "scene") -> SceneDraft:
         joints=check_joints(scene.get("joints", []), scene["entities"], ids, source),
         rests=check_rests(scene.get("rests", []), scene["entities"], ids, source),
         remainders=check_remainders(scene.get("remainders", []), entities, ids, source),
+        numbers=numbers,
         solver=_solver(scene.get("solver", {}), simulation, f"{source}: solver"),
         islands=_islands(scene["islands"], ids, simulation, source) if "islands" in scene else None,
     )
+    return _renumbered(draft) if "numbers" in scene else draft
+
+
+def _renumbered(draft: SceneDraft) -> SceneDraft:
+    """Return a draft whose entities refer to each other by their numbers, and no longer by their places."""
+    numbers = draft.numbers
+    return replace(
+        draft,
+        entities=[(id_, [renumbered(part, numbers) for part in parts]) for id_, parts in draft.entities],
+        contacts=renumbered_rows(draft.contacts, numbers, ends=2),
+        joints=[(numbers[place - 1], kind, impulses) for place, kind, impulses in draft.joints],
+        rests=renumbered_rows(draft.rests, numbers),
+        remainders={numbers[place - 1]: low for place, low in draft.remainders.items()},
+        islands=None if draft.islands is None else renumbered_islands(draft.islands, numbers),
+    )
+
+
+def checked_scene_text(key: str, text: object, where: str) -> str:
+    """Return a text of a scene, one of ``SCENE_TEXTS``, or raise a SceneError that begins with ``where``."""
+    limit = SCENE_TEXTS[key]
+    if limit is None:
+        return checks.checked_text(text, f"{where}{key}", lines=True)
+    return checks.checked_title(text, f"{where}{key}", limit)
 
 
 def _view(value: object, source: str) -> View | None:
@@ -184,6 +226,19 @@ def _view(value: object, source: str) -> View | None:
         return checked_box("scene", "view", value)
     except InvalidValue as error:
         raise checks.refusal(f"{source}: view", value, error.allowed) from None
+
+
+def _desk(value: object, where: str) -> Desk:
+    """Return what a window shows beside the world."""
+    found = checks.checked_object(value, where, 'an object {"level": ..., "shown": [...]}')
+    checks.checked_keys(found, f"{where}: ", "key", ("level", "shown"))
+    level, shown = found.get("level"), found.get("shown", [])
+    if level not in LEVELS:
+        raise checks.refusal(f"{where}.level", level, f"one of {', '.join(LEVELS)}")
+    for place, part in checks.checked_rows(shown, f"{where}.shown", "a list of words"):
+        if part not in SHOWN:
+            raise checks.refusal(place, part, f"one of {', '.join(SHOWN)}")
+    return Desk(str(level), frozenset(shown))
 
 
 _SPAN = Field("span", "number", unit="s", minimum=MIN_TIME, maximum=MAX_TIME, owner="solver")
@@ -249,10 +304,13 @@ def _chosen(value: Any, where: str) -> tuple[str, str, int]:
     raise checks.refusal(where, value, allowed)
 
 
-def _time(value: Any, where: str) -> float:
-    if checks.is_number(value) and value >= 0.0:
-        return float(value)
-    raise checks.refusal(where, value, "a finite number >= 0 s")
+def _time(value: Any, dt: float, where: str) -> float:
+    """Return the time at which the clock stands: a step of ``dt`` [s] must move it on."""
+    if not (checks.is_number(value) and value >= 0.0):
+        raise checks.refusal(where, value, "a finite number >= 0 s")
+    if value > _MOST_STEPS * dt:
+        raise checks.refusal(where, value, f"at most {_MOST_STEPS * dt:g} s: a clock counts 2^48 steps of dt")
+    return float(value)
 
 
 def _config[C: (PhysicsConfig, SimulationConfig)](config: type[C], value: object, source: str) -> C:

@@ -17,6 +17,11 @@ _ABANDONED = 3600.0
 """Age [s] from which on such a file is taken for one that was left behind."""
 
 
+def reason_of(error: Exception) -> str:
+    """Return in a few words why a file could not be read or written."""
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)
+
+
 def replace_file(path: str | os.PathLike[str], content: bytes) -> None:
     """Write ``content`` to a file; if anything fails, the file stays as it was.
 

@@ -71,7 +71,7 @@ def load_scene(name_or_path: str | bytes | os.PathLike[str], losses: list[str] |
             from physicslab.files.kde_step.world import read_step  # for such files alone
 
             name, left_out = file_stem(Path(path).stem), [] if losses is None else losses
-            with _uncollected():
+            with uncollected():
                 return read_step(read_content(path, source), source, name, left_out)
         text = read_text(path, source)
     except SceneError as error:
@@ -79,7 +79,7 @@ def load_scene(name_or_path: str | bytes | os.PathLike[str], losses: list[str] |
             raise
         likely = suggestion(path, SCENES) or f"; the built-in scenes are {', '.join(SCENES)}"
         raise SceneError(f"{source}: no such file, and no built-in scene{likely}") from error.__cause__
-    with _uncollected():
+    with uncollected():
         return read_scene(parse_json(text, source), source)
 
 
@@ -143,7 +143,7 @@ def scene_bytes(world: World, source: str) -> bytes:
 
 
 @contextmanager
-def _uncollected() -> Iterator[None]:
+def uncollected() -> Iterator[None]:
     """Collect no garbage in a ``with`` block: of the millions of objects of a large scene, none is any.
 
     A search takes half of the time that such a scene takes to load.

@@ -1,7 +1,9 @@
 """From a world to a scene document, by way of a copy that may be written while the world goes on."""
 
 import copy
-from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
+import math
+import time
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import esper
@@ -20,7 +22,8 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.checks import SceneError
 from physicslab.files.entities import UNSAVED
 from physicslab.files.json_text import json_pieces
-from physicslab.files.reader import FORMAT
+from physicslab.files.numbers import export_numbers
+from physicslab.files.reader import FORMAT, SCENE_TEXTS
 from physicslab.files.remainders import export_remainders
 from physicslab.state.contacts import Contacts
 from physicslab.state.state import State
@@ -59,6 +62,8 @@ class WorldSnapshot:
         Name, title and description of the world.
     view : View, optional
         What a window shows of it at first.
+    desk : Desk, optional
+        What it shows beside that.
     time : float
         Time of the world [s].
     """
@@ -72,9 +77,9 @@ class WorldSnapshot:
             named = [(entity, name.id) for entity, name in esper.get_component(Name)]
         self.living = living = set(self.entities)
         self.names = {entity: name for entity, name in named if entity in living}
-        self.texts = {key: getattr(world, key) for key in ("name", "title", "description")}
+        self.texts = {key: getattr(world, key) for key in SCENE_TEXTS}
         self.time, self.physics, self.simulation = world.time, world.physics, world.simulation
-        self.view = world.view
+        self.view, self.desk = world.view, world.desk
         self.shaped = set(world.batch(Shape).entities.tolist())
         members = world.islands.members
         self.contacts: Contacts = (
@@ -134,8 +139,15 @@ def write_scene(world: World) -> dict[str, Any]:
             return document
 
 
-def text_pieces(snapshot: WorldSnapshot) -> Iterator[bytes | None]:
-    """Yield a scene file piece by piece, and ``None`` where a pause is possible.
+class SceneText:
+    """A scene file that is written a little at a time, while the world goes on.
+
+    Parameters
+    ----------
+    snapshot : WorldSnapshot
+        What is written.
+    clock : callable
+        Returns the time [s].
 
     Raises
     ------
@@ -144,6 +156,23 @@ def text_pieces(snapshot: WorldSnapshot) -> Iterator[bytes | None]:
     ValueError
         If a number is not finite.
     """
+
+    def __init__(self, snapshot: WorldSnapshot, clock: Callable[[], float] = time.perf_counter) -> None:
+        self._pieces, self._clock = _text_pieces(snapshot), clock
+        self._content: list[bytes] = []
+
+    def go_on(self, seconds: float = math.inf) -> bytes | None:
+        """Write for so many seconds; return the file once it is whole."""
+        deadline = self._clock() + seconds
+        for piece in self._pieces:
+            self._content.append(piece or b"")
+            if self._clock() >= deadline:
+                return None
+        return b"".join(self._content)
+
+
+def _text_pieces(snapshot: WorldSnapshot) -> Iterator[bytes | None]:
+    """Yield a scene file piece by piece, and ``None`` where a pause is possible."""
     document = yield from scene_pieces(snapshot)
     for piece in json_pieces(document):
         yield piece.encode("utf-8")
@@ -175,10 +204,14 @@ def scene_pieces(snapshot: WorldSnapshot) -> Generator[None, None, dict[str, Any
     }
     if snapshot.view is not None:
         document["view"] = list(snapshot.view)
+    if snapshot.desk is not None:
+        document["desk"] = {"level": snapshot.desk.level, "shown": sorted(snapshot.desk.shown)}
     if snapshot.time:
         document["time"] = snapshot.time
     document["physics"] = _settings(snapshot.physics)
     document["simulation"] = _settings(snapshot.simulation)
+    if numbers := export_numbers(snapshot.entities):
+        document["numbers"] = numbers
     document["entities"] = written = []
     for number, components in entities.items():
         label = snapshot.names.get(number) or plain_name(number, components)
@@ -260,10 +293,9 @@ def _invented(
             referred.update(end for end in ends if end is not None)
     invented: dict[int, str] = {}
     taken = set(ids.values())
-    for place, number in enumerate(entities, start=1):
+    for number, components in entities.items():
         if number in referred and number not in ids:
-            # Its place in the file: what the entity will be called when the scene is read.
-            invented[number] = unique_name(plain_name(place, entities[number]), taken)
+            invented[number] = unique_name(plain_name(number, components), taken)
             taken.add(invented[number])
     return invented
 

@@ -15,12 +15,13 @@ from physicslab.history.commands import (
     SetField,
     SetPhysics,
     SetSimulation,
+    SetText,
     Spawn,
 )
-from physicslab.history.history import History, HistoryEntry
+from physicslab.history.history import Changes, History, HistoryEntry
 from physicslab.history.replay import Played
 
 __all__ = [
-    "AddComponent", "Branch", "Command", "Group", "History", "HistoryEntry", "Played", "Remove",
-    "RemoveComponent", "SetField", "SetPhysics", "SetSimulation", "Spawn",
+    "AddComponent", "Branch", "Changes", "Command", "Group", "History", "HistoryEntry", "Played", "Remove",
+    "RemoveComponent", "SetField", "SetPhysics", "SetSimulation", "SetText", "Spawn",
 ]  # fmt: skip

@@ -13,6 +13,7 @@ from physicslab.ecs.component import COMPONENTS, Component, Field
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.text import shortened
 from physicslab.ecs.vector import Vector2
+from physicslab.files.reader import checked_scene_text
 from physicslab.world import World
 
 
@@ -203,6 +204,23 @@ class SetSimulation(Configure):
 
     __slots__ = ()
     CONFIG = SimulationConfig
+
+
+@dataclass(frozen=True, slots=True)
+class SetText:
+    """Change what the scene is called or says of itself: its ``name``, ``title`` or ``description``."""
+
+    key: str
+    text: str
+
+    def words(self, world: World) -> str:
+        """Return what it does, in plain English."""
+        return f"{self.key} of the scene: {shown_value(self.text) or 'none'}"
+
+    def carry_out(self, world: World) -> SetText:
+        """Set the text."""
+        setattr(world, self.key, checked_scene_text(self.key, self.text, ""))
+        return self
 
 
 @dataclass(frozen=True, slots=True)

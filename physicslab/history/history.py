@@ -1,16 +1,18 @@
 """One history of the edits and runs of a world: taken back, put back and gone through, to the bit."""
 
+from __future__ import annotations
+
 import math
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Self
 
 from physicslab.history.branches import Branch, Branches
 from physicslab.history.commands import Command, Group, Spawn
 from physicslab.history.keyframe import Keyframe
-from physicslab.history.line import Edit, Run, Steps
+from physicslab.history.line import Edit, Run, Steps, run_in_words
 from physicslab.history.places import Places
 from physicslab.history.recording import load, save
 from physicslab.history.replay import Played, edit, play, write
@@ -38,6 +40,20 @@ class HistoryEntry:
     done: bool
     first_step: int
     steps: int
+
+
+class Changes:
+    """What was done to a world by hand; two are alike if the same things were done, whatever ran since."""
+
+    def __init__(self, made: Sequence[tuple[Edit | Run, int]] = ()) -> None:
+        self._made = made
+
+    def is_like(self, other: Changes) -> bool:
+        """Whether nothing was done between the two."""
+        return len(self._made) == len(other._made) and all(
+            one is two and count == number
+            for (one, count), (two, number) in zip(self._made, other._made, strict=True)
+        )
 
 
 class History:
@@ -159,28 +175,35 @@ class History:
 
     # ---- going through -------------------------------------------------------------------------------------
 
-    def undo(self) -> str | None:
+    def undo(self, *, runs: bool = True) -> str | None:
         """Undo the last edit or run before the present place; return its words, ``None`` if none is.
 
-        Of a run in the middle of which the place is, the beginning is taken back.
+        Of a run in the middle of which the place is, the beginning is taken back. Without ``runs``, a run in
+        which nothing was written is taken back together with the edit before it, if there is one.
         """
         places, line = self._places, self._places.line
         places.mend()
         if places.here == 0:
             return None
-        entry = line.entry_at(places.here - 1)
+        entry = line.entry_at(places.here - 1) if runs else line.last_by_hand(places.here)
+        words = line.entries[entry].words
+        if not (runs or line.entries[entry].by_hand):
+            words = run_in_words(line.steps_before(places.here), line.seconds_before(places.here))
         places.go(line.start_of(entry))
         self._end = places.here
-        return line.entries[entry].words
+        return words
 
-    def redo(self) -> str | None:
-        """Redo the edit or run after the present place; return its words, ``None`` if there is none."""
+    def redo(self, *, runs: bool = True) -> str | None:
+        """Redo the edit or run after the present place; return its words, ``None`` if there is none.
+
+        Without ``runs``, together with the runs after it in which nothing was written.
+        """
         places, line = self._places, self._places.line
         places.mend()
         if places.here >= line.ticks:
             return None
         entry = line.entry_at(places.here)
-        places.go(line.start_of(entry + 1))
+        places.go(line.start_of(entry + 1 if runs else line.next_by_hand(places.here)))
         self._end = max(self._end, places.here)
         return line.entries[entry].words
 
@@ -227,6 +250,12 @@ class History:
             HistoryEntry(entry.words, line.start_of(k) < here, line.steps_before_entry(k), entry.steps)
             for k, entry in enumerate(line.entries)
         )
+
+    @property
+    def changes(self) -> Changes:
+        """The edits before the present place, and the runs in which a hand did something, in order."""
+        entries = self._places.line.entries[: self.position]
+        return Changes([(entry, made) for entry in entries if (made := entry.ticks - entry.steps)])
 
     @property
     def position(self) -> int:
@@ -287,9 +316,11 @@ class History:
     def again(self) -> Iterator[tuple[World, Played]]:
         """Make all steps of the line as it is now again in another world, yielding it after each.
 
-        The world of the history is not touched, and what is done to it meanwhile is not made again.
+        Its impacts are logged. The world of the history is not touched, and what is done to it meanwhile is
+        not made again.
         """
         line, world = self._places.line.head(self._end), self._places.beginning.replica()
+        world.contacts.read = True
         return ((world, played) for played in play(world, line, world.name))
 
     # ---- recordings ----------------------------------------------------------------------------------------

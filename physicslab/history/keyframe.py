@@ -22,6 +22,7 @@ from physicslab.contacts.kept import KeptContacts, KeptSleep, forget_sleep, shar
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.context import create_numbered
+from physicslab.files.reader import SCENE_TEXTS
 from physicslab.state.account import KeptAccount
 from physicslab.state.remainders import Remainders
 from physicslab.stepping.island import Island
@@ -124,7 +125,7 @@ class Keyframe:
 
     __slots__ = (
         "_account", "_columns", "_contacts", "_counts", "_forces", "_islands", "_joints", "_laws", "_own",
-        "_plan", "_rates", "_remainders", "_sleep", "_structure",
+        "_plan", "_rates", "_remainders", "_sleep", "_structure", "_texts",
     )  # fmt: skip
 
     def __init__(self, world: World, last: Keyframe | None = None) -> None:
@@ -141,6 +142,7 @@ class Keyframe:
         }
         self._counts = {name: getattr(world, name) for name in _COUNTS}
         self._laws: tuple[PhysicsConfig, SimulationConfig] = world.physics, world.simulation
+        self._texts = {key: getattr(world, key) for key in SCENE_TEXTS}
         self._plan: StepPlan = world.plan
         self._rates = dict(world.fastest_rates)
         self._remainders: Remainders = world.remainders
@@ -205,7 +207,7 @@ class Keyframe:
                     _put(then, now, rows)
             if (world.physics, world.simulation) != self._laws:
                 world.physics, world.simulation = self._laws
-            for name, value in self._counts.items():
+            for name, value in (*self._counts.items(), *self._texts.items()):
                 setattr(world, name, value)
             forget_sleep(world.sleep)
             world.contacts.clear()

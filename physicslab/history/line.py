@@ -36,6 +36,7 @@ class Edit:
     command: Command
     ticks: int = 1
     steps: int = 0
+    by_hand: bool = True
 
 
 @dataclass(slots=True)
@@ -65,11 +66,16 @@ class Run:
     @property
     def words(self) -> str:
         """What it was, in plain English."""
-        return _run_in_words(self.steps, self.seconds)
+        return run_in_words(self.steps, self.seconds)
+
+    @property
+    def by_hand(self) -> bool:
+        """Whether anything was written in it."""
+        return any(not isinstance(piece, Steps) for piece in self.pieces)
 
     def words_after(self, tick: int) -> str:
         """Return what comes after the first ``tick`` ticks, in plain English."""
-        return _run_in_words(self.steps - self.steps_before(tick), self.seconds - self.seconds_before(tick))
+        return run_in_words(self.steps - self.steps_before(tick), self.seconds - self.seconds_before(tick))
 
     def add_step(self, dt: float, digest: Digest) -> None:
         """Add a step of ``dt`` seconds."""
@@ -201,6 +207,16 @@ class Line:
             return len(self.entries)
         return bisect_right(self._ticks_before, tick) - 1
 
+    def last_by_hand(self, tick: int) -> int:
+        """Return the number of the last entry begun before ``tick`` that is no mere run; 0 if each is one."""
+        k = self.entry_at(tick - 1)
+        return next((n for n in range(k, 0, -1) if self.entries[n].by_hand), 0)
+
+    def next_by_hand(self, tick: int) -> int:
+        """Return the number of the first entry begun after ``tick`` that is no mere run, or of none."""
+        k = self.entry_at(tick) + 1
+        return next((n for n in range(k, len(self.entries)) if self.entries[n].by_hand), len(self.entries))
+
     def steps_before(self, tick: int) -> int:
         """Return how many of the first ``tick`` ticks are steps."""
         k = self.entry_at(tick)
@@ -279,7 +295,8 @@ class Line:
         return common
 
 
-def _run_in_words(steps: int, seconds: float) -> str:
+def run_in_words(steps: int, seconds: float) -> str:
+    """Return what a run was, in plain English."""
     if not steps:
         return "moved by hand"
     shown = f"{seconds:.1f}" if seconds >= 0.1 else f"{seconds:.2g}"

@@ -1,7 +1,7 @@
 """A line in a file, with the scene that it began with, and what came of every step.
 
 The file is JSON: ``{"format": "physicslab-recording/1", "scene": {...}, "entries": [...]}``. Entities of the
-scene have the numbers of their places in it, from 1.
+scene have the numbers that it gives them.
 """
 
 import base64
@@ -20,7 +20,8 @@ from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
 from physicslab.files import checks
 from physicslab.files.json_text import json_bytes
-from physicslab.files.reader import check_scene, read_scene
+from physicslab.files.numbers import LARGEST
+from physicslab.files.reader import SCENE_TEXTS, check_scene, checked_scene_text, read_scene
 from physicslab.files.replace import replace_file
 from physicslab.files.scene import parse_json, read_text
 from physicslab.files.writer import write_scene
@@ -28,23 +29,19 @@ from physicslab.history import commands
 from physicslab.history.line import Edit, Line, Run, Steps
 from physicslab.world import World
 
-type _Numbers = Mapping[int, int]
-"""The number in the file of an entity that is there at the beginning."""
-
 _GROUP_DEPTH = 20
 """How deeply groups may be nested."""
 
 
-def line_document(line: Line, numbers: _Numbers) -> list[dict[str, Any]]:
-    """Return the entries of a line; ``numbers`` gives entities of the beginning others."""
+def line_document(line: Line) -> list[dict[str, Any]]:
+    """Return the entries of a line."""
     written: list[dict[str, Any]] = []
     for entry in line.entries:
         if isinstance(entry, Edit):
-            written.append({"edit": entry.words, "command": _written(entry.command, numbers)})
+            written.append({"edit": entry.words, "command": _written(entry.command)})
             continue
         pieces = [
-            [piece.dt, piece.count] if isinstance(piece, Steps) else _written(piece, numbers)
-            for piece in entry.pieces
+            [piece.dt, piece.count] if isinstance(piece, Steps) else _written(piece) for piece in entry.pieces
         ]
         digests = np.array(entry.digests, "<u4").tobytes()
         packed = base64.b64encode(zlib.compress(digests, 1)).decode("ascii")
@@ -52,43 +49,35 @@ def line_document(line: Line, numbers: _Numbers) -> list[dict[str, Any]]:
     return written
 
 
-def _written(command: commands.Command, numbers: _Numbers) -> dict[str, Any]:
+def _written(command: commands.Command) -> dict[str, Any]:
     """Return a command as a JSON object."""
 
-    def number(entity: int | None) -> int | None:
-        return numbers.get(entity, entity) if entity is not None else None
-
     def values(part: Component) -> dict[str, Any]:
-        of = {spec.name: spec.kind for spec in part.FIELDS}
-        return {
-            name: number(value) if of[name] == "entity" else _plain(value)
-            for name, value in part.given().items()
-        }
+        return {name: _plain(value) for name, value in part.given().items()}
 
     match command:
         case commands.Spawn():
             parts = {type(part).__name__: values(part) for part in command.components}
             return {"do": "spawn", "entity": command.entity, "name": command.name, "components": parts}
         case commands.Remove():
-            return {"do": "remove", "entity": number(command.entity)}
+            return {"do": "remove", "entity": command.entity}
         case commands.SetField():
-            kind = COMPONENTS[command.component]
-            entity = any(spec.name == command.field and spec.kind == "entity" for spec in kind.FIELDS)
-            value = number(command.value) if entity else _plain(command.value)
-            head = {"do": "set", "entity": number(command.entity), "component": command.component}
-            return head | {"field": command.field, "value": value}
+            head = {"do": "set", "entity": command.entity, "component": command.component}
+            return head | {"field": command.field, "value": _plain(command.value)}
         case commands.AddComponent(entity, component):
             named = isinstance(component, Name)
             given = {"id": component.id} if isinstance(component, Name) else values(component)
             kind_name = "Name" if named else type(component).__name__
-            return {"do": "add", "entity": number(entity), "component": kind_name, "values": given}
+            return {"do": "add", "entity": entity, "component": kind_name, "values": given}
         case commands.RemoveComponent():
-            return {"do": "take", "entity": number(command.entity), "component": command.component}
+            return {"do": "take", "entity": command.entity, "component": command.component}
         case commands.Configure(changes):
             changed = {key: _plain(value) for key, value in changes.items()}
             return {"do": command.CONFIG.section, "changes": changed}
+        case commands.SetText(key, text):
+            return {"do": "text", "key": key, "text": text}
         case commands.Group():
-            parts_of = [_written(part, numbers) for part in command.commands]
+            parts_of = [_written(part) for part in command.commands]
             return {"do": "group", "words": command.text, "commands": parts_of}
         case _:
             raise checks.SceneError(f"{type(command).__name__}: no recording holds such a command")
@@ -209,6 +198,13 @@ def _changes(found: Mapping[str, Any], where: str) -> Mapping[str, Any]:
     return checks.checked_object(found.get("changes"), f"{where}: changes", "an object of settings")
 
 
+def _set_text(found: Mapping[str, Any], where: str, depth: int) -> commands.Command:
+    key = _text(found.get("key"), f"{where}: key")
+    if key not in SCENE_TEXTS:
+        raise checks.refusal(f"{where}: key", key, f"one of {', '.join(SCENE_TEXTS)}")
+    return commands.SetText(key, checked_scene_text(key, found.get("text"), f"{where}: "))
+
+
 def _group(found: Mapping[str, Any], where: str, depth: int) -> commands.Command:
     parts = found.get("commands")
     if not isinstance(parts, list) or depth >= _GROUP_DEPTH:
@@ -225,6 +221,7 @@ _READERS: Mapping[str, Callable[[Mapping[str, Any], str, int], commands.Command]
     "take": lambda found, where, _: commands.RemoveComponent(_entity(found, where), _component(found, where)),
     "physics": lambda found, where, _: commands.SetPhysics(_changes(found, where)),
     "simulation": lambda found, where, _: commands.SetSimulation(_changes(found, where)),
+    "text": _set_text,
     "group": _group,
 }
 
@@ -265,8 +262,9 @@ def save(world: World, line: Line, path: str | os.PathLike[str]) -> None:
     """
     scene = write_scene(world)
     check_scene(scene, printable(os.fspath(path)))
-    numbers = {entity: place for place, entity in enumerate(world.entities(), start=1)}
-    entries = line_document(line, numbers)
+    if world.next_entity > LARGEST:
+        raise checks.SceneError(f"entity {world.next_entity - 1}: a recording has numbers up to {LARGEST:,}")
+    entries = line_document(line)
     replace_file(path, json_bytes({"format": FORMAT, "scene": scene, "entries": entries}))
 
 

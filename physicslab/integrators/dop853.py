@@ -1,5 +1,7 @@
 """Dormand and Prince's adaptive method of order 8."""
 
+import math
+
 from physicslab.integrators.integrator import Integrator, StepTooSmall
 from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853
 from physicslab.ode.system import OdeSystem
@@ -9,16 +11,20 @@ _MAX_EVALUATIONS = 1_000_000
 """Force evaluations a step of the world. The most that ``auto`` gives it, 500 rad in a step, takes
 120,000 at the finest tolerance; a million take 0.2 s for two bodies."""
 
-_MAX_IN_PYTHON = 100_000
-"""The same where Python computes a force: they take a second or two."""
+_MAX_COSTLY = 100_000
+"""The same where Python computes a force, or joints are solved: they take a second or two."""
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
+    rests = len(ode.damping) or any(force.sees_velocity(state) for force in ode.forces)
+    floor = max((force.rounding_floor(state) for force in ode.forces), default=0.0) if rests else 0.0
     q_low, v_low = ode.remainders(state)
-    tolerance, most = ode.tolerance, _MAX_IN_PYTHON if ode.interpreted else _MAX_EVALUATIONS
+    tolerance, costly = ode.tolerance, ode.interpreted or ode.joined
+    most = _MAX_COSTLY if costly else _MAX_EVALUATIONS
     made = dop853(
         ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.damped_calls, ode.places,
         steps * h, tolerance, state.simulation.dt, most, ode.free_bodies, ode.steepness,
+        floor if math.isfinite(floor) else 0.0,
     )  # fmt: skip
     if made == NOT_FINITE:
         raise StepTooSmall(f"forces are no longer finite at t = {state.time:.9g} s")

@@ -9,7 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.integrators.along_joints import follows_joints, split_along_joints
 from physicslab.kernels.accounts import FIELDS
+from physicslab.kernels.forces.force_calls import add_forces
+from physicslab.kernels.ode.dop853 import dop853
 from physicslab.kernels.ode.splitting import split
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
@@ -39,6 +42,12 @@ class Splitting:
 
     def __call__(self, state: State, ode: OdeSystem, h: float, steps: int) -> int:
         """Advance by so many steps of so many seconds; return the force evaluations."""
+        if follows_joints(ode):
+            state.compile((dop853, add_forces))
+            made = split_along_joints(ode, self.drifts, self.kicks, h, steps)
+            if made < 0:
+                raise StepTooSmall("joints hold bodies by forces that grow without limit")
+            return made
         q_low, v_low = ode.remainders(state)
         return split(
             ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.calls, *self.shares, ode.places,

@@ -16,8 +16,8 @@ from physicslab.kernels.compiler import (
     allocating,
     allocating_kernel,
     always_inlined,
-    fused,
     inlined,
+    inlined_by_numba,
     inlined_loosely,
     kernel,
 )
@@ -35,6 +35,6 @@ from physicslab.kernels.types import Flags, Numbers, Rows, Vectors
 __all__ = [
     "FASTMATH", "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
     "allocating", "allocating_kernel", "always_inlined", "ask_before_compiling", "cache_directory", "cached",
-    "compile_kernels", "direct_entry", "fused", "inlined", "inlined_loosely", "kernel", "load", "prepare",
-    "seconds_waited", "working_ns",
+    "compile_kernels", "direct_entry", "inlined", "inlined_by_numba", "inlined_loosely", "kernel",
+    "load", "prepare", "seconds_waited", "working_ns",
 ]  # fmt: skip

@@ -6,7 +6,7 @@ of 15); what Python calls gives them their names: ``Motion(*motion)``.
 
 from typing import NamedTuple
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, fused
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined_by_numba
 from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Couples, Impacts, Manifolds, Points
 from physicslab.kernels.wide_layout import Slots, SlotsTuple
@@ -65,7 +65,8 @@ class Near(NamedTuple):
     the entities of all rows, and the angle of each box when its cosine and sine were computed, and those; the
     account that contacts and impacts add to (:mod:`physicslab.kernels.accounts`). For that, room for what is
     noted of points (points, 4), and for the velocities (rows, 2) and angular velocities from before the
-    impulses of a substep (:mod:`physicslab.kernels.solver.work`).
+    impulses of a substep (:mod:`physicslab.kernels.solver.work`); and for when each body last met another
+    one in the substep, and when it meets the next [s from now] (:mod:`physicslab.kernels.solver.meet_again`).
     """
 
     counts: Rows
@@ -83,6 +84,7 @@ class Near(NamedTuple):
     noted: Vectors
     linear_before: Vectors
     angular_before: Numbers
+    moments: Vectors
 
 
 class Contacts(NamedTuple):
@@ -222,6 +224,7 @@ NearTuple = tuple[
     Vectors,
     Vectors,
     Numbers,
+    Vectors,
 ]
 SoftnessTuple = tuple[float, float, float]
 PlanTuple = tuple[int, int, float, float, float, float, int]
@@ -233,7 +236,7 @@ SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows, Ve
 """The same, without names."""
 
 
-@fused
+@inlined_by_numba
 def named_acting(plain: ActingTuple) -> Acting:
     """Give names to a tuple, and to both parts of the forces."""
     pull, acts, unkicked, uniform = plain
@@ -243,14 +246,15 @@ def named_acting(plain: ActingTuple) -> Acting:
     )  # fmt: skip
 
 
-@fused
+@inlined_by_numba
 def named_near(plain: NearTuple) -> Near:
     """Give names to a tuple, and to the slots within it."""
     (
         counts, manifolds, points, scalar, touching, discs, boxes, proximity, activation_distance, entities,
-        rotations, account, noted, linear_before, angular_before,
+        rotations, account, noted, linear_before, angular_before, moments,
     ) = plain  # fmt: skip
     return Near(
         counts, manifolds, points, scalar, touching, Slots(*discs), Slots(*boxes),
         proximity, activation_distance, entities, rotations, account, noted, linear_before, angular_before,
+        moments,
     )  # fmt: skip

@@ -9,6 +9,7 @@ from typing import Any, cast
 import numba
 
 from physicslab.kernels.cache import cached
+from physicslab.kernels.inner import InnerCompiler, KernelCompiler
 from physicslab.kernels.loading import at_first_call, refuse_calls
 from physicslab.kernels.types import signature_of
 
@@ -18,7 +19,10 @@ KERNELS: list[Any] = []
 FASTMATH = {"contract", "nsz", "arcp", "reassoc"}
 """What :func:`inlined_loosely` allows. NaN must survive, so that a diverging run is seen."""
 
-_OF_INNER = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_OF_INNER = {
+    "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True,
+    "pipeline_class": InnerCompiler,
+}  # fmt: skip
 _without_constant: Any = numba.types.unliteral
 _njit: Any = numba.njit  # its type hints know no option of the target
 
@@ -65,8 +69,8 @@ def inlined[F: Callable[..., Any]](function: F) -> F:
 def always_inlined[F: Callable[..., Any]](function: F) -> F:
     """Make an ``@inlined`` function whose machine code LLVM puts wherever it is called.
 
-    It is compiled once, unlike a ``@fused`` one. For what has few callers, and is given so many arrays that
-    to pass them takes as long as the work on a few contacts.
+    For formulas of a few lines, and for what has few callers and is given so many arrays that to pass them
+    takes as long as the work on a few contacts.
     """
     return _inner(function, always=True)
 
@@ -76,11 +80,10 @@ def allocating[F: Callable[..., Any]](function: F) -> F:
     return _inner(function, counts=True)
 
 
-def fused[F: Callable[..., Any]](function: F) -> F:
-    """Make a function whose body numba itself puts where it is called.
+def inlined_by_numba[F: Callable[..., Any]](function: F) -> F:
+    """Make a function that returns arrays, whose body numba itself puts where it is called.
 
-    For what is called for every eight contacts: a call that LLVM leaves standing, with its thirty arguments,
-    takes as long as a third of the work.
+    There references to them are counted, or not, as in what calls it.
     """
     jitted = _njit(inline="always", **_OF_INNER)(function)
     refuse_calls(jitted)
@@ -112,8 +115,10 @@ def allocating_kernel[F: Callable[..., Any]](function: F) -> F:
 def _listed[F: Callable[..., Any]](function: F, counts: bool) -> F:
     # No wrapper for C: nothing calls one, and compiling them takes four to seven per cent of the time.
     with cached():
-        make = _njit(cache=True, error_model="numpy", fastmath=False, no_cfunc_wrapper=True, _nrt=counts)
-        jitted = make(function)
+        jitted = _njit(
+            cache=True, error_model="numpy", fastmath=False, no_cfunc_wrapper=True, _nrt=counts,
+            pipeline_class=KernelCompiler,
+        )(function)  # fmt: skip
     _take_constants_as_values(jitted)
     jitted.declared_signature = signature_of(function)
     jitted.compiled = False

@@ -11,8 +11,8 @@ _FACTOR = 0x2545F4914F6CDD1D
 @inlined
 def _mixed(value: int, word: int) -> int:
     """Return a number that depends on each bit of both."""
-    mixed = (value ^ word) * _FACTOR
-    return mixed ^ (mixed >> 29)
+    mixed = (np.int64(value) ^ np.int64(word)) * _FACTOR  # or plain Python has no overflow
+    return mixed ^ (mixed >> 29)  # type: ignore[return-value]
 
 
 @inlined

@@ -1,9 +1,10 @@
 """Discs, boxes, rounded polygons and lines with smooth edges, painted into an array of pixels.
 
 Coverage comes from the signed distance to the outline [px], so position, size and angle are exact to a
-fraction of a pixel. Pixels are 32 bits of four 8-bit channels in any order; colours are packed in the same
-order. Pixel (row, column) covers [column, column + 1) x [row, row + 1), and y points down. Nothing is written
-outside the array; coordinates must be finite.
+fraction of a pixel. What is not flat is lit from above, and may cast a soft shadow. Pixels are 32 bits of
+four 8-bit channels in any order; colours are packed in the same order. Pixel (row, column) covers
+[column, column + 1) x [row, row + 1), and y points down. Nothing is written outside the array; coordinates
+must be finite.
 
 A row of a shape is three runs: an edge where every pixel is mixed, a core of one colour, and an edge again.
 """
@@ -15,36 +16,24 @@ import numpy as np
 from numba import uint32
 from numpy.typing import NDArray
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels.finishes import BLACK, FLAT, GROUND, LIT, WHITE, lit, mixed, shaded, textured, unit
 
 Pixels = Annotated[NDArray[np.uint32], uint32[:, ::1]]
 """A uint32 array (height, width): a picture."""
 Colours = Annotated[NDArray[np.uint32], uint32[::1]]
 """A uint32 array (n,): packed colours."""
 
-_EVERY_OTHER = 0x00FF00FF
-"""Two channels of a pixel, with room between them for products."""
-HATCH_SPACING = 10.0
-"""Distance between the lines that mark what cannot move [px]."""
-SPOKE_FROM = 3.0
+_WEDGE_FROM = 3.0
 """Radius [px] from which a disc shows how far it has turned."""
-NOTCH_FROM = 8.0
-"""Half extent [px] from which a box shows which way round it is."""
-
-
-@inlined
-def _mixed(under: int, over: int, share: float) -> int:
-    """Return ``under`` with a share (0..1) of ``over`` laid on it, channel by channel."""
-    a = int(share * 256.0 + 0.5)
-    low = ((under & _EVERY_OTHER) * (256 - a) + (over & _EVERY_OTHER) * a) >> 8
-    high = ((under >> 8) & _EVERY_OTHER) * (256 - a) + ((over >> 8) & _EVERY_OTHER) * a
-    return (low & _EVERY_OTHER) | (high & (_EVERY_OTHER << 8))
-
-
-@inlined
-def _unit(value: float) -> float:
-    """Return a value held within 0..1."""
-    return min(max(value, 0.0), 1.0)
+_WEDGE, _WEDGE_REACH, _WEDGE_SHARE = 0.3, 0.8, 0.4
+"""Half the angle of the wedge that shows it [rad], its length as a share of the radius, its opacity."""
+_LIGHT_X, _LIGHT_Y, _LIGHT_REACH = 0.3, 0.5, 2.5
+"""How far left of and above the middle of a disc it is lit most [radii]; squared distance of the dim side."""
+_DEEP = 260.0
+"""Depth below its top in which ground is dim [px]."""
+_SHADOW_DOWN, _SHADOW_SOFT, _SHADOW_FROM = 3.0, 3.5, 5.0
+"""How far below a body its shadow lies, half the width of its edge, least half extent with one [px]."""
 
 
 @inlined
@@ -80,17 +69,9 @@ def _stroke(
         along, away = px * ux + py * uy, px * uy - py * ux
         for column in range(first, min(first + count, limit)):
             past = max(-along, along - length, 0.0)
-            cover = _unit(reach - math.sqrt(away * away + past * past)) * opacity
-            pixels[row, np.uint64(column)] = _mixed(int(pixels[row, np.uint64(column)]), colour, cover)
+            cover = unit(reach - math.sqrt(away * away + past * past)) * opacity
+            pixels[row, np.uint64(column)] = mixed(int(pixels[row, np.uint64(column)]), colour, cover)
             along, away = along + ux, away + uy
-
-
-@inlined
-def _hatched(u: float, v: float, fill: int, line: int) -> int:
-    """Return the colour of a slanting hatch at a place in the body's own frame."""
-    across = (u + v) * 0.7071067811865476
-    across -= HATCH_SPACING * math.floor(across / HATCH_SPACING)
-    return _mixed(fill, line, 0.5 * _unit(1.25 - abs(across - 0.5 * HATCH_SPACING)))
 
 
 @inlined
@@ -99,7 +80,7 @@ def _rimmed(depth: float, band: float, inside: int, edge: int) -> int:
     share = band + 0.5 - depth
     if share >= 1.0:
         return edge
-    return _mixed(inside, edge, max(share, 0.0))
+    return mixed(inside, edge, max(share, 0.0))
 
 
 @inlined
@@ -113,43 +94,95 @@ def _disc_edge(
         depth = r - math.sqrt(dx * dx + dy * dy)
         colour = _rimmed(depth, band, inside, edge)
         if depth < 0.5:
-            colour = _mixed(int(pixels[row, column]), colour, max(depth + 0.5, 0.0))
+            colour = mixed(int(pixels[row, column]), colour, max(depth + 0.5, 0.0))
         pixels[row, column] = colour
+
+
+@inlined
+def _shadow_of_disc(pixels: Pixels, x: float, y: float, r: float, opacity: float) -> None:
+    """Paint what is seen of a disc's shadow around it."""
+    height, width = pixels.shape
+    outer, own, middle = r + _SHADOW_SOFT, r - 0.5, y + _SHADOW_DOWN
+    for row in range(_pixel(middle - outer, height), _pixel(middle + outer, height)):
+        dy, from_own = row + 0.5 - middle, row + 0.5 - y
+        reach = math.sqrt(max(outer * outer - dy * dy, 0.0))
+        core = math.sqrt(max(own * own - from_own * from_own, 0.0))
+        for part in range(2):
+            first = _pixel(x - reach, width) if part == 0 else _pixel(x + core, width)
+            end = _pixel(x - core, width) if part == 0 else _pixel(x + reach, width)
+            for column in range(first, end):
+                dx = column + 0.5 - x
+                away = math.sqrt(dx * dx + dy * dy) - r
+                share = opacity * unit(0.5 - 0.5 * away / _SHADOW_SOFT)
+                pixels[row, column] = mixed(int(pixels[row, column]), BLACK, share)
+
+
+@inlined
+def _wedge(pixels: Pixels, x: float, y: float, r: float, angle: float) -> None:
+    """Paint a bright sector from the middle of a disc towards its angle."""
+    height, width = pixels.shape
+    half, reach = _WEDGE * (1.0 + 3.0 / r), _WEDGE_REACH * r
+    low_x, low_y = math.cos(angle - half), -math.sin(angle - half)
+    high_x, high_y = math.cos(angle + half), -math.sin(angle + half)
+    tip_x, tip_y = math.cos(angle), -math.sin(angle)
+    left, right = min(0.0, min(low_x, high_x, tip_x)) * reach, max(0.0, max(low_x, high_x, tip_x)) * reach
+    top, bottom = min(0.0, min(low_y, high_y, tip_y)) * reach, max(0.0, max(low_y, high_y, tip_y)) * reach
+    for row in range(_pixel(y + top - 0.5, height), _pixel(y + bottom + 0.5, height)):
+        dy = row + 0.5 - y
+        for column in range(_pixel(x + left - 0.5, width), _pixel(x + right + 0.5, width)):
+            dx = column + 0.5 - x
+            cover = unit(0.5 + dx * low_y - dy * low_x)
+            cover *= unit(0.5 + dy * high_x - dx * high_y)
+            cover *= unit(0.5 + reach - math.sqrt(dx * dx + dy * dy))
+            pixels[row, column] = mixed(int(pixels[row, column]), WHITE, _WEDGE_SHARE * cover)
 
 
 @kernel
 def paint_discs(
     pixels: Pixels, centre: Vectors, radius: Numbers, angle: Numbers,
-    fill: Colours, rim: Colours, hatched: Flags, rim_width: float,
+    fill: Colours, rim: Colours, finish: Rows, rim_width: float, shadow: float,
 ) -> None:  # fmt: skip
-    """Paint discs with a rim; a line from the middle to the rim shows how far each has turned.
+    """Paint discs with a rim, lit by their finish; a wedge shows how far each has turned that is not flat.
 
-    Lengths are in px, ``angle`` is counter-clockwise on the screen [rad].
+    Lengths are in px, ``angle`` is counter-clockwise on the screen [rad]; ``shadow`` is the opacity of the
+    shadows, which lie below all of the discs.
     """
     height, width = pixels.shape
+    for i in range(len(radius) if shadow > 0.0 else 0):
+        if radius[i] >= _SHADOW_FROM:
+            _shadow_of_disc(pixels, centre[i, 0], centre[i, 1], radius[i], shadow)
     for i in range(len(radius)):
-        x, y, r = centre[i, 0], centre[i, 1], radius[i]
+        x, y, r, kind = centre[i, 0], centre[i, 1], radius[i], finish[i]
         inside, edge = int(fill[i]), int(rim[i])
+        bright, dim = lit(inside, kind), shaded(inside, kind)
+        c, s = math.cos(angle[i]), math.sin(angle[i])
         band = min(rim_width, 0.35 * r)
         outer, inner = r + 0.5, max(r - band - 0.5, 0.0)
+        per_square = 1.0 / (_LIGHT_REACH * r * r)
         for row in range(_pixel(y - outer, height), _pixel(y + outer, height)):
             dy = row + 0.5 - y
             reach = math.sqrt(max(outer * outer - dy * dy, 0.0))
             core = math.sqrt(max(inner * inner - dy * dy, 0.0))
             left, right = _pixel(x - reach, width), _pixel(x + reach, width)
             core_left, core_right = _pixel(x - core, width), _pixel(x + core, width)
-            _disc_edge(pixels, row, left, core_left, x, dy, r, band, inside, edge)
-            if hatched[i]:
-                for column in range(core_left, core_right):
-                    pixels[row, column] = _hatched(column + 0.5 - x, dy, inside, edge)
-            else:
+            below = dy + _LIGHT_Y * r
+            level = mixed(bright, dim, unit((below * below + 0.5 * r * r) * per_square))
+            _disc_edge(pixels, row, left, core_left, x, dy, r, band, level, edge)
+            if kind == FLAT:
                 for column in range(core_left, core_right):
                     pixels[row, column] = inside
-            _disc_edge(pixels, row, core_right, right, x, dy, r, band, inside, edge)
-        if r >= SPOKE_FROM and not hatched[i]:
-            end = r - band
-            tip_x, tip_y = x + end * math.cos(angle[i]), y - end * math.sin(angle[i])
-            _stroke(pixels, x, y, tip_x, tip_y, 0.5 * band, edge, 1.0)
+            else:
+                for column in range(core_left, core_right):
+                    dx = column + 0.5 - x
+                    away = dx + _LIGHT_X * r
+                    colour = mixed(bright, dim, unit((away * away + below * below) * per_square))
+                    if kind >= GROUND:
+                        u, v = c * dx - s * dy, s * dx + c * dy
+                        colour = textured(kind, u, v, colour, edge, int(pixels[row, column]))
+                    pixels[row, column] = colour
+            _disc_edge(pixels, row, core_right, right, x, dy, r, band, level, edge)
+        if r >= _WEDGE_FROM and kind >= LIT and kind != GROUND:
+            _wedge(pixels, x, y, r, angle[i])
 
 
 @inlined
@@ -185,46 +218,78 @@ def _box_edge(
         depth = min(depth_u, depth_v)
         colour = _rimmed(depth, band, inside, edge)
         if depth < 0.5:
-            cover = _unit(depth_u + 0.5) * _unit(depth_v + 0.5)
-            colour = _mixed(int(pixels[row, column]), colour, cover)
+            cover = unit(depth_u + 0.5) * unit(depth_v + 0.5)
+            colour = mixed(int(pixels[row, column]), colour, cover)
         pixels[row, column] = colour
+
+
+@inlined
+def _shadow_of_box(
+    pixels: Pixels, x: float, y: float, a: float, b: float, c: float, s: float, opacity: float
+) -> None:
+    """Paint what is seen of a box's shadow around it."""
+    height, width = pixels.shape
+    middle, out = y + _SHADOW_DOWN, _SHADOW_SOFT
+    extent = abs(s) * (a + out) + abs(c) * (b + out)
+    for row in range(_pixel(middle - extent, height), _pixel(middle + extent, height)):
+        dy = row + 0.5 - middle
+        left, right = _box_run(c, s, dy, a + out, b + out, x, width)
+        own_left, own_right = _box_run(c, s, row + 0.5 - y, a - 0.5, b - 0.5, x, width)
+        if own_left >= own_right:
+            own_left = own_right = right
+        for part in range(2):
+            first, end = (left, min(own_left, right)) if part == 0 else (max(own_right, left), right)
+            for column in range(first, end):
+                dx = column + 0.5 - x
+                beyond_u, beyond_v = abs(c * dx - s * dy) - a, abs(s * dx + c * dy) - b
+                u, v = max(beyond_u, 0.0), max(beyond_v, 0.0)
+                away = math.sqrt(u * u + v * v) + min(max(beyond_u, beyond_v), 0.0)
+                share = opacity * unit(0.5 - 0.5 * away / out)
+                pixels[row, column] = mixed(int(pixels[row, column]), BLACK, share)
 
 
 @kernel
 def paint_boxes(
     pixels: Pixels, centre: Vectors, half: Vectors, angle: Numbers,
-    fill: Colours, rim: Colours, hatched: Flags, rim_width: float,
+    fill: Colours, rim: Colours, finish: Rows, rim_width: float, shadow: float,
 ) -> None:  # fmt: skip
-    """Paint boxes with a rim; a short line at the middle of their own +x side shows which way round they are.
+    """Paint boxes with a rim, lit by their finish.
 
-    Lengths are in px, ``half`` holds half the extents, ``angle`` is counter-clockwise on the screen [rad].
+    Lengths are in px, ``half`` holds half the extents, ``angle`` is counter-clockwise on the screen [rad];
+    ``shadow`` is the opacity of the shadows, which lie below all of the boxes.
     """
     height, width = pixels.shape
+    for i in range(len(angle) if shadow > 0.0 else 0):
+        a, b = half[i, 0], half[i, 1]
+        if min(a, b) >= _SHADOW_FROM:
+            c, s = math.cos(angle[i]), math.sin(angle[i])
+            _shadow_of_box(pixels, centre[i, 0], centre[i, 1], a, b, c, s, shadow)
     for i in range(len(angle)):
-        x, y, a, b = centre[i, 0], centre[i, 1], half[i, 0], half[i, 1]
+        x, y, a, b, kind = centre[i, 0], centre[i, 1], half[i, 0], half[i, 1], finish[i]
         inside, edge = int(fill[i]), int(rim[i])
+        bright, dim = lit(inside, kind), shaded(inside, kind)
         c, s = math.cos(angle[i]), math.sin(angle[i])
         band = min(rim_width, 0.35 * min(a, b))
         core = band + 0.5
         extent = abs(s) * a + abs(c) * b + 0.75
+        depth = max(_DEEP, 2.0 * extent) if kind == GROUND else 2.0 * extent
         for row in range(_pixel(y - extent, height), _pixel(y + extent, height)):
             dy = row + 0.5 - y
             left, right = _box_run(c, s, dy, a + 0.5, b + 0.5, x, width)
             core_left, core_right = _box_run(c, s, dy, a - core, b - core, x, width)
             if core_left >= core_right:
                 core_left = core_right = right
-            _box_edge(pixels, row, left, core_left, x, dy, c, s, a, b, band, inside, edge)
-            if hatched[i]:
+            level = mixed(bright, dim, unit((dy + extent) / depth))
+            _box_edge(pixels, row, left, core_left, x, dy, c, s, a, b, band, level, edge)
+            if kind >= GROUND:
                 for column in range(core_left, core_right):
                     dx = column + 0.5 - x
-                    pixels[row, column] = _hatched(c * dx - s * dy, s * dx + c * dy, inside, edge)
+                    u, v = c * dx - s * dy, s * dx + c * dy
+                    pixels[row, column] = textured(kind, u, v, level, edge, int(pixels[row, column]))
             else:
                 for column in range(core_left, core_right):
-                    pixels[row, column] = inside
-            _box_edge(pixels, row, core_right, right, x, dy, c, s, a, b, band, inside, edge)
-        if min(a, b) >= NOTCH_FROM and not hatched[i]:
-            near, far = a - 0.5 * min(a, b), a - band
-            _stroke(pixels, x + near * c, y - near * s, x + far * c, y - far * s, 0.5 * band, edge, 1.0)
+                    pixels[row, column] = level
+            _box_edge(pixels, row, core_right, right, x, dy, c, s, a, b, band, level, edge)
 
 
 @inlined
@@ -237,7 +302,7 @@ def _beyond_core(px: float, py: float, corners: Vectors, i: int, count: int) -> 
         along_x, along_y = corners[i, end] - x, corners[i, end + 1] - y
         dx, dy = px - x, py - y
         square = along_x * along_x + along_y * along_y
-        share = _unit((dx * along_x + dy * along_y) / square) if square > 0.0 else 0.0
+        share = unit((dx * along_x + dy * along_y) / square) if square > 0.0 else 0.0
         away_x, away_y = dx - share * along_x, dy - share * along_y
         nearest = min(nearest, away_x * away_x + away_y * away_y)
         within = within and along_x * dy - along_y * dx <= 0.0
@@ -247,39 +312,47 @@ def _beyond_core(px: float, py: float, corners: Vectors, i: int, count: int) -> 
 @kernel
 def paint_rounded(
     pixels: Pixels, corners: Vectors, vertices: Rows, radius: Numbers,
-    fill: Colours, rim: Colours, hatched: Flags, rim_width: float,
+    fill: Colours, rim: Colours, finish: Rows, rim_width: float, shadow: float,
 ) -> None:  # fmt: skip
-    """Paint rounded polygons with a rim; a line from the middle to the first vertex shows how they lie.
+    """Paint rounded polygons with a rim, lit by their finish.
 
-    ``corners`` (n, 16) holds x and y of each vertex in turn [px], counter-clockwise as it is seen.
+    ``corners`` (n, 16) holds x and y of each vertex in turn [px], counter-clockwise as it is seen; ``shadow``
+    is the opacity of their shadows.
     """
     height, width = pixels.shape
     for i in range(len(radius)):
-        count, inside, edge = vertices[i], int(fill[i]), int(rim[i])
+        count, inside, edge, kind = vertices[i], int(fill[i]), int(rim[i]), finish[i]
+        bright, dim = lit(inside, kind), shaded(inside, kind)
         left, right, top, bottom, x, y = math.inf, -math.inf, math.inf, -math.inf, 0.0, 0.0
         for k in range(count):
             at_x, at_y = corners[i, 2 * k], corners[i, 2 * k + 1]
             left, right, top, bottom = min(left, at_x), max(right, at_x), min(top, at_y), max(bottom, at_y)
             x, y = x + at_x / count, y + at_y / count
-        reach = radius[i] + 0.5
+        extent = bottom - top + 2.0 * radius[i]
+        casts = shadow > 0.0 and min(extent, right - left + 2.0 * radius[i]) >= 2.0 * _SHADOW_FROM
+        down, soft = (_SHADOW_DOWN, _SHADOW_SOFT) if casts else (0.0, 0.5)
+        reach = radius[i] + soft
+        depth_of_light = max(_DEEP, extent) if kind == GROUND else extent
         along_x, along_y = corners[i, 0] - x, corners[i, 1] - y
         length = max(math.sqrt(along_x * along_x + along_y * along_y), 1e-9)
         c, s = along_x / length, along_y / length
-        for row in range(_pixel(top - reach, height), _pixel(bottom + reach, height)):
+        for row in range(_pixel(top - reach, height), _pixel(bottom + down + reach, height)):
+            py = row + 0.5
+            level = mixed(bright, dim, unit((py - top + radius[i]) / depth_of_light))
             for column in range(_pixel(left - reach, width), _pixel(right + reach, width)):
-                px, py = column + 0.5, row + 0.5
+                px, under = column + 0.5, int(pixels[row, column])
                 depth = radius[i] - _beyond_core(px, py, corners, i, count)
-                if depth <= -0.5:
-                    continue
-                dx, dy, colour = px - x, py - y, inside
-                if hatched[i]:
-                    colour = _hatched(c * dx + s * dy, c * dy - s * dx, inside, edge)
-                colour = _rimmed(depth, rim_width, colour, edge)
-                if depth < 0.5:
-                    colour = _mixed(int(pixels[row, column]), colour, depth + 0.5)
-                pixels[row, column] = colour
-        if not hatched[i]:
-            _stroke(pixels, x, y, corners[i, 0], corners[i, 1], 0.5 * rim_width, edge, 1.0)
+                if casts and depth < 0.5:
+                    away = _beyond_core(px, py - down, corners, i, count) - radius[i]
+                    under = mixed(under, BLACK, shadow * unit(0.5 - 0.5 * away / soft))
+                if depth > -0.5:
+                    colour = level
+                    if kind >= GROUND:
+                        dx, dy = px - x, py - y
+                        colour = textured(kind, c * dx + s * dy, c * dy - s * dx, level, edge, under)
+                    under = mixed(under, _rimmed(depth, rim_width, colour, edge), unit(depth + 0.5))
+                if depth > -0.5 or casts:
+                    pixels[row, column] = under
 
 
 @kernel

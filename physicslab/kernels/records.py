@@ -61,6 +61,9 @@ POINT = np.dtype(
         ("approach_speed", np.float64),  # before the impact of this step, 0 if there was none
         ("impact_normal", np.float64),  # impulses of the impacts of this step
         ("impact_tangent", np.float64),
+        # On a round bend of a chain, how fast the normal that was found turns away from the point in half a
+        # substep [m/s]: what slides along leaves it with this speed, and comes to the next one with it.
+        ("bend", np.float64),
     ]
 )
 """A contact point; the points of pair p are numbers 2 p and 2 p + 1."""

@@ -9,6 +9,7 @@ import queue
 import subprocess
 import sys
 import threading
+import time
 from collections import deque
 from collections.abc import Iterable
 from contextlib import suppress
@@ -19,6 +20,7 @@ from typing import Any
 from physicslab import kernels
 from physicslab.kernels import cache
 from physicslab.kernels.keys import current_folders
+from physicslab.kernels.tiers import compile_seconds
 
 _WORKERS_LIMIT = 4
 _FIRST = (
@@ -87,11 +89,12 @@ def rank_of(name: str) -> int:
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """Progress of compiling: how many kernels of how many, and the name of the last."""
+    """Progress of compiling: how many kernels of how many, the last one's name, and the share of the work."""
 
     done: int
     total: int
     name: str = ""
+    share: float = 0.0
 
 
 class Warmup:
@@ -126,7 +129,10 @@ class Warmup:
         self._retired: set[subprocess.Popen[str]] = set()
         self._threads: list[threading.Thread] = []
         self._yields = False
-        self._progress = Progress(len(self._compiled), len(names))
+        self._costs = {name_of(jitted): compile_seconds(jitted) for jitted in _own()}
+        self._begun: dict[str, float] = {}
+        self._took, self._foreseen = 0.0, 0.0  # what compiling took so far, and should have taken [s]
+        self._progress = Progress(len(self._compiled), len(names), share=self._share())
         self.finished = False
 
     def __enter__(self) -> Warmup:
@@ -166,12 +172,16 @@ class Warmup:
                 name = process.stdout.readline().strip()
                 if not name:
                     break
+                self._took += time.monotonic() - self._begun[name]
+                self._foreseen += self._costs[name]
                 self._answers.put(name)
             process.stdin.close()
 
     def _next(self, process: subprocess.Popen[str]) -> str:
         with self._lock:
-            return self._jobs.popleft() if self._jobs and process not in self._retired else ""
+            name = self._jobs.popleft() if self._jobs and process not in self._retired else ""
+            self._begun[name] = time.monotonic()
+            return name
 
     def hurry(self, names: Iterable[str]) -> None:
         """Compile these kernels before all others, except for those that are being compiled."""
@@ -207,6 +217,21 @@ class Warmup:
         """Whether these kernels were in the cache at the last :meth:`poll`."""
         return self._compiled.issuperset(names)
 
+    def seconds_left(self, names: Iterable[str]) -> float:
+        """Return about how long [s] it takes until these kernels are compiled, if they come first."""
+        slowness, now = self._took / self._foreseen if self._foreseen else 1.0, time.monotonic()
+        left = [
+            max(slowness * self._costs[name] - (now - self._begun.get(name, now)), 1.0)
+            for name in names
+            if name not in self._compiled
+        ]
+        return max(max(left, default=0.0), sum(left) / max(self._workers, 1))
+
+    def _share(self) -> float:
+        """Return how much of the work is done (0 to 1)."""
+        done = sum(self._costs[name] for name in self._compiled)
+        return done / max(sum(self._costs.values()), 1e-9)
+
     def poll(self, wait: float = 0.0) -> Progress:
         """Return how far it is, at once or after the next kernel; after ``wait`` seconds at the latest."""
         done, name, total = self._progress.done, self._progress.name, self._progress.total
@@ -216,7 +241,7 @@ class Warmup:
                 name = self._answers.get(timeout=wait) if wait else self._answers.get_nowait()
                 done, wait = done + 1, 0.0
                 self._compiled.add(name)
-        self._progress = Progress(done, total, name)
+        self._progress = Progress(done, total, name, self._share())
         if done == total and not self.finished:
             mark_warm()
         self.finished = self.finished or ended or done == total

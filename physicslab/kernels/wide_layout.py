@@ -11,7 +11,7 @@ import numpy as np
 from numba import uint64
 from numpy.typing import NDArray
 
-from physicslab.kernels import Flags, Numbers, Rows, fused
+from physicslab.kernels import Flags, Numbers, Rows, always_inlined
 
 WIDE = 8
 """Slots of a block."""
@@ -67,7 +67,7 @@ SlotsTuple = tuple[int, Numbers, Rows, Rows, Rows, Rows, Masks, Rows, Flags]
 """The same, without names."""
 
 
-@fused
+@always_inlined
 def rows_of(kind: int) -> int:
     """Return how many numbers a block of a kind has."""
     return DISC_ROWS if kind == DISC else BOX_ROWS

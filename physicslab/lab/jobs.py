@@ -3,6 +3,7 @@
 import gc
 import multiprocessing
 import os
+import threading
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 
@@ -90,12 +91,25 @@ def in_processes[Result](
             while not warmup.finished:
                 warmup.poll(0.1)
     # A fork would share threads of the compiled code: each worker imports for itself.
-    with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(workers, context, initializer=_end_with_parent) as pool:
         futures = {name: future for run in runs for future in [pool.submit(_each, work, run)] for name in run}
         try:
             yield from _in_order(futures, names)
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _end_with_parent() -> None:
+    """Let this process end when the one that began it does, which may be killed."""
+    threading.Thread(target=_follow_parent, name="parent", daemon=True).start()
+
+
+def _follow_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 def _each[Result](work: Callable[[str], Result], names: Sequence[str]) -> dict[str, Result]:

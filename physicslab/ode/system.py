@@ -22,6 +22,9 @@ from physicslab.state.state import State
 from physicslab.systems.joint_forces import dependent_rows
 from physicslab.systems.system import ForceSystem, Stage
 
+_APART = 1e-6
+"""Share of the coordinates by which joints are apart that were put so: what methods leave is far less."""
+
 _REAL = ctypes.POINTER(ctypes.c_double)
 _WHOLE = ctypes.POINTER(ctypes.c_int64)
 _CALLBACK = ctypes.CFUNCTYPE(None, _REAL, _REAL, ctypes.c_double, _REAL, _REAL, _WHOLE)
@@ -217,12 +220,32 @@ class OdeSystem:
         if self._joints is not None:
             set_going(self.q, self.v, *self.joints)
 
-    def hold_together(self) -> None:
-        """Put together again what joints hold together, where there are any."""
-        if self._joints is not None:
-            n = self.layout.moving_count
-            low = self._low or (np.zeros(n), np.zeros(n))
-            project(self.q, self.v, *low, *self.joints)
+    def placed_together(self) -> NDArray[np.float64] | None:
+        """Return places with which joints hold, where those of now are apart by more than rounding.
+
+        ``None`` where they are not, and where joints contradict each other.
+        """
+        if self._joints is None:
+            return None
+        q, n = self.q.copy(), self.layout.moving_count
+        left = project(q, self.v.copy(), np.zeros(n), np.zeros(n), *self.joints)
+        moved = float(np.abs(q - self.q).max(initial=0.0))
+        apart = moved > _APART * float(np.abs(self.q[:n]).max(initial=0.0)) and left <= _APART * moved
+        return q if apart else None
+
+    def place(self, state: State, q: NDArray[np.float64]) -> None:
+        """Put what moves at other places, coordinates (n,) like ``q`` [m and rad], in the tables too."""
+        self.q = q
+        self._write(state, q, self.v)
+
+    def hold_together(self) -> bool:
+        """Put together again what joints hold together; return whether it was apart by more than errors."""
+        if self._joints is None:
+            return False
+        n = self.layout.moving_count
+        low, before = self._low or (np.zeros(n), np.zeros(n)), self.q[:n].copy()
+        project(self.q, self.v, *low, *self.joints)
+        return bool(np.abs(self.q[:n] - before).max(initial=0.0) > _APART * np.abs(before).max(initial=0.0))
 
     def find_joint_forces(self, state: State) -> None:
         """Find the forces of joints in the present state of motion, where nothing touches."""
@@ -230,6 +253,11 @@ class OdeSystem:
             add_forces(self.q, self.v, np.zeros(len(self.q)), self.calls)
             state.joints.force[:] = forces_of(*self.joints, len(state.joints))
             state.joints.dependent[:] = dependent_rows(*self.joints, len(state.joints))
+
+    @property
+    def joined(self) -> bool:
+        """Whether joints hold what moves."""
+        return self._joints is not None
 
     @property
     def joints(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

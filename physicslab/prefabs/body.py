@@ -3,7 +3,9 @@
 from collections.abc import Sequence
 from typing import TypedDict, Unpack
 
-from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.components import Colour, MadeOf, Mass, Material, Shape, Transform, Velocity
+from physicslab.components.made_of import SUBSTANCES
+from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
 from physicslab.world import World
 
@@ -28,6 +30,10 @@ class BodyOptions(TypedDict, total=False):
         Whether it keeps its angle whatever the torque.
     static : bool
         Whether it stays where it is; mass and velocity are then ignored.
+    material : str
+        What it is made of, one of :data:`SUBSTANCES`, whose surface and colour it has unless they are given.
+    colour : str
+        As in :class:`Colour`.
     name : str
         Its id in scene files and reports.
     """
@@ -40,6 +46,8 @@ class BodyOptions(TypedDict, total=False):
     friction: float
     fixed_rotation: bool
     static: bool
+    material: str
+    colour: str
     name: str | None
 
 
@@ -57,11 +65,16 @@ def body(world: World, shape: Shape, position: Pair, **options: Unpack[BodyOptio
     unknown = options.keys() - known.keys()
     if unknown:
         raise TypeError(f"a body has no option {min(unknown)!r}; it has {', '.join(known)}")
-    still = [
+    made = SUBSTANCES.get(options.get("material", ""))
+    restitution, friction = (0.0, 0.5) if made is None else (made.restitution, made.friction)
+    colour = options.get("colour", "" if made is None else made.colour)
+    still: list[Component] = [
         Transform(position, options.get("angle", 0.0)),
         shape,
-        Material(options.get("restitution", 0.0), options.get("friction", 0.5)),
+        Material(options.get("restitution", restitution), options.get("friction", friction)),
     ]
+    still += [MadeOf(options["material"])] if "material" in options else []
+    still += [Colour(colour)] if colour else []
     name = options.get("name")
     if options.get("static", False):
         return world.spawn(*still, name=name)

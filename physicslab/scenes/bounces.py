@@ -17,4 +17,7 @@ BOUNCES = Scene(
     description="Five balls fall from one height; each bounce reaches e squared of the height before.",
     fill=_fill,
     view=(-7.0, -1.0, 7.0, 5.2),
+    moment=1.2,
+    teaches=("energy", "collisions"),
+    tags=("solid bodies",),
 )

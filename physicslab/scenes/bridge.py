@@ -3,6 +3,7 @@
 import math
 
 from physicslab.components import Pin
+from physicslab.ecs.config import SimulationConfig
 from physicslab.prefabs import box, circle
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
@@ -31,7 +32,9 @@ def _fill(world: World) -> None:
     world.spawn(Pin(right, before, (-1.5, 1.5), end))
     for n, mass in enumerate((5.0, 20.0, 60.0)):
         radius = 0.2 + 0.12 * n
-        circle(world, (1.6 * (n - 1), 1.2 + n), radius=radius, mass=mass, friction=0.6, name=f"{mass:g} kg")
+        circle(
+            world, (1.6 * (n - 1), 0.9 + 0.7 * n), radius=radius, mass=mass, friction=0.6, name=f"{mass:g} kg"
+        )
 
 
 BRIDGE = Scene(
@@ -39,5 +42,9 @@ BRIDGE = Scene(
     title="A hanging bridge",
     description="Twenty planks on pins carry what falls on them: each pin tells the force that it holds.",
     fill=_fill,
+    # A plank that is hit takes a way of its own until its pins act, at the end of the substep.
+    simulation=SimulationConfig(substeps=8),
     view=(-5.2, -2.6, 5.2, 3.4),
+    teaches=("forces", "equilibrium"),
+    tags=("joints", "solid bodies"),
 )

@@ -22,5 +22,8 @@ CROSSED_FIELDS = Scene(
     description="Charges in an electric and a magnetic field drift across both, on cycloids, at 0.6 m/s.",
     fill=_fill,
     view=(-3.5, -3.4, 4.0, 3.4),
+    moment=3.0,
+    teaches=("electricity",),
+    tags=("charges",),
     physics=PhysicsConfig(gravity_mode="none", electric_field=Vector2(0.0, -1.2), magnetic_field=-2.0),
 )

@@ -25,5 +25,8 @@ CYCLOTRON = Scene(
     description="A push in step with the circling of a charge drives it outwards; out of step it does not.",
     fill=_fill,
     view=(-4.0, -2.4, 4.0, 2.4),
+    moment=3.0,
+    teaches=("electricity", "circular motion", "energy"),
+    tags=("charges",),
     physics=PhysicsConfig(gravity_mode="none", magnetic_field=_FIELD),
 )

@@ -21,4 +21,7 @@ DOMINOES = Scene(
     description="A push on the first brings down the last: a wave that takes its energy from their height.",
     fill=_fill,
     view=(-7.0, -1.0, 8.0, 2.5),
+    moment=1.4,
+    teaches=("energy", "waves"),
+    tags=("solid bodies",),
 )

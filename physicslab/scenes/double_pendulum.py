@@ -30,4 +30,7 @@ DOUBLE_PENDULUM = Scene(
     description="Two that begin a thousandth of a radian apart: alike for seconds, and then nothing alike.",
     fill=_fill,
     view=(-4.5, -2.4, 4.5, 2.2),
+    moment=2.2,
+    teaches=("chaos", "energy"),
+    tags=("joints", "solid bodies"),
 )

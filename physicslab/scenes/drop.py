@@ -16,4 +16,7 @@ DROP = Scene(
     description="A ball keeps 0.8 of its approach speed at every bounce; friction sets it rolling.",
     fill=_fill,
     view=(-5.0, -1.0, 5.0, 4.8),
+    moment=1.3,
+    teaches=("energy", "collisions"),
+    tags=("solid bodies",),
 )

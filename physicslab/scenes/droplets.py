@@ -33,5 +33,7 @@ DROPLETS = Scene(
     description="Molecules attract their neighbours: two crystals meet, and melt into one drop.",
     fill=_fill,
     view=(-4.0, -2.4, 4.0, 2.4),
+    teaches=("heat", "energy"),
+    tags=("many bodies",),
     physics=PhysicsConfig(gravity_mode="none"),
 )

@@ -28,4 +28,6 @@ FLOATING = Scene(
     description="What is lighter than water floats, as deep as its share of the density; a stone sinks.",
     fill=_fill,
     view=(-4.6, -3.5, 4.6, 2.6),
+    teaches=("buoyancy", "equilibrium"),
+    tags=("liquids", "solid bodies"),
 )

@@ -18,5 +18,8 @@ GAS = Scene(
     description="Elastic, frictionless discs fill 17 % of a box; their kinetic energy should stay the same.",
     fill=_fill,
     view=(-12.2, -7.7, 12.2, 7.7),
+    moment=0.0,
+    teaches=("heat", "collisions"),
+    tags=("solid bodies", "many bodies"),
     physics=PhysicsConfig(gravity_mode="none", bounds=_WALLS, bounds_restitution=1.0, bounds_friction=0.0),
 )

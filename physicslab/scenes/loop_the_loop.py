@@ -12,8 +12,8 @@ _RADIUS, _BALL, _RUN = 1.0, 0.1, 2.5
 
 def _fill(world: World) -> None:
     least = math.sqrt(5.0 * 9.81 * (_RADIUS - _BALL))
-    for name, x, share in (("too slow", -2.4, 0.9), ("fast enough", 2.4, 1.15)):
-        loop(world, (x, 0.0), radius=_RADIUS, run=_RUN, segments=600, friction=0.0, name=f"loop, {name}")
+    for name, x, share in (("too slow", -2.4, 0.9), ("fast enough", 2.4, 1.02)):
+        loop(world, (x, 0.0), radius=_RADIUS, run=_RUN, segments=72, friction=0.0, name=f"loop, {name}")
         box(world, (x - _RUN - 0.1, 0.4), width=0.2, height=1.2, static=True)
         start = x - _RUN + 0.3, _BALL
         circle(world, start, radius=_BALL, velocity=(share * least, 0.0), friction=0.0, name=name)
@@ -22,7 +22,10 @@ def _fill(world: World) -> None:
 LOOP_THE_LOOP = Scene(
     name="loop_the_loop",
     title="Loop the loop",
-    description="Balls without friction at 0.9 and 1.15 times the least speed, which is the root of 5 g r.",
+    description="Balls without friction at 0.9 and 1.02 times the least speed, which is the root of 5 g r.",
     fill=_fill,
     view=(-5.4, -0.6, 4.0, 2.6),
+    moment=1.2,
+    teaches=("circular motion", "energy"),
+    tags=("solid bodies",),
 )

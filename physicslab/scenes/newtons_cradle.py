@@ -24,6 +24,9 @@ NEWTONS_CRADLE = Scene(
     description="One ball goes in and one comes out: momentum and energy together leave no other way.",
     fill=_fill,
     view=(-3.2, 0.4, 3.2, 4.2),
+    moment=0.8,
+    teaches=("momentum", "energy", "collisions"),
+    tags=("springs", "solid bodies"),
     # The strings are springs of 224 rad/s, which eight substeps follow closely.
     simulation=SimulationConfig(substeps=8),
 )

@@ -19,4 +19,7 @@ PENDULUM = Scene(
     description="A bob on a rod of 2 m; its period is a little above 2 pi sqrt(l / g) = 2.84 s.",
     fill=_fill,
     view=(-1.4, 0.4, 3.6, 3.3),  # the graph of its energies has the right half
+    moment=0.9,
+    teaches=("oscillations", "energy"),
+    tags=("joints",),
 )

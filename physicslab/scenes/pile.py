@@ -16,4 +16,6 @@ PILE = Scene(
     description="A thousand discs of 0.2 m fall into a container and come to rest.",
     fill=_fill,
     view=(-6.5, -1.0, 6.5, 8.0),
+    teaches=("equilibrium", "friction"),
+    tags=("solid bodies", "many bodies"),
 )

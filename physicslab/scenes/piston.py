@@ -35,4 +35,6 @@ PISTON = Scene(
     description="A motor at a steady half turn a second: the piston's way is no sine, but sharper far out.",
     fill=_fill,
     view=(-1.2, -1.4, 3.2, 1.4),
+    teaches=("machines", "circular motion"),
+    tags=("joints", "solid bodies"),
 )

@@ -27,4 +27,6 @@ PULLEYS = Scene(
     description="1 kg against 1.2 kg; and 1 kg against 2.4 kg on two lines, by which it could hold 2 kg.",
     fill=_fill,
     view=(-3.6, -0.4, 3.6, 3.0),
+    teaches=("machines", "forces"),
+    tags=("joints", "solid bodies"),
 )

@@ -18,5 +18,8 @@ PYRAMID = Scene(
     description="Thirty rows of boxes of 1 m, a measure for contact solvers: they should not sink or spread.",
     fill=_fill,
     view=(-20.0, -1.2, 20.0, 30.5),
+    moment=0.0,
+    teaches=("equilibrium",),
+    tags=("solid bodies", "many bodies"),
     physics=PhysicsConfig(gravity=Vector2(0.0, -10.0)),
 )

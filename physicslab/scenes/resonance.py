@@ -26,4 +26,7 @@ RESONANCE = Scene(
     description="Seven bobs on springs are shaken alike at 1 Hz: the one that is in tune swings widest.",
     fill=_fill,
     view=(-4.4, -1.4, 4.4, 2.8),
+    moment=3.0,
+    teaches=("oscillations", "energy"),
+    tags=("springs", "solid bodies"),
 )

@@ -30,5 +30,8 @@ ROCKET = Scene(
     description="A push across its path leads one round in a circle; one along it makes the other faster.",
     fill=_fill,
     view=(-4.5, -3.6, 3.0, 4.0),
+    moment=2.0,
+    teaches=("forces", "circular motion"),
+    tags=("solid bodies",),
     physics=PhysicsConfig(gravity_mode="none"),
 )

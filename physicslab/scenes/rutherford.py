@@ -21,5 +21,8 @@ RUTHERFORD = Scene(
     description="Light charges fly at a heavy one: few come near it, and the nearest are thrown back.",
     fill=_fill,
     view=(-4.4, -3.0, 4.4, 3.0),
+    moment=2.0,
+    teaches=("electricity", "energy"),
+    tags=("charges",),
     physics=PhysicsConfig(gravity_mode="none", coulomb_constant=1.0),
 )

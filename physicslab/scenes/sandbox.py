@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.ecs.config import PhysicsConfig
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.scenes.scene import Scene
 from physicslab.world import World
@@ -28,5 +28,10 @@ SANDBOX = Scene(
     description="A floor, a ramp, a pile of boxes and a pendulum to play with.",
     fill=_fill,
     view=(-5.9, -0.5, 5.9, 5.9),
+    teaches=("energy", "collisions"),
+    tags=("joints", "solid bodies"),
     physics=PhysicsConfig(bounds=(-5.8, -0.4, 5.8, 5.8)),
+    # The pile sleeps until something touches it: the rest is moved at life's speed by plain Python too, while
+    # kernels are compiled on a first start.
+    simulation=SimulationConfig(sleeping=True),
 )

@@ -22,6 +22,12 @@ class Scene:
     view : tuple of four floats, optional
         What a window shows of it: xmin, ymin, xmax, ymax [m], with room for 10 s of motion; by default
         all that there is at the start.
+    moment : float
+        The time at which a small picture shows what it is about [s].
+    teaches : tuple of str
+        What it is an example of, by which it is found too.
+    tags : tuple of str
+        What is in it, by which it is found: as :func:`physicslab.view.workbench.thumbnails.tags_of` finds.
     physics, simulation : PhysicsConfig, SimulationConfig
         The laws, and how they are stepped.
     """
@@ -31,6 +37,9 @@ class Scene:
     description: str
     fill: Callable[[World], None]
     view: View | None = None
+    moment: float = 0.6
+    teaches: tuple[str, ...] = ()
+    tags: tuple[str, ...] = ()
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     simulation: SimulationConfig = field(default_factory=SimulationConfig)
 

@@ -27,4 +27,6 @@ SLOPE = Scene(
     description="Four blocks on a slope of 20 degrees: those with a friction below tan 20 = 0.364 slide.",
     fill=_fill,
     view=(-7.8, -3.4, 7.8, 3.4),
+    teaches=("friction", "forces"),
+    tags=("solid bodies",),
 )

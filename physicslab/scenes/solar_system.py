@@ -25,5 +25,8 @@ SOLAR_SYSTEM = Scene(
     description="The squares of the periods go like the cubes of the distances: Kepler's third law.",
     fill=_fill,
     view=(-3.5, -3.3, 2.5, 3.5),
+    moment=12.0,
+    teaches=("gravity", "circular motion"),
+    tags=("planets",),
     physics=PhysicsConfig(gravity_mode="planet"),
 )

@@ -15,4 +15,6 @@ SPRING_CHAIN = Scene(
     description="Twenty balls on springs sag like a hanging chain; waves run along it and die out.",
     fill=_fill,
     view=(-4.2, 0.2, 4.2, 3.6),
+    teaches=("waves", "oscillations"),
+    tags=("springs", "solid bodies"),
 )

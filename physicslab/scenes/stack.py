@@ -16,4 +16,7 @@ STACK = Scene(
     description="Ten boxes of 1 m and 1 kg on top of each other; they should stand.",
     fill=_fill,
     view=(-7.0, -1.0, 7.0, 10.4),
+    moment=0.0,
+    teaches=("equilibrium",),
+    tags=("solid bodies",),
 )

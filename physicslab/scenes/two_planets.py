@@ -17,5 +17,8 @@ TWO_PLANETS = Scene(
     description="Two planets on ellipses about their centre of mass; their total momentum stays zero.",
     fill=_fill,
     view=(-2.2, -2.2, 3.8, 2.2),
+    moment=4.0,
+    teaches=("gravity", "momentum"),
+    tags=("planets",),
     physics=PhysicsConfig(gravity_mode="planet"),
 )

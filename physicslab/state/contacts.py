@@ -149,6 +149,7 @@ class Contacts:
         self.noted: NDArray[np.float64] = np.zeros((0, 4))
         self.linear_before: NDArray[np.float64] = np.zeros((0, 2))
         self.angular_before: NDArray[np.float64] = np.zeros(0)
+        self.moments: NDArray[np.float64] = np.zeros((0, 2))
         self.table: NDArray[np.int64] = np.zeros(16, np.int64)
         self.sleeping: NDArray[np.int64] = np.zeros(capacity, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.

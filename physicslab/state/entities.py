@@ -20,6 +20,12 @@ _NO_COMPONENTS = ("builtins", "numpy")
 """Where types come from that hold values, and say nothing of an entity."""
 
 
+def label_in_context(entity: int) -> str:
+    """Return the label of an entity that is there, where the context of its world is active."""
+    named = esper.try_component(entity, Name)
+    return named.id if named is not None else plain_name(entity, esper.components_for_entity(entity))
+
+
 class Entities:
     """Entities with components, in an esper context that is this world's own.
 
@@ -188,10 +194,7 @@ class Entities:
         """Return the entity's id if it has one, else what it is and its number: ``circle 3``."""
         with self.active():
             entity = self.entity(entity) if isinstance(entity, str) else entity
-            if not esper.entity_exists(entity):
-                return f"entity {entity}"
-            named = esper.try_component(entity, Name)
-            return named.id if named is not None else plain_name(entity, esper.components_for_entity(entity))
+            return label_in_context(entity) if esper.entity_exists(entity) else f"entity {entity}"
 
     def label_of_row(self, row: int) -> str:
         """Return the label of the entity of a row; row 0 is the world itself."""

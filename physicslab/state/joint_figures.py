@@ -1,69 +1,131 @@
-"""The figures of one joint: its force and torque, and the error that is left."""
+"""The figures of all joints: their forces and torques, and the errors that are left."""
 
-import math
 from typing import NamedTuple
 
-from physicslab.ecs.vector import Vector2
-from physicslab.state.joint_rows import Measure, Role, measured
-from physicslab.state.joints import Joint
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Transform
+from physicslab.kernels.joints.measured import AX, BX, FIGURES, VALUE, measure_terms
+from physicslab.state.joint_rows import Measure, Role
 from physicslab.state.state import State
+
+type Numbers = NDArray[np.float64]
+"""A float64 array (n,), or of the shape that a function says."""
 
 
 class JointFigures(NamedTuple):
-    """Force [N] and torque about its anchor [N m] on B; the errors left [m, rad], the largest so far [m]."""
+    """Arrays (n,) of all joints, at the end of the last step or as its mean, where bodies are now.
 
-    force: Vector2
-    torque: float
-    stretch: float
-    twist: float
-    largest_stretch: float
+    Forces on B (n, 2) [N], torques on B about its anchor [N m], errors of lengths and places [m] and of
+    angles [rad], the largest error of the first so far [m], and the length that it is compared with [m]:
+    that of the arms, and of a rod or a rope.
+    """
+
+    force: Numbers
+    torque: Numbers
+    stretch: Numbers
+    twist: Numbers
+    largest_stretch: Numbers
+    size: Numbers
 
 
-def forces_of(state: State, joint: Joint) -> dict[int, Vector2]:
-    """Return the force of a joint [N] on the row of each body that it holds, as in :func:`figures_of`."""
-    joints, found = state.joints, dict[int, Vector2]()
-    for row in range(joint.first, joint.first + joint.size):
-        for n in (row, int(joints.second[row])):
-            if n < 0:
-                continue
-            one, pull = (
-                measured(joints.term(n), state.entity_index),
-                float(joints.scale[n] * joints.force[row]),
-            )
-            for body, gradient in (
-                (int(joints.a[n]), (one.ax, one.ay)),
-                (int(joints.b[n]), (one.bx, one.by)),
-            ):
-                if body:
-                    found[body] = found.get(body, Vector2()) + pull * Vector2(*gradient)
+def measured_terms(state: State, position: Numbers | None = None, angle: Numbers | None = None) -> Numbers:
+    """Return what terms measure and their gradients (m, FIGURES), where bodies are.
+
+    Or at places (rows, 2) [m] and angles (rows,) [rad].
+    """
+    joints, transform = state.joints, state.table(Transform)
+    found = np.zeros((len(joints.measure), FIGURES))
+    state.compile((measure_terms,))
+    measure_terms(
+        joints.measure, joints.a, joints.b, joints.anchor_a, joints.anchor_b, joints.axis,
+        transform["position"] if position is None else position,
+        transform["angle"] if angle is None else angle, found,
+    )  # fmt: skip
     return found
 
 
-def figures_of(state: State, joint: Joint) -> JointFigures:
-    """Return the figures of a joint, at the end of the last step or as their mean, where bodies are now."""
-    joints, torque, largest = state.joints, 0.0, 0.0
-    squares = {True: 0.0, False: 0.0}
-    for row in range(joint.first, joint.first + joint.size):
-        error = -float(joints.offset[row])
-        for n in (row, int(joints.second[row])):
-            if n < 0:
-                continue
-            one, scale = measured(joints.term(n), state.entity_index), float(joints.scale[n])
-            error += scale * one.value
-            for end, sign in ((joints.a[n], -1.0), (joints.b[n], 1.0)):
-                if end == joint.b and joints.measure[n] == Measure.ANGLE:
-                    torque += sign * scale * float(joints.force[row])
-        if joints.role[row] == Role.LIMIT:
-            error = min(error, 0.0)
-        if joints.measure[row] != Measure.ANGLE:
-            largest = max(largest, float(joints.largest[row]))
-        if joints.role[row] != Role.MOTOR:
-            squares[bool(joints.measure[row] == Measure.ANGLE)] += error * error
-    stretch, twist = math.sqrt(squares[False]), math.sqrt(squares[True])
-    return JointFigures(_force_on_b(state, joint), torque, stretch, twist, max(largest, stretch))
+def rows_of_terms(state: State) -> NDArray[np.int64]:
+    """Return the row (m,) that each term is of."""
+    rows = np.arange(len(state.joints))
+    return np.concatenate((rows, rows[state.joints.second >= 0]))
 
 
-def _force_on_b(state: State, joint: Joint) -> Vector2:
-    """Return the force on B [N]; on the world it is what A gets with the other sign."""
-    forces = forces_of(state, joint)
-    return forces.get(joint.b, Vector2()) if joint.b else -sum(forces.values(), Vector2())
+def errors_of_rows(state: State, terms: Numbers) -> Numbers:
+    """Return the quantities g (n,) of all rows by what their terms measure."""
+    errors = -state.joints.offset
+    np.add.at(errors, rows_of_terms(state), state.joints.scale * terms[:, VALUE])
+    return errors
+
+
+def joints_of_rows(state: State) -> NDArray[np.int64]:
+    """Return the number (n,) of the joint that each row is of."""
+    joints = state.joints.joints
+    return np.repeat(np.arange(len(joints)), [joint.size for joint in joints])
+
+
+def forces_on(state: State, row: int) -> dict[int, Numbers]:
+    """Return the force (2,) [N] of each joint, by its number, that holds the body of a row."""
+    terms, pulls = _pulls(state)
+    joints, owner, found = state.joints, joints_of_rows(state)[rows_of_terms(state)], dict[int, Numbers]()
+    for ends, gradient in ((joints.a, terms[:, AX : AX + 2]), (joints.b, terms[:, BX : BX + 2])):
+        for n in np.flatnonzero(ends == row).tolist():
+            joint = int(owner[n])
+            found[joint] = found.get(joint, np.zeros(2)) + pulls[n] * gradient[n]
+    return dict(sorted(found.items()))
+
+
+def forces_on_all(state: State) -> Numbers:
+    """Return the sum of the forces of joints on each row (rows, 2) [N]; row 0 is the world."""
+    (terms, pulls), total = _pulls(state), np.zeros((len(state.entity_index), 2))
+    np.add.at(total, state.joints.a, pulls[:, None] * terms[:, AX : AX + 2])
+    np.add.at(total, state.joints.b, pulls[:, None] * terms[:, BX : BX + 2])
+    return total
+
+
+def _pulls(state: State) -> tuple[Numbers, Numbers]:
+    """Return what terms measure, and the force along the gradient of each [N or N m]."""
+    return measured_terms(state), state.joints.scale * state.joints.force[rows_of_terms(state)]
+
+
+def figures_of(state: State) -> JointFigures:
+    """Return the figures of all joints."""
+    joints, count = state.joints, len(state.joints.joints)
+    (terms, pulls), rows = _pulls(state), joints_of_rows(state)
+    owner = rows[rows_of_terms(state)]
+    turns, b = joints.measure == Measure.ANGLE, np.array([joint.b for joint in joints.joints], np.int64)
+    force, torque = np.zeros((count, 2)), np.zeros(count)
+    for ends, x, sign in ((joints.a, AX, -1.0), (joints.b, BX, 1.0)):
+        # On the world it is what A gets with the other sign.
+        share = np.where(ends == b[owner], 1.0, np.where(b[owner] == 0, -1.0, 0.0)) * (
+            (ends > 0) | (b[owner] > 0)
+        )
+        np.add.at(force, owner, (share * pulls)[:, None] * terms[:, x : x + 2])
+        np.add.at(torque, owner, np.where(turns & (ends == b[owner]), sign * pulls, 0.0))
+    error = errors_of_rows(state, terms)
+    error = np.where(joints.role == Role.LIMIT, np.minimum(error, 0.0), error)
+    square = np.where(joints.role == Role.MOTOR, 0.0, error * error)
+    angles = turns[: len(joints)]
+    stretch, twist, largest = np.zeros((3, count))
+    np.add.at(stretch, rows[~angles], square[~angles])
+    np.add.at(twist, rows[angles], square[angles])
+    np.maximum.at(largest, rows[~angles], joints.largest[~angles])
+    stretch, twist = np.sqrt(stretch), np.sqrt(twist)
+    return JointFigures(force, torque, stretch, twist, np.maximum(largest, stretch), _sizes(state))
+
+
+def _sizes(state: State) -> Numbers:
+    """Return the length (n,) that the error of each joint is compared with [m]."""
+    joints = state.joints
+    first, a, b = (np.array([joint[k] for joint in joints.joints], np.int64) for k in (2, 4, 5))
+    arms = [
+        np.where(body > 0, np.hypot(*anchor[first].T), 0.0)
+        for body, anchor in ((a, joints.anchor_a), (b, joints.anchor_b))
+    ]
+    lengths = np.where(joints.measure[first] == Measure.DISTANCE, np.abs(joints.offset[first]), 0.0)
+    size, reach = np.maximum(lengths, np.maximum(*arms)), state.bodies.shapes.reach
+    bodies = np.maximum(np.where(a > 0, reach[a], 0.0), np.where(b > 0, reach[b], 0.0))
+    size = np.where(size > 0.0, size, bodies)
+    sizes: Numbers = np.where(size > 0.0, size, 1.0)
+    return sizes

@@ -7,8 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Velocity
+from physicslab.components import Velocity, Weld
+from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.entity_index import EntityIndex
+from physicslab.state.entities import label_in_context
 from physicslab.state.joint_order import NO_BLOCKS, order_rows
 from physicslab.state.joint_rows import KINDS, Joined, Measure, Role, Row, Term, ends_of, measured
 
@@ -73,13 +75,17 @@ class Joints:
     edges : int64 array (k, 2)
         The pairs of rows that joints hold together; 0 is the world.
     apart : int64 array (k, 2)
-        The pairs of bodies a < b that do not touch each other, sorted.
+        The pairs of bodies a < b that do not touch each other, sorted: those of a joint, and all that welds
+        make one thing of.
+    wholes : dict of int to int
+        For each entity that is a part of such a thing, the first of its parts.
     """
 
     def __init__(self) -> None:
         self._take([], [])
         self._settings, self.beside_contacts = b"", False
         self._joined: tuple[Any, ...] = ()
+        self.wholes: dict[int, int] = {}
 
     def _take(self, joints: Sequence[Joint], rows: Sequence[Row]) -> None:
         self.joints = tuple(joints)
@@ -125,6 +131,7 @@ class Joints:
         rows: list[Row] = []
         edges: set[tuple[int, int]] = set()
         apart: set[tuple[int, int]] = set()
+        welded: dict[int, set[int]] = {}
         for kind, rows_of in KINDS.items():
             table = index.table(kind)
             for row, a, b in zip(index.batch(kind).rows.tolist(), *ends_of(index, kind), strict=True):
@@ -138,6 +145,12 @@ class Joints:
                 edges.update(combinations(sorted(bodies), 2))
                 if not table["collide"][row]:
                     apart.add((min(joined.a, joined.b), max(joined.a, joined.b)))
+                    if kind is Weld:
+                        whole = welded.get(joined.a, {joined.a}) | welded.get(joined.b, {joined.b})
+                        welded.update(dict.fromkeys(whole, whole))
+        for one, whole in welded.items():
+            apart.update((one, other) for other in whole if one < other)
+        self.wholes = {int(entities[one]): int(entities[min(whole)]) for one, whole in welded.items()}
         self._take(joints, rows)
         moves = index.table(Velocity).present
         moving = [{end for term in row.terms for end in (term.a, term.b) if moves[end]} for row in rows]
@@ -202,11 +215,6 @@ class Joints:
                 return f"a {joint.kind.__name__} has rows that it does not solve"
         return None
 
-    def may_touch(self, a: NDArray[Any], b: NDArray[Any]) -> NDArray[np.bool_]:
-        """Return of pairs of rows (n,) which of them no joint keeps from touching each other."""
-        low, high = np.minimum(a, b).astype(np.int64), np.maximum(a, b).astype(np.int64)
-        return ~np.isin((low << 32) | high, (self.apart[:, 0] << 32) | self.apart[:, 1])
-
     def kept(self) -> Iterator[tuple[int, str, list[float]]]:
         """Yield of each joint that has impulses its entity, its kind and these [N s]."""
         for joint in self.joints:
@@ -233,6 +241,10 @@ def _placed(joined: Joined, row: Row) -> Row:
         value = sum(term.scale * measured(term, joined.entity_index).value for term in row.terms) / scale
         kind = table.component
         spec = next(spec for spec in kind.FIELDS if spec.name == row.placed)
-        table[row.placed][joined.row] = spec.check(value)
+        try:
+            table[row.placed][joined.row] = spec.check(value)
+        except InvalidValue as error:
+            owner = label_in_context(int(joined.entity_index.entities[joined.row]))
+            raise InvalidValue(f"{owner}: {kind.__name__}", row.placed, value, error.allowed) from None
         table[f"{row.placed}_given"][joined.row] = True
     return row._replace(offset=scale * joined.number(row.placed))

@@ -1,5 +1,6 @@
 """The table of shapes of a world, and the register of kinds as the arrays that it is derived with."""
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from physicslab.components.shape import Kind
 from physicslab.ecs.fields import POINTS
 from physicslab.ecs.table import Table
 from physicslab.kernels.geometry.shapes import MOST_VERTICES, OWN, Shapes, ShapesTuple, SizesTuple
+from physicslab.state.chain_links import NO_LINKS, line_along, links_before, links_of
 
 _SIZES = tuple(spec.name for spec in shape.Shape.FIELDS if spec.kind == "number")
 
@@ -37,8 +39,8 @@ class Register:
         self._known = 1  # of the lists of points; the first one is empty
         self._add(np.zeros((0, 2)), -1, -1, -1)
         for kind in kinds:
-            sizes = (_SIZES.index(name) if name else -1 for name in (kind.x, kind.y, kind.radius))
-            self._add(np.array(kind.core).reshape(-1, 2), *sizes)
+            x, y, radius = (_SIZES.index(name) if name else -1 for name in (kind.x, kind.y, kind.radius))
+            self._add(np.array(kind.core).reshape(-1, 2), x, y, radius)
             self.kinds[self._cores - 1, 0] += kind.part
         if self._cores > OWN + 1:
             raise ValueError(f"there are more than {OWN} kinds of shapes: raise OWN")
@@ -47,21 +49,30 @@ class Register:
     def arrays(self) -> tuple[NDArray[Any], ...]:
         """Return kinds, extents and pool with all lists of points: another tuple where one is new."""
         for code in range(self._known, len(POINTS)):
-            points = np.array([(point.x, point.y) for point in POINTS.value_of(code)])
+            points, links = np.array([(point.x, point.y) for point in POINTS.value_of(code)]), NO_LINKS
             if len(points) > 1:  # a component with fewer has been refused
+                points, links = links_of(points)
                 closed = bool((points[0] == points[-1]).all())
                 before, behind = points[[-2 if closed else 1]], points[[1 if closed else -2]]
                 points = np.concatenate((before, points, behind))
-            self._add(points.reshape(-1, 2), -1, -1, 0, beside=1)
+            self._add(points.reshape(-1, 2), -1, -1, 0, beside=1, links=links)
             self._known = code + 1
         present = self.kinds, self.extents, self.pool
         if len(self._arrays) == 0 or any(a is not b for a, b in zip(self._arrays, present, strict=True)):
             self._arrays = present
         return self._arrays
 
-    def _add(self, core: NDArray[np.float64], x: int, y: int, radius: int, beside: int = 0) -> None:
-        """Add a core; so many vertices at its beginning and its end are its neighbours as a chain."""
-        row, first = self._cores, self._vertices
+    def _add(
+        self, core: NDArray[np.float64], x: int, y: int, radius: int, beside: int = 0,
+        links: NDArray[np.float64] = NO_LINKS,
+    ) -> None:  # fmt: skip
+        """Add a core; so many vertices at its beginning and its end are its neighbours as a chain.
+
+        Before it come its ``links`` as one.
+        """
+        row, first = self._cores, self._vertices + len(links)
+        self.pool = _with_room(self.pool, first)
+        self.pool[self._vertices : first] = links
         extent = np.abs(core).max(axis=0, initial=0.0)
         self.kinds, self.extents = _with_room(self.kinds, row + 1), _with_room(self.extents, row + 1)
         self.pool = _with_room(self.pool, first + len(core))
@@ -143,3 +154,13 @@ def cores_of(table: Table, rows: NDArray[np.int64]) -> Cores:
         vertices = np.where(chain, 2 * last[:, 0], vertices)
     corners = REGISTER.pool[first[:, None] + which] * half[:, None, :]
     return Cores(corners, vertices, radius)
+
+
+@lru_cache(maxsize=64)
+def line_of(code: int) -> NDArray[np.float64]:
+    """Return places (n, 2) along the chain with a code of ``vertices``, in its own directions [m].
+
+    Arcs are many short sides.
+    """
+    REGISTER.arrays()
+    return line_along(links_before(REGISTER.pool, int(REGISTER.kinds[OWN + code, 1])))

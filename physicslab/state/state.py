@@ -1,6 +1,7 @@
 """What a world holds: entities, columns, laws, clock and arrays. It depends on no system and no stepper."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
@@ -15,6 +16,22 @@ from physicslab.state.remainders import NO_REMAINDERS, Remainders
 from physicslab.state.sleep import Sleep
 
 type View = tuple[float, float, float, float]
+LEVELS = ("Explore", "Measure", "Engineer")
+"""How much a window may show beside the world, the least first."""
+SHOWN = (
+    "arrows", "centres", "grid", "impacts", "impulses", "momenta", "panel", "parts", "stopwatch",
+)  # fmt: skip
+"""What a window may show beside that."""
+
+
+@dataclass(frozen=True, slots=True)
+class Desk:
+    """What a window shows of a scene beside the world: one of ``LEVELS``, and some of ``SHOWN``."""
+
+    level: str
+    shown: frozenset[str]
+
+
 """What a window shows of a world at first: xmin, ymin, xmax, ymax [m]."""
 
 
@@ -27,6 +44,8 @@ class State(Entities):
         Of the scene.
     view : View, optional
         What a window shows of it at first; all of it where there is none.
+    desk : Desk, optional
+        What it shows beside that; as the user has it where there is none.
     time : float
         The clock [s]. Within a step it is that of the state which a force or a stage sees.
     steps : int
@@ -81,7 +100,7 @@ class State(Entities):
     # An attribute that is misspelt, or belongs elsewhere, would be kept and do nothing.
     __slots__ = (
         "_physics", "_simulation", "_waited_before", "account", "bodies", "brought_back", "checkpoint",
-        "collisions", "contacts", "description", "event_driven", "fastest_rates", "force_evaluations",
+        "collisions", "contacts", "description", "desk", "event_driven", "fastest_rates", "force_evaluations",
         "generation", "has_forces", "joints", "kick_before_contacts", "moment", "motion_edits", "name",
         "remainders", "revision", "rigid_contacts", "sleep", "stale", "step_divisions", "steps",
         "substeps", "time", "title", "uniform_forces", "view", "window",
@@ -96,6 +115,7 @@ class State(Entities):
         self.title: str = ""
         self.description: str = ""
         self.view: View | None = None
+        self.desk: Desk | None = None
         self.time, self.steps, self.revision, self.motion_edits = 0.0, 0, 0, 0
         self.substeps, self.step_divisions = self._simulation.substeps, 1
         self.force_evaluations = self.collisions = self.brought_back = 0

@@ -7,7 +7,8 @@ import numpy as np
 
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.kernels import digest, direct_entry, energy
-from physicslab.kernels.accounts import FIELDS
+from physicslab.kernels.accounts import FIELDS, JOINTS
+from physicslab.ode.system import OdeSystem
 from physicslab.state.account import Balance
 from physicslab.state.state import State
 from physicslab.systems.schedule import Schedule
@@ -89,6 +90,16 @@ def open_account(state: State, forces: Sequence[ForceSystem]) -> None:
     now = account.last if unchanged else balance_of(state, forces)
     account.open(now, held_in(state), state.time)
     account.is_open = True
+
+
+def put_together(state: State, forces: Sequence[ForceSystem], ode: OdeSystem) -> None:
+    """Move what joints hold together and an edit, or a scene, has put apart; the energy goes to joints."""
+    places = ode.placed_together()
+    if places is not None:
+        before = balance_of(state, forces)
+        ode.place(state, places)
+        state.account.sums[JOINTS] += np.subtract(balance_of(state, forces), before)
+    ode.set_going()
 
 
 def acts_unbooked(system: System) -> bool:

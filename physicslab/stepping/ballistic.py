@@ -5,7 +5,8 @@ from numpy.typing import NDArray
 
 from physicslab.components import Held, Material, Shape, Transform, Velocity
 from physicslab.components.shape import CHAIN, KINDS
-from physicslab.state.solid import solid_rows
+from physicslab.state.chain_links import links_in
+from physicslab.state.solid import is_any_apart, may_touch, solid_rows
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
@@ -48,9 +49,7 @@ def why_not_exact(state: State, schedule: Schedule) -> str | None:
         label, kind = state.label_of_row(int(rows[0])), state.table(Shape)["kind"][rows[0]]
         name = list(KINDS)[kind - 1]
         return f"{label} is a {name} that may turn (Mass.fixed_rotation would keep it as it is)"
-    if (reason := why_chained(state)) is not None:
-        return reason
-    if count_pairs(state) > MAX_PAIRS:
+    if count_pairs(state, linked=True) > MAX_PAIRS:
         return f"more than {MAX_PAIRS} pairs may meet"
     return None
 
@@ -76,12 +75,6 @@ def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:
     return None
 
 
-def why_chained(state: State) -> str | None:
-    """Return which chain is in the way of contacts that are located in time, or ``None``."""
-    rows = np.flatnonzero(state.table(Shape)["kind"] == CHAIN)
-    return f"{state.label_of_row(int(rows[0]))} is a chain, which soft contacts know" if len(rows) else None
-
-
 def turning_rows(state: State) -> NDArray[np.int64]:
     """Return the rows (n,) that turn, or would after an impact off their centre, and are no discs."""
     moving = state.batch(Shape, Transform, Velocity).rows
@@ -91,12 +84,33 @@ def turning_rows(state: State) -> NDArray[np.int64]:
     return turning
 
 
-def count_pairs(state: State) -> int:
-    """Return how many pairs may meet, without making a list of what may be thousands of millions."""
+def count_pairs(state: State, *, linked: bool = False) -> int:
+    """Return how many pairs may meet, without making a list of what may be thousands of millions.
+
+    A body and a chain are one, or where they are ``linked`` as many as the chain has links.
+    """
     shaped = solid_rows(state)
     count, movable = len(shaped), int(np.count_nonzero(state.bodies.inverse_mass[shaped] > 0.0))
     walls = 0 if state.physics.bounds is None else 4
+    if linked:
+        chains = shaped[state.table(Shape)["kind"][shaped] == CHAIN].tolist()
+        count += sum(len(links_in(state.bodies.shapes, chain)) - 1 for chain in chains)
     return movable * (movable - 1) // 2 + movable * (count - movable) + movable * walls
+
+
+def with_links(state: State, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return pairs that may meet (n, 3), where that of a body and a chain is one for each link."""
+    chain = state.table(Shape)["kind"] == CHAIN
+    rows = np.where(chain[pairs[:, 0]], pairs[:, 0], pairs[:, 1])
+    linked = chain[rows] & (pairs[:, 2] < 0)
+    if not linked.any():
+        return pairs
+    counts = np.ones(len(pairs), np.int64)
+    counts[linked] = [len(links_in(state.bodies.shapes, row)) for row in rows[linked].tolist()]
+    every = np.repeat(pairs, counts, axis=0)
+    number = np.arange(len(every)) - np.repeat(np.cumsum(counts) - counts, counts)
+    every[:, 2] = np.where(np.repeat(linked, counts), -2 - number, every[:, 2])
+    return every
 
 
 def pairs_that_may_meet(state: State) -> NDArray[np.int64]:
@@ -105,8 +119,8 @@ def pairs_that_may_meet(state: State) -> NDArray[np.int64]:
     inverse_mass = state.bodies.inverse_mass[shaped]
     i, j = np.triu_indices(len(shaped), 1)
     meets = (inverse_mass[i] > 0.0) | (inverse_mass[j] > 0.0)
-    if len(state.joints.apart):
-        meets &= state.joints.may_touch(shaped[i], shaped[j])
+    if is_any_apart(state):
+        meets &= may_touch(state, shaped[i], shaped[j])
     bodies = np.stack((shaped[i[meets]], shaped[j[meets]], np.full(int(meets.sum()), -1)), axis=1)
     walled = np.zeros((0, 3), np.int64)
     if state.physics.bounds is not None:

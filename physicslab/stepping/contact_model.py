@@ -2,7 +2,7 @@
 
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.state.state import State
-from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs, why_chained
+from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
 from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.rigid_rows import why_not_points
 from physicslab.systems.integrate import IntegrateSystem
@@ -80,8 +80,6 @@ def why_not_rigid(state: State, schedule: Schedule) -> str | None:
             return f"{system.name} acts within the step"
     if (state.table(Velocity).present & ~state.table(Transform).present).any():
         return "something moves that is nowhere"
-    if (reason := why_chained(state)) is not None:
-        return reason
     if count_pairs(state) > _MAX_PAIRS:
         return f"more than {_MAX_PAIRS} pairs may meet"
     return why_not_points(state)

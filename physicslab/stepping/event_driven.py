@@ -15,7 +15,7 @@ from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.remainders import Remainders, coordinate_keys
 from physicslab.state.state import State
-from physicslab.stepping.ballistic import pairs_that_may_meet, turning_rows
+from physicslab.stepping.ballistic import pairs_that_may_meet, turning_rows, with_links
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.stepper import Advance, divisions
@@ -58,7 +58,7 @@ class EventDriven:
         self.reason = plan.collision_reason
         self._left = self._listed = -1
         rows = len(state.entity_index)
-        self._pairs = pairs_that_may_meet(state)
+        self._pairs = with_links(state, pairs_that_may_meet(state))
         self._paths = np.zeros((rows, path.FIELDS))
         moving = state.table(Velocity).present & state.table(Transform).present
         free = moving & (state.bodies.inverse_mass > 0.0)

@@ -8,6 +8,7 @@ from physicslab.integrators import StepTooSmall
 from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.state import State
+from physicslab.stepping.accounting import put_together
 from physicslab.stepping.fastest_body import fastest_body
 from physicslab.stepping.plan import StepPlan, tolerance_for
 from physicslab.stepping.stepper import Advance, divisions
@@ -24,7 +25,7 @@ else go on wrongly."""
 
 
 class NotSmooth(ArithmeticError):
-    """A force in Python jumps, so that no method which chooses its steps follows it."""
+    """A force in Python jumps, or those of joints grow without limit: steps that follow them end nowhere."""
 
 
 class Flow:
@@ -76,7 +77,12 @@ class Flow:
         try:
             for made in range(0, parts * steps, together):
                 state.time = start + made * h / parts
-                self._flow(state, h / parts, min(together, parts * steps - made))
+                try:
+                    self._flow(state, h / parts, min(together, parts * steps - made))
+                except NotSmooth:
+                    if made and parts == 1:
+                        return Advance(made)  # the next call begins where it fails
+                    raise
         finally:
             state.time = start
         check_finite(state, state.time + h * steps)
@@ -85,14 +91,14 @@ class Flow:
     def _flow(self, state: State, h: float, steps: int) -> None:
         method, ode = self._method, self._ode
         ode.gather(state)
-        ode.set_going()
+        put_together(state, self._schedule.forces, ode)
         parts = 1 if method.chooses_steps else self._plan.substeps
         span, count = (h * steps, 1) if method.chooses_steps else (h / parts, parts * steps)
         start = time.perf_counter_ns()
         try:
             made = method.flow(state, ode, span, count)
         except StepTooSmall as error:
-            if ode.undo(state) and state.simulation.integrator == "auto":
+            if (ode.undo(state) or self._joined) and state.simulation.integrator == "auto":
                 raise NotSmooth(str(error)) from error
             what = f"{fastest_body(state, self._schedule.forces)}: Velocity changes too fast: {error}"
             raise Diverged(f"{what} (after t = {state.time:.9g} s)") from error

@@ -57,6 +57,8 @@ bodies at 100 to 10^6 N/m and damping ratios from 1.5 on are then 6e-12 m off at
 times the time of the cheapest method that reaches 1e-10 m; 1e-13 takes 5 to 15 times as long."""
 _OVERDAMPED = 1.4
 """The damping ratio from which that holds."""
+WITHOUT_END = "joints hold bodies by forces that grow without limit, or from one event to the next"
+"""Why joints are soft that were not before."""
 _ASKED_FOR = "asked for"
 _FOLLOWING = (BLANES_MOAN.name, DOP853.name, IMPLICIT_MIDPOINT.name, SPRING_SPLITTING.name)
 """The methods that ``auto`` chooses by the state of motion."""
@@ -115,6 +117,8 @@ class StepPlan:
     def kept(self) -> tuple[str, str, int]:
         """What a file keeps: how collisions are found, what follows the forces, and in how many steps."""
         collisions = "rigid" if self.contacts == "rigid" and self.collisions != "exact" else self.collisions
+        if self.contact_reason == WITHOUT_END:
+            collisions = "step"
         if self.split_forces is not None:
             return collisions, self.split_forces.name, self.split_steps
         return collisions, self.integrator.name, self.substeps
@@ -189,8 +193,17 @@ def _plan_of_collisions(state: State, schedule: Schedule, kept: str | None) -> S
 def plan_for_jumps(state: State, schedule: Schedule, plan: StepPlan) -> StepPlan:
     """Return the plan with steps of one length, for a force that no method which chooses its steps follows.
 
-    So is dry friction, in Python, of a body that it has stopped: it jumps at every step, however short.
+    So is dry friction, in Python, of a body that it has stopped: it jumps at every step, however short. So
+    are those of joints that contradict each other, or hold a body in a line between fixed points: soft ones
+    give a little.
     """
+    if len(state.joints):
+        own = why_not_smooth(state, schedule) or WITHOUT_END
+        plan = _beside_contacts(state, schedule, own)
+        touch = "step" if schedule.runs(Stage.CONTACT) else "none"
+        return replace(
+            plan, collisions=touch, collision_reason=WITHOUT_END, contacts="soft", contact_reason=WITHOUT_END
+        )
     reason = f"the force of {schedule.interpreted[0]} has no compiled kernel, and jumps"
     return replace(plan, integrator=RK4, substeps=state.simulation.substeps, reason=reason)
 
@@ -209,6 +222,8 @@ def resumed_plan(state: State, schedule: Schedule, kept: tuple[str, str, int]) -
     """Return the plan with what was ``kept`` of an earlier one, where it can advance the world."""
     collisions, method, steps = kept
     plan = choose_plan(state, schedule, collisions)
+    if plan.smooth and collisions == "step" and len(state.joints):
+        return plan_for_jumps(state, schedule, plan)
     if plan.kept == kept or plan.integrator.name == state.simulation.integrator:
         return plan
     reason = f"{method} was chosen before the scene was saved"
@@ -283,14 +298,13 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
     attractors = max((force.attractors for force in forces), default=0)
     planets = attractors > 1
     rate = fastest_rate(state, [force for force in forces if not force.attractors > 1])
-    needed = _steps(rate, h)
-    if needed > MAX_STEPS:
+    needed, crowd = _steps(rate, h), max((force.crowd for force in forces), default=0)
+    if needed > MAX_STEPS and not crowd:  # no rule that steps over it makes molecules bounce
         return StepPlan(IMPLICIT_MIDPOINT, _too_fast(rate), substeps, smooth=True)
     if planets and attractors >= _SAMPLED_LIMIT and state.physics.softening > 0.0:
         return StepPlan(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
     if planets:
         return StepPlan(DOP853, f"{_why_singular(state, forces)}: the step follows them", 1, smooth=True)
-    crowd = max((force.crowd for force in forces), default=0)
     if crowd >= _CROWD and not _sees_velocity(state, forces):
         needed = _steps(rate, h, _RESOLVED_IN_CROWDS)
         how = f"{crowd} molecules: symplectic; {needed} steps of omega h = {rate * h / needed:.2g}"

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from physicslab.kernels.accounts import PX
 from physicslab.kernels.forces.bookings import ACCOUNTS
+from physicslab.kernels.joints import layout
 from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.rigid.equations import UNKNOWN, VECTORS
 from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS
@@ -79,8 +80,8 @@ class MadeStep:
     energy_added : float
         By moving bodies apart that overlapped [J].
     work : int
-        About as many as microseconds: of pieces, of force evaluations with n points (1 + 2 n) / 4, of
-        impacts.
+        About as many as microseconds: of pieces, of force evaluations with n points and r rows of joints
+        (1 + 2 n) (1 + r) / 4, of impacts.
     by_impulses : str
         Why the step, or its last part, was made by impulses in short steps; empty if it was not.
     refused : str
@@ -152,7 +153,7 @@ class RigidMotion:
         """Go from event to event; return how far that leads [s]. What stops it is noted in ``made``."""
         q, v, changed = self._ode.q, self._ode.v, self._changed
         done, stalled, foreseen = 0.0, 0, True
-        changed[0, PAIR] = -1
+        changed[0, PAIR], rows = -1, 1 + int(self._ode.joints[1][layout.ROWS])
         made.refused = self._move_apart(scene, state, _OVERLAP, made, pay=False)
         if made.refused:
             return 0.0
@@ -174,7 +175,7 @@ class RigidMotion:
                 h - done, _TOLERANCE, rest, foreseen,
             )  # fmt: skip
             made.evaluations += evaluations
-            made.work += _WORK_OF_A_PIECE + self._pairs // 2 + evaluations * (1 + 2 * count) // 4
+            made.work += _WORK_OF_A_PIECE + self._pairs // 2 + evaluations * (1 + 2 * count) * rows // 4
             stalled = stalled + 1 if piece <= _NO_TIME * h else 0
             done = h if piece == h - done else done + piece
             if not math.isfinite(piece):

@@ -8,7 +8,22 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform
 from physicslab.contacts.near_pairs import list_all
-from physicslab.kernels.rigid.features import GAP, MU, NX, NY, ONE, PAIR, PX, PY, RESTITUTION
+from physicslab.kernels.rigid.features import (
+    FEATURE,
+    GAP,
+    LINK,
+    MU,
+    NX,
+    NY,
+    ONE,
+    OTHER,
+    PAIR,
+    PX,
+    PY,
+    RESTITUTION,
+    VERTEX,
+)
+from physicslab.state.chain_links import segment_of_link
 from physicslab.state.state import State
 from physicslab.stepping.rigid_motion import MadeStep
 
@@ -22,10 +37,13 @@ class RigidRecords:
     ----------
     pairs : int64 array (n, 3)
         The pairs that may meet.
+    chained : bool array (n,)
+        Whether one of a pair is a chain: it has a record for each segment that is touched.
     """
 
-    def __init__(self, pairs: NDArray[np.int64]) -> None:
+    def __init__(self, pairs: NDArray[np.int64], chained: NDArray[np.bool_]) -> None:
         self._pairs = pairs  # rows of joints, which are points as well, come behind them
+        self._chained = chained
 
     def write(self, state: State, made: MadeStep, h: float) -> None:
         """Write the closed points and the impacts of a step of ``h`` seconds."""
@@ -34,7 +52,8 @@ class RigidRecords:
             0  # blank: what soft steps before have left would depend on where a run was parted
         )
         contacts.wide.reset(len(state.entity_index))
-        list_all(state, self._pairs, len(self._pairs))
+        pairs, number = self._list(state, made)
+        list_all(state, pairs, len(pairs))
         records, points = contacts.manifolds[: contacts.recorded], contacts.points[: 2 * contacts.recorded]
         contacts.impulse_dt = h / state.simulation.substeps
         position = state.table(Transform)["position"]
@@ -44,6 +63,10 @@ class RigidRecords:
             p = int(of[i, PAIR])
             if p >= len(self._pairs):
                 continue
+            if self._chained[p]:
+                p = number[self._key(state, made, i)]
+            elif number:
+                p = number[tuple(self._pairs[p].tolist())]
             record = records[p]
             a, b = record["a"], record["b"]
             k = int(record["count"])
@@ -70,14 +93,41 @@ class RigidRecords:
         contacts.touching[: len(touching)] = touching
         contacts.stale = True  # for the contact step, should it have to go on
 
+    def _key(self, state: State, made: MadeStep, i: int) -> tuple[int, ...]:
+        """Return the pair of a point of a chain and its segment."""
+        a, b, _ = self._pairs[made.points[i, PAIR]].tolist()
+        feature, shapes = int(made.points[i, FEATURE]), state.bodies.shapes
+        link, row = (LINK - feature, ONE) if feature < 0 else (int(made.points[i, VERTEX]), OTHER)
+        return a, b, -2 - segment_of_link(shapes, int(made.points[i, row]), link)
+
+    def _list(self, state: State, made: MadeStep) -> tuple[NDArray[np.int64], dict[tuple[int, ...], int]]:
+        """Return the pairs to record, in order, with segments of chains that are touched, and their numbers.
+
+        Without a chain they have those that they are known by.
+        """
+        if not self._chained.any():
+            return self._pairs, {}
+        known = len(self._pairs)
+        touched = {
+            self._key(state, made, i)
+            for i in range(made.closed)
+            if made.points[i, PAIR] < known and self._chained[made.points[i, PAIR]]
+        }
+        entities = state.entity_index.entities
+        of = {(int(entities[a]), int(entities[b])): (a, b) for a, b, _ in self._pairs[self._chained].tolist()}
+        for impact in _last_impacts(state, made.impacts):
+            if impact["wall"] < -1:
+                touched.add((*of[int(impact["entity_a"]), int(impact["entity_b"])], int(impact["wall"])))
+        listed = sorted([*map(tuple, self._pairs[~self._chained].tolist()), *touched])
+        return np.array(listed, np.int64).reshape(-1, 3), {pair: n for n, pair in enumerate(listed)}
+
     def _write_impacts(self, state: State, impacts: int) -> None:
         """Write the impacts of the last step into their pairs' records, at their first point."""
         contacts = state.contacts
         if not impacts:
             return
         records, position = contacts.manifolds[: contacts.recorded], state.table(Transform)["position"]
-        last = np.arange(max(0, contacts.logged - min(impacts, len(contacts.log))), contacts.logged)
-        log = contacts.log[last % len(contacts.log)]
+        log = _last_impacts(state, impacts)
         number = {key: p for p, key in enumerate(_pairs_of(records))}
         pairs = np.array([number[key] for key in _pairs_of(log)])
         np.add.at(records["impact_count"], pairs, 1)
@@ -93,6 +143,14 @@ class RigidRecords:
                 place = np.array((impact["x"], impact["y"]))
                 point["arm_ax"], point["arm_ay"] = place - position[record["a"]]
                 point["arm_bx"], point["arm_by"] = place - position[record["b"]]
+
+
+def _last_impacts(state: State, impacts: int) -> NDArray[Any]:
+    """Return the last records (n,) of the log."""
+    contacts = state.contacts
+    last = np.arange(max(0, contacts.logged - min(impacts, len(contacts.log))), contacts.logged)
+    log: NDArray[Any] = contacts.log[last % len(contacts.log)]
+    return log
 
 
 def _pairs_of(records: NDArray[Any]) -> Iterator[tuple[int, int, int]]:

@@ -171,16 +171,23 @@ def _leap(world: Stepped, h: float, parts: int, steps: int) -> int:
     """Advance by ``parts`` times ``h`` at once, which count as ``steps``; return those.
 
     Where that fails it is halved, until the one step that cannot be made is found; the world is then as it
-    was before that step.
+    was before that step. Where the stepper makes some of the steps and leaves the rest, others make these.
     """
+    start, made = world.time, 0
     try:
         made = world.advance(h, parts)
-        world.steps += steps - made
-        return steps
     except Diverged:
         if steps == 1:
             raise
-    first, start = steps // 2, world.time
+    if made:
+        while made < parts:
+            world.time = start + made * h
+            world.synchronise()
+            made += world.advance(h, parts - made)
+        world.time = start
+        world.steps += steps - parts
+        return steps
+    first = steps // 2
     halves = ((h, first, first), (h, parts - first, steps - first))
     if parts == 1:
         own = first * world.simulation.dt

@@ -1,9 +1,11 @@
 """Steps with soft contacts: any scene, any systems."""
 
+import math
 from typing import Any
 
 from physicslab.contacts.islands import keep_places
 from physicslab.contacts.near_pairs import refill
+from physicslab.kernels.accounts import CONTACT, ENERGY
 from physicslab.kernels.loading import working_ns
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
@@ -36,6 +38,8 @@ class Soft:
         The parts of a substep.
     hooks : tuple of str
         Why the loop comes back in every substep, if it does.
+    energy_taken, energy_given : float
+        The most that contacts had taken, and what they have given again since then [J].
     """
 
     name: str = "contact"
@@ -53,6 +57,7 @@ class Soft:
         # Of one force the loop measures the same energy, bit for bit, as is measured between steps.
         self._measures = len(schedule.forces) < 2
         self._max_steps = 64
+        self.energy_taken, self.energy_given, self._last = -math.inf, 0.0, -math.inf
         self.reason = plan.reason
         if not self.hooks:
             self.name, self.title = "fused_contact", "Compiled steps, contacts within them"
@@ -94,18 +99,28 @@ class Soft:
         rested = min(h, state.simulation.dt)  # of a divided step only the end is observed
         span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested)
         cause = self._open(state) if self.keeps_balance else -1
+        self._note_energy(state)
         made = self.substeps.go_through(state, span, steps, cause)
         if self.hooks:
             self._end_step(state, h)
         keep_places(state)
         if len(state.joints):
             state.joints.force[:] = state.joints.impulse / (contacts.impulse_dt or span.h)
+        self._note_energy(state)
         if single:
             factors = (system.substep_factor(state) for system in self._schedule.running)
             contacts.substep_factor = max(factors, default=1)
         if wanted > 1:
             self._max_steps = max(1, min(_MAX_STEPS, made * _CALL_NS // max(working_ns() - began, 1)))
         return Advance(made, parts)
+
+    def _note_energy(self, state: State) -> None:
+        """Note what contacts have taken at most and given since; from here on where time went back."""
+        given = float(state.account.sums[CONTACT, ENERGY])
+        if state.time < self._last:
+            self.energy_taken = -math.inf
+        self.energy_taken, self._last = max(self.energy_taken, -given), state.time
+        self.energy_given = given + self.energy_taken
 
     def _end_step(self, state: State, h: float) -> None:
         """Judge what has come of a step with hooks, as the loop does where there are none."""

@@ -15,8 +15,9 @@ _TOLERATED = 0.01
 """Share by which an undivided step may exceed the scene's own: the last of a run may include a remainder."""
 
 
-MAX_FALL = 0.5
-"""Largest share of the smallest size by which gravity adds to the way of a substep of soft contacts."""
+MAX_FALL = 0.08
+"""Largest share of the smallest size by which gravity adds to the way of a substep of soft contacts. Bodies
+sink in proportion to it: at 0.085 ten rods on each other by 0.45 of a thickness, at 0.02 by 0.11."""
 MAX_FACTOR = 256
 """Largest factor by which substeps are increased for that."""
 
@@ -118,7 +119,8 @@ def divisions(state: State, h: float) -> int:
 def falls_far(state: State, h: float) -> int:
     """Return by which factor the substeps of a step of ``h`` seconds must be more for soft contacts.
 
-    In a substep, what gravity adds to the way of a body at rest must not carry it past another one.
+    In a substep, what gravity adds to the way of a body at rest must not carry it past another one, and
+    bodies are to sink into each other by a small share of their size alone.
     """
     substep, physics = h / state.simulation.substeps, state.physics
     if physics.gravity_mode != "linear":

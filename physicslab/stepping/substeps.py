@@ -88,9 +88,8 @@ class Substeps:
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule = schedule
         self._contact, self._sleep = schedule.find(ContactSystem), schedule.find(SleepSystem)
-        self._broad_phase, resolve = schedule.find(BroadPhaseSystem), schedule.find(ResolveSystem)
-        self._joined = resolve is not None and schedule.find(JointSystem) is not None
-        self._softness = (0.0, 0.0, 0.0) if resolve is None else resolve.softness
+        self._broad_phase, self._resolve = schedule.find(BroadPhaseSystem), schedule.find(ResolveSystem)
+        self._joined = self._resolve is not None and schedule.find(JointSystem) is not None
         made = SubstepParts(state, schedule, plan)
         self.split, self.uniform, self.hooks = made.split, made.uniform, tuple(made.reasons)
         self._parts, self._times, self._calls = made.parts, made.times, made.calls
@@ -226,11 +225,12 @@ class Substeps:
             contacts.inactive, contacts.sleeping, sleep.forces, sleep.unverified,
         )  # fmt: skip
         damping, fat, bounds = laws
+        softness = (0.0, 0.0, 0.0) if self._resolve is None else self._resolve.softness(state)
         if self._broad_phase is not None:
             fat = self._broad_phase.fat
         return (
             *motion, packed, self._springs, sleepers, damping, fat, bounds, near_in(state), joints_in(state),
-            contacts.opened, self._softness, contacts.impulse_dt, contacts.step_log, self._cost,
+            contacts.opened, softness, contacts.impulse_dt, contacts.step_log, self._cost,
         )  # fmt: skip
 
     def _addresses(self, state: State) -> NDArray[np.int64]:

@@ -34,6 +34,8 @@ class Break(NamedTuple):
 class BreakSystem(System):
     """Removes joints on which there is more force or torque at the end of a step than they bear.
 
+    Where that is known at any time, a step ends when it comes to that (:mod:`physicslab.stepping.breaks`).
+
     Attributes
     ----------
     broken : tuple of Break
@@ -60,9 +62,11 @@ class BreakSystem(System):
         """Remove the joints that do not bear their load."""
         end = state.time + h
         self.broken = tuple(one for one in self.broken if one.time < end)  # the clock may have been set back
+        figures = figures_of(state)
+        forces, torques = np.hypot(*figures.force.T), np.abs(figures.torque)
+        numbers = {joint: number for number, joint in enumerate(state.joints.joints)}
         for joint, bounds in list(_breakable(state)):
-            figures = figures_of(state, joint)
-            force, torque = figures.force.magnitude, abs(figures.torque)
+            force, torque = float(forces[numbers[joint]]), float(torques[numbers[joint]])
             beyond = force > bounds[0], torque > bounds[1]
             if any(beyond):
                 label = state.label(joint.entity)
@@ -82,6 +86,19 @@ def _breakable(state: State) -> Iterator[tuple[Joint, tuple[float, ...]]]:
         )
         if min(bounds) < math.inf:
             yield joint, bounds
+
+
+def load_of(state: State) -> float:
+    """Return the largest load of any joint now, as a share of what that bears; 0 where none can break."""
+    figures = figures_of(state)
+    loads = np.stack((np.hypot(*figures.force.T), np.abs(figures.torque)), axis=1).tolist()
+    numbers = {joint: number for number, joint in enumerate(state.joints.joints)}
+    each = [
+        pair
+        for joint, bounds in _breakable(state)
+        for pair in zip(loads[numbers[joint]], bounds, strict=True)
+    ]
+    return max((load / bound if bound else math.inf for load, bound in each if load), default=0.0)
 
 
 def breaks_of(systems: tuple[System, ...], time: float) -> tuple[Break, ...]:

@@ -5,15 +5,16 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Shape, Transform, Velocity
+from physicslab.components import Layer, Shape, Transform, Velocity
 from physicslab.components.shape import CHAIN
 from physicslab.contacts.arguments import motion_of, near_in, shapes_of, speculative_margin
 from physicslab.contacts.near_pairs import partition
-from physicslab.ecs.fields import POINTS
 from physicslab.kernels.broad import chains, grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes, still_holds
+from physicslab.kernels.geometry.shapes import OWN
 from physicslab.kernels.wide import slots
-from physicslab.state.solid import solid_rows
+from physicslab.state.shapes import REGISTER
+from physicslab.state.solid import is_any_apart, may_touch, solid_rows
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
 
@@ -36,18 +37,19 @@ def nothing_to_touch(state: State) -> str | None:
         return None
     if shapes == 1:
         return "only one Shape in the scene, and no bounds"
-    if len(state.joints.apart) and shapes <= _FEW and not _may_any_touch(state):
-        return "all pairs that could meet are on joints, and pass through each other"
+    if is_any_apart(state) and shapes <= _FEW and not _may_any_touch(state):
+        layers = ", or in layers that do not touch" if len(state.batch(Layer)) else ""
+        return f"all pairs that could meet are on joints{layers}, and pass through each other"
     return None
 
 
 def _may_any_touch(state: State) -> bool:
-    """Whether any two bodies may meet that no joint keeps from touching each other."""
+    """Whether any two bodies may meet that no joint and no layer keeps from touching each other."""
     shaped = solid_rows(state)
     i, j = np.triu_indices(len(shaped), 1)
     a, b = shaped[i], shaped[j]
     moves = state.table(Velocity).present
-    return bool((state.joints.may_touch(a, b) & (moves[a] | moves[b])).any())
+    return bool((may_touch(state, a, b) & (moves[a] | moves[b])).any())
 
 
 def _lookahead(sleepers: int, awake: int) -> float:
@@ -180,7 +182,7 @@ class BroadPhaseSystem(System):
         left, vertices = self.leavers, state.bodies.shapes.vertices
         if len(vertices) <= _FEW or _sparse(state) or left.crowded or state.contacts.stale:
             return False
-        if len(state.joints.apart) or len(self.chains):  # which the search for new pairs does not know
+        if is_any_apart(state) or len(self.chains):  # which the search for new pairs does not know
             return False
         if left.indexed is None:
             left.indexed = leaving.index_bodies(
@@ -207,9 +209,9 @@ class BroadPhaseSystem(System):
         found, walls = self._count_pairs(vertices, inverse_mass, bounded)
         if len(self.chains):
             walls = self._add_chains(state, found, walls)
-        if len(state.joints.apart):
+        if is_any_apart(state):
             couples = self._couples[: 2 * found].reshape(-1, 2)
-            couples = couples[state.joints.may_touch(couples[:, 0], couples[:, 1])]
+            couples = couples[may_touch(state, couples[:, 0], couples[:, 1])]
             found = len(couples)
             self._couples[: 2 * found] = couples.ravel()
         self.leavers.begin()
@@ -219,8 +221,7 @@ class BroadPhaseSystem(System):
         """Add the pairs of bodies and segments of chains to those of the bounds; return how many both are."""
         shape, (position, angle, _, _) = state.table(Shape), motion_of(state)
         solid = self.chains[state.bodies.shapes.vertices[self.chains] > 0]
-        codes = shape["vertices"][solid].tolist()
-        segments = np.array([len(POINTS.value_of(code)) - 1 for code in codes])
+        segments = REGISTER.kinds[OWN + shape["vertices"][solid], 0] - 1
         while True:
             count = chains.add_chains(
                 solid, segments, position, angle, shapes_of(state), self.boxes, self.fat,
@@ -231,9 +232,9 @@ class BroadPhaseSystem(System):
             larger = np.zeros((2 * (found + count), 3), np.int64)
             larger[:walls] = self._pairs[:walls]
             self._pairs = larger
-        if len(state.joints.apart):
+        if is_any_apart(state):
             added = self._pairs[walls:count]
-            added = added[state.joints.may_touch(added[:, 0], added[:, 1])]
+            added = added[may_touch(state, added[:, 0], added[:, 1])]
             self._pairs[walls : walls + len(added)] = added
             count = walls + len(added)
         return count

@@ -9,7 +9,7 @@ from physicslab.kernels.forces import packed_forces
 from physicslab.kernels.forces.magnetic import magnetic_field
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
-from physicslab.systems.system import ForceSystem
+from physicslab.systems.system import ROUNDING, ForceSystem
 from physicslab.systems.uniform_field import field_energy, packed_field
 
 
@@ -51,6 +51,12 @@ class ElectricFieldSystem(_ChargeForce):
         """Return the push for compiled integrators."""
         rows, charge = state.batch(*self.needs).rows, state.table(Charge)["charge"]
         return packed_field(state, layout, rows, charge, state.physics.electric_field, FIELDS)
+
+    def rounding_floor(self, state: State) -> float:
+        """Return that of the largest push."""
+        rows = state.batch(*self.needs).rows
+        pushes = np.abs(state.table(Charge)["charge"][rows]) * state.bodies.inverse_mass[rows]
+        return ROUNDING * float(pushes.max(initial=0.0)) * state.physics.electric_field.magnitude
 
     def potential_energy(self, state: State) -> float:
         """Return the sum of -q E . x [J], zero at the origin."""

@@ -68,6 +68,10 @@ class CoulombSystem(ForceSystem):
         """Return the largest sqrt(k |q_a q_b| (1/m_a + 1/m_b) / d^3) of any pair at present."""
         return self._law(state).strongest_rate(state)
 
+    def rounding_floor(self, state: State) -> float:
+        """Return that of the largest sum of forces on a charge."""
+        return self._law(state).rounding_floor(state)
+
     def sees_velocity(self, state: State) -> bool:
         """Return False: it depends on places alone."""
         return False

@@ -12,7 +12,7 @@ from physicslab.kernels.forces import packed_forces
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 from physicslab.systems.inverse_square import InverseSquare
-from physicslab.systems.system import ForceSystem
+from physicslab.systems.system import ROUNDING, ForceSystem
 from physicslab.systems.uniform_field import field_energy, packed_field
 
 
@@ -85,6 +85,14 @@ class GravitySystem(ForceSystem):
     def strongest_rate(self, state: State) -> float:
         """Return the largest sqrt(G (m_a + m_b) / d^3) of any pair at present; 0 for uniform gravity."""
         return self._attraction(state).strongest_rate(state) if self._pairwise else 0.0
+
+    def rounding_floor(self, state: State) -> float:
+        """Return that of the weight, or of the largest sum of pulls."""
+        pairs = self._pairwise
+        return (
+            self._attraction(state).rounding_floor(state) if pairs
+            else ROUNDING * state.physics.gravity.magnitude
+        )  # fmt: skip
 
     def couples(self, state: State) -> NDArray[np.int64] | None:
         """Uniform gravity couples nothing, that of planets every body with every other."""

@@ -11,6 +11,7 @@ from physicslab.kernels.forces import packed_forces
 from physicslab.kernels.forces.tree_pull import MAX_ERROR, RMS_ERROR, THETA
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
+from physicslab.systems.system import ROUNDING
 
 type Numbers = NDArray[np.float64]
 """A float64 array (rows of the world,)."""
@@ -63,6 +64,20 @@ class InverseSquare(NamedTuple):
             position, self.yields, self.pulls, self.rows, self.constant, physics.softening,
             physics.softening_law == "plummer",
         )  # fmt: skip
+
+    def rounding_floor(self, state: State) -> float:
+        """Return how far rounding puts off the acceleration of a body whose neighbours cancel; 0 of many."""
+        rows, physics = self.rows, state.physics
+        if len(rows) > law.PLAIN_LIMIT:
+            return 0.0
+        position, weight = state.table(Transform)["position"][rows], np.abs(self.weight[rows])
+        apart = position[:, None] - position
+        square = np.square(apart).sum(axis=2) + physics.softening**2
+        with np.errstate(divide="ignore"):
+            pull = np.where(square > 0.0, weight / square, 0.0).sum(axis=1) * weight
+        return (
+            ROUNDING * abs(self.constant) * float((pull * state.bodies.inverse_mass[rows]).max(initial=0.0))
+        )
 
     def potential_energy(self, state: State) -> float:
         """Return the energy of all pairs [J], zero at infinite distance."""

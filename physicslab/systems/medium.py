@@ -124,6 +124,15 @@ class MediumSystem(ForceSystem):
         rates[rows] = np.maximum(np.sqrt(lift * width * inverse), np.pi * width * drag * inverse)
         return rates
 
+    def rounding_floor(self, state: State) -> float:
+        """Return that of the lift of a body that is wholly in the densest medium."""
+        rows, bodies = state.batch(*_BODIES).rows, state.bodies
+        densest = float(state.table(Medium)["density"][state.batch(*self.needs).rows].max(initial=0.0))
+        reach = bodies.shapes.reach[rows]
+        give = np.maximum(bodies.inverse_mass[rows], reach * bodies.inverse_inertia[rows])
+        lift = densest * float(np.hypot(*self._gravity(state))) * np.pi * reach * reach
+        return self.rounding * float((lift * give).max(initial=0.0))
+
     def sees_velocity(self, state: State) -> bool:
         """Whether any medium is viscous, or drags by the square of the speed."""
         table, rows = state.table(Medium), state.batch(*self.needs).rows

@@ -8,7 +8,7 @@ from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.molecules import CUT2, molecules
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
-from physicslab.systems.system import ForceSystem
+from physicslab.systems.system import ROUNDING, ForceSystem
 
 
 class MoleculeSystem(ForceSystem):
@@ -81,6 +81,12 @@ class MoleculeSystem(ForceSystem):
             curve = depth * (156.0 * s * s - 84.0 * s) * np.cbrt(s) / (distance * distance)
             rates[rows] = np.sqrt(2.0 * curve * inverse)
         return rates
+
+    def rounding_floor(self, state: State) -> float:
+        """Return that of forces near the distance where they cancel."""
+        table, rows = state.table(Molecule), self._acting
+        force = 24.0 * table["depth"][rows] / table["distance"][rows] * state.bodies.inverse_mass[rows]
+        return ROUNDING * float(force.max(initial=0.0))
 
     def sees_velocity(self, state: State) -> bool:
         """Return False: it depends on places alone."""

@@ -13,7 +13,7 @@ from physicslab.kernels.forces.resistance import damper_resistance
 from physicslab.state.packed import PackedForce, StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
 from physicslab.systems.joint import remove_lost
-from physicslab.systems.system import ForceSystem
+from physicslab.systems.system import ROUNDING, ForceSystem
 
 _NOTHING = 1e-9
 """Share of its rest length below which a spring has no direction."""
@@ -128,6 +128,16 @@ class SpringSystem(ForceSystem):
         fixed = (bodies.inverse_mass[self._a] == 0.0) | (bodies.inverse_mass[self._b] == 0.0)
         share = 0.5 if fixed.all() else 1.0  # no pair of bodies moves against each other
         return np.maximum(np.sqrt(share * stiff), share * damped)
+
+    def rounding_floor(self, state: State) -> float:
+        """Return that of a spring as long as its rest length, or as far from the origin as its fixed end."""
+        bodies, spring, position = state.bodies, state.table(Spring), state.table(Transform)["position"]
+        give, reach = bodies.inverse_mass[self._a] + bodies.inverse_mass[self._b], spring["rest_length"]
+        reach = reach[self._rows]
+        for end in (self._a, self._b):
+            fixed = bodies.inverse_mass[end] == 0.0
+            reach = np.maximum(reach, np.where(fixed, np.hypot(*position[end].T), 0.0))
+        return ROUNDING * float((spring["stiffness"][self._rows] * give * reach).max(initial=0.0))
 
     def why_singular(self, state: State) -> str | None:
         """Return a reason if the energy could compress a spring to length zero, where it has no direction.

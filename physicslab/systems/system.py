@@ -15,6 +15,9 @@ from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 
+ROUNDING = 2.0**-50
+"""How far a force of several roundings may be off, as a share of its parts."""
+
 
 class Stage(Enum):
     """The moments at which systems run. An integrator's ``substep`` puts those of a substep in order."""
@@ -196,6 +199,13 @@ class ForceSystem(System):
         """Return the largest of :meth:`rates` [rad/s]; 0 where there are none."""
         rates = self.rates(state)
         return 0.0 if rates is None else float(rates.max(initial=0.0))
+
+    def rounding_floor(self, state: State) -> float:
+        """Return how far rounding puts off the acceleration of what it holds at rest [m/s^2, rad/s^2].
+
+        By a force that others may cancel, or by its parts that cancel each other.
+        """
+        return 0.0
 
     def summation(self, state: State) -> str:
         """Return how the force is summed, where its accuracy depends on that; shown beside the figures."""

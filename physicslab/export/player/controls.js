@@ -98,28 +98,59 @@ for (const name of ["loop", "trails", "arrows", "names", "grid"]) {
   $(name).onclick = () => toggle(name);
   $(name).setAttribute("aria-pressed", show[name]);
 }
-$("time").max = COUNT - 1;
 $("time").oninput = event => { play(false); seek(times[event.target.valueAsNumber]); };
-$("speed").append(...SPEEDS.map(value => new Option(`${short(value * natural, 3)}\u00d7`, value)));
 $("speed").onchange = event => setSpeed(Number(event.target.value));
-$("body").append(new Option("none (click a body)", ""));
-$("body").append(...drawn.map(body => new Option(body.name, run.bodies.indexOf(body))));
 $("body").onchange = event => select(run.bodies[event.target.value] ?? null);
-chart.onpointerdown = chart.onpointermove = event => {
-  if (!event.buttons) return;
-  play(false);
-  seek(times[frameAt((event.offsetX - LEFT) / (chart.clientWidth - LEFT - RIGHT) * end)]);
-};
-const notes = [
-  ...run.notes,
-  `${COUNT} instants, positions to 7 digits (float32). While it plays, bodies move straight from one to ` +
-  "the next; paused, the figures are those computed.",
-];
-$("notes").append(...notes.map(text => Object.assign(document.createElement("li"), { textContent: text })));
+
+// What differs from run to run; runs are in order, those of the last slider next to each other.
+const chosen = book.sliders.map(slider => Math.floor((slider.values.length - 1) / 2));
+const sliders = book.sliders.map((slider, n) => {
+  const row = document.createElement("label"), words = document.createElement("span");
+  const input = Object.assign(document.createElement("input"), {
+    type: "range", id: `slider-${n}`, min: 0, max: slider.values.length - 1, step: 1, value: chosen[n],
+  });
+  const output = document.createElement("output");
+  words.textContent = slider.label;
+  input.oninput = () => { chosen[n] = input.valueAsNumber; showChosen(); };
+  row.append(words, input, output);
+  $("sliders").append(row);
+  return { ...slider, input, output };
+});
+function showChosen() {
+  let place = 0;
+  sliders.forEach(({ values, unit, input, output }, n) => {
+    place = place * values.length + chosen[n];
+    const written = `${short(values[chosen[n]], 5)} ${unit === "1" ? "" : unit}`.trim();
+    output.textContent = written;
+    input.setAttribute("aria-valuetext", written);
+  });
+  const next = book.runs[place], failed = "failure" in next;
+  $("failure").textContent = failed ? `This run has no picture: ${next.failure}` : "";
+  document.body.classList.toggle("failed", failed);
+  load(failed ? book.runs.find(one => !("failure" in one)) : next);
+}
+
+let decimals = 2;
+loaders.push(() => {
+  const name = selected?.name;
+  selected = run.bodies.find(body => body.name === name) ?? null;
+  $("time").max = COUNT - 1;
+  decimals = Math.min(Math.max(2 - Math.floor(Math.log10(end / COUNT * 10 || 1)), 0), 9);
+  $("speed").replaceChildren(...SPEEDS.map(value => new Option(`${short(value * natural, 3)}\u00d7`, value)));
+  $("speed").value = speed;
+  $("body").replaceChildren(new Option("none (click a body)", ""),
+    ...drawn.map(body => new Option(body.name, run.bodies.indexOf(body))));
+  $("body").value = selected ? run.bodies.indexOf(selected) : "";
+  const notes = [
+    ...run.notes,
+    `${COUNT} instants, positions to 7 digits (float32). While it plays, bodies move straight from one to ` +
+    "the next; paused, the figures are those computed.",
+  ];
+  $("notes").replaceChildren(...notes.map(text => Object.assign(document.createElement("li"), { textContent: text })));
+});
 new ResizeObserver(() => { if (camera.fitted) fit(); stale = true; }).observe(world);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", readColours);
 
-const decimals = Math.min(Math.max(2 - Math.floor(Math.log10(end / COUNT * 10 || 1)), 0), 9);
 let last = 0;
 function tick(now) {
   const passed = Math.min((now - last) / 1000, 0.1);
@@ -133,7 +164,7 @@ function tick(now) {
     stale = false;
     const [frame, share] = moment();
     drawWorld(frame, share);
-    drawChart();
+    for (const one of charts) drawChart(one, frame);
     showFigures(frame);
     $("time").value = frame;
     $("clock").textContent = `${(run.start + time).toFixed(decimals)} / ${short(run.start + end, 4)} s`;
@@ -144,13 +175,18 @@ function tick(now) {
 
 // For a console, and for tests.
 window.player = {
-  run, times, lines, seek, play, get time() { return time; }, get playing() { return playing; },
+  book, seek, play, get run() { return run; }, get times() { return times; }, get lines() { return lines; },
+  get quantities() { return quantities; }, get chosen() { return [...chosen]; }, get time() { return time; }, get playing() { return playing; },
   get selected() { return selected?.name ?? null; },
   at: (name, frame) => run.bodies.find(body => body.name === name).at(frame),
   pixel: (x, y) => [world.getBoundingClientRect().x + toX(x), world.getBoundingClientRect().y + toY(y)],
 };
-const aspect = (run.view[2] - run.view[0]) / (run.view[3] - run.view[1]);
+const aspect = (book.view[2] - book.view[0]) / (book.view[3] - book.view[1]);
 $("stage").style.setProperty("--aspect", Math.min(Math.max(aspect, 0.9), 2));
+showChosen();
+show.trails = movers.length <= 12 || movers.some(body => body.trail);
+show.names = named > 0 && named <= 12;
+for (const name of ["trails", "names"]) $(name).setAttribute("aria-pressed", show[name]);
 readColours();
 fit();
 setSpeed(1);

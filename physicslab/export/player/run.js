@@ -1,8 +1,9 @@
 // What was recorded, and the state of the player.
 
 const $ = id => document.getElementById(id);
-const run = JSON.parse($("run").textContent);
-const COUNT = run.instants, HEAD = 1 + run.energies.length;
+const book = JSON.parse($("run").textContent);
+let run, COUNT, HEAD, movers, times, end, drawn, named, lines, quantities;
+const loaders = [];  // what is to be done for every run that is shown, in order
 const PARTS = [0, 1, 2, 3, 4, 5];  // x, y, angle and their rates
 const DASHES = [[], [7, 4], [2, 3], [9, 3, 2, 3], [4, 2]];
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
@@ -24,33 +25,43 @@ function unpack(text, length) {
   return new Float32Array(bits.buffer);
 }
 
-const movers = run.bodies.filter(body => "moves" in body);
-const data = unpack(run.data, COUNT * (HEAD + 6 * movers.length));
-const column = index => data.subarray(index * COUNT, (index + 1) * COUNT);
-const times = column(0), end = times[COUNT - 1];
-for (const body of run.bodies) {
-  body.columns = "moves" in body ? PARTS.map(k => column(HEAD + 6 * body.moves + k)) : null;
-  body.at = frame => body.columns ? body.columns.map(values => values[frame]) : [...body.pose, 0, 0, 0];
-  body.core ??= [[0, 0]];
-  body.radius ??= 0;
-  body.reach = Math.max(...body.core.map(corner => Math.hypot(...corner))) + body.radius;
-  body.half = Math.max(...body.core.flat().map(Math.abs)) + body.radius;
-  body.named = !/^entity \d+$/.test(body.name);
+// Show another run of the page; its numbers are unpacked when it is first shown.
+function load(next) {
+  run = next;
+  COUNT = run.instants;
+  HEAD = 1 + run.energies.length + run.quantities.length;
+  movers = run.bodies.filter(body => "moves" in body);
+  run.numbers ??= unpack(run.data, COUNT * (HEAD + 6 * movers.length));
+  const column = index => run.numbers.subarray(index * COUNT, (index + 1) * COUNT);
+  times = column(0);
+  end = times[COUNT - 1];
+  for (const body of run.bodies) {
+    body.columns = "moves" in body ? PARTS.map(k => column(HEAD + 6 * body.moves + k)) : null;
+    body.at = frame => body.columns ? body.columns.map(values => values[frame]) : [...body.pose, 0, 0, 0];
+    body.core ??= [[0, 0]];
+    body.radius ??= 0;
+    body.reach = Math.max(...body.core.map(corner => Math.hypot(...corner))) + body.radius;
+    body.half = Math.max(...body.core.flat().map(Math.abs)) + body.radius;
+    body.named = !/^entity \d+$/.test(body.name);
+  }
+  drawn = run.bodies.filter(body => body.kind !== "none");
+  named = movers.filter(body => body.named).length;
+  lines = run.energies
+    .map((name, i) => ({ name, values: column(1 + i), dash: name === "total" ? [] : DASHES[i % 5] }))
+    .filter(({ name, values }) => name === "total" || name === "kinetic" || values.some(value => value !== 0));
+  quantities = run.quantities.map((one, i) => ({ ...one, values: column(1 + run.energies.length + i) }));
+  for (const each of loaders) each();
+  stale = true;
 }
-const drawn = run.bodies.filter(body => body.kind !== "none");
-const named = movers.filter(body => body.named).length;
-const lines = run.energies
-  .map((name, i) => ({ name, values: column(1 + i), dash: name === "total" ? [] : DASHES[i % 5] }))
-  .filter(({ name, values }) => name === "total" || name === "kinetic" || values.some(value => value !== 0));
 
-const show = {
-  trails: movers.length <= 12 || movers.some(body => body.trail), arrows: false,
-  names: named > 0 && named <= 12, grid: true, loop: true,
-};
+const show = { trails: false, arrows: false, names: false, grid: true, loop: true };
 const camera = { x: 0, y: 0, scale: 1, fitted: true };
-// How many seconds of the scene pass in a second at ordinary speed.
-const natural = end > 60 || end < 1 ? Math.pow(10, Math.floor(Math.log10(end / 6))) : 1;
-let time = 0, playing = false, speed = 1, selected = null, stale = true;
+// natural: how many seconds of the scene pass in a second at ordinary speed.
+loaders.push(() => {
+  natural = end > 60 || end < 1 ? Math.pow(10, Math.floor(Math.log10(end / 6))) : 1;
+  time = Math.min(time, end);
+});
+let natural = 1, time = 0, playing = false, speed = 1, selected = null, stale = true;
 
 function frameAt(t) {
   let low = 0, high = COUNT - 1;

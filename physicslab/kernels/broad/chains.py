@@ -8,6 +8,10 @@ from physicslab.kernels.records import Pairs
 
 __all__ = ["add_chains"]
 
+_ARC = 0.05
+"""How far arcs at its ends may lie beside a segment, of the larger one of its extents: half of the sagitta of
+15 degrees, times the root of 2."""
+
 
 @kernel
 def add_chains(
@@ -46,8 +50,9 @@ def add_chains(
             for k in range(segments[n]):
                 qx, qy = half_x * shapes.pool[first + k + 1, 0], half_y * shapes.pool[first + k + 1, 1]
                 qx, qy = cosine * qx - sine * qy, sine * qx + cosine * qy
-                across = min(px, qx) <= right and max(px, qx) >= left
-                if across and min(py, qy) <= high and max(py, qy) >= low:
+                beside = _ARC * max(abs(qx - px), abs(qy - py))
+                across = min(px, qx) <= right + beside and max(px, qx) >= left - beside
+                if across and min(py, qy) <= high + beside and max(py, qy) >= low - beside:
                     if count < len(pairs):
                         pairs[count, 0], pairs[count, 1], pairs[count, 2] = min(c, i), max(c, i), -2 - k
                     count += 1

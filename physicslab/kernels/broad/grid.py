@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, fused, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, always_inlined, inlined
 from physicslab.kernels.records import Couples, Pairs
 
 __all__ = ["cell_at", "find_pairs"]
@@ -125,7 +125,7 @@ def _bucket(ix: int, iy: int, cells: Cells) -> int:
     return ((ix * 73856093) ^ (iy * 19349663)) & (cells.buckets - 1)
 
 
-@fused
+@always_inlined
 def _place(
     boxes: Vectors, members: Rows, count: int, cell: float, larges: Rows, small: Rows, home: NDArray[np.int64]
 ) -> tuple[int, int, Cells]:
@@ -156,7 +156,7 @@ def _place(
     return smalls, large_count, Cells(low_x, low_y, high_x, high_y, up, buckets, dense)
 
 
-@fused
+@allocating
 def _sort(boxes: Vectors, small: Rows, cell_of: NDArray[np.int64], smalls: int, cells: Cells) -> Grid:
     """Count the bodies of each bucket, then put them there: a counting sort."""
     first = np.zeros(cells.buckets + 1, np.int64)
@@ -179,7 +179,7 @@ def _sort(boxes: Vectors, small: Rows, cell_of: NDArray[np.int64], smalls: int, 
     return Grid(first, body, home, near)
 
 
-@fused
+@always_inlined
 def _pair_dense(search: Search, cells: Cells, grid: Grid, smalls: int, found: int) -> int:
     """Find the pairs of small bodies where each cell has its own bucket; return how many pairs there are now.
 
@@ -213,7 +213,7 @@ def _pair_dense(search: Search, cells: Cells, grid: Grid, smalls: int, found: in
     return found
 
 
-@fused
+@always_inlined
 def _pair_hashed(search: Search, cells: Cells, grid: Grid, smalls: int, found: int) -> int:
     """Find the pairs of small bodies where cells share buckets; return how many pairs there are now."""
     first, body, home, near = grid
@@ -229,7 +229,7 @@ def _pair_hashed(search: Search, cells: Cells, grid: Grid, smalls: int, found: i
     return found
 
 
-@fused
+@always_inlined
 def _pair_large(
     search: Search, cells: Cells, grid: Grid, smalls: int, larges: Rows, count: int, cell: float, found: int
 ) -> int:

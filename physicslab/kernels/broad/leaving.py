@@ -10,7 +10,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating_kernel, fused, inlined, kernel
+from physicslab.kernels import (
+    Flags,
+    Numbers,
+    Rows,
+    Vectors,
+    allocating_kernel,
+    always_inlined,
+    inlined,
+    kernel,
+)
 from physicslab.kernels.arguments import Motion, MotionTuple, Near, NearTuple, named_near
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fatten, left, usual_speed
 from physicslab.kernels.broad.grid import cell_at
@@ -167,7 +176,7 @@ def _meet_walls(leaver: Leaver, near: Near, bounds: Numbers) -> None:
                 counts[UNORDERED] = 1
 
 
-@fused
+@always_inlined
 def _list_leaver(
     leaver: Leaver, growth: float, index: Index, near: Near, shapes: Shapes, fat: Vectors, boxes: Vectors,
     moved: Flags, inverse_mass: Numbers,

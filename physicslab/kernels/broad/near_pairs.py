@@ -210,7 +210,7 @@ def make_blank(manifolds: Manifolds, points: Points, p: int) -> None:
         point = points[j]
         point.feature = point.ahead = 0
         point.normal_impulse = point.tangent_impulse = 0.0
-        point.approach_speed = point.impact_normal = point.impact_tangent = 0.0
+        point.approach_speed = point.impact_normal = point.impact_tangent = point.bend = 0.0
 
 
 @allocating

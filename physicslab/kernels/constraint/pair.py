@@ -6,7 +6,7 @@ the other sign. One formula serves a pair (float), eight pairs at once (:class:`
 
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Vectors, fused
+from physicslab.kernels import Numbers, Vectors, always_inlined
 from physicslab.kernels.arguments import Inverse
 from physicslab.kernels.float64x8 import Wide
 from physicslab.kernels.records import Manifold, Point
@@ -63,26 +63,26 @@ class PointState[N: (float, Wide)](NamedTuple):
     sliding: N
 
 
-@fused
+@always_inlined
 def velocity_of(linear: Vectors, angular: Numbers, a: int, b: int) -> PairVelocity[float]:
     """Return the velocities of two rows, from arrays (rows, 2) and (rows,)."""
     return PairVelocity(linear[a, 0], linear[a, 1], angular[a], linear[b, 0], linear[b, 1], angular[b])
 
 
-@fused
+@always_inlined
 def put_velocity(linear: Vectors, angular: Numbers, a: int, b: int, v: PairVelocity[float]) -> None:
     """Write the velocities of two rows into arrays (rows, 2) and (rows,)."""
     linear[a, 0], linear[a, 1], angular[a] = v.ax, v.ay, v.wa
     linear[b, 0], linear[b, 1], angular[b] = v.bx, v.by, v.wb
 
 
-@fused
+@always_inlined
 def inverse_mass_of(inverse: Inverse, a: int, b: int) -> PairInverseMass[float]:
     """Return the inverse masses and moments of inertia of two rows."""
     return PairInverseMass(inverse.mass[a], inverse.inertia[a], inverse.mass[b], inverse.inertia[b])
 
 
-@fused
+@always_inlined
 def frame_of(manifold: Manifold, point: Point) -> ContactFrame[float]:
     """Return the normal of a pair and the arms of one of its points."""
     return ContactFrame(
@@ -90,7 +90,7 @@ def frame_of(manifold: Manifold, point: Point) -> ContactFrame[float]:
     )
 
 
-@fused
+@always_inlined
 def point_velocity[N: (float, Wide)](at: ContactFrame[N], v: PairVelocity[N]) -> tuple[N, N]:
     """Return the velocity of B's point against A's [m/s]."""
     vx: N = v.bx - v.wb * at.arm_by - v.ax + v.wa * at.arm_ay
@@ -98,25 +98,25 @@ def point_velocity[N: (float, Wide)](at: ContactFrame[N], v: PairVelocity[N]) ->
     return vx, vy
 
 
-@fused
+@always_inlined
 def along_and_across[N: (float, Wide)](nx: N, ny: N, x: N, y: N) -> tuple[N, N]:
     """Return the parts of a vector along the normal and along the tangent."""
     return x * nx + y * ny, y * nx - x * ny
 
 
-@fused
+@always_inlined
 def impulse_at[N: (float, Wide)](nx: N, ny: N, normal: N, tangent: N) -> tuple[N, N]:
     """Return the vector of a normal and a tangential impulse [N s]."""
     return normal * nx - tangent * ny, normal * ny + tangent * nx
 
 
-@fused
+@always_inlined
 def moments_of[N: (float, Wide)](at: ContactFrame[N], px: N, py: N) -> tuple[N, N]:
     """Return the moments of an impulse about both centres [N m s]."""
     return at.arm_ax * py - at.arm_ay * px, at.arm_bx * py - at.arm_by * px
 
 
-@fused
+@always_inlined
 def moment_arms[N: (float, Wide)](at: ContactFrame[N]) -> MomentArms[N]:
     """Return the moments of unit impulses along the normal and the tangent at a point [m]."""
     return MomentArms(
@@ -125,7 +125,7 @@ def moment_arms[N: (float, Wide)](at: ContactFrame[N]) -> MomentArms[N]:
     )  # fmt: skip
 
 
-@fused
+@always_inlined
 def point_state(at: ContactFrame[float], v: PairVelocity[float]) -> PointState[float]:
     """Return the moment arms of a point, and how B moves against A there."""
     arms = moment_arms(at)
@@ -134,7 +134,7 @@ def point_state(at: ContactFrame[float], v: PairVelocity[float]) -> PointState[f
     return PointState(arms.normal_a, arms.normal_b, arms.tangent_a, arms.tangent_b, along, across)
 
 
-@fused
+@always_inlined
 def response[N: (float, Wide)](
     mass: N, inertia_a: N, inertia_b: N, one_a: N, one_b: N, other_a: N, other_b: N
 ) -> N:
@@ -147,7 +147,7 @@ def response[N: (float, Wide)](
     return element
 
 
-@fused
+@always_inlined
 def after_impulse[N: (float, Wide)](
     v: PairVelocity[N], mass: PairInverseMass[N], px: N, py: N, moment_a: N, moment_b: N
 ) -> PairVelocity[N]:
@@ -158,7 +158,7 @@ def after_impulse[N: (float, Wide)](
     )  # fmt: skip
 
 
-@fused
+@always_inlined
 def after_impulse_at[N: (float, Wide)](
     v: PairVelocity[N], mass: PairInverseMass[N], at: ContactFrame[N], normal: N, tangent: N
 ) -> PairVelocity[N]:
@@ -168,7 +168,7 @@ def after_impulse_at[N: (float, Wide)](
     return after_impulse(v, mass, px, py, moment_a, moment_b)
 
 
-@fused
+@always_inlined
 def mean_velocity(one: PairVelocity[float], other: PairVelocity[float]) -> PairVelocity[float]:
     """Return the mean of the velocities before and after impulses: those at which they do their work."""
     return PairVelocity(

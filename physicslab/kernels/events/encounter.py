@@ -9,6 +9,7 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
+from physicslab.kernels.events.links import curvature_of, gap_to_link, meet_link, touch_link
 from physicslab.kernels.events.meeting import (
     ROUNDING,
     SEAM,
@@ -19,7 +20,8 @@ from physicslab.kernels.events.meeting import (
     place_at,
 )
 from physicslab.kernels.events.path import place, seen_from, velocity
-from physicslab.kernels.geometry.shapes import MOST_VERTICES, Shapes, face, vertex
+from physicslab.kernels.geometry.links import box_of
+from physicslab.kernels.geometry.shapes import MOST_VERTICES, Shapes, face, is_chain, segment_of, vertex
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
 from physicslab.kernels.records import Manifold, Point
 
@@ -199,6 +201,34 @@ def _meet_wall(
     return meet_line(gap + (nx * x_low + ny * y_low), speed, pull, ROUNDING * (abs(vx) + abs(vy)) + min_speed)
 
 
+@always_inlined
+def _is_linked(manifold: Manifold) -> bool:
+    """Whether a pair is a body and a link of a chain, of which its ``wall`` is the number."""
+    return bool(manifold.wall < -1)
+
+
+@inlined
+def _on_chain(
+    manifold: Manifold, seen: Course, angle: Numbers, shapes: Shapes
+) -> tuple[int, int, int, Course, tuple[float, float]]:
+    """Return the chain, the link and the body of a pair; the body's course and turn, seen from the chain."""
+    a, b, (dx, dy, ux, uy, wx, wy) = manifold.a, manifold.b, seen
+    chain, body, sign = (a, b, 1.0) if is_chain(shapes, a) else (b, a, -1.0)
+    (c, s), (cb, sb) = _rotation(shapes, chain, angle), _rotation(shapes, body, angle)
+    course = Course(sign * dx, sign * dy, sign * ux, sign * uy, sign * wx, sign * wy)
+    turn = c * cb + s * sb, c * sb - s * cb
+    return chain, segment_of(manifold.wall), body, _seen(course, c, s), turn
+
+
+@inlined
+def bend_of(manifold: Manifold, feature: int, shapes: Shapes) -> float:
+    """Return by how much the path of a pair's bodies along each other bends, where one is a chain [1/m]."""
+    if not _is_linked(manifold):
+        return 0.0
+    chain, body = (manifold.a, manifold.b) if is_chain(shapes, manifold.a) else (manifold.b, manifold.a)
+    return curvature_of(shapes, chain, segment_of(manifold.wall), body, feature)
+
+
 @inlined
 def meeting_of(
     manifold: Manifold, paths: Vectors, angle: Numbers, shapes: Shapes, walls: Numbers,
@@ -209,6 +239,9 @@ def meeting_of(
         return _meet_wall(manifold, paths, angle, shapes, walls, now, low, min_speed), 0
     a, b = manifold.a, manifold.b
     seen = seen_from(paths, a, b, now, low)
+    if _is_linked(manifold):
+        chain, k, body, way, turned = _on_chain(manifold, seen, angle, shapes)
+        return meet_link(shapes, chain, k, body, way, turned, span, min_speed)
     course, c, s, _, _ = _lie(manifold, seen, angle, shapes)
     rounding, seam = shapes.radius[a] + shapes.radius[b], SEAM * (shapes.reach[a] + shapes.reach[b])
     min_rate = ROUNDING * (abs(course.ux) + abs(course.uy)) + min_speed
@@ -286,6 +319,18 @@ def time_apart(
     x -= paths[a, 0] + s * (paths[a, 4] + 0.5 * s * paths[a, 8])
     y -= paths[a, 2] + s * (paths[a, 6] + 0.5 * s * paths[a, 9])
     other_x, other_y = _reaches(shapes, a, angle)
+    if _is_linked(manifold):
+        on_a = is_chain(shapes, a)
+        chain, body = (a, b) if on_a else (b, a)
+        low_x, low_y, high_x, high_y = box_of(shapes, chain, segment_of(wall))
+        middle_x, middle_y = 0.5 * (low_x + high_x), 0.5 * (low_y + high_y)
+        half_x, half_y = _reaches(shapes, body, angle)
+        other_x, other_y = 0.5 * (high_x - low_x), 0.5 * (high_y - low_y)
+        if angle[chain] != 0.0:
+            c, sine = math.cos(angle[chain]), math.sin(angle[chain])
+            middle_x, middle_y = c * middle_x - sine * middle_y, sine * middle_x + c * middle_y
+            other_x = other_y = other_x + other_y
+        x, y = (x - middle_x, y - middle_y) if on_a else (x + middle_x, y + middle_y)
     sign = math.copysign(1.0, x)
     vx, wx = vx - (paths[a, 4] + s * paths[a, 8]), wx - paths[a, 8]
     apart = _time_open(abs(x) - half_x - other_x - error, sign * vx, sign * wx)
@@ -306,6 +351,9 @@ def gap_of(
     if manifold.wall >= 0:
         return _to_wall(manifold, paths[b, 0], paths[b, 2], angle, shapes, walls)[0], size
     course = Course(paths[b, 0] - paths[a, 0], paths[b, 2] - paths[a, 2], 0.0, 0.0, 0.0, 0.0)
+    if _is_linked(manifold):
+        chain, k, body, way, turned = _on_chain(manifold, course, angle, shapes)
+        return gap_to_link(shapes, chain, k, body, way, turned)[0], 2.0 * shapes.thin[body]
     seen, c, s, _, _ = _lie(manifold, course, angle, shapes)
     return _nearest(shapes, a, b, seen, c, s)[0], min(size, 2.0 * shapes.thin[a])
 
@@ -328,6 +376,18 @@ def touch_pair(
         point.arm_bx, point.arm_by = -depth * nx - middle * ny, -depth * ny + middle * nx
         point.arm_ax, point.arm_ay = x + point.arm_bx, y + point.arm_by
         manifold.normal_x, manifold.normal_y = nx, ny
+        return
+    if _is_linked(manifold):
+        chain, k, body, way, lies = _on_chain(manifold, seen, angle, shapes)
+        nx, ny, px, py = touch_link(shapes, chain, k, body, feature, way.dx, way.dy, lies)
+        ca, sa = _rotation(shapes, chain, angle)
+        nx, ny, px, py = ca * nx - sa * ny, sa * nx + ca * ny, ca * px - sa * py, sa * px + ca * py
+        if chain == a:
+            point.arm_ax, point.arm_ay, point.arm_bx, point.arm_by = seen.dx + px, seen.dy + py, px, py
+            manifold.normal_x, manifold.normal_y = nx, ny
+        else:
+            point.arm_ax, point.arm_ay, point.arm_bx, point.arm_by = px, py, px - seen.dx, py - seen.dy
+            manifold.normal_x, manifold.normal_y = -nx, -ny
         return
     course, c, s, ca, sa = _lie(manifold, seen, angle, shapes)
     if feature >= _ARC:

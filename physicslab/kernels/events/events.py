@@ -10,7 +10,7 @@ two pairs with one body meet at one time the order would decide: the motion ends
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels import Rows, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels.accounts import IMPACTS
 from physicslab.kernels.arguments import (
     Bounds,
@@ -23,7 +23,7 @@ from physicslab.kernels.arguments import (
     MotionTuple,
 )
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of
-from physicslab.kernels.events.encounter import gap_of, meeting_of, time_apart, touch_pair
+from physicslab.kernels.events.encounter import bend_of, gap_of, meeting_of, time_apart, touch_pair
 from physicslab.kernels.events.path import advance_to, begin, place, seen_from
 from physicslab.kernels.events.path_impact import path_velocity, resolve_ballistic_impacts
 from physicslab.kernels.geometry.contact import effective_masses, mix
@@ -106,7 +106,7 @@ def _first(due: Vectors, count: int) -> int:
     return best
 
 
-@fused
+@always_inlined
 def _begin_all(flight: Flight, step: int, span: float, left: int) -> tuple[int, float, float]:
     """Begin all paths of a step, of which ``left`` are to come.
 
@@ -141,7 +141,7 @@ def _begin_all(flight: Flight, step: int, span: float, left: int) -> tuple[int, 
     return why, _MIN_SPEED_RATIO * fastest, rounding
 
 
-@fused
+@always_inlined
 def _first_step(
     flight: Flight, p: int, step: int, now: float, span: float, left: int, rounding: float
 ) -> int:
@@ -186,7 +186,7 @@ def _meets_two(flight: Flight, p: int, within: float) -> bool:
     return False
 
 
-@fused
+@always_inlined
 def _meet(
     flight: Flight, p: int, materials: Materials, log: Impacts, number: int, start: float, now: float,
     low: float, span: float,
@@ -207,7 +207,8 @@ def _meet(
     effective_masses(manifold, flight.points, p, flight.inverse)
     nx, ny = manifold.normal_x, manifold.normal_y
     approach = -(seen.ux * nx + seen.uy * ny)
-    pull = seen.wx * nx + seen.wy * ny
+    pull, sliding = seen.wx * nx + seen.wy * ny, nx * seen.uy - ny * seen.ux
+    pull += bend_of(manifold, flight.face[p], flight.shapes) * sliding * sliding
     if pull < 0.0 and manifold.restitution * approach <= -pull * REST * span:
         manifold.count = 0
         return CAME_TO_REST, 0
@@ -241,7 +242,7 @@ def _clear_impacts(flight: Flight) -> None:
                 point.approach_speed = point.impact_normal = point.impact_tangent = 0.0
 
 
-@fused
+@always_inlined
 def _end_all(flight: Flight, now: float, low: float) -> None:
     """Move all bodies to where they are at the time ``now + low``."""
     paths, (position, angle, linear, angular) = flight.paths, flight.motion
@@ -327,7 +328,7 @@ def run_events(
 
 
 @endless
-@fused
+@always_inlined
 def _predict_pairs(
     flight: Flight, first: int, second: int, now: float, low: float, span: float, min_speed: float,
     step: int, left: int, rounding: float,

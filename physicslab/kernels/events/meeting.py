@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from physicslab.kernels import inlined
 
-__all__ = ["ROUNDING", "SEAM", "Course", "cross_line", "meet_circle", "meet_line", "place_at"]
+__all__ = ["ROUNDING", "SEAM", "Course", "cross_line", "leave_circle", "meet_circle", "meet_line", "place_at"]
 
 ROUNDING = 1e-14
 """Share of a speed, or of a length, that rounding may have made."""
@@ -164,6 +164,36 @@ def meet_circle(course: Course, reach: float, span: float, min_speed: float) -> 
                 return _root(course, reach, low, high)
             if low > 0.0:
                 return low  # it turns before the two have come apart
+        low, before = high, after
+    return math.inf
+
+
+@inlined
+def leave_circle(course: Course, reach: float, span: float, min_speed: float) -> float:
+    """Return when a point within a circle comes to it from the centre, up to ``span``, or infinity.
+
+    A point beyond it, or on it, comes to it at once where it goes on outwards, or is driven there.
+    """
+    dx, dy, ux, uy, wx, wy = course
+    height, rate = _height(course, reach, 0.0)
+    min_rate = math.sqrt(dx * dx + dy * dy) * (ROUNDING * (abs(ux) + abs(uy)) + min_speed)
+    if height >= 0.0:
+        if rate > min_rate:
+            return 0.0
+        if rate >= 0.0 and ux * ux + uy * uy + dx * wx + dy * wy > 0.0:
+            return 0.0
+    t1, t2, t3 = _extrema(course, span)
+    low, before = 0.0, height
+    for k in range(4):
+        high = t1 if k == 0 else (t2 if k == 1 else (t3 if k == 2 else span))
+        if high <= low:
+            continue
+        after = _height(course, reach, high)[0]
+        if after > before and after >= 0.0:
+            if before < 0.0:
+                return _root(course, reach, low, high)
+            if low > 0.0:
+                return low  # it turns before it is within again
         low, before = high, after
     return math.inf
 

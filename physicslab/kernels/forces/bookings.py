@@ -12,7 +12,7 @@ moment of inertia.
 
 from typing import Any
 
-from physicslab.kernels import Numbers, Rows, fused, inlined
+from physicslab.kernels import Numbers, Rows, always_inlined, inlined
 from physicslab.kernels.accounts import book
 from physicslab.kernels.forces.fall_shares import fall_shares
 from physicslab.kernels.forces.force_calls import force_kernel
@@ -159,7 +159,7 @@ def resist(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-d
     book(force, account, -power, -px, -py, -spin)
 
 
-@fused
+@always_inlined
 def book_damping(v: Numbers, places: Rows, q: Numbers, i: int, energy: float, impulse: float) -> None:
     """Book the energy and the impulse of damping on coordinate ``i``."""
     account = places[DAMPED]
@@ -171,7 +171,7 @@ def book_damping(v: Numbers, places: Rows, q: Numbers, i: int, energy: float, im
         book(v, account, energy, 0.0, impulse, q[i - 1] * impulse)
 
 
-@fused
+@always_inlined
 def book_kick(
     q: Numbers, v: Numbers, places: Rows, i: int, acceleration: Numbers, inverse_mass: float, rate: float,
     kick: float, change: float,

@@ -2,10 +2,11 @@
 
 import math
 
-from physicslab.kernels import Rows, Vectors, always_inlined, fused, inlined
+from physicslab.kernels import Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment_arms, response
-from physicslab.kernels.geometry.outline import Way, kept_outline, on_segment, swing_of
+from physicslab.kernels.geometry.bend import note_bends
+from physicslab.kernels.geometry.outline import Way, is_segment, kept_outline, on_segment, swing_of
 from physicslab.kernels.geometry.pair import (
     CONTACT_MARGIN,
     touch_boxes,
@@ -72,7 +73,7 @@ def mix(manifold: Manifold, materials: Materials, bounds: Bounds) -> None:
     manifold.friction = math.sqrt((bounds.friction if walled else friction[a]) * friction[b])
 
 
-@fused
+@always_inlined
 def _too_far(
     manifold: Manifold, way: Way, motion: Motion, shapes: Shapes, bounds: Bounds, speculative_margin: float
 ) -> bool:
@@ -103,7 +104,7 @@ def forget_points(one: Point, two: Point) -> None:
     one.normal_impulse = two.normal_impulse = one.tangent_impulse = two.tangent_impulse = 0.0
 
 
-@fused
+@always_inlined
 def _look_up(
     manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, shapes: Shapes,
     h: float, speculative_margin: float, tolerance: float, turns: bool, sharp: bool,
@@ -123,10 +124,11 @@ def _look_up(
         size = min(size, 2.0 * shapes.thin[a])
         of_both += 6.0 * half_x[a] + 10.0 * half_y[a]
     travel = abs(way.ux) + abs(way.uy)
+    swing = h * abs(motion.angular[a]) * (half_x[a] + half_y[a])
+    swing += h * abs(motion.angular[b]) * (half_x[b] + half_y[b])  # how far a corner comes
+    ahead = travel + swing
     if turns:
-        spin = abs(motion.angular[a]) * (half_x[a] + half_y[a])
-        spin += abs(motion.angular[b]) * (half_x[b] + half_y[b])
-        travel += h * spin  # how far a corner comes
+        travel = ahead
         if has_own_way(shapes, a) and has_own_way(shapes, b):
             size = min(max(half_x[a], radius[a]), max(half_x[b], radius[b]))
         else:  # of the same extents there are many polygons
@@ -140,7 +142,7 @@ def _look_up(
             # A lower bound of their gap now, however they have moved since.
             turned = abs(turn_a) * (half_x[a] + half_y[a]) + abs(turn_b) * (half_x[b] + half_y[b])
             nearest = manifold.gap - abs(moved_x) - abs(moved_y) - turned - 0.0025 * size
-            if nearest > CONTACT_MARGIN * size + travel + speculative_margin:
+            if nearest > CONTACT_MARGIN * size + ahead + speculative_margin:
                 return _APART
         elif sharp and (
             abs(moved_x) + abs(moved_y) <= tolerance * CACHE_TOLERANCE * size
@@ -156,7 +158,7 @@ def _look_up(
     return _OUTDATED
 
 
-@fused
+@always_inlined
 def _in_place(
     manifold: Manifold, point: Point, way: Way, motion: Motion, shapes: Shapes, speculative_margin: float
 ) -> bool:
@@ -176,7 +178,7 @@ def _in_place(
     )
 
 
-@fused
+@always_inlined
 def touch(
     manifold: Manifold, one: Point, two: Point, way: Way, motion: Motion, shapes: Shapes, bounds: Bounds,
     rotations: Vectors, h: float, start: float, speculative_margin: float,
@@ -197,11 +199,20 @@ def touch(
             manifold, one, two, way, turn_a, turn_b, start, speculative_margin,
             on_segment(other, manifold.wall), on_segment(body, manifold.wall), shapes.pool,
         )  # fmt: skip
+        if manifold.wall < -1 and manifold.count > 0 and manifold.swept != 1:
+            chain_is_a = is_segment(other)
+            segment, moved, turn = (other, body, turn_b) if chain_is_a else (body, other, turn_a)
+            note_bends(
+                manifold, one, two, way, turn, h, speculative_margin, chain_is_a,
+                on_segment(segment, manifold.wall), moved, shapes.pool,
+            )  # fmt: skip
     elif other.box and body.box:
-        touch_boxes(manifold, one, two, way, start, speculative_margin, other, body)
+        touch_boxes(
+            manifold, one, two, way, turn_a, turn_b, start, speculative_margin, other, body, shapes.pool
+        )
     else:
         turn = turn_a if other.box else turn_b
-        touch_with_circle(manifold, one, way, turn, start, speculative_margin, other, body)
+        touch_with_circle(manifold, one, way, turn, start, speculative_margin, other, body, shapes.pool)
 
 
 @inlined

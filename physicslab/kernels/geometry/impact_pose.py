@@ -2,13 +2,14 @@
 
 import math
 
-from physicslab.kernels import fused, inlined
+from physicslab.kernels import always_inlined, inlined
 from physicslab.kernels.arguments import Motion
 from physicslab.kernels.constraint.pair import ContactFrame
-from physicslab.kernels.geometry.cores import FLIPPED, VERTICES
+from physicslab.kernels.geometry.cores import FACE, FLIPPED, VERTICES
 from physicslab.kernels.geometry.manifold import circle_box
-from physicslab.kernels.geometry.outline import lying
-from physicslab.kernels.geometry.shapes import BOX, Shapes, has_own_way, is_chain, segment_of, vertex
+from physicslab.kernels.geometry.outline import lying, on_segment
+from physicslab.kernels.geometry.segment import end_of
+from physicslab.kernels.geometry.shapes import BOX, Shapes, has_own_way, is_chain, vertex
 from physicslab.kernels.records import Manifold, Point
 
 _FLIPPED_BOX = 33
@@ -54,7 +55,7 @@ def _corner_on_face(
     # Points are half-way between the surfaces; a swept pair has its own where these meet.
     half = 0.5 * point.found_separation if manifold.swept == 0 and manifold.wall < 0 else 0.0
     dx, dy = _apart(a, b, motion, t)
-    boxes = shapes.first[a] == BOX and shapes.first[b] == BOX
+    boxes = shapes.first[a] == BOX and shapes.first[b] == BOX and point.feature < FACE
     if manifold.wall < 0 and point.feature >= (_FLIPPED_BOX if boxes else FLIPPED):
         nx, ny = _turned(manifold.normal_x, manifold.normal_y, t * angular[b])
         radius = shapes.radius[a]
@@ -73,9 +74,21 @@ def _corner_on_face(
 
 
 @inlined
-def _segment(manifold: Manifold, shapes: Shapes, i: int) -> int:
-    """Return the number of the segment of row i, where it is a chain, that a pair is about."""
-    return segment_of(manifold.wall) if is_chain(shapes, i) else 0
+def _round_at(
+    manifold: Manifold, motion: Motion, shapes: Shapes, i: int, k: int, t: float
+) -> tuple[float, float, float]:
+    """Return where a vertex of row i, or the centre of an end of a chain's segment, is from its centre [m].
+
+    Then what rounds it [m], below zero about a centre outside.
+    """
+    angle = motion.angle[i] + t * motion.angular[i]
+    if is_chain(shapes, i):
+        segment = on_segment(lying(i, shapes, math.cos(angle), math.sin(angle)), manifold.wall)
+        end = end_of(segment, shapes.pool, k)
+        return end.x, end.y, -end.radius if end.hollow else end.radius
+    x, y = vertex(shapes, i, k)
+    x, y = _turned(x, y, angle)
+    return x, y, shapes.radius[i]
 
 
 @inlined
@@ -84,30 +97,33 @@ def _corner_on_corner(
 ) -> ContactFrame[float]:
     """Return where the discs around two vertices meet, each of which turns with its body."""
     a, b, vertices = manifold.a, manifold.b, point.feature - VERTICES
-    ax, ay = vertex(shapes, a, vertices % 8 + _segment(manifold, shapes, a))
-    ax, ay = _turned(ax, ay, motion.angle[a] + t * motion.angular[a])
-    bx, by = vertex(shapes, b, vertices // 8 + _segment(manifold, shapes, b))
-    bx, by = _turned(bx, by, motion.angle[b] + t * motion.angular[b])
+    ax, ay, round_a = _round_at(manifold, motion, shapes, a, vertices % 8, t)
+    bx, by, round_b = _round_at(manifold, motion, shapes, b, vertices // 8, t)
     dx, dy = _apart(a, b, motion, t)
     across_x, across_y = dx + bx - ax, dy + by - ay
     distance = math.sqrt(across_x * across_x + across_y * across_y)
+    if round_a < 0.0 or round_b < 0.0:
+        distance = -distance
     nx, ny = across_x / distance, across_y / distance
-    reach = 0.5 * (distance + shapes.radius[a] - shapes.radius[b])
+    reach = 0.5 * (distance + round_a - round_b)
     x, y = ax + reach * nx, ay + reach * ny
     return ContactFrame(nx, ny, x, y, x - dx, y - dy)
 
 
-@fused
-def is_known(manifold: Manifold, motion: Motion, shapes: Shapes) -> bool:
+@always_inlined
+def is_known(manifold: Manifold, point: Point, motion: Motion, shapes: Shapes) -> bool:
     """Whether normal and arms of a pair are those of the moment at which it meets.
 
-    Those of discs are, and those of a disc and a box that does not turn; of rounded polygons, swept ones'.
+    Those of discs are, and those of a disc and a box that does not turn; of rounded polygons, swept ones',
+    and of any shapes those of an inner disc.
     """
     a, b, first, vertices = manifold.a, manifold.b, shapes.first, shapes.vertices
     if manifold.wall >= 0:
         return bool(vertices[b] == 1)
+    if point.feature >= FACE and manifold.swept == 1:  # what the sweep of any two shapes has found
+        return True
     if not (has_own_way(shapes, a) and has_own_way(shapes, b)):
-        return bool(manifold.swept == 1)
+        return False
     if first[b] != BOX:
         return bool(first[a] != BOX or motion.angular[a] == 0.0)
     return bool(first[a] != BOX and motion.angular[b] == 0.0)

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Vectors, fused, inlined
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.geometry.shapes import BOX, Shapes, segment_of
 
 
@@ -34,7 +34,7 @@ class Way(NamedTuple):
     uy: float
 
 
-@fused
+@always_inlined
 def lying(i: int, shapes: Shapes, c: float, s: float) -> Outline:
     """Return the outline of row i, turned by the angle of which these are cosine and sine."""
     return Outline(
@@ -43,14 +43,14 @@ def lying(i: int, shapes: Shapes, c: float, s: float) -> Outline:
     )  # fmt: skip
 
 
-@fused
+@always_inlined
 def outline_of(i: int, angle: Numbers, shapes: Shapes) -> Outline:
     """Return the outline of row i."""
     c, s = (math.cos(angle[i]), math.sin(angle[i])) if shapes.vertices[i] > 1 else (1.0, 0.0)
     return lying(i, shapes, c, s)
 
 
-@fused
+@always_inlined
 def kept_outline(i: int, angle: Numbers, shapes: Shapes, rotations: Vectors) -> Outline:
     """Return the same; ``rotations`` (rows, 3) keeps angles, and their cosines and sines."""
     turns = shapes.vertices[i] > 1
@@ -61,13 +61,13 @@ def kept_outline(i: int, angle: Numbers, shapes: Shapes, rotations: Vectors) -> 
     return lying(i, shapes, c, s)
 
 
-@fused
+@always_inlined
 def is_segment(outline: Outline) -> bool:
     """Whether an outline is one of a chain: no other core of two vertices has no radius."""
     return bool(outline.vertices == 2 and outline.radius == 0.0)
 
 
-@fused
+@always_inlined
 def on_segment(outline: Outline, wall: int) -> Outline:
     """Return the segment of a chain that the ``wall`` of a pair names; of other shapes the outline itself."""
     box, c, s, half_x, half_y, radius, vertices, first, thin = outline

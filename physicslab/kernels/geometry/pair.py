@@ -4,16 +4,19 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Vectors, inlined
-from physicslab.kernels.geometry.manifold import LEVEL, box_box, circle_box, circle_circle
+from physicslab.kernels.geometry.cores import FACE, Touch
+from physicslab.kernels.geometry.manifold import LEVEL, Corner, box_box, circle_box, circle_circle
 from physicslab.kernels.geometry.outline import Outline, Way, corner, swing_of, turned
 from physicslab.kernels.geometry.segment import touch_outlines
 from physicslab.kernels.geometry.sweep import (
     MISS,
+    is_swift,
     opening,
     pose_at,
     sweep_box_box,
     sweep_circle_box,
     sweep_circle_circle,
+    sweep_inner,
     sweep_outlines,
     sweep_turning_box,
 )
@@ -31,6 +34,8 @@ WIDE_SHARE = 0.1
 """Share of the smaller body's size that a contact under load may move in a substep and be wide."""
 _TURNING = 0.1
 """Share of a body's way that the corners of a box may turn meanwhile, as the next tile of a floor may."""
+_STILL = 1e-9
+"""Share of its way by which a point closes that was stopped, or rolls."""
 _FAST = 0.25
 """Share of the smaller box's size beyond which a substep's motion of boxes is swept."""
 
@@ -59,6 +64,7 @@ def _put(
     point.arm_ax, point.arm_ay, point.arm_bx, point.arm_by = ax, ay, bx, by
     point.found_separation = separation
     point.separation = separation
+    point.bend = 0.0
     if feature == one.feature:
         point.normal_impulse, point.tangent_impulse = one.normal, one.tangent
     elif feature == two.feature:
@@ -125,7 +131,7 @@ def _slides_over(nx: float, ny: float, dx: float, dy: float, way: Way, a: Outlin
 @inlined
 def touch_with_circle(
     manifold: Manifold, point: Point, way: Way, turn: float, start: float, speculative_margin: float,
-    a: Outline, b: Outline,
+    a: Outline, b: Outline, pool: Vectors,
 ) -> None:  # fmt: skip
     """Find the one point of a pair with a circle: where they meet in this substep, or are now.
 
@@ -173,6 +179,14 @@ def touch_with_circle(
                 opening += turn * (met_bx * ny - met_by * nx)
             separation = gap - (start + t) * opening
             manifold.swept = 1
+        elif t <= 1.0 and is_swift(
+            way, 2.0 * speculative_margin, a, b
+        ):  # they overlapped, and may be through by now
+            if (
+                _touch_inner(manifold, point, point, way, turn, turn, start, 1.0, a, b, pool)
+                or separation > near
+            ):
+                return
         elif separation > near:
             return
         elif t == MISS and fast:
@@ -187,46 +201,72 @@ def touch_with_circle(
 
 
 @inlined
-def touch_boxes(
-    manifold: Manifold, one: Point, two: Point, way: Way, start: float, speculative_margin: float,
-    a: Outline, b: Outline,
-) -> None:  # fmt: skip
-    """Find the points of two boxes: as they are now, or where they meet if they are fast for their size.
+def sweep_any(
+    way: Way, turn_a: float, turn_b: float, start: float, a: Outline, b: Outline, pool: Vectors,
+    outlines: bool,
+) -> tuple[float, Way, Touch]:  # fmt: skip
+    """Return when two shapes meet that may touch at first, as :func:`sweep_inner` does.
 
-    ``speculative_margin`` is how far the forces may bring them together within the substep.
+    Their ``outlines`` meet, or if that is not found, or not looked for, their inner discs do.
     """
-    dx, dy, ux, uy = way
-    size = 2.0 * min(min(a.half_x, a.half_y), min(b.half_x, b.half_y))
-    travel = math.sqrt(ux * ux + uy * uy)
-    x, y, lead_x, lead_y, margin = dx, dy, 0.0, 0.0, CONTACT_MARGIN * size + travel + speculative_margin
-    manifold.swept, manifold.size, manifold.gap = 0, size, -math.inf
-    loaded = manifold.count > 0 and one.normal_impulse + two.normal_impulse > 0.0
-    if travel > _FAST * size and not loaded:
-        margin = CONTACT_MARGIN * size + speculative_margin
-        x, y = dx + start * ux, dy + start * uy
-        t = 0.0
-        if box_box(x, y, 0.0, 0.0, a, b, -math.inf, 0)[0] > 0.0:
-            t = sweep_box_box(Way(x, y, ux, uy), a, b)
-        if t == MISS:
-            manifold.count = 0
-            return
-        lead_x, lead_y = (start + t) * ux, (start + t) * uy
-        x, y = dx + lead_x, dy + lead_y
-        manifold.swept = 1
+    none = Corner(0.0, 0.0, 0.0, 0)
+    if a.vertices == 1 and b.vertices == 1:
+        x, y = way.dx + start * way.ux, way.dy + start * way.uy
+        t = sweep_circle_circle(x, y, way.ux, way.uy, a.radius + b.radius)
+        x, y = x + min(t, 1.0) * way.ux, y + min(t, 1.0) * way.uy
+        nx, ny, gap = circle_circle(x, y, a.radius, b.radius, 0)
+        at = a.radius + 0.5 * gap
+        return t, Way(x, y, way.ux, way.uy), Touch(gap, nx, ny, 1, Corner(at * nx, at * ny, gap, 1), none)
+    size, swing = 2.0 * min(a.thin, b.thin), swing_of(a, turn_a) + swing_of(b, turn_b)
+    travel, turning = math.sqrt(way.ux * way.ux + way.uy * way.uy) + swing, swing > _FAST * size
+    t = sweep_outlines(way, turn_a, turn_b, start, a, b, pool) if outlines else 0.0
+    inner, place, touch = MISS, way, Touch(math.inf, 0.0, 0.0, 0, none, none)
+    if turning or t <= 1.0:
+        inner, place, touch = sweep_inner(way, turn_a, turn_b, start, a, b, pool)
+    if t <= 1.0 and outlines and t < inner:
+        meeting, met_a, met_b = pose_at(way, turn_a, turn_b, a, b, start + t)
+        found = touch_outlines(meeting, met_a, met_b, pool, _ROUNDING * size, 0)
+        one, two = found.one, found.two
+        if found.points == 2:  # what lands flat is not spun up
+            one = Corner(0.5 * (one.x + two.x), 0.5 * (one.y + two.y), one.separation, one.feature)
+        closes = opening(one, meeting, found.nx, found.ny, turn_a, turn_b) < -_STILL * travel
+        if found.points > 0 and closes and abs(found.gap) <= _ROUNDING * size:
+            return t, meeting, Touch(found.gap, found.nx, found.ny, 1, one, none)
+    return inner, place, touch
+
+
+@inlined
+def _touch_inner(
+    manifold: Manifold, one: Point, two: Point, way: Way, turn_a: float, turn_b: float, start: float,
+    latest: float, a: Outline, b: Outline, pool: Vectors,
+) -> bool:  # fmt: skip
+    """Find where the inner disc of the smaller of two shapes meets the other one; return whether it does.
+
+    What is found of their outlines is not put aside for what comes after the ``latest`` share of a substep.
+    """
+    t, meeting, found = sweep_inner(way, turn_a, turn_b, start, a, b, pool)
+    if t > latest:
+        return False
+    manifold.swept = 1
     before_1, before_2 = _impulses_of(one), _impulses_of(two)
-    old = one.feature if loaded else 0  # of others a file keeps none
-    gap, nx, ny, count, first, second = box_box(x, y, ux, uy, a, b, margin, old)
-    if not manifold.swept:
-        manifold.gap = gap
-    manifold.count = count
-    if count > 0:
-        manifold.normal_x, manifold.normal_y = nx, ny
-        lead = lead_x * nx + lead_y * ny
-        for j in range(count):
-            x1, y1, separation, feature = first if j == 0 else second
-            _put(
-                one if j == 0 else two, feature, x1, y1, x1 - x, y1 - y, separation - lead, before_1, before_2
-            )
+    _put_points(manifold, one, two, meeting, turn_a, turn_b, start + t, found, before_1, before_2)
+    return True
+
+
+@inlined
+def _put_points(
+    manifold: Manifold, one: Point, two: Point, place: Way, turn_a: float, turn_b: float, share: float,
+    found: Touch, before_1: Impulses, before_2: Impulses,
+) -> None:  # fmt: skip
+    """Fill a pair with the points that it has in a ``place``, a share of a substep from now."""
+    manifold.normal_x, manifold.normal_y, manifold.count = found.nx, found.ny, found.points
+    for j in range(found.points):
+        point = found.one if j == 0 else found.two
+        opens = share * opening(point, place, found.nx, found.ny, turn_a, turn_b) if share != 0.0 else 0.0
+        _put(
+            one if j == 0 else two, point.feature, point.x, point.y, point.x - place.dx, point.y - place.dy,
+            point.separation - opens, before_1, before_2,
+        )  # fmt: skip
 
 
 @inlined
@@ -239,8 +279,8 @@ def touch_rounded(
     Both turn, by ``turn_a`` and ``turn_b`` [rad] in the substep.
     """
     size = 2.0 * min(a.thin, b.thin)
-    travel = math.sqrt(way.ux * way.ux + way.uy * way.uy)
-    travel += swing_of(a, turn_a) + swing_of(b, turn_b)
+    swing, swift = swing_of(a, turn_a) + swing_of(b, turn_b), is_swift(way, 2.0 * speculative_margin, a, b)
+    travel = math.sqrt(way.ux * way.ux + way.uy * way.uy) + swing
     near = CONTACT_MARGIN * size + speculative_margin
     loaded = manifold.count > 0 and one.normal_impulse + two.normal_impulse > 0.0
     old = one.feature if loaded else 0  # of others a file keeps none
@@ -248,29 +288,83 @@ def touch_rounded(
     found = touch_outlines(way, a, b, pool, near + travel, old)
     manifold.count, manifold.swept, manifold.size, manifold.gap = 0, 0, size, found.gap
     fast = travel > SWEEP_THRESHOLD * size and not loaded
-    if found.gap > near and not (fast and found.gap <= travel + speculative_margin):
+    if found.gap > near and not ((fast or swift) and found.gap <= travel + speculative_margin):
         return
-    place, share = way, 0.0
+    place, share, t = way, 0.0, MISS
     if fast:
         t = sweep_outlines(way, turn_a, turn_b, start, a, b, pool)
         if t <= 1.0:
             meeting, met_a, met_b = pose_at(way, turn_a, turn_b, a, b, start + t)
             met = touch_outlines(meeting, met_a, met_b, pool, near + travel, 0)
-            if met.gap > -_ROUNDING * size:  # else they overlapped before the substep began
+            # Else they overlapped before the substep began, or turn too far in it for the sweep.
+            if abs(met.gap) <= _ROUNDING * size:
                 found, place, share = met, meeting, start + t
                 manifold.swept = 1
-        elif found.gap > near:
+    # The sweep is sure of shapes that hardly turn, and are apart at first.
+    if swift and (swing > _FAST * size or (manifold.swept == 0 and (loaded or t <= 1.0))):
+        latest = t if manifold.swept == 1 else 1.0
+        if _touch_inner(manifold, one, two, way, turn_a, turn_b, start, latest, a, b, pool):
             return
-        else:
-            manifold.swept = 2
-    manifold.normal_x, manifold.normal_y, manifold.count = found.nx, found.ny, found.points
-    for j in range(found.points):
-        point = found.one if j == 0 else found.two
-        opens = share * opening(point, place, found.nx, found.ny, turn_a, turn_b) if share != 0.0 else 0.0
-        _put(
-            one if j == 0 else two, point.feature, point.x, point.y, point.x - place.dx, point.y - place.dy,
-            point.separation - opens, before_1, before_2,
-        )  # fmt: skip
+    if (fast or swift) and t > 1.0:
+        if found.gap > near:
+            return
+        manifold.swept = 2 if fast else 0
+    _put_points(manifold, one, two, place, turn_a, turn_b, share, found, before_1, before_2)
+
+
+@inlined
+def touch_boxes(
+    manifold: Manifold, one: Point, two: Point, way: Way, turn_a: float, turn_b: float, start: float,
+    speculative_margin: float, a: Outline, b: Outline, pool: Vectors,
+) -> None:  # fmt: skip
+    """Find the points of two boxes: as they are now, or where they meet if they are fast for their size.
+
+    ``speculative_margin`` is how far the forces may bring them together within the substep. Boxes whose
+    corners turn far in it are swept as any two shapes are.
+    """
+    dx, dy, ux, uy = way
+    size = 2.0 * min(min(a.half_x, a.half_y), min(b.half_x, b.half_y))
+    travel = math.sqrt(ux * ux + uy * uy)
+    x, y, lead_x, lead_y, margin = dx, dy, 0.0, 0.0, CONTACT_MARGIN * size + travel + speculative_margin
+    manifold.swept, manifold.size, manifold.gap = 0, size, -math.inf
+    loaded = manifold.count > 0 and one.normal_impulse + two.normal_impulse > 0.0
+    if not loaded and swing_of(a, turn_a) + swing_of(b, turn_b) > _FAST * size:
+        touch_rounded(manifold, one, two, way, turn_a, turn_b, start, speculative_margin, a, b, pool)
+        return
+    if (
+        loaded
+        and is_swift(way, 2.0 * speculative_margin, a, b)
+        and _touch_inner(manifold, one, two, way, turn_a, turn_b, start, 1.0, a, b, pool)
+    ):
+        return
+    if travel > _FAST * size and not loaded:
+        margin = CONTACT_MARGIN * size + speculative_margin
+        x, y = dx + start * ux, dy + start * uy
+        t = 0.0
+        if box_box(x, y, 0.0, 0.0, a, b, -math.inf, 0)[0] > 0.0:
+            t = sweep_box_box(Way(x, y, ux, uy), a, b)
+        elif _touch_inner(manifold, one, two, way, turn_a, turn_b, start, 1.0, a, b, pool):
+            return
+        if t == MISS:
+            manifold.count = 0
+            return
+        lead_x, lead_y = (start + t) * ux, (start + t) * uy
+        x, y = dx + lead_x, dy + lead_y
+        manifold.swept = 1
+    before_1, before_2 = _impulses_of(one), _impulses_of(two)
+    old = one.feature if loaded and one.feature < FACE else 0  # of others a file keeps none
+    gap, nx, ny, count, first, second = box_box(x, y, ux, uy, a, b, margin, old)
+    if not manifold.swept:
+        manifold.gap = gap
+    manifold.count = count
+    if count > 0:
+        manifold.normal_x, manifold.normal_y = nx, ny
+        lead = lead_x * nx + lead_y * ny
+        for j in range(count):
+            x1, y1, separation, feature = first if j == 0 else second
+            _put(
+                one if j == 0 else two, feature, x1, y1, x1 - x, y1 - y, separation - lead, before_1, before_2
+            )
 
 
 @inlined

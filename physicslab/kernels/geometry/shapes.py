@@ -22,7 +22,7 @@ What turns without effect, a disc, has ``shapes.reach[i] - shapes.radius[i]`` eq
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, fused, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, inlined_by_numba
 from physicslab.kernels.records import Pairs
 
 BOX = 1
@@ -68,7 +68,7 @@ SizesTuple = tuple[Numbers, Numbers, Numbers, Numbers]
 """The columns of sizes of the ``Shape`` component, in its order."""
 
 
-@fused
+@inlined_by_numba
 def named_shapes(plain: ShapesTuple) -> Shapes:
     """Give names to the arrays."""
     cores, lengths, pool = plain
@@ -108,19 +108,25 @@ def support(shapes: Shapes, i: int, x: float, y: float) -> tuple[int, float]:
     return best, farthest
 
 
-@fused
+@always_inlined
 def is_chain(shapes: Shapes, i: int) -> bool:
     """Whether row i is a chain, one segment of it after the other: no other two vertices have no radius."""
     return bool(shapes.vertices[i] == 2 and shapes.radius[i] == 0.0)
 
 
-@fused
+@always_inlined
 def segment_of(wall: int) -> int:
     """Return the number of the segment of a chain that the ``wall`` of a pair names, from -2 downwards."""
     return -2 - wall
 
 
-@fused
+@always_inlined
+def wall_of(segment: int) -> int:
+    """Return the ``wall`` that names a segment."""
+    return -2 - segment
+
+
+@always_inlined
 def has_own_way(shapes: Shapes, i: int) -> bool:
     """Whether row i is a disc or a box, for which loops have faster ways than for any rounded polygon."""
     return bool(shapes.vertices[i] < 2 or shapes.first[i] == BOX)

@@ -8,8 +8,9 @@ circle.
 import math
 
 from physicslab.kernels import Vectors, inlined
-from physicslab.kernels.geometry.manifold import Corner, circle_box
-from physicslab.kernels.geometry.outline import Outline, Way, swing_of, turned
+from physicslab.kernels.geometry.cores import Touch
+from physicslab.kernels.geometry.manifold import Corner, circle_box, circle_circle
+from physicslab.kernels.geometry.outline import Outline, Way, is_segment, swing_of, turned
 from physicslab.kernels.geometry.segment import touch_outlines
 
 MISS = 2.0
@@ -18,6 +19,11 @@ APPROACHES, REFINEMENTS = 40, 8
 """Largest numbers of steps towards a meeting, none of which can pass it, and of Newton's steps at its end."""
 NEAR = 0.02
 """Share of the farthest motion from which on the gap is nearly linear."""
+INNER_SHARE = 0.5
+"""Radius of the inner disc of a shape, of half its smallest width: within any convex shape, and with room for
+what overlaps a little."""
+INNER = 1000
+"""The feature of the point at which an inner disc meets another shape."""
 
 
 @inlined
@@ -167,3 +173,57 @@ def sweep_outlines(
         if t > 1.0 or t < 0.0:
             return MISS
     return t
+
+
+@inlined
+def _is_smaller(a: Outline, b: Outline) -> bool:
+    """Whether A reaches less far than B; a segment of a chain never does."""
+    reach_a, reach_b = swing_of(a, 1.0) + a.radius, swing_of(b, 1.0) + b.radius
+    return not is_segment(a) and (is_segment(b) or reach_a < reach_b)
+
+
+@inlined
+def _inner_disc(outline: Outline) -> Outline:
+    """Return the disc about the centre of an outline that is within it however it turns."""
+    radius = INNER_SHARE * outline.thin
+    return Outline(False, 1.0, 0.0, 0.0, 0.0, radius, 1, outline.first, radius)
+
+
+@inlined
+def is_swift(way: Way, room: float, a: Outline, b: Outline) -> bool:
+    """Whether two shapes move against each other by more than the inner disc of the smaller one reaches.
+
+    What forces give within the substep, up to ``room`` [m], does not count: a body at rest is not swift.
+    """
+    reach = room + INNER_SHARE * (a.thin if _is_smaller(a, b) else b.thin)
+    return bool(way.ux * way.ux + way.uy * way.uy > reach * reach)
+
+
+@inlined
+def sweep_inner(
+    way: Way, turn_a: float, turn_b: float, start: float, a: Outline, b: Outline, pool: Vectors
+) -> tuple[float, Way, Touch]:
+    """Return when the inner disc of the smaller of two shapes meets the other one, and where they touch then.
+
+    So none passes through another one, however it turns. The time is that of :func:`sweep_outlines`; those
+    that overlap at first meet then, unless they part.
+    """
+    inner_a, inner_b = (_inner_disc(a), b) if _is_smaller(a, b) else (a, _inner_disc(b))
+    discs = inner_a.vertices == 1 and inner_b.vertices == 1
+    if discs:
+        x, y = way.dx + start * way.ux, way.dy + start * way.uy
+        t = sweep_circle_circle(x, y, way.ux, way.uy, inner_a.radius + inner_b.radius)
+    else:
+        t = sweep_outlines(way, turn_a, turn_b, start, inner_a, inner_b, pool)
+    meeting, met_a, met_b = pose_at(way, turn_a, turn_b, inner_a, inner_b, start + min(t, 1.0))
+    if discs:
+        nx, ny, gap = circle_circle(meeting.dx, meeting.dy, inner_a.radius, inner_b.radius, 0)
+        at = inner_a.radius + 0.5 * gap
+        none, one = Corner(0.0, 0.0, 0.0, 0), Corner(at * nx, at * ny, gap, INNER)
+        return t, meeting, Touch(gap, nx, ny, 1, one, none)
+    found = touch_outlines(meeting, met_a, met_b, pool, math.inf, 0)
+    x, y, gap, _ = found.one
+    one = Corner(x, y, max(gap, 0.0), INNER)
+    if found.points == 0 or opening(one, meeting, found.nx, found.ny, turn_a, turn_b) >= 0.0:
+        t = MISS
+    return t, meeting, Touch(found.gap, found.nx, found.ny, 1, one, found.two)

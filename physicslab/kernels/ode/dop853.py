@@ -37,6 +37,8 @@ _NOISE = 1e-11
 """Share of the largest coordinate or speed above which an estimate is not taken for rounding."""
 _STEEP = 100.0
 """How much worse an error of place may be than the error of speed that it makes in a free fall."""
+_SHORT = 0.25
+"""Share of a period below which steps need to be no better than forces are rounded."""
 _MAX_FALL = 0.5
 """Largest share of the time of the fastest free fall, 1 / sqrt(G (m_a + m_b) / d^3), that a step may take:
 the stages of longer ones may step over a close passage, and their error estimate with them."""
@@ -212,7 +214,7 @@ def _book(
 def dop853(
     q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
     calls: Calls, places: Rows, span: float, tolerance: float, period: float, max_evaluations: int,
-    bodies: int, steepness: Numbers,
+    bodies: int, steepness: Numbers, floor: float,
 ) -> int:  # fmt: skip
     """Advance by ``span`` seconds; return the number of force evaluations, or why it failed (negative).
 
@@ -229,6 +231,10 @@ def dop853(
     ``steepness`` (1,) is where forces note the square of the fastest rate of a free fall [1/s^2], if any
     does. It bounds the step, and errors of place count by what they change in the forces; the largest is
     left there.
+
+    ``floor`` [m/s^2] is how far rounding puts off accelerations where large forces cancel. Steps shorter than
+    a part of the period need to be no better than that: what comes to rest at the origin leaves neither
+    coordinate nor speed to measure errors by.
 
     Where no force depends on the origin, ``bodies`` is how many pairs of coordinates the first ones are, and
     else 0: in a close passage the origin is moved there, so that the distance has all its digits.
@@ -302,7 +308,11 @@ def dop853(
         fall = math.sqrt(fall2)
         counts = min(q_reach, _STEEP * v_reach / fall) if fall > 0.0 else q_reach
         # Where all is at rest, the measure is the distance that an error of the speed makes within the step.
-        error = step_error(rates, pushes, taken, counts, max(v_reach, _LEADS * counts / taken), tolerance)
+        speed = max(v_reach, _LEADS * counts / taken)
+        if taken < _SHORT * period:
+            speed = max(speed, floor * taken / tolerance)
+            counts = max(counts, floor * taken * taken / tolerance)
+        error = step_error(rates, pushes, taken, counts, speed, tolerance)
         if not (math.isfinite(error) and _all_finite(stage_q, stage_v, n)):
             h, grow = _MIN_GROWTH * taken, 1.0
             last_error = math.inf

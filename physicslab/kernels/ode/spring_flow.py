@@ -7,7 +7,7 @@ on a body is always added up in the same order.
 
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, SPRINGS, book
 from physicslab.kernels.arguments import Motion, Springs
 from physicslab.kernels.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
@@ -86,7 +86,7 @@ def _scatter(places: Places, motion: Motion, span: float) -> None:
         motion.angle[row] += span * motion.angular[row]
 
 
-@fused
+@always_inlined
 def _turn_fast(places: Places, links: Links, at: int, h: float) -> int:
     """Return which of eight springs turn too far, or change too much, in ``h`` seconds, as bits."""
     xa, ya = take_vectors(places.place, links.a, at)
@@ -98,7 +98,7 @@ def _turn_fast(places: Places, links: Links, at: int, h: float) -> int:
     return mask_bits(far & (take(links.rest, at) > 0.0))
 
 
-@fused
+@always_inlined
 def _pull(places: Places, links: Links, at: int) -> int:
     """Add the pull of eight springs to both ends; return which are too short, as bits."""
     xa, ya = take_vectors(places.place, links.a, at)

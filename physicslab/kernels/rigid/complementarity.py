@@ -11,7 +11,7 @@ violated change over, one at a time. Where that does not end, Lemke's pivots do.
 determined, as under a table with four legs, they are those of the least norm.
 """
 
-from physicslab.kernels import fused, inlined
+from physicslab.kernels import always_inlined, inlined
 from physicslab.kernels.rigid.equations import (
     CAUSED,
     CHANGE,
@@ -80,7 +80,7 @@ def _closed_status(equations: Equations, i: int, opening: float, along: float) -
     return given
 
 
-@fused
+@always_inlined
 def _change_most_violated(equations: Equations, count: int, w_scale: float, z_scale: float) -> bool:
     """Let the point whose law is violated most do what it must instead; return whether there is any."""
     worst, change, amount = -1, OPEN, _VIOLATION
@@ -108,7 +108,7 @@ def _change_most_violated(equations: Equations, count: int, w_scale: float, z_sc
     return worst >= 0
 
 
-@fused
+@always_inlined
 def _settle_by_changes(
     equations: Equations, count: int, changes: int, w_scale: float, z_scale: float
 ) -> bool:
@@ -154,7 +154,7 @@ def _largest_violation(equations: Equations, count: int, w_scale: float, z_scale
     return worst
 
 
-@fused
+@always_inlined
 def settle_at_an_edge(equations: Equations, count: int, scale: float) -> bool:
     """Find forces that solve the equations of what the points do, after others were FITTING; return if any.
 

@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import Numbers, fused, inlined
+from physicslab.kernels import Numbers, always_inlined, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
@@ -71,7 +71,7 @@ def _coupling(scene: Scene, equations: Equations, i: int, j: int) -> tuple[float
     return nn, nt, tn, tt
 
 
-@fused
+@always_inlined
 def _own_response(scene: Scene, equations: Equations, i: int, nn: float, tt: float) -> tuple[float, float]:
     """Return what unit forces cause at the row of a joint, and what stands for that where it has none."""
     if equations.points[i, FEATURE] == MOTOR:
@@ -190,7 +190,7 @@ def constrained_acceleration(
             book_answer(scene, equations.points, equations.measures, forces, count, q, v, acceleration)
 
 
-@fused
+@always_inlined
 def project(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
     """Move bodies by the least that closes the gaps of closed points, and remove their speeds across.
 

@@ -8,7 +8,7 @@ trial on the piece itself takes twelve sets of contact forces.
 
 import math
 
-from physicslab.kernels import Numbers, fused, inlined
+from physicslab.kernels import Numbers, always_inlined, inlined
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
@@ -73,7 +73,7 @@ def place_bodies(
             _place(stages, q, v, h, t / h, 2 * row + k if k < 2 else 2 * rows + row)
 
 
-@fused
+@always_inlined
 def curve_is_exact(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
     stages: Stages,

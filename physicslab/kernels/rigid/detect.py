@@ -3,8 +3,9 @@
 import math
 
 from physicslab.kernels import Numbers, inlined
-from physicslab.kernels.geometry.shapes import Shapes, face, vertex
+from physicslab.kernels.geometry.shapes import Shapes, face, is_chain, vertex
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
+from physicslab.kernels.rigid.chain_points import find_chain_points
 from physicslab.kernels.rigid.features import (
     CORNER,
     FEATURE,
@@ -269,6 +270,8 @@ def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points) ->
         return _write(points, 0, p, a, WALL + wall, b, 0), math.inf
     if wall >= 0:
         return _to_wall(points, p, q, scene, b, wall), math.inf
+    if is_chain(shapes, a) or is_chain(shapes, b):
+        return find_chain_points(scene, p, q, v, points, tie)
     if shapes.vertices[a] == 1:
         a, b = (a, b) if shapes.vertices[b] == 1 else (b, a)
     if shapes.vertices[a] == 1:

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from physicslab.kernels import Vectors, fused, inlined
+from physicslab.kernels import Vectors, inlined, inlined_by_numba
 from physicslab.kernels.rigid.features import Points
 
 __all__ = [
@@ -37,7 +37,7 @@ class Equations(NamedTuple):
 EquationsTuple = tuple[Points, Vectors, Vectors, Vectors, Vectors, Points, Vectors]
 
 
-@fused
+@inlined_by_numba
 def named_equations(plain: EquationsTuple) -> Equations:
     """Give names to a tuple."""
     return Equations(plain[0], plain[1], plain[2], plain[3], plain[4], plain[5], plain[6])

@@ -15,10 +15,19 @@ import numpy as np
 from numba import int64
 from numpy.typing import NDArray
 
-from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, inlined, inlined_by_numba
 from physicslab.kernels.constraint.pair import ContactFrame, PairVelocity, along_and_across, point_velocity
 from physicslab.kernels.forces.force_calls import Calls
-from physicslab.kernels.geometry.shapes import MOST_VERTICES, Shapes, ShapesTuple, face, named_shapes, vertex
+from physicslab.kernels.geometry.links import beside_arc, link_of
+from physicslab.kernels.geometry.shapes import (
+    MOST_VERTICES,
+    Shapes,
+    ShapesTuple,
+    face,
+    is_chain,
+    named_shapes,
+    vertex,
+)
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
 from physicslab.kernels.records import Pairs
 
@@ -34,6 +43,7 @@ __all__ = [
     "GIVEN",
     "JOINED",
     "JOINT",
+    "LINK",
     "MARGIN",
     "MEASURES", "MOTOR",
     "MOTORS",
@@ -69,6 +79,8 @@ PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)
 CORNER, WALL, JOINT, MOTOR = MOST_VERTICES, 2 * MOST_VERTICES, 2 * MOST_VERTICES + 4, 2 * MOST_VERTICES + 5
 """Where features of vertices and walls begin; those before are faces, from the vertex of that number on. Then
 what limits of joints are, and motors."""
+LINK = -1
+"""The feature of the first link of a chain; that of the next is less by 1. As a VERTEX it is its number."""
 FIRST_ROW = JOINT - WALL
 """From which number on the third column of a pair says that it is a row of a joint, and no wall."""
 NORMAL, TANGENT, NX, NY = 0, 6, 3, 4
@@ -112,7 +124,7 @@ class Scene(NamedTuple):
 SceneTuple = tuple[int, Numbers, Numbers, Calls, ShapesTuple, Numbers, Pairs, Vectors, Rows, Numbers, Rows]
 
 
-@fused
+@inlined_by_numba
 def named_scene(plain: SceneTuple) -> Scene:
     """Give names to a tuple."""
     return Scene(
@@ -147,6 +159,27 @@ def rate_along(rows: int, points: Points, measures: Vectors, i: int, gradient: i
 
 
 @inlined
+def _round_link(shapes: Shapes, chain: int, k: int) -> tuple[float, float, float]:
+    """Return the centre of an arc of a chain, or a corner, and its radius [m]."""
+    link = link_of(shapes, chain, k)
+    return link.x, link.y, link.size
+
+
+@inlined
+def _flat_link(shapes: Shapes, chain: int, k: int) -> tuple[float, float, float, float, float, float]:
+    """Return normal, distance from the origin, length and beginning of a face of a chain [m]."""
+    link = link_of(shapes, chain, k)
+    return link.nx, link.ny, link.nx * link.x + link.ny * link.y, link.size, link.x, link.y
+
+
+@inlined
+def _within_arc(shapes: Shapes, chain: int, k: int, nx: float, ny: float, scale: float) -> float:
+    """Return how far a normal, in a chain's own directions, is within the nearer end of an arc."""
+    ahead, behind = beside_arc(link_of(shapes, chain, k), nx, ny)
+    return scale * min(ahead, behind)
+
+
+@inlined
 def measure_contact(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
     """Measure point number i, which is of a contact: where it is, how it moves, and how that changes.
 
@@ -155,7 +188,11 @@ def measure_contact(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers
     """
     rows, shapes = scene.rows, scene.shapes
     one, other, feature = points[i, ONE], points[i, OTHER], points[i, FEATURE]
-    (vx, vy), radius = vertex(shapes, other, points[i, VERTEX]), shapes.radius[other]
+    chained = is_chain(shapes, other)
+    if chained:
+        vx, vy, radius = _round_link(shapes, other, points[i, VERTEX])
+    else:
+        (vx, vy), radius = vertex(shapes, other, points[i, VERTEX]), shapes.radius[other]
     spin, (c, s) = v[2 * rows + other], turned_by(scene, other, q)
     rho_x, rho_y = c * vx - s * vy, s * vx + c * vy
     cx, cy = q[2 * other] + rho_x, q[2 * other + 1] + rho_y
@@ -174,15 +211,25 @@ def measure_contact(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers
         one_x, one_y, one_vx, one_vy = q[2 * one], q[2 * one + 1], v[2 * one], v[2 * one + 1]
         one_spin = v[2 * rows + one]
         co, so = turned_by(scene, one, q)
-        own = shapes.radius[one]
-        if feature < CORNER:
-            fx, fy, distance, length = face(shapes, one, feature)
-            ux, uy = vertex(shapes, one, feature)
+        own, bend = shapes.radius[one], 0.0 if feature < CORNER else 1.0
+        if feature < 0:
+            bend = link_of(shapes, one, LINK - feature).bend
+        if bend == 0.0:
+            if feature < 0:
+                fx, fy, distance, length, ux, uy = _flat_link(shapes, one, LINK - feature)
+            else:
+                fx, fy, distance, length = face(shapes, one, feature)
+                ux, uy = vertex(shapes, one, feature)
             nx, ny = co * fx - so * fy, so * fx + co * fy
             dx, dy = cx - one_x, cy - one_y
             out[i, GAP] = nx * dx + ny * dy - distance - radius - own
             passed, start = nx * dy - ny * dx, fx * uy - fy * ux
             out[i, MARGIN] = min(passed - start, start + length - passed)
+            if chained:
+                within = _within_arc(
+                    shapes, other, points[i, VERTEX], -c * nx - s * ny, s * nx - c * ny, shapes.reach[one]
+                )
+                out[i, MARGIN] = min(out[i, MARGIN], within)
             turning = one_spin
             along = nx * (cvy - one_vy) - ny * (cvx - one_vx)
             out[i, BIAS_N] = (
@@ -191,23 +238,32 @@ def measure_contact(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers
                 - spin * spin * (nx * rho_x + ny * rho_y)
             )
         else:
-            ux, uy = vertex(shapes, one, feature - CORNER)
+            if feature < 0:
+                ux, uy, own = _round_link(shapes, one, LINK - feature)
+            else:
+                ux, uy = vertex(shapes, one, feature - CORNER)
             arm_x, arm_y = co * ux - so * uy, so * ux + co * uy
             dx, dy = cx - one_x - arm_x, cy - one_y - arm_y
             distance = math.sqrt(dx * dx + dy * dy)
-            nx, ny = dx / distance, dy / distance
-            out[i, GAP] = distance - own - radius
+            nx, ny = bend * dx / distance, bend * dy / distance
+            out[i, GAP] = bend * (distance - own) - radius
             out[i, MARGIN] = math.inf
-            if shapes.vertices[one] > 1:
+            if feature < 0:
+                ahead_x, ahead_y = co * nx + so * ny, co * ny - so * nx
+                out[i, MARGIN] = _within_arc(shapes, one, LINK - feature, ahead_x, ahead_y, distance)
+            elif shapes.vertices[one] > 1:
                 near, far = beside_vertex(shapes, one, feature - CORNER, co * dx + so * dy, co * dy - so * dx)
                 out[i, MARGIN] = min(near, far)
             if shapes.vertices[other] > 1:
-                near, far = beside_vertex(shapes, other, points[i, VERTEX], -c * dx - s * dy, s * dx - c * dy)
+                back_x, back_y = -bend * dx, -bend * dy
+                near, far = beside_vertex(
+                    shapes, other, points[i, VERTEX], c * back_x + s * back_y, c * back_y - s * back_x
+                )
                 out[i, MARGIN] = min(out[i, MARGIN], min(near, far))
             dvx = cvx - one_vx + one_spin * arm_y
             dvy = cvy - one_vy - one_spin * arm_x
             across = nx * dvy - ny * dvx
-            turning = across / distance
+            turning = bend * across / distance
             out[i, BIAS_N] = (
                 across * turning
                 - spin * spin * (nx * rho_x + ny * rho_y)

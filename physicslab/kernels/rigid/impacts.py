@@ -10,7 +10,7 @@ and, where Newton's law would make energy, by the same search for a lower restit
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION, HAND, IMPACTS, JOINTS
 from physicslab.kernels.constraint.impact_law import (
     ENERGETIC,
@@ -23,6 +23,8 @@ from physicslab.kernels.constraint.impact_law import (
     solve_impact,
 )
 from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity
+from physicslab.kernels.geometry.links import segment_at
+from physicslab.kernels.geometry.shapes import is_chain, wall_of
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid.bookings import book_row
@@ -34,6 +36,7 @@ from physicslab.kernels.rigid.features import (
     FIRST_ROW,
     GAP,
     GIVEN,
+    LINK,
     MEASURES,
     MOTOR,
     MU,
@@ -46,6 +49,7 @@ from physicslab.kernels.rigid.features import (
     PX,
     PY,
     RESTITUTION,
+    VERTEX,
     VN,
     VT,
     Scene,
@@ -120,7 +124,7 @@ def _gather(
     return n, approaching
 
 
-@fused
+@always_inlined
 def _solve(impact: Equations, n: int, share: float, rest: float, rate: float) -> bool:
     """Find the impulses at ``share`` of the restitutions; return whether there are any."""
     for i in range(n):
@@ -154,7 +158,7 @@ def _energy_gained(impact: Equations, n: int) -> float:
     return (work + _ROUNDING * cancelled) / scale if scale > 0.0 else 0.0
 
 
-@fused
+@always_inlined
 def _find_impulses(impact: Equations, n: int, rest: float, rate: float) -> tuple[bool, int]:
     """Find the impulses of points that meet at once; return whether there are any, and their law."""
     a, measures, vectors = impact.a, impact.measures, impact.vectors
@@ -195,6 +199,17 @@ def _frame(scene: Scene, impact: Equations, i: int, q: Numbers) -> ContactFrame[
         sign * impact.measures[i, NX], sign * impact.measures[i, NY],
         x - q[2 * a], y - q[2 * a + 1], x - q[2 * b], y - q[2 * b + 1],
     )  # fmt: skip
+
+
+@inlined
+def _name_of_wall(scene: Scene, impact: Equations, i: int, wall: int) -> int:
+    """Return the ``wall`` of a pair; of one with a chain it names the segment where point i is."""
+    one, other = impact.points[i, ONE], impact.points[i, OTHER]
+    if impact.points[i, FEATURE] < 0:
+        return wall_of(segment_at(scene.shapes, one, LINK - impact.points[i, FEATURE]))
+    if wall < 0 and is_chain(scene.shapes, other):
+        return wall_of(segment_at(scene.shapes, other, impact.points[i, VERTEX]))
+    return wall
 
 
 @inlined
@@ -282,6 +297,7 @@ def _note_round(
             book_row(scene, impact, i, q, old, v, late, acceleration, account[JOINTS], account[HAND])
             i = end
             continue
+        wall = _name_of_wall(scene, impact, i, wall)
         ra, rb, inverse = 2 * scene.rows + a, 2 * scene.rows + b, scene.inverse_mass
         mass = PairInverseMass(inverse[2 * a], inverse[ra], inverse[2 * b], inverse[rb])
         pose = Pose(q[2 * a], q[2 * a + 1], q[ra], q[2 * b], q[2 * b + 1], q[rb])
@@ -310,7 +326,7 @@ def _note_round(
     return written
 
 
-@fused
+@always_inlined
 def resolve_simultaneous_impacts(
     scene: Scene, equations: Equations, count: int, impact: Equations, q: Numbers, v: Numbers, old: Numbers,
     acceleration: Numbers, rest: float, rate: float, entities: Rows, log: Impacts, logged: int, time: float,

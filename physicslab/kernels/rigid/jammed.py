@@ -6,7 +6,7 @@ those of a short step in the limit of no time (a tangential impact, or an impact
 Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653). In that limit no body moves, so nothing overlaps.
 """
 
-from physicslab.kernels import Numbers, fused
+from physicslab.kernels import Numbers, always_inlined
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.rigid.bookings import book_contacts
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED, solve_complementarity
@@ -23,7 +23,7 @@ _NO_TIME = 0.01
 """Largest speed that forces give in the moment of the impulses, as a share of that treated as zero."""
 
 
-@fused
+@always_inlined
 def stop_sliding(
     scene: Scene, equations: Equations, count: int, changed: Points, q: Numbers, v: Numbers, rest: float
 ) -> bool:

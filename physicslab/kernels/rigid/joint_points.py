@@ -12,7 +12,7 @@ Angles are multiplied by a lever of their joint, so that all rows measure metres
 
 import math
 
-from physicslab.kernels import Numbers, Vectors, fused, inlined
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.joints.terms import ALONG_A, ANGLE, MeasuredTerm, TermEnd, measure_term
 from physicslab.kernels.rigid.features import (
     BIAS_N,
@@ -75,7 +75,7 @@ def _measure_term(
     return own[p, term + SCALE], one
 
 
-@fused
+@always_inlined
 def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
     """Measure point number i in a state."""
     if points[i, FEATURE] >= JOINT:
@@ -116,7 +116,7 @@ def _measure_row(
         out[i, GAP], out[i, VN], out[i, BIAS_N] = own[p, LEVER] * value, speed, rate
 
 
-@fused
+@always_inlined
 def motor_rate(scene: Scene, points: Points, measures: Vectors, i: int) -> float:
     """Return how fast a motor that is measured moves against its force [m/s]."""
     own, p = scene.coefficients, points[i, PAIR]

@@ -7,7 +7,7 @@ M^T (M M^T)^-1 r, refined; where that does not suffice M^T = Q R P (Golub & Van 
 
 import math
 
-from physicslab.kernels import fused, inlined
+from physicslab.kernels import always_inlined, inlined
 from physicslab.kernels.rigid.equations import (
     CAUSED,
     CHANGE,
@@ -35,7 +35,7 @@ REFINEMENTS = 40
 """Largest number of refinements of a solution."""
 
 
-@fused
+@always_inlined
 def _take_equations(equations: Equations, count: int, friction: float) -> int:
     """Write the matrix of the unknowns that are not given, M; return how many they are.
 
@@ -61,7 +61,7 @@ def _take_equations(equations: Equations, count: int, friction: float) -> int:
     return n
 
 
-@fused
+@always_inlined
 def _factorise(equations: Equations, n: int) -> None:
     """Write the Cholesky factor of M M^T, slightly damped, into the tableau."""
     matrix, factor, largest = equations.matrix, equations.tableau, 0.0
@@ -84,7 +84,7 @@ def _factorise(equations: Equations, n: int) -> None:
                 factor[i, j] = value / factor[j, j]
 
 
-@fused
+@always_inlined
 def _substitute(equations: Equations, n: int) -> None:
     """Replace the right side r by M^T (M M^T)^-1 r."""
     factor, vectors = equations.tableau, equations.vectors

@@ -9,7 +9,7 @@ Problem, 1992, 4.4).
 
 import math
 
-from physicslab.kernels import fused, inlined
+from physicslab.kernels import always_inlined, inlined
 from physicslab.kernels.rigid.equations import FREE, STICKS, UNKNOWN, Equations, edge_of
 from physicslab.kernels.rigid.features import GIVEN, MU
 
@@ -51,7 +51,7 @@ def _coefficient(equations: Equations, row: int, j: int) -> tuple[float, float, 
     return normal, tangent, -tangent
 
 
-@fused
+@always_inlined
 def _write_tableau(equations: Equations, count: int) -> int:
     """Write w - M x - d x0 = q, rows of unknowns beside each other; return how many unknowns there are."""
     size, tableau = 0, equations.tableau
@@ -106,7 +106,7 @@ def _pivot(equations: Equations, size: int, row: int, column: int) -> None:
     equations.order[0, row] = column
 
 
-@fused
+@always_inlined
 def _leaving(equations: Equations, size: int, column: int, slack: float) -> int:
     """Return the row whose variable reaches zero first as a column grows, -1 if none does.
 
@@ -130,7 +130,7 @@ def _leaving(equations: Equations, size: int, column: int, slack: float) -> int:
     return best
 
 
-@fused
+@always_inlined
 def find_by_pivots(equations: Equations, count: int, slack: float) -> bool:
     """Find forces that keep all laws but for a share ``slack`` of the largest right side.
 

@@ -9,7 +9,7 @@ steps.
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, fused, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.ode.dop853_tableau import LAST
@@ -220,7 +220,7 @@ def _any_approaches(
     return approaching
 
 
-@fused
+@always_inlined
 def _make_smooth(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
     tolerance: float, stages: Stages, allowed: Numbers,

@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import Numbers, Vectors, fused, inlined
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.rigid.constraints import constrained_acceleration, rates_without_forces
 from physicslab.kernels.rigid.curve import curve_is_exact, fit_curve, place_bodies, place_on_curve
 from physicslab.kernels.rigid.detect import TIE
@@ -87,7 +87,7 @@ def _time_to_fall(height: float, speed: float, acceleration: float) -> float:
     return (speed + math.sqrt(root)) / -acceleration
 
 
-@fused
+@always_inlined
 def note_start(
     scene: Scene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
     acceleration: Numbers, start: Vectors,
@@ -178,7 +178,7 @@ def _first_event(
     return first_kind, first
 
 
-@fused
+@always_inlined
 def _cross(
     on_curve: bool, kind: int, index: int, scene: Scene, equations: Equations, count: int, scratch: Equations,
     stages: Stages, q: Numbers, v: Numbers, h: float, t: float, end: float, slope: float, f_low: float,
@@ -241,7 +241,7 @@ def _cross(
     return t, slope, False, _TRIALS
 
 
-@fused
+@always_inlined
 def cut_at_first_event(
     scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
     q: Numbers, v: Numbers, h: float, tolerance: float, rest: float, short: bool,

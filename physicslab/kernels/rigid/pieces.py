@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Vectors, fused, inlined
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined, inlined_by_numba
 from physicslab.kernels.ode.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, WEIGHTS
 from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
@@ -53,13 +53,13 @@ class Stages(NamedTuple):
 StagesTuple = tuple[Vectors, Vectors, Numbers, Numbers, Numbers]
 
 
-@fused
+@inlined_by_numba
 def named_stages(plain: StagesTuple) -> Stages:
     """Give names to a tuple."""
     return Stages(plain[0], plain[1], plain[2], plain[3], plain[4])
 
 
-@fused
+@always_inlined
 def begin_piece(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, stages: Stages
 ) -> None:
@@ -109,7 +109,7 @@ def _error(
     return h * fifth / math.sqrt((fifth + 0.01 * third) * 2 * free) / tolerance
 
 
-@fused
+@always_inlined
 def make_stages(
     scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, short: bool,
     stages: Stages,

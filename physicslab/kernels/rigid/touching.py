@@ -2,10 +2,12 @@
 
 import math
 
-from physicslab.kernels import Numbers, fused, inlined
+from physicslab.kernels import Numbers, always_inlined, inlined
 from physicslab.kernels.forces.force_calls import accelerate
+from physicslab.kernels.geometry.shapes import is_chain
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.rigid.bookings import book_speeds
+from physicslab.kernels.rigid.chain_points import distance_to_chain, is_closed_on_chain
 from physicslab.kernels.rigid.complementarity import (
     FITTING,
     SETTLED,
@@ -100,6 +102,10 @@ def far_apart(scene: Scene, p: int, q: Numbers, enough: float) -> float:
         place = q[2 * b] if wall == 0 or wall == 2 else q[2 * b + 1]
         to_wall: float = (place - scene.walls[wall] if wall < 2 else scene.walls[wall] - place) - reach
         return to_wall
+    if is_chain(shapes, a):
+        return distance_to_chain(scene, a, b, q, enough)
+    if is_chain(shapes, b):
+        return distance_to_chain(scene, b, a, q, enough)
     dx, dy = q[2 * b] - q[2 * a], q[2 * b + 1] - q[2 * a + 1]
     apart: float = math.sqrt(dx * dx + dy * dy) - reach - shapes.reach[a]
     for side in range(2):
@@ -178,10 +184,15 @@ def find_open(
     apart = far_apart(scene, p, q, gap)
     if apart > gap:
         return 0, gap, apart
-    n = 0
+    n, shapes, wall = 0, scene.shapes, scene.pairs[p, 2]
+    chained = wall < 0 and (is_chain(shapes, scene.pairs[p, 0]) or is_chain(shapes, scene.pairs[p, 1]))
     found, apart = find_points(scene, p, q, v, scratch.points)
     for k in range(found):
-        if _is_closed(scene.shapes.radius, equations.points, count, scratch.points, k):
+        if chained:
+            closed = is_closed_on_chain(shapes, equations.points, count, scratch.points, k)
+        else:
+            closed = _is_closed(shapes.radius, equations.points, count, scratch.points, k)
+        if closed:
             apart = -math.inf
         else:
             for column in range(GIVEN):
@@ -310,7 +321,7 @@ def _changed_status(equations: Equations, i: int, changed: Points) -> int:
     return status
 
 
-@fused
+@always_inlined
 def _stop_across(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
     """Remove speeds below the tolerance: equations of points that rest would contradict each other."""
     for i in range(count):
@@ -323,7 +334,7 @@ def _stop_across(scene: Scene, equations: Equations, count: int, q: Numbers, v: 
     measure_all(scene, equations, count, q, v)
 
 
-@fused
+@always_inlined
 def take_closed(
     scene: Scene, equations: Equations, count: int, changed: Points, q: Numbers, v: Numbers, rest: float
 ) -> int:
@@ -357,7 +368,7 @@ def _note_given(equations: Equations, count: int, changed: Points, rest: float) 
         equations.points[i, GIVEN] = given
 
 
-@fused
+@always_inlined
 def hold_closed(
     scene: Scene, equations: Equations, count: int, changed: Points,
     q: Numbers, v: Numbers, acceleration: Numbers, rest: float, least: float,
@@ -389,7 +400,7 @@ def hold_closed(
     return count, solved
 
 
-@fused
+@always_inlined
 def hold_evenly(
     scene: Scene, equations: Equations, count: int, changed: Points, acceleration: Numbers, rest: float,
     least: float, inverse_mass: Numbers, pulled: Numbers,

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import always_inlined, fused, inlined
+from physicslab.kernels import Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import IMPACTS
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion
 from physicslab.kernels.constraint.impact_law import (
@@ -27,8 +27,10 @@ from physicslab.kernels.constraint.pair import (
     put_velocity,
     velocity_of,
 )
+from physicslab.kernels.geometry.cores import FACE
 from physicslab.kernels.geometry.impact_pose import is_known, meeting_at
 from physicslab.kernels.geometry.shapes import Shapes
+from physicslab.kernels.geometry.sweep import INNER_SHARE
 from physicslab.kernels.records import Manifold, Point
 from physicslab.kernels.solver.impact_log import (
     ImpactPoints,
@@ -105,7 +107,7 @@ def _meeting_time(separation: float, v: float, pull: float, window: Window, load
 @inlined
 def _frame(manifold: Manifold, point: Point, motion: Motion, shapes: Shapes, t: float) -> ContactFrame[float]:
     """Return the normal and the arms of a point at the time t from now."""
-    if is_known(manifold, motion, shapes):
+    if is_known(manifold, point, motion, shapes):
         return frame_of(manifold, point)
     return meeting_at(manifold, point, motion, shapes, t)
 
@@ -210,9 +212,43 @@ def _note(
 
 
 @inlined
+def _is_swift(row: int, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, h: float) -> bool:
+    """Whether a body moves by more than its inner disc reaches in a substep, and not by its forces alone."""
+    x, y, reach = h * motion.linear[row, 0], h * motion.linear[row, 1], INNER_SHARE * shapes.thin[row]
+    if acting.any:
+        fx, fy = acting.force[row, 0], acting.force[row, 1]
+        reach += h * h * inverse.mass[row] * math.sqrt(fx * fx + fy * fy)
+    return bool(x * x + y * y > reach * reach)
+
+
+@inlined
+def resolve_at(
+    manifold: Manifold, point: Point, frame: ContactFrame[float], t: float, motion: Motion, inverse: Inverse,
+    acting: Acting, forced: bool, log: Log, number: int,
+) -> int:  # fmt: skip
+    """Bounce a pair at the time ``t`` from now, where a ``frame`` says; return how many impacts that was."""
+    a, b, since = manifold.a, manifold.b, t if forced else 0.0
+    mass, old = inverse_mass_of(inverse, a, b), velocity_of(motion.linear, motion.angular, a, b)
+    before = _gained(old, a, b, mass, acting, since)
+    at = point_state(frame, before)
+    if at.v >= 0.0:
+        return 0
+    normal, tangent, law = solve_impact(point_response(at, mass), manifold.restitution, manifold.friction)
+    _note_point(point, at.v, normal, tangent)
+    new = after_impulse_at(old, mass, frame, normal, tangent)
+    points = ImpactPoints(frame, frame, ImpactImpulses(normal, tangent, 0.0, 0.0))
+    after = _gained(new, a, b, mass, acting, since)
+    _note(manifold, points, -at.v, old, before, after, motion, mass, t, law, log, number)
+    put_velocity(motion.linear, motion.angular, a, b, new)
+    _shift(a, b, old, new, motion, t)
+    manifold.impact_count += 1
+    return 1
+
+
+@inlined
 def _resolve_pair(
     manifold: Manifold, one: Point, two: Point, motion: Motion, shapes: Shapes, inverse: Inverse,
-    acting: Acting, t1: float, t2: float, forced: bool, log: Log, number: int,
+    acting: Acting, t1: float, t2: float, h: float, forced: bool, moments: Vectors, log: Log, number: int,
 ) -> tuple[bool, int]:  # fmt: skip
     """Bounce a pair of which one point meets, or both do, at ``t1`` and ``t2`` from now.
 
@@ -234,13 +270,16 @@ def _resolve_pair(
         _note(manifold, points, approach, old, before, after, motion, mass, t, law, log, number)
         put_velocity(motion.linear, motion.angular, a, b, new)
         _shift(a, b, old, new, motion, t)
+        for row in (a, b):
+            if inverse.mass[row] > 0.0 and _is_swift(row, motion, shapes, inverse, acting, h):
+                moments[row, 0] = max(moments[row, 0], t)
     if manifold.swept == 1 and manifold.restitution > 0.0:
         # Its normal is not that of now: the solver must not push along it.
         one.ahead = two.ahead = 1
     return met, law
 
 
-@fused
+@always_inlined
 def _forced(
     manifold: Manifold, load: float, motion: Motion, inverse: Inverse, acting: Acting, h: float
 ) -> tuple[float, float]:
@@ -264,10 +303,10 @@ def _forced(
     return pull, 1e-9 * speed + 2.0 * pressed
 
 
-@fused
+@always_inlined
 def _resolve_once(
     contacts: Contacts, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
-    logged: int, h: float, window: Window, again: bool,
+    logged: int, h: float, window: Window, moments: Vectors, again: bool,
 ) -> tuple[int, int, int, int, bool]:  # fmt: skip
     """Resolve the pairs one after the other; inelastic ones are resolved once, and not ``again``.
 
@@ -285,6 +324,10 @@ def _resolve_once(
         # Most pairs rest: these are handled here without a call.
         a, b = manifold.a, manifold.b
         one, two = contacts.points[2 * p], contacts.points[2 * p + 1]
+        found_by_sweep = manifold.swept == 1 and one.feature >= FACE
+        if again and found_by_sweep and max(moments[a, 0], moments[b, 0]) > -math.inf:  # it is swept again
+            one.ahead = two.ahead = 1
+            continue
         one.ahead = two.ahead = 0
         v = velocity_of(motion.linear, motion.angular, a, b)
         v1, v2 = point_state(frame_of(manifold, one), v).v, 0.0
@@ -299,7 +342,7 @@ def _resolve_once(
         if manifold.count == 2:
             load = max(load, two.normal_impulse / two.normal_mass)
         pull, resting_speed = _forced(manifold, load, motion, inverse, acting, h)
-        if v1 >= -resting_speed and v2 >= -resting_speed:
+        if v1 >= -resting_speed - 2.0 * one.bend and v2 >= -resting_speed - 2.0 * two.bend:
             left += 1
             continue
         if window.start >= 0.0:  # in symplectic Euler the forces have acted already
@@ -310,8 +353,8 @@ def _resolve_once(
         t1, t2 = _meeting_times(manifold, one, two, motion, Approach(v1, v2, pull, resting_speed), window)
         if abs(t1) < math.inf or abs(t2) < math.inf:
             met, law = _resolve_pair(
-                manifold, one, two, motion, shapes, inverse, acting, t1, t2, window.start < 0.0, log,
-                logged + bounced,
+                manifold, one, two, motion, shapes, inverse, acting, t1, t2, h, window.start < 0.0, moments,
+                log, logged + bounced,
             )  # fmt: skip
             bounced += 1 if met else 0
             manifold.impact_count += 1 if met else 0
@@ -324,11 +367,11 @@ def _resolve_once(
 @always_inlined
 def resolve_impacts(
     contacts: Contacts, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
-    logged: int, h: float, start: float, end: float,
+    logged: int, h: float, window: Window, moments: Vectors,
 ) -> tuple[int, int, int, int]:  # fmt: skip
     """Bounce the pairs that meet in this substep, each at its own time.
 
-    The substep spans the times ``start`` to ``end`` from now. An impact at the time t takes normal, arms and
+    The ``window`` is that of the substep. An impact at the time t takes normal, arms and
     speeds of that time, by :mod:`physicslab.kernels.constraint.impact_law`, and leaves the bodies where they
     would be had they bounced then: that is exact for constant forces, and keeps energy (e = 1), momentum and
     angular momentum.
@@ -337,16 +380,15 @@ def resolve_impacts(
     are in resting contact, which the solver handles. Pairs are resolved one after the other, in order, until
     none meets any more; inelastic ones only once, for the solver removes what is left of their approach.
 
-    Impacts go into ``log``, unless it has no length, from number ``logged`` on. Returns how many there were,
+    In ``moments`` it is noted when swift bodies did (:mod:`physicslab.kernels.solver.meet_again`). Impacts
+    go into ``log``, unless it has no length, from number ``logged`` on. Returns how many there were,
     how many pairs are left to the solver, and how many impacts obeyed Stronge's law, or had their restitution
     lowered, as Newton's would have made energy.
     """
     impacts, left, energetic, lowered = 0, contacts.number, 0, 0
-    # Without forces there are no piles.
-    window = Window(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
     for sweep in range(_MAX_SWEEPS):
         bounced, left, stronge, less, elastic = _resolve_once(
-            contacts, motion, shapes, inverse, acting, log, logged + impacts, h, window, sweep > 0
+            contacts, motion, shapes, inverse, acting, log, logged + impacts, h, window, moments, sweep > 0
         )
         impacts += bounced
         energetic += stronge
@@ -357,14 +399,14 @@ def resolve_impacts(
             left = contacts.number
             break
     if impacts:
-        _measure_again(contacts, motion)
+        measure_again(contacts, motion)
     if left == 0:
-        follow_drift(contacts, motion, end)
+        follow_drift(contacts, motion, window.end)
     return impacts, left, energetic, lowered
 
 
 @inlined
-def _measure_again(contacts: Contacts, motion: Motion) -> None:
+def measure_again(contacts: Contacts, motion: Motion) -> None:
     """Bring separations up to date after impacts have moved bodies."""
     position = motion.position
     for k in range(contacts.number):

@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, fused, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
 from physicslab.kernels.constraint.pair import (
@@ -41,7 +41,7 @@ MAX_SUBSTEP_FACTOR = 16
 """Largest factor by which substeps are increased for such a pair."""
 
 
-@fused
+@always_inlined
 def _warm_start(contacts: Contacts, motion: Motion, inverse: Inverse, warm_start_scale: float) -> None:
     """Apply the impulses of the last substep, ``warm_start_scale`` times as large, at scalar contacts."""
     for k in range(contacts.number):
@@ -75,7 +75,7 @@ def sweeps_of(near: Near, rows: int, iterations: int) -> int:
     return sweeps
 
 
-@fused
+@always_inlined
 def _soft_constraint(softness: Softness, acting: Acting, h: float, sweeps: int) -> SoftConstraint:
     """Return the contact spring of :class:`Softness`, integrated implicitly over h.
 
@@ -93,7 +93,7 @@ def _soft_constraint(softness: Softness, acting: Acting, h: float, sweeps: int) 
     )
 
 
-@fused
+@always_inlined
 def solve(
     contacts: Contacts, near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting,
     softness: Softness, h: float, warm_start_scale: float, sweeps: int,
@@ -136,7 +136,7 @@ def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
             point.separation += h * point_state(frame_of(manifold, point), v).v
 
 
-@fused
+@always_inlined
 def relax(
     contacts: Contacts, near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting,
     h: float, sweeps: int,

@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import Numbers, Vectors, allocating, always_inlined, fused, inlined
+from physicslab.kernels import Numbers, Vectors, allocating, always_inlined, inlined
 from physicslab.kernels import wide_layout as L
 from physicslab.kernels.accounts import ENERGY, OVERLAP, SPIN
 from physicslab.kernels.arguments import Acting, Contacts, Motion, Near
@@ -31,7 +31,7 @@ def _lowest(manifold: Manifold, points: Points, p: int) -> float:
     return min(lowest, points[2 * p + 1].separation) if manifold.count == 2 else lowest
 
 
-@fused
+@always_inlined
 def _deep_slots(slots: L.Slots, k: int) -> int:
     """Return the slots of a block that overlap deeply, as bits."""
     at = k * L.rows_of(slots.kind)
@@ -62,7 +62,7 @@ def any_deep(contacts: Contacts, near: Near) -> bool:
     return False
 
 
-@fused
+@always_inlined
 def _push_apart(
     a: int, b: int, nx: float, ny: float, lowest: float, size: float, position: Vectors, before: Vectors,
     inverse_mass: Numbers,
@@ -79,7 +79,7 @@ def _push_apart(
         position[b, 1] += share * inverse_mass[b] * ny
 
 
-@fused
+@always_inlined
 def _put_back(
     a: int, b: int, nx: float, ny: float, lowest: float, size: float, position: Vectors, before: Vectors,
     inverse_mass: Numbers,
@@ -97,7 +97,7 @@ def _put_back(
     return True
 
 
-@fused
+@always_inlined
 def _move(
     a: int, b: int, nx: float, ny: float, lowest: float, size: float, position: Vectors, before: Vectors,
     inverse_mass: Numbers, back: bool,

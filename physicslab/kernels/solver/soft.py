@@ -263,7 +263,7 @@ def _advance(
             elif what == IMPACTS:
                 moment = plan.time + done * plan.dt + (substep + course.middle) * h
                 came = resolve_all_impacts(
-                    near, motion, shapes, inverse, acting, Log(impacts, moment, account), span,
+                    near, motion, shapes, materials, inverse, acting, Log(impacts, moment, account), span,
                     course.start * span, course.end * span,
                 )  # fmt: skip
                 bounced += came

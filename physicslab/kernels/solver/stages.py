@@ -1,6 +1,8 @@
 """The stages of a substep at contacts, which :mod:`physicslab.kernels.solver.soft` goes through."""
 
-from physicslab.kernels import always_inlined, fused
+import math
+
+from physicslab.kernels import always_inlined, inlined_by_numba
 from physicslab.kernels.arguments import (
     Acting,
     Bounds,
@@ -29,21 +31,22 @@ from physicslab.kernels.near_counts import (
     WIDE_COUNT,
 )
 from physicslab.kernels.solver import impulse
-from physicslab.kernels.solver.impact import resolve_impacts
+from physicslab.kernels.solver.impact import Window, measure_again, resolve_impacts
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
+from physicslab.kernels.solver.meet_again import any_swift, meet_again
 from physicslab.kernels.solver.separate import any_deep, separate
 from physicslab.kernels.solver.work import book_slots, note_velocities
 from physicslab.kernels.wide.refresh import refresh
 from physicslab.kernels.wide.slots import wake
 
 
-@fused
+@inlined_by_numba
 def _contacts(near: Near) -> Contacts:
     """Return the scalar pairs that touch now."""
     return Contacts(near.manifolds, near.points, near.touching, near.counts[ACTIVE])
 
 
-@fused
+@inlined_by_numba
 def _solved(near: Near) -> Contacts:
     """Return the scalar pairs that impulses act at in this substep: none where all are left to impacts."""
     number = near.counts[ACTIVE] if near.counts[LEFT] + near.counts[WIDE_COUNT] > 0 else 0
@@ -83,8 +86,8 @@ def find_touching(
 
 @always_inlined
 def resolve_all_impacts(
-    near: Near, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
-    h: float, start: float, end: float,
+    near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, acting: Acting,
+    log: Log, h: float, start: float, end: float,
 ) -> int:  # fmt: skip
     """Bounce what meets between ``start`` and ``end`` [s] from now; return how many impacts there were.
 
@@ -92,9 +95,11 @@ def resolve_all_impacts(
     """
     counts, impacts = near.counts, 0
     counts[LEFT] = 0
+    # Without forces there are no piles.
+    window = Window(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
     while counts[ACTIVE] > 0:
         came, counts[LEFT], energetic, lowered = resolve_impacts(
-            _contacts(near), motion, shapes, inverse, acting, log, counts[LOGGED], h, start, end
+            _contacts(near), motion, shapes, inverse, acting, log, counts[LOGGED], h, window, near.moments
         )
         impacts += came
         counts[ENERGETIC] += energetic
@@ -108,10 +113,15 @@ def resolve_all_impacts(
             break
         counts[WIDE_COUNT] -= counts[ACTIVE] - before
         counts[UNORDERED] = 1
+    if impacts > 0 and any_swift(near.moments):
+        came = meet_again(near, motion, shapes, materials, inverse, acting, log, h, window)
+        impacts += came
+        counts[LOGGED] += came if len(log.impacts) > 0 else 0
+        measure_again(_contacts(near), motion)
     return impacts
 
 
-@fused
+@always_inlined
 def _warm_start_scale(h: float, impulse_dt: float) -> float:
     """Return the ratio of a substep to the time over which the points' impulses act.
 
@@ -120,7 +130,7 @@ def _warm_start_scale(h: float, impulse_dt: float) -> float:
     return h / max(impulse_dt, h / MAX_SUBSTEP_FACTOR) if impulse_dt > 0.0 else 1.0
 
 
-@fused
+@always_inlined
 def press(
     near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
     h: float, impulse_dt: float, iterations: int,
@@ -141,7 +151,7 @@ def press(
     return h
 
 
-@fused
+@always_inlined
 def relax(
     near: Near,
     joints: Joints,

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from physicslab.kernels import always_inlined, fused
+from physicslab.kernels import always_inlined
 from physicslab.kernels.arguments import Contacts, Inverse, Motion
 from physicslab.kernels.constraint.pair import (
     PairInverseMass,
@@ -40,15 +40,16 @@ class Done(NamedTuple):
     friction_work: float
 
 
-@fused
+@always_inlined
 def _free(point: Point, v: float, size: float, soft: SoftConstraint) -> tuple[float, float]:
     """Return what :func:`free_change` does; nothing for a point that meets after this substep."""
     if point.ahead != 0:
         return 0.0, 0.0
+    v = v - point.bend
     return free_change(point.normal_impulse, point.normal_mass, v, point.separation, size, soft)
 
 
-@fused
+@always_inlined
 def _one_point(
     manifold: Manifold,
     point: Point,
@@ -89,7 +90,7 @@ def _one_point(
     return after_impulse(v, mass, px, py, moment_a, moment_b), done
 
 
-@fused
+@always_inlined
 def _normals(
     manifold: Manifold,
     one: Point,
@@ -116,7 +117,7 @@ def _normals(
     return after_impulse(v, mass, px, py, turn_a, turn_b), Done(max(abs(d1), abs(d2)), work, 0.0)
 
 
-@fused
+@always_inlined
 def _friction(
     manifold: Manifold, one: Point, two: Point, v: PairVelocity[float], mass: PairInverseMass[float]
 ) -> tuple[PairVelocity[float], Done]:

@@ -125,7 +125,7 @@ def book_solved(
                 before = point_state(frame, velocity_of(near.linear_before, near.angular_before, a, b))
                 pressed += 0.5 * push * (before.v + at.v)
                 friction_work += 0.5 * rub * (before.sliding + at.sliding)
-            point.separation += h * at.v
+            point.separation += h * (at.v - point.bend)
             noted[j, 0], noted[j, 1], noted[j, 2], noted[j, 3] = push, rub, at.v, at.sliding
             x, y = impulse_at(nx, ny, push, rub)
             px, py = px + x, py + y

@@ -1,6 +1,6 @@
 """Where wide contacts touch now, eight at a time; those that are not steady any more become scalar."""
 
-from physicslab.kernels import Numbers, fused, inlined, kernel
+from physicslab.kernels import Numbers, always_inlined, inlined, kernel
 from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import Bounds, Inverse, Motion, Near
 from physicslab.kernels.float64x8 import (
@@ -36,7 +36,7 @@ _ONE_SPOT = 1e-300
 """Distance [m] below which there is no direction."""
 
 
-@fused
+@always_inlined
 def _restless(slots: L.Slots, k: int, motion: Motion, h: float) -> int:
     """Return the slots of a block whose bodies move too far for their size in a substep, as bits.
 
@@ -58,7 +58,7 @@ def _restless(slots: L.Slots, k: int, motion: Motion, h: float) -> int:
     return mask_bits(ux * ux + uy * uy > limit * limit)
 
 
-@fused
+@always_inlined
 def _refresh_discs(slots: L.Slots, k: int, motion: Motion, speculative_margin: float) -> int:
     """Find normals and separations of a block of discs; return which are apart."""
     data, at = slots.data, k * L.DISC_ROWS
@@ -77,7 +77,7 @@ def _refresh_discs(slots: L.Slots, k: int, motion: Motion, speculative_margin: f
     return mask_bits((apart | on_one_spot) & (ra > 0.0))
 
 
-@fused
+@always_inlined
 def _follow(
     data: Numbers, point: int, x: Wide, y: Wide, nx: Wide, ny: Wide, turn_a: Wide, turn_b: Wide
 ) -> None:
@@ -90,7 +90,7 @@ def _follow(
     put(data, point + L.SEPARATION, separation)
 
 
-@fused
+@always_inlined
 def _refresh_boxes(slots: L.Slots, k: int, motion: Motion, tolerance: float) -> int:
     """Update the separations of a block with boxes; return whose points to find again.
 

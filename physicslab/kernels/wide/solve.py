@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Vectors, always_inlined, fused, inlined
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import Motion, Near
 from physicslab.kernels.constraint.pair import (
@@ -66,7 +66,7 @@ type Work = tuple[Wide, Wide]
 """Of normal and of tangential impulses [J], slot by slot."""
 
 
-@fused
+@always_inlined
 def free_change[N: (float, Wide)](
     impulse: N, mass: N, v: N, separation: N, size: N, soft: SoftConstraint
 ) -> tuple[N, N]:
@@ -89,14 +89,14 @@ def free_change[N: (float, Wide)](
     return change, effective
 
 
-@fused
+@always_inlined
 def one_normal[N: (float, Wide)](impulse: N, change: N) -> N:
     """Return the change of the normal impulse of a single point, which does not pull [N s]."""
     total: N = greater(impulse + change, 0.0) - impulse
     return total
 
 
-@fused
+@always_inlined
 def two_normals[N: (float, Wide)](
     impulse1: N, impulse2: N, change1: N, change2: N, mass1: N, mass2: N, between: N
 ) -> tuple[N, N]:
@@ -115,14 +115,14 @@ def two_normals[N: (float, Wide)](
     return total1 - impulse1, total2 - impulse2
 
 
-@fused
+@always_inlined
 def held_by_friction[N: (float, Wide)](impulse: N, mass: N, v: N, limit: N) -> N:
     """Return the tangential impulse [N s] that stops a point that slides at v [m/s], at most ``limit``."""
     total: N = lesser(greater(impulse - mass * v, -limit), limit)
     return total
 
 
-@fused
+@always_inlined
 def two_frictions[N: (float, Wide)](
     impulse1: N, impulse2: N, v1: N, v2: N, mass1: N, mass2: N, limit1: N, limit2: N, between: N
 ) -> tuple[N, N]:
@@ -139,7 +139,7 @@ def two_frictions[N: (float, Wide)](
     return total1 - impulse1, total2 - impulse2
 
 
-@fused
+@always_inlined
 def work_of[N: (float, Wide)](
     along: N, impulse: N, turn_a: N, turn_b: N, mass: N, inertia_a: N, inertia_b: N
 ) -> N:
@@ -152,7 +152,7 @@ def work_of[N: (float, Wide)](
     return along + 0.5 * changed
 
 
-@fused
+@always_inlined
 def _free_change(
     data: Numbers, point: int, size: Wide, v: Wide, drift: float, soft: SoftConstraint
 ) -> tuple[Wide, Wide]:
@@ -164,7 +164,7 @@ def _free_change(
     return free_change(take(data, point + L.IMPULSE), take(data, point + L.MASS), v, separation, size, soft)
 
 
-@fused
+@always_inlined
 def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide:
     """Update the tangential impulses, at most mu times the normal ones; return their change [N s]."""
     limit, friction_impulse = friction * take(data, point + L.IMPULSE), take(data, point + L.TANGENT_IMPULSE)
@@ -173,7 +173,7 @@ def _update_friction(data: Numbers, point: int, friction: Wide, v: Wide) -> Wide
     return total - friction_impulse
 
 
-@fused
+@always_inlined
 def _velocities(slots: L.Slots, k: int, linear: Vectors, angular: Numbers) -> PairVelocity[Wide]:
     """Return the velocities and angular velocities of A and of B in a block."""
     ax, ay = take_vectors(linear, slots.a, k * L.WIDE)
@@ -182,13 +182,13 @@ def _velocities(slots: L.Slots, k: int, linear: Vectors, angular: Numbers) -> Pa
     return PairVelocity(ax, ay, wa, bx, by, wb)
 
 
-@fused
+@always_inlined
 def mean_velocities(slots: L.Slots, k: int, mean: Mean) -> PairVelocity[Wide]:
     """Return the mean velocities in a block, of before and after impulses."""
     return _velocities(slots, k, mean.linear, mean.angular)
 
 
-@fused
+@always_inlined
 def _put_velocities(slots: L.Slots, k: int, motion: Motion, v: PairVelocity[Wide]) -> None:
     """Write the velocities of A and of B in a block."""
     put_vectors(motion.linear, slots.a, k * L.WIDE, v.ax, v.ay)
@@ -197,7 +197,7 @@ def _put_velocities(slots: L.Slots, k: int, motion: Motion, v: PairVelocity[Wide
     put_numbers(motion.angular, slots.b, k * L.WIDE, v.wb)
 
 
-@fused
+@always_inlined
 def _sweep_discs(
     slots: L.Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint, booked: bool
 ) -> Work:
@@ -238,7 +238,7 @@ def _sweep_discs(
     return pressed, friction_work
 
 
-@fused
+@always_inlined
 def _frame(data: Numbers, point: int, nx: Wide, ny: Wide) -> ContactFrame[Wide]:
     """Return normals, and the arms of points."""
     ax, ay = take(data, point + L.ARM_AX), take(data, point + L.ARM_AY)
@@ -262,7 +262,7 @@ def slot_frame(slots: L.Slots, at: int, point: int) -> ContactFrame[float]:
     return ContactFrame(nx, ny, ax, ay, bx, by)
 
 
-@fused
+@always_inlined
 def _sweep_boxes(
     slots: L.Slots, k: int, motion: Motion, mean: Mean, drift: float, soft: SoftConstraint, booked: bool
 ) -> Work:
@@ -350,7 +350,7 @@ def sweep_wide(
     return sum_of(pressed), sum_of(friction_work)
 
 
-@fused
+@always_inlined
 def _warm_start(
     data: Numbers, point: int, nx: Wide, ny: Wide, warm_start_scale: float
 ) -> tuple[Wide, Wide, Wide]:
@@ -364,7 +364,7 @@ def _warm_start(
     return px, py, friction_impulse
 
 
-@fused
+@always_inlined
 def _start_discs(slots: L.Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
     data, at = slots.data, k * L.DISC_ROWS
     v = _velocities(slots, k, motion.linear, motion.angular)
@@ -378,7 +378,7 @@ def _start_discs(slots: L.Slots, k: int, motion: Motion, warm_start_scale: float
     _put_velocities(slots, k, motion, after)
 
 
-@fused
+@always_inlined
 def _start_boxes(slots: L.Slots, k: int, motion: Motion, warm_start_scale: float) -> None:
     data, at = slots.data, k * L.BOX_ROWS
     v = _velocities(slots, k, motion.linear, motion.angular)

@@ -32,11 +32,24 @@ _MIRRORED: dict[str, tuple[str, ...]] = {
     "Transform": ("position", "angle"),
     "Velocity": ("linear", "angular"),
     "Mass": (),
-    "Shape": (),
+    "Shape": ("vertices",),
     "Material": (),
     "Spring": ("anchor_a", "anchor_b"),
+    "Rod": ("anchor_a", "anchor_b"),
+    "Rope": ("anchor_a", "anchor_b"),
+    "Pin": ("anchor_a", "anchor_b", "lower", "upper", "motor_speed"),
+    "Slot": ("anchor_a", "anchor_b", "axis", "angle"),
+    "Weld": ("anchor_a", "anchor_b", "angle"),
+    "Pulley": ("anchor_a", "anchor_b", "wheel_a", "wheel_b"),
+    "Thrust": ("force", "torque", "at"),
+    "Charge": (),
+    "Molecule": (),
+    "Medium": ("flow",),
     "Drag": (),
     "Trail": (),
+    "Colour": (),
+    "Layer": (),
+    "MadeOf": (),
 }
 """Fields that a mirror changes; a scene with another component is not mirrored."""
 _RIGID_BUDGET_S = 10.0
@@ -201,13 +214,26 @@ def _mirror(document: Document, world: World) -> World | None:
             for field in fields:
                 value = entity.get(name, {}).get(field)
                 if value is not None:
-                    entity[name][field] = [-value[0], value[1]] if isinstance(value, list) else -value
+                    entity[name][field] = _across(value)
+        if "Pin" in entity:
+            pin = entity["Pin"]
+            pin["lower"], pin["upper"] = pin.get("upper"), pin.get("lower")
     physics = mirrored["physics"]
-    physics["gravity"] = [-physics["gravity"][0], physics["gravity"][1]]
+    for field in ("gravity", "electric_field", "magnetic_field"):  # the last one is an axis, as a spin is
+        physics[field] = _across(physics[field])
     if physics["bounds"] is not None:
         left, low, right, high = physics["bounds"]
         physics["bounds"] = [-right, low, -left, high]
     return read_scene(mirrored)
+
+
+def _across(value: Any) -> Any:
+    """Return a number, a vector, or vertices in their order, with left and right exchanged."""
+    if not isinstance(value, list):
+        return -value
+    if value and isinstance(value[0], list):
+        return [_across(point) for point in reversed(value)]
+    return [-value[0], value[1]] if value else value
 
 
 def _permute(document: Document, world: World) -> World | None:

@@ -9,6 +9,7 @@ from physicslab.components import Mass, Name, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
+from physicslab.lab.bench.jointed import JOINTED
 from physicslab.lab.bench.moving import FUNNELS, MOVING
 from physicslab.lab.bench.scene import (
     BenchScene,
@@ -189,6 +190,7 @@ SCENES = Catalogue(
         *MOVING,
         *FUNNELS,
         *UNTUNED,
+        *JOINTED,
         # A pile at rest, edited before every step as a user or a script would do it.
         _edits(name="edit_name", title="1,000 discs at rest, one renamed before every step", edit=_rename),
         _edits(name="edit_mass", title="the same, the mass of one set", edit=_weigh),

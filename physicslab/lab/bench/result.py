@@ -6,12 +6,12 @@ import gc
 import itertools
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.files.scene import uncollected
 from physicslab.lab.bench.engine import OURS, Engine
 from physicslab.lab.bench.scene import BenchScene
 
@@ -66,17 +66,6 @@ class Times:
         return np.add(self.step, self.read)
 
 
-@contextmanager
-def _no_collection() -> Iterator[None]:
-    """Keep Python's garbage collector from slowing one engine and not the other."""
-    gc.collect()
-    gc.disable()
-    try:
-        yield
-    finally:
-        gc.enable()
-
-
 TURN = 10
 """Single steps that an engine takes before the next has its turn. With one each, all would be timed while
 they fetch from memory what the others have driven out of the caches; a program runs one engine."""
@@ -101,7 +90,8 @@ def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterat
     orders = itertools.cycle(itertools.permutations(range(len(engines))))
     turns = [1] * rounds if block else [TURN] * (rounds // TURN) + [rounds % TURN] * (rounds % TURN > 0)
     for start in range(0, len(turns), _PORTION):
-        with _no_collection():
+        gc.collect()
+        with uncollected():  # it would slow one engine and not the other
             for turn, order in zip(turns[start : start + _PORTION], orders, strict=False):
                 for i in order:
                     for _ in range(turn):

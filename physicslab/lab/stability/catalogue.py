@@ -6,6 +6,7 @@ from physicslab.lab.case import Catalogue
 from physicslab.lab.stability.assemblies import ASSEMBLIES
 from physicslab.lab.stability.case import StabilityCase, run_case
 from physicslab.lab.stability.contacts import SQUEEZED, STANDING
+from physicslab.lab.stability.fields import FIELDS
 from physicslab.lab.stability.impacts import IMPACTS
 from physicslab.lab.stability.joints import JOINTS
 from physicslab.lab.stability.many_bodies import ATTRACTION, CHAINS
@@ -16,8 +17,8 @@ from physicslab.lab.stability.steps import STEPS
 
 CASES = Catalogue(
     (
-        *SPRINGS, *CHAINS, *JOINTS, *ASSEMBLIES, *STANDING, *SQUEEZED, *SHAPES, *IMPACTS, *STEPS, *ATTRACTION,
-        *RANGES,
+        *SPRINGS, *CHAINS, *JOINTS, *ASSEMBLIES, *FIELDS, *STANDING, *SQUEEZED, *SHAPES, *IMPACTS, *STEPS,
+        *ATTRACTION, *RANGES,
     )
 )  # fmt: skip
 """Every case by name; families are groups."""

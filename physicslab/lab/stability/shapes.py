@@ -9,7 +9,7 @@ from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.stability.case import MODELS, StabilityCase, part_of, touching_space
 from physicslab.lab.stability.contacts import WANTED
-from physicslab.lab.worlds import GRAVITY, displacements, floor, open_space, place
+from physicslab.lab.worlds import GRAVITY, displacements, floor, place
 from physicslab.prefabs import circle, ground, loop, polygon, stack
 from physicslab.world import World
 
@@ -23,9 +23,11 @@ _MASSES = (1000.0, 1.0, 1000.0, 1.0)
 _WEDGE = 0.1
 """The width of a wedge of 1 m, whose point is so 6 degrees sharp [m]."""
 _BALL, _LOOP = 0.2, 2.0
+_LEAST = math.sqrt(5.0 * GRAVITY * (_LOOP - _BALL))
+"""The least speed of the ball [m/s]."""
 _STAYS = 2e-4
-"""A ball that is off its circle by more than this share has left the loop. On a round one that finds the
-least speed to 0.4 %; segments alone are 3e-5 off."""
+"""A ball that is off its circle by more than this share has left the loop: that finds the least speed to
+0.3 %."""
 
 
 def _unlike(shape: str, contacts: str) -> float:
@@ -73,28 +75,37 @@ def _seams(contacts: str, speed: float) -> float:
     return abs(1.0 - measure_energy(world).kinetic / before)
 
 
-def _goes_round(segments: int, speed: float) -> bool:
-    """Whether a ball without friction stays on the loop until it is over the top."""
-    world, inner = open_space(), _LOOP - _BALL
+def _goes_round(contacts: str, segments: int, speed: float) -> tuple[bool, float]:
+    """Return if a ball without friction stays on the loop until it is over the top, and its loss of energy.
+
+    That is a share of the energy at the start.
+    """
+    world, inner = touching_space(contacts=contacts), _LOOP - _BALL
     loop(world, (0.0, 0.0), radius=_LOOP, run=1.0, segments=segments, friction=0.0)
     ball = circle(world, (0.0, _BALL), radius=_BALL, velocity=(speed, 0.0), friction=0.0)
+    before = measure_energy(world).total
     for _ in world.stepping(steps=120):
         off = place(world, ball) - Vector2(0.0, _LOOP)
         if off.magnitude < (1.0 - _STAYS) * inner:
-            return False
+            return False, math.nan
         if off.x < 0.0 < off.y:
-            return True
-    return False
+            return True, abs(1.0 - measure_energy(world).total / before)
+    return False, math.nan
 
 
-def _least_speed(segments: int) -> float:
+def _least_speed(contacts: str, segments: int) -> float:
     """Return by what share the least speed that suffices is off sqrt(5 g r), r that of the ball's circle."""
-    theory = math.sqrt(5.0 * GRAVITY * (_LOOP - _BALL))
     low, high = 0.5, 1.5
     while high - low > 1e-4:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if _goes_round(segments, middle * theory) else (middle, high)
+        goes, _ = _goes_round(contacts, segments, middle * _LEAST)
+        low, high = (low, middle) if goes else (middle, high)
     return abs(high - 1.0)
+
+
+def _loop_loss(contacts: str, segments: int) -> float:
+    """Return the energy that a ball loses on its way over the top, at a tenth more than the least speed."""
+    return _goes_round(contacts, segments, 1.1 * _LEAST)[1]
 
 
 _case = partial(StabilityCase, group="shapes")
@@ -134,10 +145,16 @@ SHAPES = (
     ),
     *(
         _case(
-            name=f"loop_{segments}", title=f"ball slides through a loop-the-loop of {segments} segments",
-            right="the least speed at which it stays on it is sqrt(5 g r), within 1 %", limit=0.01,
-            figure="error of that speed", measure=partial(_least_speed, segments),
+            name=f"loop_{segments}_{kind}_{contacts}", right=right, limit=0.01, figure=figure,
+            title=f"ball slides through a loop-the-loop of {segments} segments, {model}",
+            measure=partial(measured, contacts, segments),
         )
-        for segments in (400, 900)
+        for segments in (50, 900)
+        for contacts, model in MODELS.items()
+        for kind, measured, right, figure in (
+            ("speed", _least_speed, "the least speed at which it stays on it is sqrt(5 g r), within 1 %",
+             "error of that speed"),
+            ("energy", _loop_loss, "seams take nothing", "energy lost on its way over the top"),
+        )
     ),
 )  # fmt: skip

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -29,9 +30,40 @@ def is_within(place: tuple[float, float], rect: Rect) -> bool:
     return left <= place[0] < left + width and top <= place[1] < top + height
 
 
+def overlap(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> bool:
+    """Whether two rectangles have a part in common [px]."""
+    (x, y, width, height), (left, top, across, down) = one, other
+    return x < left + across and left < x + width and y < top + down and top < y + height
+
+
 type Painter = Callable[[pygame.Surface], None]
 """Draws on a surface."""
 type Align = Literal["left", "centre", "right"]
+
+
+class Finish(IntEnum):
+    """How the inside of a body is painted."""
+
+    FLAT = 0
+    """One colour."""
+    POINT = 1
+    """Lit from above; nothing shows how far it has turned."""
+    LIT = 2
+    """Lit from above."""
+    RUBBER = 3
+    """Lit, and dull."""
+    GROUND = 4
+    """Dim below, with a faint hatch: what cannot move."""
+    WOOD = 5
+    """Lit, with a grain."""
+    STEEL = 6
+    """Lit, brushed."""
+    STONE = 7
+    """Lit, with specks."""
+    ICE = 8
+    """Clear, with streaks of light."""
+    GLASS = 9
+    """Clearer still."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,19 +74,22 @@ class Look:
     ----------
     fill, rim : uint8 arrays (n, 3)
         Red, green and blue inside and at the edge.
-    hatched : bool array (n,)
-        Whether slanting lines fill it, in place of a mark that shows its angle.
+    finish : int64 array (n,)
+        How the inside is painted: of :class:`Finish`.
+    shadow : float
+        Opacity of the shadows below them; 0 is none.
     """
 
     fill: NDArray[np.uint8]
     rim: NDArray[np.uint8]
-    hatched: NDArray[np.bool_]
+    finish: NDArray[np.int64]
+    shadow: float = 0.0
 
     @classmethod
     def plain(cls, fill: Colour, rim: Colour, count: int) -> Look:
-        """Return the same two colours for each of ``count`` bodies."""
+        """Return the same two colours for each of ``count`` bodies, which are flat."""
         rows = [np.tile(np.array(colour, np.uint8), (count, 1)) for colour in (fill, rim)]
-        return cls(rows[0], rows[1], np.zeros(count, np.bool_))
+        return cls(rows[0], rows[1], np.zeros(count, np.int64))
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,17 +120,23 @@ class Canvas(Protocol):
     def size(self) -> tuple[int, int]:
         """Width and height [px]."""
 
-    def clear(self, colour: Colour) -> None:
-        """Fill the whole picture."""
+    def clear(self, top: Colour, bottom: Colour, grain: int = 0) -> None:
+        """Fill the whole picture from the colour of its top to that of its bottom, with some grain."""
+
+    def keep(self, key: Hashable, draw: Callable[[], None]) -> None:
+        """Begin the picture as ``draw`` does; what it drew may be shown again while its key is the same."""
+
+    def glows(self, centre: Points, radius: Numbers, colour: Colour, strength: Numbers) -> None:
+        """Add light to what is there: brightest, by a strength (0 to 1), in the middle of each disc (n,)."""
 
     def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
-        """Draw discs: centres (n, 2) and radii (n,) [px], angles (n,) [rad]; with a line, or hatched."""
+        """Draw discs: centres (n, 2) and radii (n,) [px], angles (n,) [rad]; with a wedge if not flat."""
 
     def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
-        """Draw boxes: centres and sides (n, 2) [px], angles (n,) [rad]; with a notch, or hatched."""
+        """Draw boxes: centres and sides (n, 2) [px], angles (n,) [rad]."""
 
     def rounded(self, shapes: Rounded, look: Look) -> None:
-        """Draw rounded polygons, each with a rim and a line that shows its angle, or hatched."""
+        """Draw rounded polygons, each with a rim."""
 
     def lines(
         self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0

@@ -1,7 +1,7 @@
 """Discs, boxes and lines drawn by pygame, until the loops that paint smooth ones are compiled.
 
-Edges are rough and places rounded to pixels; what cannot move is filled with a colour of its own in place of
-a hatch. Anything far outside the picture is cut off first, or pygame would go through all of its rows.
+Edges are rough, places rounded to pixels, and nothing is lit. Anything far outside the picture is cut off
+first, or pygame would go through all of its rows.
 """
 
 import math
@@ -11,14 +11,14 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
-from physicslab.view.canvas.canvas import Look, Numbers, Points, Rounded
+from physicslab.view.canvas.canvas import Finish, Look, Numbers, Points, Rounded
 from physicslab.view.canvas.rim import rim_of
 
 _LARGE = 200.0
 """Radius [px] from which a disc is drawn as a polygon, which can be cut off."""
 _CORNERS = 256
-_SPOKE_FROM, _NOTCH_FROM = 3.0, 8.0
-"""Radius, and half extent [px], from which a body shows how far it has turned."""
+_SPOKE_FROM = 3.0
+"""Radius [px] from which a disc shows how far it has turned."""
 _MARGIN = 8.0
 """The margin around the picture within which outlines are drawn [px]."""
 
@@ -29,7 +29,7 @@ type _Colour = tuple[int, int, int]
 def draw_discs(
     surface: pygame.Surface, centre: Points, radius: Numbers, angle: Numbers, look: Look, rim: float
 ) -> None:
-    """Draw discs, each with a rim and a line that shows its angle [rad], or filled evenly."""
+    """Draw discs, each with a rim, and a line that shows its angle [rad] where it is not flat."""
     for i, (fill, edge) in enumerate(_colours(look)):
         x, y, r = float(centre[i, 0]), float(centre[i, 1]), float(radius[i])
         width = max(1, round(min(rim, 0.35 * r)))
@@ -39,8 +39,8 @@ def draw_discs(
         elif _is_seen(surface, x, y, r):
             pygame.draw.circle(surface, fill, (x, y), max(r, 1.0))
             pygame.draw.circle(surface, edge, (x, y), max(r, 1.0), width)
-        if r >= _SPOKE_FROM and not look.hatched[i]:
-            end = r - width
+        if r >= _SPOKE_FROM and look.finish[i] >= Finish.LIT and look.finish[i] != Finish.GROUND:
+            end = 0.8 * r
             tip = x + end * math.cos(angle[i]), y - end * math.sin(angle[i])
             _stroke(surface, (x, y), tip, edge, width)
 
@@ -48,27 +48,21 @@ def draw_discs(
 def draw_boxes(
     surface: pygame.Surface, centre: Points, half: Points, angle: Numbers, look: Look, rim: float
 ) -> None:
-    """Draw boxes of half the given extents, each with a rim and a notch, or filled evenly."""
+    """Draw boxes of half the given extents, each with a rim."""
     for i, (fill, edge) in enumerate(_colours(look)):
         x, y, a, b = float(centre[i, 0]), float(centre[i, 1]), float(half[i, 0]), float(half[i, 1])
         c, s = math.cos(angle[i]), math.sin(angle[i])
         width = max(1, round(min(rim, 0.35 * min(a, b))))
         along, across = np.array((a, a, -a, -a)), np.array((b, -b, -b, b))
         _polygon(surface, x + c * along - s * across, y - s * along - c * across, fill, edge, width)
-        if min(a, b) >= _NOTCH_FROM and not look.hatched[i]:
-            near = a - 0.5 * min(a, b)
-            _stroke(surface, (x + near * c, y - near * s), (x + a * c, y - a * s), edge, width)
 
 
 def draw_rounded(surface: pygame.Surface, shapes: Rounded, look: Look, rim: float) -> None:
-    """Draw rounded polygons, each with a rim and a line that shows its angle, or filled evenly."""
+    """Draw rounded polygons, each with a rim."""
     for i, (fill, edge) in enumerate(_colours(look)):
         core = shapes.corners[i, : shapes.vertices[i]]
         outline = rim_of(core[::-1], float(shapes.radius[i]))
         _polygon(surface, outline[:, 0], outline[:, 1], fill, edge, max(1, round(rim)))
-        if not look.hatched[i]:
-            (x, y), (tip_x, tip_y) = core.mean(axis=0).tolist(), core[0].tolist()
-            _stroke(surface, (x, y), (tip_x, tip_y), edge, max(1, round(rim)))
 
 
 def draw_strokes(
@@ -88,11 +82,8 @@ def draw_strokes(
 
 
 def _colours(look: Look) -> Iterator[tuple[_Colour, _Colour]]:
-    """Yield what fills each body, and what is at its edge; what is hatched is filled with some of both."""
-    for i in range(len(look.fill)):
-        fill, edge = look.fill[i].astype(int), look.rim[i].astype(int)
-        if look.hatched[i]:
-            fill = (7 * fill + edge) // 8
+    """Yield what fills each body, and what is at its edge."""
+    for fill, edge in zip(look.fill.astype(int), look.rim.astype(int), strict=True):
         yield _colour(fill), _colour(edge)
 
 

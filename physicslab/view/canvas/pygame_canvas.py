@@ -1,5 +1,6 @@
 """A canvas on a pygame surface."""
 
+from collections.abc import Callable, Hashable
 from typing import Any
 
 import numpy as np
@@ -8,10 +9,10 @@ from numpy.typing import NDArray
 
 from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, Rounded, TextStyle
 from physicslab.view.canvas.plain_shapes import draw_boxes, draw_discs, draw_rounded, draw_strokes
-from physicslab.view.canvas.surface_cache import SurfaceCache
+from physicslab.view.canvas.surface_cache import GLOW_LEVELS, SurfaceCache
 from physicslab.view.canvas.theme import Colour
 
-_RIM = 1.6
+_RIM = 2.0
 """Width of the rims [px]."""
 
 
@@ -35,6 +36,8 @@ class PygameCanvas:
         self._shifts = np.array((red, green, blue), np.uint32)
         self._surfaces = SurfaceCache()
         self._colours: dict[Colour, int] = {}
+        self._kept: pygame.Surface | None = None
+        self._kept_key: Hashable = None
 
     @property
     def size(self) -> tuple[int, int]:
@@ -52,39 +55,64 @@ class PygameCanvas:
         packed: NDArray[np.uint32] = shifted[:, 0] | shifted[:, 1] | shifted[:, 2]
         return packed
 
-    def clear(self, colour: Colour) -> None:
-        """Fill the whole picture."""
-        self.surface.fill(colour)
+    def clear(self, top: Colour, bottom: Colour, grain: int = 0) -> None:
+        """Fill the whole picture from the colour of its top to that of its bottom, with some grain."""
+        if top == bottom and not grain:
+            self.surface.fill(top)
+        else:
+            self.surface.blit(self._surfaces.sky(self.size, top, bottom, grain), (0, 0))
+
+    def keep(self, key: Hashable, draw: Callable[[], None]) -> None:
+        """Begin the picture as ``draw`` does; the second one with the same key is kept."""
+        whole = (key, self.size)
+        if self._kept is not None and self._kept_key == whole:
+            self.surface.blit(self._kept, (0, 0))
+            return
+        draw()
+        self._kept = self.surface.copy() if self._kept_key == whole else None
+        self._kept_key = whole
+
+    def glows(self, centre: Points, radius: Numbers, colour: Colour, strength: Numbers) -> None:
+        """Add light to what is there: brightest, by a strength (0 to 1), in the middle of each disc (n,)."""
+        spots = []
+        for (x, y), r, share in zip(centre.tolist(), radius.tolist(), strength.tolist(), strict=True):
+            made = self._surfaces.glow(
+                max(round(r), 1), colour, round(GLOW_LEVELS * min(max(share, 0.0), 1.0))
+            )
+            spots.append((made, (round(x) - made.get_width() // 2, round(y) - made.get_height() // 2)))
+        self.surface.fblits(spots, pygame.BLEND_RGB_ADD)
 
     def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
-        """Draw discs, each with a rim and a line that shows its angle, or hatched."""
+        """Draw discs, each with a rim, and a wedge that shows its angle where it is not flat."""
         paint_discs = _painter("paint_discs")
         if paint_discs is None:
             draw_discs(self.surface, centre, radius, angle, look, _RIM)
             return
         fill, rim = self._packed(look.fill), self._packed(look.rim)
         centre, radius, angle = _plain(centre), _plain(radius), _plain(angle)
-        paint_discs(self._pixels(), centre, radius, angle, fill, rim, look.hatched, _RIM)
+        paint_discs(self._pixels(), centre, radius, angle, fill, rim, look.finish, _RIM, look.shadow)
 
     def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
-        """Draw boxes of the given widths and heights, each with a rim and a notch, or hatched."""
+        """Draw boxes of the given widths and heights, each with a rim."""
         paint_boxes = _painter("paint_boxes")
         if paint_boxes is None:
             draw_boxes(self.surface, centre, 0.5 * extent, angle, look, _RIM)
             return
         fill, rim = self._packed(look.fill), self._packed(look.rim)
         centre, half, angle = _plain(centre), _plain(0.5 * extent), _plain(angle)
-        paint_boxes(self._pixels(), centre, half, angle, fill, rim, look.hatched, _RIM)
+        paint_boxes(self._pixels(), centre, half, angle, fill, rim, look.finish, _RIM, look.shadow)
 
     def rounded(self, shapes: Rounded, look: Look) -> None:
-        """Draw rounded polygons, each with a rim and a line that shows its angle, or hatched."""
+        """Draw rounded polygons, each with a rim."""
         paint_rounded = _painter("paint_rounded")
         if paint_rounded is None:
             draw_rounded(self.surface, shapes, look, _RIM)
             return
         fill, rim = self._packed(look.fill), self._packed(look.rim)
         corners, radius = _plain(shapes.corners.reshape(len(fill), -1)), _plain(shapes.radius)
-        paint_rounded(self._pixels(), corners, shapes.vertices, radius, fill, rim, look.hatched, _RIM)
+        paint_rounded(
+            self._pixels(), corners, shapes.vertices, radius, fill, rim, look.finish, _RIM, look.shadow
+        )
 
     def lines(
         self, start: Points, end: Points, colour: Colour, width: float = 1.0, opacity: float | Numbers = 1.0

@@ -7,6 +7,8 @@ from physicslab.ecs.vector import Vector2
 
 ROUNDING = 1e-12
 """Share of what a number is a part of below which it is rounding."""
+_LEAST_ERROR, _PLAIN = 1e-12, 3
+"""Share of a value from which its error is written, and powers of ten that need no exponent."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -33,6 +35,15 @@ def quantity(value: float, unit: str) -> str:
 def _scientific(value: float, decimals: int) -> str:
     digits, _, exponent = f"{value:.{decimals}e}".partition("e")
     return f"{digits}·10{str(int(exponent)).translate(_RAISED)}"
+
+
+def without_turns(degrees: float) -> float:
+    """Return an angle without the whole turns in it [deg]; one of up to half a turn as it is.
+
+    >>> without_turns(-180.0), without_turns(370.0), without_turns(-1048.5)
+    (-180.0, 10.0, 31.5)
+    """
+    return degrees if abs(degrees) <= 180.0 else math.remainder(degrees, 360.0)
 
 
 def without_rounding(value: float, scale: float) -> float:
@@ -123,6 +134,23 @@ def product(unit: str, other: str) -> str:
     if {unit, other} == {"N", "m"}:
         return "J"  # the work of a force; a torque is no area
     return _written(unit, other, 1)
+
+
+def with_error(value: float, error: float, unit: str) -> str:
+    """Return a number with its standard error, to two figures of that, and its unit.
+
+    >>> with_error(9.8123, 0.0214, "m/s²"), with_error(2.0, 0.0, "s"), with_error(31400.0, 260.0, "m")
+    ('(9.812 ± 0.021) m/s²', '2.000 s', '(31400 ± 260) m')
+    """
+    if not _LEAST_ERROR * abs(value) < error < math.inf:
+        return quantity(value, unit).rstrip()
+    places = 1 - math.floor(math.log10(error))
+    size = math.floor(math.log10(max(abs(value), error)))
+    power = size if not -_PLAIN <= size <= _PLAIN + 2 else 0
+    shown = max(places + power, 0)
+    both = f"{value / 10.0**power:.{shown}f} ± {error / 10.0**power:.{shown}f}"
+    raised = f"·10{str(power).translate(_RAISED)}" if power else ""
+    return f"({both}){raised} {unit}".rstrip()
 
 
 def quotient(unit: str, other: str) -> str:

@@ -5,6 +5,7 @@ import re
 from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
 import pygame
 
 from physicslab.view.canvas.canvas import TextStyle
@@ -13,10 +14,13 @@ from physicslab.view.canvas.theme import NOTHING, Colour
 
 _RAISED = re.compile("([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 _PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
-_RAISED_SIZE = 0.72
+RAISED_SIZE = 0.72
 """Height of raised figures, as a share of the line's."""
 _MAX_SURFACES = 512
 _MAX_SIZES = 4096
+_MAX_SKIES = 2
+GLOW_LEVELS = 12
+"""How many strengths of glows there are."""
 
 
 class SurfaceCache:
@@ -26,6 +30,8 @@ class SurfaceCache:
     ----------
     panel : callable
         Returns a rectangle with round corners, by size [px], colour, outline and opacity, as :func:`rounded`.
+    sky, glow : callable
+        Return what :func:`sky` and :func:`glow` do.
     text : callable
         Returns the picture of one line, by its words and style; of letters without width one clear pixel.
     text_size : callable
@@ -35,6 +41,7 @@ class SurfaceCache:
     def __init__(self) -> None:
         self._font = lru_cache(maxsize=None)(_load_font)  # fonts end with pygame: they are a canvas's
         self.panel = lru_cache(_MAX_SURFACES)(rounded)
+        self.sky, self.glow = lru_cache(_MAX_SKIES)(sky), lru_cache(_MAX_SURFACES)(glow)
         self.text = lru_cache(_MAX_SURFACES)(self._render)
         self.text_size = lru_cache(_MAX_SIZES)(self._measure)
 
@@ -60,11 +67,20 @@ class SurfaceCache:
 
 def _pieces(words: str, style: TextStyle) -> list[tuple[str, TextStyle]]:
     """Return the pieces of a line with their styles: raised figures, which fonts lack, are small ones."""
+    small = TextStyle(max(round(RAISED_SIZE * style.size), 6), style.colour, style.bold)
+    return [(part, small if raised else style) for part, raised in raised_parts(words)]
+
+
+def raised_parts(words: str) -> list[tuple[str, bool]]:
+    """Return the parts of a line, and whether each is raised: those are written with plain figures.
+
+    >>> raised_parts("2·10⁻⁶ J")
+    [('2·10', False), ('-6', True), (' J', False)]
+    """
     if _RAISED.search(words) is None:
-        return [(words, style)]
-    small = TextStyle(max(round(_RAISED_SIZE * style.size), 6), style.colour, style.bold)
-    parts = [part for part in _RAISED.split(words) if part]
-    return [(part.translate(_PLAIN), small) if _RAISED.match(part) else (part, style) for part in parts]
+        return [(words, False)]
+    parts = [(part, _RAISED.match(part) is not None) for part in _RAISED.split(words) if part]
+    return [(part.translate(_PLAIN) if raised else part, raised) for part, raised in parts]
 
 
 def _load_font(size: int, bold: bool) -> pygame.font.Font:
@@ -114,6 +130,43 @@ def _faded(colour: Colour, opacity: float) -> tuple[int, int, int, int]:
     """Return a colour multiplied by its opacity, and that."""
     red, green, blue = (round(part * opacity) for part in colour)
     return red, green, blue, round(255 * opacity)
+
+
+_GRAIN_TILE = 256
+"""Side of the pattern of grain, which is repeated [px]."""
+
+
+def sky(size: tuple[int, int], top: Colour, bottom: Colour, grain: int) -> pygame.Surface:
+    """Return a picture whose colour goes from its top to its bottom; grain makes pixels differ by so much."""
+    share = np.linspace(0.0, 1.0, size[1])[:, None]
+    rows = np.array(top) * (1.0 - share) + np.array(bottom) * share - 0.5 * grain
+    column = pygame.Surface((1, size[1]), 0, 32)
+    pygame.surfarray.blit_array(column, np.clip(np.rint(rows), 0, 255).astype(np.uint8)[None])
+    made = pygame.transform.scale(column, size)
+    tile = _grain(grain)
+    for left in range(0, size[0], _GRAIN_TILE):
+        for above in range(0, size[1], _GRAIN_TILE):
+            made.blit(tile, (left, above), special_flags=pygame.BLEND_RGB_ADD)
+    return made
+
+
+@lru_cache(maxsize=4)
+def _grain(levels: int) -> pygame.Surface:
+    """Return grey pixels of 0 to so many levels, always the same ones."""
+    tile = pygame.Surface((_GRAIN_TILE, _GRAIN_TILE), 0, 32)
+    chance = np.random.default_rng(1).integers(0, levels + 1, (_GRAIN_TILE, _GRAIN_TILE, 1), np.uint8)
+    pygame.surfarray.blit_array(tile, np.repeat(chance, 3, axis=2))
+    return tile
+
+
+def glow(radius: int, colour: Colour, level: int) -> pygame.Surface:
+    """Return a light to be added to a picture, of a radius [px], brightest in its middle."""
+    places = np.arange(2 * radius + 1) - radius
+    away = np.hypot(places[:, None], places[None, :]) / (radius + 0.5)
+    light = np.clip(1.0 - away, 0.0, 1.0) ** 2 * level / GLOW_LEVELS
+    made = pygame.Surface((2 * radius + 1, 2 * radius + 1), 0, 32)
+    pygame.surfarray.blit_array(made, (light[:, :, None] * np.array(colour)).astype(np.uint8))
+    return made
 
 
 @lru_cache(maxsize=256)

@@ -3,10 +3,19 @@
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 type Colour = tuple[int, int, int]
 """Red, green and blue, 0 to 255."""
 NOTHING = (0, 0, 0, 0)
 """A transparent colour, multiplied by its opacity of 0."""
+
+
+LEGIBLE = 4.5
+"""Least contrast of a body's rim to what is behind: its fill is lit on one side, and dim on the other."""
+_EDGES = (0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+"""Shares of what is brightest, or darkest on paper, that rims of bodies with a Colour may have."""
 
 
 def mixed(under: Colour, over: Colour, share: float) -> Colour:
@@ -19,6 +28,29 @@ def mixed(under: Colour, over: Colour, share: float) -> Colour:
     return red, green, blue
 
 
+def luminance(colour: Colour) -> float:
+    """Return the relative luminance of a colour of sRGB (WCAG 2.2).
+
+    >>> luminance((255, 255, 255)), luminance((0, 0, 0))
+    (1.0, 0.0)
+    """
+    red, green, blue = (
+        part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4
+        for part in (part / 255.0 for part in colour)
+    )
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue
+
+
+def contrast(a: Colour, b: Colour) -> float:
+    """Return the contrast ratio of two colours (WCAG 2.2).
+
+    >>> round(contrast((0, 0, 0), (255, 255, 255)), 6)
+    21.0
+    """
+    darker, lighter = sorted((luminance(a), luminance(b)))
+    return (lighter + 0.05) / (darker + 0.05)
+
+
 @dataclass(frozen=True, slots=True)
 class Theme:
     """The colours of the window; everything that is drawn takes its colour from here.
@@ -27,16 +59,24 @@ class Theme:
     ----------
     name : str
         What it is called.
-    background, grid, axis : Colour
-        Empty space, a line each metre or so, and the lines through the origin.
+    background : Colour
+        Empty space, where one colour stands for it.
+    sky_top, sky_bottom, grain : Colour, Colour, int
+        Empty space above and below, and how much its pixels differ, as paper does (0 to 255).
+    grid, axis : Colour
+        A line each metre or so, and the lines through the origin.
     bodies : tuple of Colour
         The rims of moving bodies, in turn; also for the colour-blind (after Okabe & Ito, 2008).
     fill_share : float
         How much of the rim's colour is in a body's fill, the rest being background.
-    static, kinematic, held : Colour
-        The rims of static bodies, of kinematic ones, and of the one in the hand.
-    spring, rod, rope, pin, bounds : Colour
-        Springs, rods and rails, ropes, screws, the walls of the world.
+    static, earth : Colour
+        The rims of static bodies and the walls of the world, and what is within.
+    kinematic, held : Colour
+        The rims of kinematic bodies, and of the one in the hand.
+    shadow : float
+        Opacity of the shadows of bodies.
+    spring, rod, rope, pin : Colour
+        Springs, rods and rails, ropes, screws.
     shine : Colour
         The light on rods and ropes.
     spark : Colour
@@ -57,19 +97,23 @@ class Theme:
 
     name: str
     background: Colour
+    sky_top: Colour
+    sky_bottom: Colour
+    grain: int
     grid: Colour
     axis: Colour
     bodies: tuple[Colour, ...]
     fill_share: float
     static: Colour
+    earth: Colour
     kinematic: Colour
     held: Colour
+    shadow: float
     spring: Colour
     rod: Colour
     rope: Colour
     shine: Colour
     pin: Colour
-    bounds: Colour
     spark: Colour
     panel: Colour
     panel_opacity: float
@@ -97,61 +141,85 @@ class Theme:
         """Return the colour of a moving body."""
         return self.bodies[entity % len(self.bodies)]
 
+    @property
+    def is_dark(self) -> bool:
+        """Whether light stands on dark: only there can lights be added to what is behind them."""
+        return sum(self.background) < sum(self.text)
+
     def fill(self, rim: Colour) -> Colour:
         """Return the colour inside a body with this rim."""
         return mixed(self.background, rim, self.fill_share)
 
+    def edge(self, fill: Colour) -> Colour:
+        """Return the rim of a body with this fill: it is seen all around on any of the theme's skies."""
+        strongest, skies = self.shine if self.is_dark else self.heading, (self.sky_top, self.sky_bottom)
+        edges = [mixed(fill, strongest, share) for share in _EDGES]
+        return next(
+            (edge for edge in edges if min(contrast(edge, sky) for sky in skies) >= LEGIBLE), edges[-1]
+        )
 
-_OF_ALL: dict[str, tuple[Any, Any, Any]] = {
-    "name": ("dark", "high contrast", "projector"),
-    "background": ((15, 17, 23), (0, 0, 0), (255, 255, 255)),
-    "grid": ((25, 28, 37), (38, 38, 38), (233, 235, 239)),
-    "axis": ((41, 46, 60), (84, 84, 84), (200, 204, 212)),
+    def faded(self, colours: NDArray[np.uint8], share: float | NDArray[np.float64]) -> NDArray[np.uint8]:
+        """Return colours (n, 3) of which each has a share (n,), 0 to 1, the rest being background."""
+        under = np.array(self.background, float)
+        shares = np.asarray(share, float).reshape(-1, 1)
+        mixture: NDArray[np.uint8] = np.rint(under + (colours - under) * shares).astype(np.uint8)
+        return mixture
+
+
+_OF_ALL: dict[str, tuple[Any, Any, Any, Any]] = {
+    "name": ("dark", "light", "high contrast", "projector"),
+    "background": ((17, 25, 45), (244, 239, 229), (0, 0, 0), (255, 255, 255)),
+    "sky_top": ((11, 16, 32), (250, 247, 240), (0, 0, 0), (255, 255, 255)),
+    "sky_bottom": ((24, 35, 58), (236, 230, 217), (0, 0, 0), (255, 255, 255)),
+    "grain": (1, 5, 0, 0),
+    "grid": ((43, 55, 82), (207, 200, 186), (38, 38, 38), (223, 224, 227)),
+    "axis": ((64, 78, 110), (175, 168, 152), (84, 84, 84), (186, 189, 196)),
     "bodies": (
-        ((86, 180, 233), (230, 159, 0), (0, 190, 140), (240, 228, 66), (225, 100, 40), (214, 130, 180),
-         (95, 125, 255)),
-        ((110, 205, 255), (255, 175, 0), (0, 225, 165), (255, 245, 80), (255, 125, 60), (255, 150, 215),
-         (130, 155, 255)),
-        ((3, 106, 186), (177, 121, 13), (6, 155, 88), (73, 56, 24), (191, 67, 6), (165, 58, 120),
-         (44, 52, 197)),
+        ((92, 216, 251), (255, 183, 30), (21, 220, 155), (250, 228, 105), (255, 144, 101), (255, 147, 216),
+         (151, 166, 255)),
+        ((0, 73, 142), (111, 57, 0), (0, 83, 45), (40, 40, 50), (163, 11, 8), (149, 22, 110), (51, 46, 213)),
+        ((84, 203, 255), (255, 183, 24), (24, 226, 165), (255, 245, 85), (255, 128, 73), (255, 152, 226),
+         (132, 157, 254)),
+        ((0, 93, 173), (136, 76, 0), (0, 105, 56), (60, 54, 60), (189, 28, 0), (176, 35, 115), (42, 48, 212)),
     ),
-    "fill_share": (0.52, 0.5, 0.45),
-    "static": ((112, 121, 140), (190, 190, 190), (92, 99, 114)),
-    "kinematic": ((200, 206, 220), (230, 230, 230), (58, 63, 76)),
-    "held": ((255, 255, 255), (255, 255, 255), (10, 12, 18)),
-    "spring": ((226, 190, 92), (255, 225, 110), (146, 104, 8)),
-    "rod": ((150, 168, 214), (205, 218, 255), (78, 92, 134)),
-    "rope": ((208, 158, 98), (255, 190, 110), (140, 88, 36)),
-    "shine": ((255, 255, 255), (255, 255, 255), (255, 255, 255)),
-    "pin": ((214, 219, 230), (255, 255, 255), (40, 44, 54)),
-    "bounds": ((98, 108, 130), (175, 175, 175), (105, 113, 132)),
-    "spark": ((255, 220, 150), (255, 240, 170), (205, 95, 0)),
-    "panel": ((22, 25, 34), (0, 0, 0), (247, 248, 250)),
-    "panel_opacity": (0.88, 1.0, 0.94),
-    "outline": ((47, 53, 69), (200, 200, 200), (196, 201, 211)),
-    "text": ((226, 230, 238), (255, 255, 255), (22, 25, 33)),
-    "faint": ((139, 147, 165), (215, 215, 215), (84, 91, 107)),
-    "accent": ((110, 200, 255), (255, 235, 60), (0, 92, 175)),
-    "heading": ((245, 247, 250), (255, 255, 255), (5, 7, 12)),
-    "velocity": ((80, 215, 255), (60, 230, 255), (0, 110, 190)),
-    "force": ((255, 200, 70), (255, 210, 40), (165, 95, 0)),
-    "contact_normal": ((235, 238, 245), (255, 255, 255), (40, 44, 56)),
-    "normal_impulse": ((130, 235, 130), (120, 255, 120), (10, 125, 40)),
-    "friction_impulse": ((255, 125, 165), (255, 140, 185), (200, 30, 100)),
-    "friction_cone": ((180, 186, 205), (210, 215, 235), (88, 94, 114)),
-    "key": ((38, 43, 57), (48, 48, 48), (224, 228, 235)),
-    "key_rim": ((72, 80, 101), (235, 235, 235), (160, 167, 181)),
-    "paused": ((240, 190, 70), (255, 210, 60), (140, 85, 0)),
-    "slow": ((110, 200, 255), (120, 220, 255), (0, 92, 175)),
-    "planet": ((190, 150, 255), (215, 180, 255), (105, 55, 185)),
-    "warning": ((245, 150, 70), (255, 175, 90), (165, 70, 0)),
-    "error": ((255, 105, 100), (255, 135, 125), (185, 20, 25)),
-    "notice": ((90, 205, 160), (110, 240, 180), (0, 110, 70)),
+    "fill_share": (0.82, 0.82, 0.82, 0.82),
+    "static": ((159, 180, 220), (104, 90, 66), (190, 190, 190), (92, 99, 114)),
+    "earth": ((51, 63, 90), (206, 193, 168), (44, 44, 44), (216, 221, 230)),
+    "kinematic": ((200, 206, 220), (66, 62, 56), (230, 230, 230), (58, 63, 76)),
+    "held": ((255, 255, 255), (14, 12, 8), (255, 255, 255), (10, 12, 18)),
+    "shadow": (0.45, 0.2, 0.0, 0.18),
+    "spring": ((233, 196, 106), (140, 98, 4), (255, 225, 110), (146, 104, 8)),
+    "rod": ((168, 184, 226), (78, 88, 118), (205, 218, 255), (78, 92, 134)),
+    "rope": ((208, 158, 98), (140, 88, 36), (255, 190, 110), (140, 88, 36)),
+    "shine": ((255, 255, 255), (255, 255, 255), (255, 255, 255), (255, 255, 255)),
+    "pin": ((223, 232, 255), (44, 42, 40), (255, 255, 255), (40, 44, 54)),
+    "spark": ((255, 214, 140), (205, 95, 0), (255, 240, 170), (205, 95, 0)),
+    "panel": ((19, 23, 36), (250, 247, 241), (0, 0, 0), (247, 248, 250)),
+    "panel_opacity": (0.9, 0.95, 1.0, 0.94),
+    "outline": ((46, 55, 78), (212, 203, 186), (200, 200, 200), (196, 201, 211)),
+    "text": ((226, 230, 238), (34, 29, 22), (255, 255, 255), (22, 25, 33)),
+    "faint": ((145, 154, 176), (98, 89, 74), (215, 215, 215), (84, 91, 107)),
+    "accent": ((110, 200, 255), (0, 86, 158), (255, 235, 60), (0, 92, 175)),
+    "heading": ((245, 247, 250), (16, 12, 6), (255, 255, 255), (5, 7, 12)),
+    "velocity": ((80, 215, 255), (0, 104, 180), (60, 230, 255), (0, 110, 190)),
+    "force": ((255, 200, 70), (158, 88, 0), (255, 210, 40), (165, 95, 0)),
+    "contact_normal": ((235, 238, 245), (46, 42, 34), (255, 255, 255), (40, 44, 56)),
+    "normal_impulse": ((130, 235, 130), (10, 115, 36), (120, 255, 120), (10, 125, 40)),
+    "friction_impulse": ((255, 125, 165), (190, 28, 94), (255, 140, 185), (200, 30, 100)),
+    "friction_cone": ((180, 186, 205), (98, 90, 76), (210, 215, 235), (88, 94, 114)),
+    "key": ((35, 42, 61), (233, 226, 211), (48, 48, 48), (224, 228, 235)),
+    "key_rim": ((70, 81, 108), (184, 173, 152), (235, 235, 235), (160, 167, 181)),
+    "paused": ((240, 190, 70), (130, 78, 0), (255, 210, 60), (140, 85, 0)),
+    "slow": ((110, 200, 255), (0, 86, 158), (120, 220, 255), (0, 92, 175)),
+    "planet": ((190, 150, 255), (102, 52, 178), (215, 180, 255), (105, 55, 185)),
+    "warning": ((245, 150, 70), (152, 64, 0), (255, 175, 90), (165, 70, 0)),
+    "error": ((255, 105, 100), (178, 18, 22), (255, 135, 125), (185, 20, 25)),
+    "notice": ((90, 205, 160), (0, 102, 64), (110, 240, 180), (0, 110, 70)),
 }  # fmt: skip
-"""The values of each theme: the one at the start; one for eyes or screens that lose faint things, in black,
-white and strong colours; and one for a bright room, dark on white."""
+"""The values of each theme: the one at the start, a night sky; ink on paper; one for eyes or screens that
+lose faint things, in black, white and strong colours; and one for a bright room, dark on white."""
 
-DARK, HIGH_CONTRAST, PROJECTOR = THEMES = tuple(
+DARK, LIGHT, HIGH_CONTRAST, PROJECTOR = THEMES = tuple(
     Theme(**dict(zip(_OF_ALL, column, strict=True))) for column in zip(*_OF_ALL.values(), strict=True)
 )
 """Every theme, in the order in which they follow each other."""

@@ -1,28 +1,32 @@
 """Actions of the user, one function each, for all keys and buttons."""
 
-import copy
 import math
-from collections.abc import Sequence
 from pathlib import Path
 
-from physicslab.components import Held, Shape, Spring, Transform, Velocity
-from physicslab.ecs.component import Component
+from physicslab.components import Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
+from physicslab.files.reader import SCENE_TEXTS
+from physicslab.files.replace import reason_of
 from physicslab.files.scene import SceneError, file_stem
-from physicslab.history import Branch, Command, Remove, SetField, SetPhysics, Spawn
-from physicslab.state.joint_rows import KINDS
+from physicslab.history import Branch, Command, Remove, SetField, SetPhysics, SetText
 from physicslab.systems.gravity import GravitySystem
 from physicslab.view.canvas.theme import THEMES
-from physicslab.view.controls.file_actions import new_paths
+from physicslab.view.controls.lesson_actions import begin_run, leave_lesson
 from physicslab.view.controls.measuring import nudged
+from physicslab.view.controls.saving import name_of
+from physicslab.view.controls.share_actions import stop_sharing
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import HAND
 from physicslab.view.overlay.instruments import instruments_of
+from physicslab.view.window.naming import new_paths
+from physicslab.view.window.tour import Search, Tour
 from physicslab.view.window.window import OPENED, Action, Window
 from physicslab.world import World
 
+_AFTER_CLOSING = 1.0
+"""How long [s] after something was closed Esc does not quit."""
 _ZOOM_STEP = 3.0
 """How many notches of the wheel a key or a button zooms by."""
 _TEXT_SCALES = (0.8, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0)
@@ -31,6 +35,9 @@ _TEXT_SCALES = (0.8, 0.9, 1.0, 1.15, 1.3, 1.5, 1.75, 2.0)
 
 def choose_tool(world: World, window: Window, tool: Tool) -> None:
     """Let the left mouse button do something else."""
+    if window.lesson is not None and not window.lesson.opens_tool(tool.name):
+        window.notify(f"The lesson has {tool.title} shut; Esc leaves the lesson")
+        return
     window.sketch.cancel()
     window.measuring.cancel()
     window.tool = tool.name
@@ -38,22 +45,27 @@ def choose_tool(world: World, window: Window, tool: Tool) -> None:
 
 
 def toggle_pause(world: World, window: Window) -> None:
-    """Let time stand still, or go on."""
+    """Let time stand still, or go on; at the beginning of a lesson's run, make that."""
+    if window.lesson is not None and window.lesson.coming is not None:
+        begin_run(world, window, window.lesson.coming)
+        return
     window.pace.toggle_pause()
-    window.edits.history.divide()
+    if window.hand.entity is None:  # what the hand does goes on, and is one act
+        window.edits.history.divide()
     if not window.pace.paused:
         window.error = ""
 
 
 def clear(world: World, window: Window) -> None:
-    """Remove everything."""
+    """Remove everything, and what the scene says of itself."""
     window.hand.drop(world)
     window.sketch.cancel()
     window.measuring.cancel()
-    removed = [Remove(entity) for entity in world.entities()]
+    removed: list[Command] = [Remove(entity) for entity in world.entities()]
+    removed += [SetText(key, "") for key in SCENE_TEXTS if getattr(world, key)]
     if removed:
         window.edits.do_all(removed, "cleared everything")
-        window.notify("Cleared: Ctrl+Z undoes it")
+        window.notify("Cleared: one Ctrl+Z brings all back", 5.0)
     window.overlays.forget()
     window.sparks.clear()
     window.error = ""
@@ -89,9 +101,27 @@ def toggle_scales(world: World, window: Window) -> None:
     window.notify("Arrows keep their scale" if kept else "The scale of arrows follows what is shown")
 
 
+def toggle_momenta(world: World, window: Window) -> None:
+    """Show or hide the momenta of bodies."""
+    window.overlays.toggle_momenta(world, window.camera)
+
+
 def zoom(window: Window, notches: float, at: tuple[float, float] | None = None) -> None:
     """Enlarge the picture by some notches of the wheel, around a place [px] or the cursor."""
+    window.begin_glide()
     window.camera.zoom(1.15**notches, window.pointer if at is None else at)
+
+
+def fit(world: World, window: Window) -> None:
+    """Show everything, and glide there."""
+    window.begin_glide()
+    window.framing.fit(world)
+
+
+def first_view(world: World, window: Window) -> None:
+    """Go back to the view at the start, and glide there."""
+    window.begin_glide()
+    window.framing.go_home(world)
 
 
 def zoom_by_key(sign: int) -> Action:
@@ -101,7 +131,7 @@ def zoom_by_key(sign: int) -> Action:
 
 def zoom_by_button(sign: int) -> Action:
     """Return what enlarges the picture around its middle, or reduces it: the cursor is on a button."""
-    return lambda _, window: zoom(window, sign * _ZOOM_STEP, window.middle)
+    return lambda _, window: zoom(window, sign * _ZOOM_STEP, window.framing.middle)
 
 
 def scale_text(window: Window, steps: int) -> None:
@@ -131,17 +161,33 @@ def reset_layout(world: World, window: Window) -> None:
 
 def leave(world: World, window: Window) -> None:
     """Leave the help, the plot, the selection or the tool if there is one, else the window."""
+    if _gave_up(world, window):
+        window.closed_at = window.now
+    elif window.now - window.closed_at < _AFTER_CLOSING:  # it was meant for that
+        window.notify("Esc again quits")
+    else:
+        window.ask_to_close(world)
+
+
+def _gave_up(world: World, window: Window) -> bool:
+    """Close or give up what is in front; return whether there was anything."""
     if window.measuring.cancel() or window.sketch.cancel() or _close_panel(window):
-        return
+        return True
+    if window.sharing.running:
+        stop_sharing(world, window)
+        return True
     if window.picking is not None:
         window.picking = None
         window.notify("Nothing was chosen")
     elif window.selection.entities:
         window.selection.clear()
+    elif window.lesson is not None:
+        leave_lesson(world, window)
     elif window.tool != HAND.name:
         choose_tool(world, window, HAND)
     else:
-        window.ask_to_close(world)
+        return False
+    return True
 
 
 def _close_panel(window: Window) -> bool:
@@ -150,56 +196,6 @@ def _close_panel(window: Window) -> bool:
     if panel is not None:
         window.closing_of(panel)()
     return panel is not None
-
-
-def duplicate_selected(world: World, window: Window) -> None:
-    """Put a copy of each body that is selected beside it, and select the copies."""
-    bodies = _bodies(world, window)
-    width = max((_width(world, entity) for entity in bodies), default=0.0)
-    _spawn_copies(window, [_parts(world, entity) for entity in bodies], Vector2(width, 0.0))
-
-
-def copy_selected(world: World, window: Window) -> None:
-    """Keep copies of the selection, to be pasted."""
-    bodies = _bodies(world, window)
-    window.copied = [_parts(world, entity) for entity in bodies]
-    window.notify(f"Copied: {len(bodies)}" if bodies else "Nothing is selected to be copied")
-
-
-def paste(world: World, window: Window) -> None:
-    """Paste the copy at the cursor, and select it."""
-    if not window.copied:
-        window.notify("Nothing was copied")
-        return
-    places = [_place(parts) for parts in window.copied]
-    middle = sum(places, Vector2()) / len(places)
-    _spawn_copies(window, window.copied, window.place - middle)
-
-
-def _spawn_copies(window: Window, bodies: Sequence[Sequence[Component]], by: Vector2) -> None:
-    """Make copies of bodies elsewhere, as one edit, and select them."""
-    copies: list[Command] = []
-    for parts in bodies:
-        moved = [copy.copy(part) for part in parts]
-        for part in moved:
-            if isinstance(part, Transform):
-                part.position = part.position + by
-        copies.append(Spawn(moved))
-    made = window.edits.do_all(copies, f"copied {len(copies)}")
-    window.selection.entities = made or window.selection.entities
-
-
-def _parts(world: World, entity: int) -> list[Component]:
-    """Return copies of the components of a body that a copy of it has."""
-    return [
-        type(part)(**part.given())
-        for part in world.components(entity)
-        if isinstance(part, Component) and not isinstance(part, (Held, Spring, *KINDS))
-    ]
-
-
-def _place(parts: Sequence[Component]) -> Vector2:
-    return next(part.position for part in parts if isinstance(part, Transform))
 
 
 def select_all(world: World, window: Window) -> None:
@@ -217,16 +213,11 @@ def select_next(world: World, window: Window) -> None:
         window.selection.take(next((entity for entity in bodies if entity > now), bodies[0]))
 
 
-def _bodies(world: World, window: Window) -> list[int]:
-    """Return what of the selection has a place."""
-    return [entity for entity in window.selection.entities if world.has(entity, Transform)]
-
-
 def _changed(world: World, window: Window, name: str, by: Vector2 | float) -> list[Command]:
     """Return what adds to a field of the Transform of all that is selected."""
     return [
         SetField(entity, "Transform", name, getattr(world.component(entity, Transform), name) + by)
-        for entity in _bodies(world, window)
+        for entity in window.selection.bodies(world)
     ]
 
 
@@ -254,19 +245,19 @@ def turner(sign: int) -> Action:
 
 
 def undo(world: World, window: Window) -> None:
-    """Undo the last edit or run."""
+    """Undo the last edit, and the run since; where there is none, the run."""
     window.pause_for_history(world)
-    words = window.edits.history.undo()
-    if words is None and window.left is not None:
-        window.next_world = window.left.history.world
+    words = window.edits.history.undo(runs=False)
+    if words is None and window.scenes.left is not None and window.lesson is None:
+        window.scenes.next_world = window.scenes.left.history.world
         words = "opened another scene"
     window.notify(f"Undone: {words}" if words else "There is nothing to undo")
 
 
 def redo(world: World, window: Window) -> None:
-    """Redo the last edit or run that was undone."""
+    """Redo what was undone last."""
     window.pause_for_history(world)
-    words = window.edits.history.redo()
+    words = window.edits.history.redo(runs=False)
     window.notify(f"Redone: {words}" if words else "There is nothing to redo")
 
 
@@ -283,11 +274,15 @@ def step_back(world: World, window: Window) -> None:
     seek(world, window, window.edits.history.step_count - 1)
 
 
-def _width(world: World, entity: int) -> float:
-    """Return how far beside a body its copy is put [m]."""
-    if not world.has(entity, Shape):
-        return 0.5
-    return 2.2 * world.component(entity, Shape).reach
+def toggle_tour(world: World, window: Window) -> None:
+    """Begin the tour, and close the cards; end it where it is under way."""
+    window.put("shows_cards", False)
+    window.put("tour", Tour() if window.tour is None else None)
+
+
+def toggle_search(world: World, window: Window) -> None:
+    """Open the search of commands, or close it."""
+    window.put("search", Search() if window.search is None else None)
 
 
 # ---- laws in words -----------------------------------------------------------------------------------------
@@ -351,13 +346,12 @@ def next_branch(world: World, window: Window) -> None:
 def save_recording(world: World, window: Window) -> None:
     """Keep what was done as a file that ``physicslab replay`` plays, where the program was started."""
     window.hand.drop(world)
-    window.edits.take_back_shown()
-    paths = new_paths(Path.cwd(), file_stem(world.name), RECORDING_ENDING)
+    window.edits.keep()
+    paths = new_paths(Path.cwd(), file_stem(name_of(world, window)), RECORDING_ENDING)
     try:
         path = next(path for path in paths if not path.exists())
         window.edits.history.save(path)
     except (SceneError, OSError) as error:
-        reason = (error.strerror if isinstance(error, OSError) else None) or error
-        window.notify(f"The recording could not be saved: {reason}", 6.0, failed=True)
+        window.notify(f"The recording could not be saved: {reason_of(error)}", 6.0, failed=True)
     else:
         window.notify(f"Saved {printable(path.name)}: physicslab replay plays it", 5.0)

@@ -13,17 +13,23 @@ from physicslab.view.canvas.canvas import is_within
 from physicslab.view.controls import (
     actions,
     controls,
+    copies,
     dashboard_actions,
     file_actions,
     impact_actions,
+    lesson_actions,
     measuring,
+    saving,
+    share_actions,
     tools,
 )
 from physicslab.view.controls.actions import has_gravity, nudger, turner
+from physicslab.view.controls.context import open_context
 from physicslab.view.controls.drawing import click
 from physicslab.view.controls.spawning import PENDULUM
 from physicslab.view.controls.tool import Tool
-from physicslab.view.window.window import Action, Window
+from physicslab.view.window.desk import SHOWN_BY
+from physicslab.view.window.window import OPENED, Action, Window
 from physicslab.world import World
 
 # ---- without a mouse: keys move the cursor, click, and go to menus and panels ------------------------------
@@ -61,8 +67,8 @@ def enter(world: World, window: Window) -> None:
 
 def _cursor(window: Window) -> tuple[int, int]:
     """Return where the cursor is [px]; where it was not in the world yet, that is the middle of it."""
-    inside = window.has_pointed and is_within(window.pointer, window.room())
-    x, y = window.pointer if inside else window.middle
+    inside = window.has_pointed and is_within(window.pointer, window.framing.room())
+    x, y = window.pointer if inside else window.framing.middle
     return round(x), round(y)
 
 
@@ -82,7 +88,7 @@ def _arrow(across: int, down: int, step: int) -> Action:
         if window.selection.entities and not window.presses_by_key:
             nudge(world, window)
             return
-        left, top, width, height = window.room()
+        left, top, width, height = window.framing.room()
         x, y = _cursor(window)
         x = min(max(x + step * across, left), left + width - 1)
         y = min(max(y + step * down, top), top + height - 1)
@@ -103,6 +109,14 @@ ARROWS = {
 
 
 type State = Callable[[World, Window], bool]
+
+
+_OPEN_GROUPS = ("time", "view", "window", "help", "quit", "lesson")
+"""The controls that lessons leave open: they change nothing of what is measured."""
+_OPEN_KEYS = ("return", "n", "delete", "ctrl+z", "ctrl+y", "f12", "ctrl+o")
+"""Others: edits of what the lesson has shut are refused where they are made."""
+_OPEN_PANELS = ("scenes.shows_gallery", "search")
+_WORDS = {path: word for word, path in SHOWN_BY.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +143,10 @@ class Control:
         What its line in a menu does, where that is not what the key does.
     state : callable, optional
         Returns whether what it turns on is on.
+    panel : str
+        The panel that it opens and closes, one of ``OPENED``; empty if none.
+    shows : str
+        What it shows, by the word of scene files; empty if that is not kept in them.
     """
 
     label: str
@@ -142,6 +160,8 @@ class Control:
     tool: Tool | None = None
     click: Action | None = None
     state: State | None = None
+    panel: str = ""
+    shows: str = ""
 
     @property
     def title(self) -> str:
@@ -152,10 +172,29 @@ class Control:
         """Whether its line in a menu is marked."""
         return self.state is not None and self.state(world, window)
 
+    def is_open(self, window: Window) -> bool:
+        """Whether it can be used now: a lesson shuts what it does not name."""
+        lesson = window.lesson
+        if (
+            lesson is None
+            or self.group in _OPEN_GROUPS
+            or self.panel in _OPEN_PANELS
+            or self.key in _OPEN_KEYS
+        ):
+            return True
+        if self.tool is not None and self.group == "measure":
+            return lesson.opens_tool(self.tool.name)
+        return bool(self.shows) and lesson.shows(self.shows)
+
     def pressed(self, world: World, window: Window) -> None:
         """Do what its line in a menu does."""
-        action = self.click or self.action
-        if action is not None:
+        self.done(self.click or self.action, world, window)
+
+    def done(self, action: Action | None, world: World, window: Window) -> None:
+        """Do an action of it, unless a lesson has it shut, which is said then."""
+        if not self.is_open(window):
+            window.notify("The lesson has this shut; Esc leaves the lesson")
+        elif action is not None:
             action(world, window)
 
 
@@ -164,7 +203,8 @@ def _switch(label: str, does: str, key: str, flag: str, group: str, tip: str) ->
     state = attrgetter(flag)
     return Control(
         label, does, key, lambda _, window: window.put(flag, not state(window)), group=group, tip=tip,
-        state=lambda _, window: bool(state(window)),
+        state=lambda _, window: bool(state(window)), panel=flag if flag in OPENED else "",
+        shows=_WORDS.get(flag, ""),
     )  # fmt: skip
 
 
@@ -189,17 +229,22 @@ CONTROLS: tuple[Control, ...] = (
     Control("Digits", "tools: see Draw", also=("shift+digits",), tip="The tools that draw: see the menu"),
     Control("Del", "remove", "delete", tools.remove_selected, also=("backspace",), group="edit",
             tip="Remove the selection, or the body under the cursor"),
-    Control("Ctrl+D", "duplicate", "ctrl+d", actions.duplicate_selected, group="edit",
+    Control("Ctrl+D", "duplicate", "ctrl+d", copies.duplicate_selected, group="edit",
             tip="A copy beside each selected body"),
-    Control("Ctrl+Z", "undo", "ctrl+z", actions.undo, group="edit", tip="Undo the last edit or run"),
+    Control("Ctrl+Shift+D", "copies ...", "ctrl+shift+d", copies.begin_copies, group="edit", panel="copying",
+            tip="Copies in a row, in a grid or around a circle"),
+    Control("Menu", "menu of a thing", "menu", open_context, also=("shift+f10",),
+            tip="What can be done with what is under the cursor; as the right button does, held"),
+    Control("Ctrl+Z", "undo", "ctrl+z", actions.undo, group="edit",
+            tip="Undo the last edit, and the run since"),
     Control("Ctrl+Y", "redo", "ctrl+y", actions.redo, also=("ctrl+shift+z",), group="edit",
-            tip="Redo the last edit or run that was undone"),
+            tip="Redo what was undone"),
     _switch("U", "history", "u", "lists_history", "edit", "The list of all edits, runs and branches"),
     Control("Ctrl+B", "another branch", "ctrl+b", actions.next_branch, group="edit",
             tip="Switch to the other branch"),
-    Control("Ctrl+C", "copy", "ctrl+c", actions.copy_selected, group="edit",
+    Control("Ctrl+C", "copy", "ctrl+c", copies.copy_selected, group="edit",
             tip="Copy the selection"),
-    Control("Ctrl+V", "paste", "ctrl+v", actions.paste, group="edit",
+    Control("Ctrl+V", "paste", "ctrl+v", copies.paste, group="edit",
             tip="Paste the copy at the cursor"),
     Control("Ctrl+A", "select all", "ctrl+a", actions.select_all, group="edit", tip="Select all bodies"),
     Control("N", "next body", "n", actions.select_next, group="edit", tip="Select the next body"),
@@ -233,12 +278,13 @@ CONTROLS: tuple[Control, ...] = (
             state=lambda world, _: _gravity_is(world, "planet"),
             tip="Planet mode: all bodies attract each other"),
     Control("V", "arrows", "v", lambda world, window: window.overlays.toggle("arrows", world, window.camera),
-            group="show", state=lambda _, window: window.overlays.arrows,
+            group="show", state=lambda _, window: window.overlays.arrows, shows="arrows",
             tip="Velocities, net forces, contact normals"),
     Control("T", "trails", "t", lambda world, window: window.trails.toggle(world), group="show",
             state=lambda world, _: bool(world.table(Trail).handles), tip="Trails behind moving bodies"),
     Control("E", "impulses", "e",
             lambda world, window: window.overlays.toggle("impulses", world, window.camera), group="show",
+            shows="impulses",
             state=lambda _, window: window.overlays.impulses, tip="Impulses at contacts, with numbers"),
     _instrument("D", "ruler", measuring.RULER, "A length: drag; or between two selected bodies"),
     _instrument("Y", "angle", measuring.PROTRACTOR,
@@ -246,7 +292,8 @@ CONTROLS: tuple[Control, ...] = (
     _instrument("J", "gate", measuring.GATE, "A light gate: notes when bodies cross it"),
     _instrument("W", "note", measuring.NOTE, "A text at a point of the world"),
     Control("C", "stopwatch", "c", measuring.toggle_stopwatch, group="measure",
-            state=lambda _, window: window.shows_stopwatch, tip="The times between crossings of gates"),
+            state=lambda _, window: window.shows_stopwatch, panel="shows_stopwatch", shows="stopwatch",
+            tip="The times between crossings of gates"),
     Control("X", "strobe of all that moves", "x", measuring.toggle_strobes, group="measure",
             state=lambda world, _: bool(world.table(Strobe).handles),
             tip="Pictures of all moving bodies, ten a second"),
@@ -271,26 +318,39 @@ CONTROLS: tuple[Control, ...] = (
             tip="Change a number by sliding: of the selection, or gravity"),
     _switch("I", "panel at the right", "i", "figures", "show", "The selection, or the world, in figures"),
     _switch("H", "grid", "h", "grid", "show", "The grid"),
+    Control("Shift+V", "momenta", "shift+v", actions.toggle_momenta, group="show",
+            state=lambda _, window: window.overlays.momenta, shows="momenta",
+            tip="The momentum of each body as an arrow; with the centre of mass, of all together"),
+    _switch("Shift+C", "centre of mass", "shift+c", "overlays.centres", "show",
+            "The centre of mass of all that moves, and of the selected bodies"),
+    _switch("Shift+X", "parts along x and y", "shift+x", "overlays.parts", "show",
+            "The parts of velocities and momenta along x and y"),
+    _switch("Shift+S", "sound", "shift+s", "sounds.on", "show",
+            "The sound of impacts: deep of what is large, loud by the impulse"),
+    _switch("Shift+F2", "reduced motion", "shift+f2", "reduced_motion", "window",
+            "Nothing moves in the window but what moves in the world"),
     Control("Middle", "pan", tool=tools.PAN, tip="Move the view by dragging"),
     Control("Wheel", "zoom"),
     Control("+", "zoom in", "=", actions.zoom_by_key(1), also=("+", "[+]"), group="view",
             click=actions.zoom_by_button(1), tip="Zoom in"),
     Control("-", "zoom out", "-", actions.zoom_by_key(-1), also=("[-]",), group="view",
             click=actions.zoom_by_button(-1), tip="Zoom out"),
-    Control("F", "fit", "f", lambda world, window: window.fit(world), group="view",
+    Control("F", "fit", "f", actions.fit, group="view",
             tip="Fit everything into the window"),
-    Control("Home", "first view", "home", lambda world, window: window.go_home(world), group="view",
+    Control("Home", "first view", "home", actions.first_view, group="view",
             tip="The view at the start"),
-    _switch("L", "scenes", "l", "shows_gallery", "file", "Choose a scene by its picture"),
-    Control("Ctrl+S", "save the scene", "ctrl+s", file_actions.save, group="file",
-            tip="Save the scene to a new file"),
-    Control("Ctrl+Shift+S", "save under a name", "ctrl+shift+s", file_actions.begin_save_as, group="file",
-            tip="Save the scene to a file that you name"),
-    Control("Ctrl+O", "open the last scene saved", "ctrl+o", file_actions.reopen, group="file",
-            tip="Open the scene last saved"),
-    Control("Ctrl+Shift+O", "open a file", "ctrl+shift+o", file_actions.begin_open, group="file",
-            state=lambda _, window: window.opening is not None,
-            tip="Open a file by its name, or one of the last few"),
+    Control("Shift+L", "leave the lesson", "shift+l", lesson_actions.leave_lesson, group="lesson",
+            tip="Back to what was shown before; answers are kept in a file"),
+    _switch("L", "scenes", "l", "scenes.shows_gallery", "file", "Choose a scene by its picture"),
+    Control("Ctrl+N", "new scene", "ctrl+n", saving.begin_new, group="file",
+            tip="An empty scene with a floor; Ctrl+Z brings unsaved work back"),
+    Control("Ctrl+S", "save", "ctrl+s", saving.save, group="file",
+            tip="Save the scene to its file; the first time under a name that you give it"),
+    Control("Ctrl+Shift+S", "save a copy", "ctrl+shift+s", saving.begin_copy, group="file",
+            tip="Save the scene to another file, and stay with this one"),
+    Control("Ctrl+O", "open a file", "ctrl+o", file_actions.begin_open, group="file",
+            state=lambda _, window: window.scenes.opening is not None,
+            tip="Open a file: from a folder, by its name, or one of the last few"),
     Control("Ctrl+Shift+R", "save what was done", "ctrl+shift+r", actions.save_recording,
             group="file", tip="Save all edits and runs to a file that physicslab replay plays"),
     Control("F12", "screenshot", "f12", file_actions.request_screenshot, group="file",
@@ -298,6 +358,9 @@ CONTROLS: tuple[Control, ...] = (
     Control("F9", "film", "f9", file_actions.toggle_film, group="file",
             state=lambda _, window: window.filming.running,
             tip="A film of the run so far, or of the next: GIF or MP4"),
+    Control("F8", "share as a page", "f8", share_actions.toggle_sharing, group="file",
+            panel="sharing.choosing", state=lambda _, window: window.sharing.running,
+            tip="One file that plays the run in any browser; with sliders, if you like"),
     Control("F5", "error against run time", "f5", file_actions.study_error, group="file",
             state=lambda _, window: window.error_study.running,
             tip="Run this scene by every method, and plot the error and the cost of each"),
@@ -306,21 +369,27 @@ CONTROLS: tuple[Control, ...] = (
     Control("Ctrl+-", "smaller text", "ctrl+-", lambda _, window: actions.scale_text(window, -1),
             also=("ctrl+[-]",), group="window", tip="All text smaller"),
     Control("F2", "other colours", "f2", actions.next_theme, group="window",
-            tip="Colours: dark, high contrast, projector"),
+            tip="Colours: dark, light, high contrast, projector"),
     Control("F6", "next panel", "f6", controls.walk, group="window",
             tip="Go through the buttons and fields of the next panel with Tab and arrows; Esc goes back"),
     Control("F10", "menus", "f10", controls.open_menu, group="window",
             tip="Open the menus: arrows, Enter, Esc. So does Alt alone"),
     Control("F7", "reset layout", "f7", actions.reset_layout, group="window",
             tip="Reset the layout of windows"),
+    Control("Ctrl+K", "search", "ctrl+k", actions.toggle_search, group="help", panel="search",
+            tip="Find a command, a tool, a scene or a quantity by a few letters"),
+    _switch("Shift+F1", "first steps", "shift+f1", "shows_cards", "help", "The cards of the first minute"),
+    Control("Ctrl+F1", "tour", "ctrl+f1", actions.toggle_tour, group="help", panel="tour",
+            state=lambda _, window: window.tour is not None,
+            tip="Eight acts, each shown until you have done it"),
     _switch("F1", "all keys", "f1", "help", "help", "All keys"),
     Control("Esc", "quit", "escape", actions.leave, group="quit", tip="Quit",
-            click=lambda _, window: window.put("closing", True)),
+            click=lambda world, window: window.ask_to_close(world)),
 )  # fmt: skip
 """Everything there is to press, in the order of the help and the menus."""
 
 KEYS: dict[str, Action] = {
-    key: control.action
+    key: partial(control.done, control.action)
     for control in CONTROLS
     for key in (control.key, *control.also)
     if key and control.action is not None
@@ -333,3 +402,27 @@ RELEASES: dict[str, Action] = {
     control.key: control.release for control in CONTROLS if control.release is not None
 }
 """The action of each key when it is released."""
+
+
+def reaches_world(keys: tuple[str, ...], window: Window) -> bool:
+    """Whether a key that goes to no widget is for the world, and not for a window.
+
+    A panel that lies over the world leaves it Esc, the keys F1 to F12, text sizes, files with Ctrl held, undo
+    and redo, and its own key; a window beside it leaves it every key.
+
+    Parameters
+    ----------
+    keys : tuple of str
+        Its name in SDL, after ``"ctrl+"`` and ``"shift+"`` where these are held, and what else it counts as.
+    """
+    name = keys[0].rpartition("+")[2]
+    if not window.in_front or (name[:1] == "f" and name[1:].isdigit()):
+        return True
+    control = next((one for key in keys for one in CONTROLS if key in (one.key, *one.also)), None)
+    if control is not None and (
+        control.group in ("quit", "window")
+        or (control.group == "file" and "ctrl+" in keys[0])
+        or control.action in (actions.undo, actions.redo)
+    ):
+        return True
+    return control is not None and control.panel == window.in_front

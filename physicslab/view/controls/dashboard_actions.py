@@ -10,13 +10,13 @@ import numpy as np
 from physicslab.components import Graph, GraphLine, Mass, Meter, Shape, Slider, Spring, Transform, Velocity
 from physicslab.components.quantities import QUANTITIES
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
+from physicslab.diagnostics.quantities import why_undefined
 from physicslab.ecs.component import Component
-from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import table_cell
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, Remove, SetField, SetPhysics, Spawn
 from physicslab.view.controls import actions
-from physicslab.view.controls.file_actions import save_new
+from physicslab.view.controls.saving import save_new
 from physicslab.view.window.dashboard import Dashboard, GraphShown, SliderShown
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.record import Key
@@ -39,7 +39,7 @@ _USUAL = {
 
 def plot_selected(world: World, window: Window) -> None:
     """Plot the selection against time; without one, the energies of the world."""
-    bodies = _selected(world, window)
+    bodies = window.selection.bodies(world)
     if not bodies:
         _plot(window, "plotted energies", Graph(), [(None, name) for name in _ENERGIES])
         return
@@ -52,9 +52,22 @@ def plot_selected(world: World, window: Window) -> None:
     _plot(window, f"plotted {_labels(world, bodies)}", Graph(), keys)
 
 
+def plot_quantity(world: World, window: Window, name: str) -> None:
+    """Plot a quantity against time: of each selected body that has it, or else of the world."""
+    quantity = QUANTITIES[name]
+    bodies = [body for body in window.selection.bodies(world) if not why_undefined(world, name, body)]
+    keys: list[Key] = [(body, name) for body in bodies[:_LIMIT]] if quantity.of_body else []
+    if not keys and quantity.of_world:
+        keys = [(None, name)]
+    if keys:
+        _plot(window, f"plotted {name}", Graph(), keys)
+    else:
+        window.notify(f"Select a body that has it: {name} is of a body")
+
+
 def plot_phase(world: World, window: Window) -> None:
     """Plot the velocity of the selection against its place."""
-    bodies = [body for body in _selected(world, window) if world.has(body, Velocity)]
+    bodies = [body for body in window.selection.bodies(world) if world.has(body, Velocity)]
     if not bodies:
         window.notify("Select a body that moves: its velocity is plotted against its place")
         return
@@ -72,7 +85,7 @@ def _plot(window: Window, words: str, graph: Graph, keys: Sequence[Key]) -> None
 
 def add_meter(world: World, window: Window) -> None:
     """Show the speed of each body that is selected in large figures, or the total energy of the world."""
-    bodies = _selected(world, window)[:_EACH]
+    bodies = window.selection.bodies(world)[:_EACH]
     keys: list[Key] = [(body, "speed" if world.has(body, Velocity) else "y") for body in bodies]
     keys = keys or [(None, "total energy")]
     made = [Spawn([Meter(name, body)]) for body, name in keys]
@@ -140,22 +153,15 @@ def _do(world: World, window: Window, entity: int, command: Command) -> None:
     window.edits.do(command)
 
 
-def slide(world: World, window: Window, slider: SliderShown, value: float, *, held: bool) -> None:
-    """Give the number of a slider another value.
-
-    While the slider is ``held`` and time runs it is a part of the run, as what a hand does; once it is let go
-    it is an edit.
-    """
+def slide(world: World, window: Window, slider: SliderShown, value: float) -> None:
+    """Give the number of a slider another value: all until it is let go is one edit, or a part of the run."""
+    if not window.edits.held:
+        window.edits.hold()
     command = _sliding(world, slider, value)
     if isinstance(command, str):
         window.notify(command, 6.0, failed=True)
-    elif not held:
-        window.edits.do(command)
-    elif not window.pace.paused:
-        try:
-            window.edits.write(command)
-        except InvalidValue as error:
-            window.notify(str(error), 6.0, failed=True)
+    else:
+        window.edits.do_all([command])
 
 
 def _sliding(world: World, slider: SliderShown, value: float) -> Command | str:
@@ -186,10 +192,6 @@ def save_table(world: World, window: Window, graph: GraphShown) -> None:
 def save_picture(world: World, window: Window, graph: GraphShown, content: bytes) -> None:
     """Write a picture of a graph to a new file where the program was started."""
     save_new(world, window, "graph", ".png", content)
-
-
-def _selected(world: World, window: Window) -> list[int]:
-    return [entity for entity in window.selection.entities if world.has(entity, Transform)]
 
 
 def _labels(world: World, bodies: Sequence[int]) -> str:

@@ -2,28 +2,29 @@
 
 import copy
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from itertools import pairwise
+from types import MappingProxyType
 
 import pygame
 
-from physicslab.components import Spring, Transform
-from physicslab.contacts.outlines import Outlines
+from physicslab.components import Colour, MadeOf, Mass, Shape, Transform, Velocity
+from physicslab.contacts.outlines import Outlines, discs_at
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, Spawn
-from physicslab.state.joint_rows import KINDS
-from physicslab.view.controls.measure import HANGING, LENGTH, Measure
+from physicslab.view.controls.measure import DOMINOES, HANGING, LENGTH, Measure
 from physicslab.view.controls.picking import body_at
-from physicslab.view.controls.polygons import MOST, NotConvex, is_stroke
+from physicslab.view.controls.polygons import MOST, is_stroke, simplified
+from physicslab.view.controls.pouring import as_many_as_wanted
 from physicslab.view.window.edits import Recipe
-from physicslab.view.window.placing import outlines_of, refused_place, snapped_point
+from physicslab.view.window.ends import brought, local_point
+from physicslab.view.window.placing import outlines_of, put_down, refused_place, snapped_point
 from physicslab.view.window.sketch import Grip
-from physicslab.view.window.spring_tool import local_point
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -68,6 +69,9 @@ class Drawn:
         What to do next, by the number of points that were put down; shown beside the cursor.
     remark : str
         What to say where gravity does not act between bodies.
+    by_recipe, stands, pours : bool
+        Whether it is made as the recipe for the next body says; whether it is put on what is just below; and
+        whether as many are made as fit around the way of the cursor while the button is held.
     """
 
     name: str
@@ -82,6 +86,9 @@ class Drawn:
     is_centred: bool = False
     prompts: tuple[str, ...] = ()
     remark: str = ""
+    by_recipe: bool = False
+    stands: bool = False
+    pours: bool = False
 
     @property
     def by_click(self) -> bool:
@@ -132,6 +139,17 @@ def _at_cursor(world: World, drawn: Drawn, window: Window) -> Vector2:
     return first + way
 
 
+def _is_refused(world: World, drawn: Drawn, window: Window, *, told: bool = True) -> bool:
+    """Whether typed numbers are none that the next point follows from; and say why."""
+    sketch = window.sketch
+    if not sketch.grips or drawn.pours:
+        return False
+    refusal = drawn.measure.refusal(sketch.typed, window.target - sketch.grips[-1].place(world))
+    if refusal and told:
+        window.notify(f"{drawn.title}: {sketch.typed}: {refusal}", 5.0, failed=True)
+    return bool(refusal)
+
+
 def _grip(world: World, drawn: Drawn, window: Window, place: Vector2) -> Grip:
     """Return the point of what lies at a place, near its middle that itself; of bodies to be the place."""
     if drawn.build is not None:
@@ -150,7 +168,7 @@ def hovered(world: World, drawn: Drawn, window: Window) -> int | None:
     return _grip(world, drawn, window, _at_cursor(world, drawn, window)).body
 
 
-def _is_dragged(window: Window) -> bool:
+def is_dragged(window: Window) -> bool:
     """Whether the cursor is far from where the last point was put down, or numbers stand in its place."""
     (x, y), (at_x, at_y) = window.sketch.begin, window.pointer
     return bool(window.sketch.typed) or math.hypot(x - at_x, y - at_y) > _CLICK
@@ -160,11 +178,16 @@ def _is_dragged(window: Window) -> bool:
 
 
 def press(world: World, window: Window, drawn: Drawn, button: int = 0) -> None:
-    """Put down the next point of what is drawn, or the first one."""
+    """Put down the next point of what is drawn, or the first one: of a body not so near to a panel."""
     sketch = window.sketch
+    if button and drawn.build is not None and window.pointer_beside_panel and sketch.name != drawn.name:
+        window.notify(f"{drawn.title}: begin a little farther from the panel")
+        return
     if sketch.name != drawn.name:
         sketch.cancel()
         sketch.name, sketch.spot = drawn.name, window.target
+    if _is_refused(world, drawn, window):
+        return
     sketch.held, place = button, _at_cursor(world, drawn, window)
     if window.snapping.active and drawn.ways:
         place = snapped_point(world, window.camera, window.place)
@@ -178,9 +201,15 @@ def release(world: World, window: Window, drawn: Drawn) -> None:
     if sketch.name != drawn.name:
         return
     sketch.held = 0
-    if drawn.is_open and is_stroke(sketch.stroke) and not sketch.typed:
-        _finish(world, window, drawn, [Grip(None, place) for place in sketch.stroke])
-    elif _is_dragged(window):
+    if drawn.pours:
+        places = as_many_as_wanted(world, window)
+        sketch.cancel()
+        _build(world, window, drawn, places, checked=True)
+    elif drawn.is_open and is_stroke(sketch.stroke) and not sketch.typed:
+        _finish(world, window, drawn, [Grip(None, place) for place in simplified(sketch.stroke)])
+    elif _is_refused(world, drawn, window):
+        sketch.cancel()
+    elif is_dragged(window):
         _put(world, window, drawn, _at_cursor(world, drawn, window))
     elif drawn.ways:
         places = _clicked(drawn, window, sketch.spot)
@@ -190,12 +219,14 @@ def release(world: World, window: Window, drawn: Drawn) -> None:
 
 def _put(world: World, window: Window, drawn: Drawn, place: Vector2) -> None:
     sketch = window.sketch
-    closes = drawn.is_open and _is_closed(window, place)
+    closes, given = drawn.is_open and _is_closed(window, place), drawn.measure.given(sketch.typed)
     if not closes:
         sketch.grips.append(_grip(world, drawn, window, place))
     sketch.begin, sketch.typed, sketch.stroke = window.pointer, "", []
+    if drawn.pours and sketch.held:
+        return
     if closes or len(sketch.grips) == (drawn.points or MOST):
-        _finish(world, window, drawn, list(sketch.grips))
+        _finish(world, window, drawn, list(sketch.grips), given)
 
 
 def _is_closed(window: Window, place: Vector2) -> bool:
@@ -214,15 +245,21 @@ def follow(window: Window, drawn: Drawn | None) -> None:
             sketch.stroke += [last, window.place] if not sketch.stroke else [window.place]
 
 
-def _finish(world: World, window: Window, drawn: Drawn, grips: Sequence[Grip]) -> None:
-    """Make what is drawn of its points."""
+def _finish(
+    world: World,
+    window: Window,
+    drawn: Drawn,
+    grips: Sequence[Grip],
+    given: Mapping[str, float] | None = None,
+) -> None:
+    """Make what is drawn of its points, with the mass and the speed that were given, by their units."""
     sketch = window.sketch
     sketch.cancel()
     if drawn.join is not None:
         join(world, window, drawn.title, partial(drawn.join, world, window, grips))
         return
     places = [grip.anchor for grip in grips]
-    if _build(world, window, drawn, places) and len(places) == 2:
+    if _build(world, window, drawn, places, given=given or {}) and len(places) == 2:
         sketch.ways[drawn.name] = places[1] - places[0]
 
 
@@ -247,36 +284,60 @@ def click(world: World, window: Window, drawn: Drawn) -> None:
     _build(world, window, drawn, _clicked(drawn, window, window.target))
 
 
-def _build(world: World, window: Window, drawn: Drawn, places: Sequence[Vector2]) -> bool:
-    """Make bodies through points; where they would overlap, say so instead. Return whether they were made."""
+def _build(
+    world: World, window: Window, drawn: Drawn, places: Sequence[Vector2], *, checked: bool = False,
+    given: Mapping[str, float] = MappingProxyType({}),
+) -> bool:  # fmt: skip
+    """Make bodies through points; where they would overlap, say so instead. Return whether they were made.
+
+    ``checked`` says that there is room for them.
+    """
+    if not places:
+        return False
     try:
-        refused = refused_place(world, _outlines(drawn, places, window.recipe))
-        made = [] if refused else _commands(drawn, places, window)
+        places = _put_down(world, drawn, places)
+        refused = "" if checked else refused_place(world, _outlines(drawn, places, window.recipe))
+        made = [] if refused else _commands(drawn, places, window, given)
     except InvalidValue as error:
         refused = f"{error.field} must be {error.allowed}"
-    except NotConvex as error:
+    except ValueError as error:  # no outline
         refused = str(error)
     if refused:
         window.notify(f"{drawn.title}: {refused}")
         return False
     window.spawned += 1
-    window.edits.do(Group(f"made: {drawn.title.lower()}", made))
+    words = f"poured {len(places)} discs" if drawn.pours else f"made: {drawn.title.lower()}"
+    window.edits.do(Group(words, made))
+    if drawn.pours:
+        window.notify(f"{len(places)} discs")
     if drawn.remark and world.physics.gravity_mode != "planet":
         window.notify(drawn.remark, 5.0)
     return True
 
 
-def _commands(drawn: Drawn, places: Sequence[Vector2], window: Window) -> list[Command]:
-    """Return the commands that make bodies through points."""
+def _put_down(world: World, drawn: Drawn, places: Sequence[Vector2]) -> Sequence[Vector2]:
+    return put_down(world, places, each=drawn.measure is DOMINOES) if drawn.stands else places
+
+
+def _commands(
+    drawn: Drawn, places: Sequence[Vector2], window: Window, given: Mapping[str, float]
+) -> list[Command]:
+    """Return the commands that make bodies through points, of a mass [kg] and a speed to the right [m/s]."""
     scratch, first = _built(drawn, places, window.recipe), window.edits.history.next_entity
-    entities = scratch.entities()
+    entities, parts_of_one = scratch.entities(), scratch.batch(Shape).entities.tolist()
+    if drawn.is_open and len(parts_of_one) > 1 and not scratch.has(parts_of_one[0], Colour):
+        colour = Colour("#" + bytes(window.theme.body(first)).hex())
+        for entity in parts_of_one:
+            scratch.add(entity, copy.copy(colour))
     number = {entity: first + n for n, entity in enumerate(entities)}
     commands: list[Command] = []
     for entity in entities:
-        parts = [copy.copy(part) for part in scratch.components(entity) if isinstance(part, Component)]
+        parts = brought([one for one in scratch.components(entity) if isinstance(one, Component)], number)
         for part in parts:
-            if isinstance(part, (Spring, *KINDS)):
-                parts[parts.index(part)] = _renumbered(part, number)
+            if isinstance(part, Mass) and "kg" in given:
+                part.mass = given["kg"]
+            elif isinstance(part, Velocity) and "m/s" in given:
+                part.linear = Vector2(given["m/s"], 0.0)
         commands.append(Spawn(parts))
     return commands
 
@@ -285,17 +346,12 @@ def _built(drawn: Drawn, places: Sequence[Vector2], recipe: Recipe) -> World:
     scratch = World()
     if drawn.build is not None:
         drawn.build(scratch, places, recipe)
+    if drawn.by_recipe and recipe.material:
+        for entity in scratch.batch(Shape).entities.tolist():
+            scratch.add(entity, MadeOf(recipe.material))
+            if recipe.colour:
+                scratch.add(entity, Colour(recipe.colour))
     return scratch
-
-
-def _renumbered[C: Component](part: C, number: dict[int, int]) -> C:
-    """Return a spring or a joint between the same bodies under other numbers."""
-    ends = {
-        spec.name: number[getattr(part, spec.name)]
-        for spec in part.FIELDS
-        if spec.kind == "entity" and getattr(part, spec.name) is not None
-    }
-    return type(part)(**{**part.given(), **ends})
 
 
 def _outlines(drawn: Drawn, places: Sequence[Vector2], recipe: Recipe) -> Outlines:
@@ -309,9 +365,12 @@ def _outlines_about(drawn: Drawn, places: tuple[Vector2, ...], recipe: Recipe) -
     return outlines_of(_built(drawn, places, recipe))
 
 
-def about(drawn: Drawn, window: Window) -> Outlines:
-    """Return the outlines of what a click makes, as if the cursor were at the origin."""
-    return _outlines(drawn, _clicked(drawn, window, Vector2()), window.recipe)
+def about(drawn: Drawn, window: Window) -> Outlines | None:
+    """Return the outlines of what a click makes, as if the cursor were at the origin; none of one corner."""
+    try:
+        return _outlines(drawn, _clicked(drawn, window, Vector2()), window.recipe)
+    except ValueError:  # larger than anything may be, or not a shape yet
+        return None
 
 
 # ---- what is shown while something is drawn ----------------------------------------------------------------
@@ -320,11 +379,13 @@ def about(drawn: Drawn, window: Window) -> Outlines:
 def ghost(world: World, drawn: Drawn, window: Window) -> tuple[Outlines, bool] | None:
     """Return the outlines of what a click, or letting go, makes now, and whether there is room for it."""
     sketch = window.sketch
+    if drawn.pours and sketch.name == drawn.name:
+        return discs_at(sketch.stroke, window.recipe.grain), True
     if sketch.name == drawn.name and sketch.grips:
         places = [grip.anchor for grip in sketch.grips]
         if is_stroke(sketch.stroke):
-            places = sketch.stroke
-        elif drawn.is_open or _is_dragged(window):
+            places = simplified(sketch.stroke)
+        elif drawn.is_open or is_dragged(window):
             cursor = _at_cursor(world, drawn, window)
             places = places if drawn.is_open and _is_closed(window, cursor) else [*places, cursor]
         else:
@@ -332,8 +393,8 @@ def ghost(world: World, drawn: Drawn, window: Window) -> tuple[Outlines, bool] |
     else:
         places = _clicked(drawn, window, window.target)
     try:
-        outlines = _outlines(drawn, places, window.recipe)
-    except (InvalidValue, NotConvex):  # larger than anything may be, or not a shape yet
+        outlines = _outlines(drawn, _put_down(world, drawn, places), window.recipe)
+    except ValueError:  # larger than anything may be, or not a shape yet
         return None
     return outlines, not refused_place(world, outlines)
 
@@ -341,7 +402,7 @@ def ghost(world: World, drawn: Drawn, window: Window) -> tuple[Outlines, bool] |
 def lines(world: World, drawn: Drawn, window: Window) -> list[tuple[Vector2, Vector2]]:
     """Return the lines of a joint or a polygon in the making, to the point at the cursor [m]."""
     places = [grip.place(world) for grip in window.sketch.grips]
-    if drawn.hangs and not _is_dragged(window):
+    if drawn.hangs and not is_dragged(window):
         return []
     if is_stroke(window.sketch.stroke):
         return list(pairwise(window.sketch.stroke))
@@ -353,9 +414,14 @@ def reading(world: World, drawn: Drawn, window: Window) -> str:
     """Return what stands beside the cursor: the size of what is drawn, what is typed, or what to do next."""
     sketch = window.sketch
     begun = len(sketch.grips) if sketch.name == drawn.name else 0
+    if drawn.pours and begun:
+        count = f"{len(sketch.stroke)} discs"
+        return f"{sketch.typed}_   {count}" if sketch.typed else count
     if is_stroke(sketch.stroke):
         return "Let go to close it"
-    if (begun % 2 or drawn.is_open) and begun and drawn.points != 1 and _is_dragged(window):
+    if (begun % 2 or drawn.is_open) and begun and drawn.points != 1 and is_dragged(window):
+        if _is_refused(world, drawn, window, told=False):
+            return f"{sketch.typed}_"
         first, place = sketch.grips[-1].place(world), _at_cursor(world, drawn, window)
         size = drawn.measure.said(place - first)
         return f"{sketch.typed}_   {size}" if sketch.typed else size

@@ -4,7 +4,6 @@ from typing import Any
 
 from physicslab.components import Velocity
 from physicslab.view.controls import actions
-from physicslab.view.controls.picking import body_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -66,13 +65,8 @@ def run_slowly(world: World, window: Window) -> None:
 
 
 def clicked_impact(world: World, window: Window, pixel: tuple[float, float]) -> Any | None:
-    """Return the impact whose mark or sparks are at a place on the screen [px], if a click there means it.
-
-    While bodies move and impulses (E) are hidden, a click on a body selects the body.
-    """
+    """Return the impact whose mark or sparks are at a place on the screen [px], while time stands still."""
     camera = window.camera
-    record = window.microscope.near(camera.to_world(pixel), _REACH / camera.scale, world.time)
-    marked = window.pace.paused or window.overlays.impulses
-    if record is None or not (marked or body_at(world, camera, pixel) is None):
+    if not window.pace.paused:
         return None
-    return record
+    return window.microscope.near(camera.to_world(pixel), _REACH / camera.scale, world.time)

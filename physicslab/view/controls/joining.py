@@ -23,8 +23,8 @@ from physicslab.state.joints import Joint
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.drawing import Drawn, join
 from physicslab.view.controls.picking import bodies_at
+from physicslab.view.window.ends import local_point, spring_between
 from physicslab.view.window.sketch import Grip
-from physicslab.view.window.spring_tool import local_point, spring_between
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
 
@@ -110,6 +110,8 @@ def _slot(world: World, window: Window, grips: Grips) -> Made:
     bodies = _held(world, window, place)
     if not bodies:
         return "A slot holds a body: begin on the one that is to slide"
+    if end == place:
+        return "No slot: its way has no length"
     b, a = bodies
     turn = 0.0 if a is None else world.component(a, Transform).angle
     axis = (end - place).normalized.rotated(-turn)

@@ -1,5 +1,6 @@
 """Sizes of what is drawn: as words beside the cursor, and as numbers that are typed in place of a drag."""
 
+import contextlib
 import math
 import re
 from collections.abc import Callable, Sequence
@@ -10,8 +11,14 @@ from physicslab.ecs.vector import Vector2
 
 _TURN = math.pi / 12.0
 """The step of directions while Shift is held [rad]."""
+MOST = 2_000
+"""How many bodies are drawn at once at most."""
 _BETWEEN = re.compile(r"\s*(?:,\s+|;|\bx\b|×)\s*")
 """What stands between two numbers."""
+
+
+_OF_BODY = ("kg", "m/s")
+"""The units of what can be typed of a body beside its size."""
 
 
 class Measure(NamedTuple):
@@ -45,20 +52,47 @@ class Measure(NamedTuple):
         InvalidText
             If they are no such numbers.
         """
-        parts = [part for part in _BETWEEN.split(text.strip())]
+        parts = [part for part in _BETWEEN.split(text) if _of_body(part, self.units) is None]
+        while parts and not parts[-1].strip():
+            del parts[-1]
         if len(parts) > len(self.units):
-            raise InvalidText(f"at most {len(self.units)} numbers")
+            raise InvalidText(f"it takes {len(self.units)} number{'s' * (len(self.units) > 1)} at most")
         numbers = list(self.numbers(way))
         for n, part in enumerate(parts):
             if part:
                 numbers[n] = evaluate(part, self.units[n])
         if numbers[0] <= 0.0 or not all(map(math.isfinite, numbers)):
             raise InvalidText("a length is above 0")
+        if "1" in self.units and math.prod(numbers) > MOST:
+            raise InvalidText(f"at most {MOST:,} in all")
         return self.way(numbers, way)
+
+    def refusal(self, text: str, way: Vector2) -> str:
+        """Return why no way is written with typed numbers; empty where one is, or nothing is typed."""
+        try:
+            if text:
+                self.written(text, way)
+        except InvalidText as error:
+            return str(error)
+        return ""
+
+    def given(self, text: str) -> dict[str, float]:
+        """Return the mass [kg] and the speed [m/s] among typed numbers, which are no size by their units."""
+        found = (_of_body(part, self.units) for part in _BETWEEN.split(text.strip()))
+        return dict(one for one in found if one is not None)
 
     def said(self, way: Vector2) -> str:
         """Return the numbers of a way in words."""
         return self.words(*self.numbers(way))
+
+
+def _of_body(text: str, units: Sequence[str]) -> tuple[str, float] | None:
+    """Return the property that a number is of by its unit; ``None`` for a size, or one half written."""
+    for unit in (*units, *_OF_BODY):
+        with contextlib.suppress(InvalidText):
+            value = evaluate(text, unit)
+            return None if unit in units else (unit, value)
+    return None
 
 
 def _metres(length: float) -> str:
@@ -108,3 +142,30 @@ CORNERS = Measure(
     _square,
 )
 """From corner to corner."""
+
+BRICK, DOMINO_SPACING = (0.4, 0.2), 0.25
+"""Width and height of a brick, and the distance of dominoes [m]."""
+
+
+def _bricks(way: Vector2) -> Sequence[float]:
+    return tuple(max(round(abs(part) / size), 1) for part, size in zip(way, BRICK, strict=True))
+
+
+WALL = Measure(
+    ("1", "1"),
+    _bricks,
+    lambda numbers, way: _sides([round(n) * size for n, size in zip(numbers, BRICK, strict=True)], way),
+    lambda columns, rows: f"{columns:.0f} × {rows:.0f} bricks",
+    lambda way: way,
+)
+"""So many bricks beside and above each other."""
+DOMINOES = Measure(
+    ("1",),
+    lambda way: (round(way.magnitude / DOMINO_SPACING) + 1,),
+    lambda numbers, way: (
+        (way.normalized if way else Vector2(1.0, 0.0)) * (max(round(numbers[0]) - 1, 0) * DOMINO_SPACING)
+    ),
+    lambda count: f"{count:.0f} dominoes",
+    _turned,
+)
+"""So many in a row."""

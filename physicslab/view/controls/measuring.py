@@ -173,14 +173,14 @@ def key_action(tool: Tool, choose: Callable[[World, Window, Tool], None]) -> Act
     kind = _KINDS[tool.name]
 
     def measure(world: World, window: Window) -> None:
-        bodies = [entity for entity in window.selection.entities if world.has(entity, Transform)]
+        bodies = window.selection.bodies(world)
         places = [Spot(world.component(body, Transform).position, body) for body in bodies]
         if kind is not Note and len(bodies) == len(kind.POINTS):
             _select(window, window.edits.do(made(world, kind, places)))
         elif window.tool != tool.name:
             choose(world, window, tool)
         elif kind is Note:
-            window.measuring.writing = Writing(Spot(window.camera.to_world(window.middle)))
+            window.measuring.writing = Writing(Spot(window.camera.to_world(window.framing.middle)))
         else:
             _select(window, window.edits.do(made(world, kind, _in_the_middle(window, kind))))
 
@@ -188,7 +188,7 @@ def key_action(tool: Tool, choose: Callable[[World, Window, Tool], None]) -> Act
 
 
 def _in_the_middle(window: Window, kind: type[Any]) -> list[Spot]:
-    middle, room = window.camera.to_world(window.middle), window.room()
+    middle, room = window.camera.to_world(window.framing.middle), window.framing.room()
     reach = _SHARE * min(room[2:]) / window.camera.scale
     across, up = Vector2(0.5 * reach, 0.0), Vector2(0.0, 0.5 * reach)
     if kind is Protractor:

@@ -12,7 +12,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Rect, is_within
 from physicslab.view.overlay.instruments import Instrument, instruments_of
-from physicslab.view.picture.bodies import POINT_RADIUS, body_rows
+from physicslab.view.picture.bodies import POINT_RADIUS, body_rows, point_radii
 from physicslab.view.picture.joints import gaps_to, joint_at
 from physicslab.view.picture.springs import ends_of
 from physicslab.world import World
@@ -49,7 +49,7 @@ def bodies_at(world: World, camera: Camera, pixel: tuple[float, float], reach: f
     entities = world.entity_index.entities
     everything = rows.all
     gap = outlines_of(world, everything).gaps(place.x, place.y)
-    gap[len(gap) - len(rows.points) :] -= POINT_RADIUS / camera.scale
+    gap[len(gap) - len(rows.points) :] -= point_radii(world, rows.points) / camera.scale
     gap[: len(rows.chains)] -= POINT_RADIUS / camera.scale
     near = np.flatnonzero(gap <= reach / camera.scale)[::-1]
     hit: list[int] = entities[everything[near]].tolist()

@@ -5,25 +5,23 @@ from itertools import pairwise
 
 from physicslab.components import Shape
 from physicslab.ecs.vector import Vector2
-from physicslab.prefabs import body
+from physicslab.prefabs import body, outline
 from physicslab.view.window.edits import Recipe
 from physicslab.world import World
 
-MOST = 8
-"""How many corners a polygon has at most."""
-_HOLLOW = 0.12
+MOST = 100
+"""How many corners are clicked at most."""
+_CONVEX = 8
+"""How many corners one convex body has at most."""
+_HOLLOW = 0.06
 """Share of its area by which a stroke may be hollow where it is taken for a convex shape drawn by hand."""
 _ROUND = 0.01
 """Least area within a stroke, as a share of the square of its length; of a circle it is 0.08."""
-_SMALL = 0.01
-"""Share of the area below which a corner of a stroke is none."""
+_SMALL, _NOTCH = 0.01, 0.004
+"""Shares of the area below which a corner of a stroke is none, of a convex one and of one that is not."""
 
 type Places = Sequence[Vector2]
 """Points one after the other [m]."""
-
-
-class NotConvex(ValueError):
-    """Points are the corners of no convex polygon."""
 
 
 def area(corners: Places) -> float:
@@ -39,7 +37,7 @@ def area(corners: Places) -> float:
 def is_stroke(places: Places) -> bool:
     """Whether points are those of a stroke around something, and not of a straight one along an edge."""
     length = sum((other - one).magnitude for one, other in pairwise(places))
-    return len(places) > MOST and abs(area(places)) > _ROUND * length * length
+    return len(places) > _CONVEX and abs(area(places)) > _ROUND * length * length
 
 
 def hull(places: Places) -> list[Vector2]:
@@ -57,54 +55,41 @@ def hull(places: Places) -> list[Vector2]:
 
 
 def simplified(stroke: Places) -> list[Vector2]:
-    """Return the corners of the convex polygon that a closed stroke was meant to be.
+    """Return the corners of the outline that a closed stroke was meant to be.
 
-    Raises
-    ------
-    NotConvex
-        If it is hollow, or hardly has an area.
+    Corners that matter least are left out one after the other, by the triangles that they make with their
+    neighbours (Visvalingam & Whyatt, Cartographic J. 30, 1993). A stroke that is hardly hollow is convex.
     """
-    corners = hull(stroke)
-    whole = area(corners) if len(corners) > 2 else 0.0
-    if whole <= 0.0 or abs(area(stroke)) < (1.0 - _HOLLOW) * whole:
-        raise NotConvex("it is hollow: only convex shapes can be made, others of several that are welded")
-    while True:
-        cuts = [
-            (corners[n - 1] - place).cross(corners[(n + 1) % len(corners)] - place)
-            for n, place in enumerate(corners)
-        ]
-        least = min(range(len(cuts)), key=lambda n: abs(cuts[n]))
-        if len(corners) <= 3 or (len(corners) <= MOST and 0.5 * abs(cuts[least]) > _SMALL * whole):
-            return corners
-        del corners[least]
-
-
-def clicked(places: Places) -> list[Vector2]:
-    """Return points that were clicked as the corners of a convex polygon, counter-clockwise.
-
-    Raises
-    ------
-    NotConvex
-        If one of them is within the others, or on a line between two.
-    """
-    corners = hull(places)
-    if len(corners) < 3:
-        raise NotConvex("it needs three corners that are not on one line")
-    if len(corners) < len(places):
-        raise NotConvex("it is hollow: only convex shapes can be made, others of several that are welded")
+    corners, whole = hull(stroke), abs(area(stroke))
+    is_convex = len(corners) > 2 and whole >= (1.0 - _HOLLOW) * area(corners)
+    corners, small, most = (corners, _SMALL, _CONVEX) if is_convex else (list(stroke), _NOTCH, MOST)
+    cuts = [_cut(corners, n) for n in range(len(corners))]
+    while len(corners) > 3:
+        least = min(range(len(cuts)), key=cuts.__getitem__)
+        if len(corners) <= most and cuts[least] > small * whole:
+            break
+        del corners[least], cuts[least]
+        for n in (least - 1, least % len(corners)):
+            cuts[n] = _cut(corners, n)
     return corners
 
 
+def _cut(corners: Places, n: int) -> float:
+    """Return the area [m^2] of the triangle of a corner and its neighbours."""
+    place = corners[n]
+    return 0.5 * abs((corners[n - 1] - place).cross(corners[(n + 1) % len(corners)] - place))
+
+
 def build_polygon(world: World, places: Places, recipe: Recipe) -> None:
-    """Make a body that is a polygon; more points than it may have corners are a stroke."""
-    corners = simplified(places) if len(places) > MOST else clicked(places)
-    shape = Shape.polygon(corners)
-    body(world, shape, corners[0] - shape.vertices[0], **recipe.body(area(corners)))
+    """Make what has some corners: one body, or several that are welded where it is not convex."""
+    outline(world, places, **recipe.body(abs(area(places))))
 
 
 def build_ramp(world: World, places: Places, recipe: Recipe) -> None:
     """Make a fixed wedge from the foot of its slope to its top."""
     foot, top = places
-    corners = clicked([foot, Vector2(top.x, foot.y), top])
+    corners = hull([foot, Vector2(top.x, foot.y), top])
+    if len(corners) < 3:
+        raise ValueError("it needs a slope that is neither level nor upright")
     shape = Shape.polygon(corners)
     body(world, shape, corners[0] - shape.vertices[0], static=True, friction=recipe.friction)

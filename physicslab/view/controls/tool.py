@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import pygame
+
 from physicslab.view.controls.drawing import Drawn
 from physicslab.view.window.window import Action
 
@@ -36,6 +38,15 @@ class Tool:
     draws: Drawn | None = None
     prompts: tuple[str, ...] = ()
 
+    @property
+    def cursor(self) -> int:
+        """How the cursor looks with it, one of those of the system."""
+        if self.pans:
+            return pygame.SYSTEM_CURSOR_SIZEALL
+        if self.name == "remove":
+            return pygame.SYSTEM_CURSOR_NO
+        return pygame.SYSTEM_CURSOR_CROSSHAIR if self.draws or self.drags else pygame.SYSTEM_CURSOR_ARROW
+
 
 ICONS = {
     "select": "\uf25a", "circle": "\uf111", "box": "\uf0c8", "capsule": "\uf46b", "block": "\uf068",
@@ -44,7 +55,8 @@ ICONS = {
     "pin": "\uf192", "motor": "\uf863", "slot": "\uf337", "weld": "\uf46a", "pulley": "\uf655",
     "gear": "\uf013", "remove": "\uf12d", "ruler": "\uf545",
     "protractor": "\uf568", "gate": "\uf11e", "note": "\uf249", "pan": "\uf0b2",
-    "more": "\uf141", "stack": "\uf5fd", "pyramid": "\uf6fc", "heap": "\uf1ce", "pit": "\uf01c",
+    "more": "\uf141", "brush": "\uf1fc", "wall": "\uf00a", "dominoes": "\uf7a5", "stack": "\uf5fd",
+    "pyramid": "\uf6fc", "heap": "\uf1ce", "pit": "\uf01c",
     "binary": "\uf753", "play": "\uf04b", "pause": "\uf04c", "step": "\uf051", "back": "\uf048",
     "restart": "\uf2f9", "undo": "\uf0e2", "redo": "\uf01e",
 }  # fmt: skip

@@ -15,7 +15,7 @@ from physicslab.view.controls.picking import body_at, instrument_at, link_at, sp
 from physicslab.view.controls.spawning import BODIES, GROUPS
 from physicslab.view.controls.tool import Tool
 from physicslab.view.picture.joints import joint_at
-from physicslab.view.window.spring_tool import pin_at
+from physicslab.view.window.ends import pin_at
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -40,18 +40,24 @@ def take_hold(world: World, window: Window) -> bool:
     if joint is not None:
         window.selection.take(joint, add=window.adding)
         return True
-    pin = pin_at(world, window.camera, window.pointer)
+    lesson = window.lesson
+    pin = pin_at(world, window.camera, window.pointer) if lesson is None else None
     entity = body_at(world, window.camera, window.pointer) if pin is None else None
     fixed = entity is None or not world.has(entity, Velocity)
     if pin is None and fixed and take_instrument(world, window):
         return True  # it lies over what is fixed
     if entity is None:
         window.pins.dragged = pin
+        if pin is not None:
+            window.edits.history.divide()
         spring = link_at(world, window.camera, window.pointer) if pin is None else pin[0]
         if spring is not None:
             window.selection.take(spring, add=window.adding)
         return spring is not None
     window.selection.take(entity, add=window.adding)
+    if lesson is not None and not lesson.opens_hand:
+        return True
+    window.edits.history.divide()  # one undo takes back what the hand does from now on
     if not window.hand.take(world, entity, window.place, window.now) and not window.pace.paused:
         window.notify(f"{world.label(entity)} stays where it is: it is fixed")
     return True
@@ -155,9 +161,10 @@ def begin_by_key(world: World, window: Window) -> None:
 
 
 def end_by_key(world: World, window: Window) -> None:
-    """End the spring at the cursor."""
-    drawing.release(world, window, SPRING)
-    window.sketch.cancel()
+    """End the spring at the cursor; the key may have been typed for something else that is being drawn."""
+    if window.sketch.name == SPRING.name and not window.sketch.held:
+        drawing.release(world, window, SPRING)
+        window.sketch.cancel()
 
 
 DRAWING = {drawn.name: drawing_tool(drawn) for drawn in (*BODIES, *JOINTS, *GROUPS)}
@@ -178,7 +185,7 @@ MORE_TOOLS = tuple(tool for tool in DRAWING.values() if tool.name not in _IN_SIG
 TOOLS = {tool.name: tool for tool in (*PALETTE, *MORE_TOOLS)}
 """Every tool, by the name that ``Window.tool`` holds."""
 _BY_DIGITS = ("circle", "box", "block", "beam", "capsule", "pendulum", "spring", "rod", "rope", "pin")
-_WITH_SHIFT = ("motor", "slot", "weld", "pulley", "gear", "polygon", "ramp", "chain")
+_WITH_SHIFT = ("motor", "slot", "weld", "pulley", "gear", "polygon", "ramp", "chain", "brush", "dominoes")
 DIGITS = {
     held + str((n + 1) % 10): name
     for held, names in (("", _BY_DIGITS), ("shift+", _WITH_SHIFT))

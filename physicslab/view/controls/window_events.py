@@ -1,5 +1,6 @@
 """SDL's events, turned into what they do to the world and to the window."""
 
+import contextlib
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -9,11 +10,13 @@ from physicslab.components import Held, Shape, Transform
 from physicslab.contacts.outlines import Outlines
 from physicslab.ecs.vector import Vector2
 from physicslab.view.controls import actions, drawing
-from physicslab.view.controls.controls import KEYS, RELEASES, open_menu
-from physicslab.view.controls.file_actions import open_scene
+from physicslab.view.controls.context import open_context, thing_at
+from physicslab.view.controls.controls import KEYS, RELEASES, open_menu, reaches_world
+from physicslab.view.controls.file_actions import open_file
 from physicslab.view.controls.impact_actions import clicked_impact, close_up
 from physicslab.view.controls.measuring import follow_pointer, let_instrument_go, take_end
 from physicslab.view.controls.picking import body_at
+from physicslab.view.controls.pouring import pour
 from physicslab.view.controls.spawning import BOX
 from physicslab.view.controls.tool import Tool
 from physicslab.view.controls.tools import TOOLS
@@ -29,6 +32,13 @@ _SNAPPING = pygame.KMOD_ALT | pygame.KMOD_CTRL
 """Keys with which places snap while they are held."""
 _OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
 """With these keys held, another key is meant for the desktop: Alt+Tab is no slow motion."""
+
+_HELD = 0.4
+"""How long [s] the right button is held to open a menu."""
+_MENU = 0x40000065
+"""The key beside the right Ctrl, which SDL calls "Application"."""
+_COMING_BACK = 0.15
+"""How long [s] after the window came to the front a press is what brought it there."""
 
 
 class WindowEvents:
@@ -51,6 +61,10 @@ class WindowEvents:
         self._panning = 0  # the button that drags the picture
         self._alt_alone = False  # whether Alt went down, and nothing else since
         self._tool: Tool | None = None  # what the left button was pressed with
+        self._right: float | None = None  # when the right button went down, until it draws or is let go [s]
+        self._elapsed = 0.0  # since the last frame [s]
+        self._cursor = pygame.SYSTEM_CURSOR_ARROW
+        self._came_back = -_COMING_BACK  # when another window was left for this one [s]
         self._handlers: dict[int, Callable[[World, pygame.Event], object]] = {
             pygame.KEYDOWN: self._key,
             pygame.KEYUP: self._key_up,
@@ -60,7 +74,8 @@ class WindowEvents:
             pygame.MOUSEWHEEL: lambda world, event: actions.zoom(
                 window, getattr(event, "precise_y", event.y)
             ),
-            pygame.DROPFILE: lambda world, event: open_scene(window, Path(event.file)),
+            pygame.DROPFILE: lambda world, event: open_file(world, window, Path(event.file)),
+            pygame.WINDOWFOCUSGAINED: self._come_back,
             pygame.WINDOWFOCUSLOST: self._leave,
             pygame.WINDOWMINIMIZED: self._leave,
             pygame.WINDOWHIDDEN: self._leave,
@@ -70,6 +85,7 @@ class WindowEvents:
     def begin(self, world: World, events: Sequence[pygame.Event], elapsed: float) -> None:
         """Do what panels were clicked for in the last frame."""
         self._window.now += elapsed
+        self._elapsed = elapsed
         self._window.touched = bool(events or self._window.pending)
         self._do_pending(world)
 
@@ -87,14 +103,43 @@ class WindowEvents:
         if event.type == pygame.MOUSEMOTION:
             window.pointer_on_panel, window.has_pointed = taken, True
 
+    @property
+    def waits(self) -> bool:
+        """Whether a button that is held does something after a while: it opens a menu, or it pours."""
+        return self._right is not None or self._pours
+
+    @property
+    def _pours(self) -> bool:
+        window = self._window
+        drawn = TOOLS[window.sketch.name or window.tool].draws
+        return drawn is not None and drawn.pours and bool(window.sketch.held)
+
     def end(self, world: World) -> None:
         """Let what follows the cursor follow it."""
         window = self._window
-        window.follow_size(world)
+        window.framing.follow(world)
         window.trails.follow(world)
         self._follow_snapping(world)
         window.hand.move(window.target, window.now)
         window.hand.lead(world, window.coming(world), window.pace.paused)
+        if self._right is not None and window.sketch.grips and drawing.is_dragged(window):
+            self._right = None
+        if self._right is not None and window.now - self._right > _HELD:
+            self._right = None
+            open_context(world, window)
+        if self._pours:
+            pour(world, window, self._elapsed)
+        self._show_cursor()
+
+    def _show_cursor(self) -> None:
+        """Let the cursor look like the tool in hand; on panels it is an arrow."""
+        window = self._window
+        arrow = window.pointer_on_panel or window.hand.entity is not None
+        wanted = pygame.SYSTEM_CURSOR_ARROW if arrow else TOOLS[window.tool].cursor
+        if wanted != self._cursor:
+            self._cursor = wanted
+            with contextlib.suppress(pygame.error):  # where the system has no such cursor
+                pygame.mouse.set_cursor(wanted)
 
     def _follow_snapping(self, world: World) -> None:
         """Let the place of the cursor snap, where that is on or a key for it is held."""
@@ -119,11 +164,16 @@ class WindowEvents:
         held = ("ctrl+" if mod & pygame.KMOD_CTRL else "") + ("shift+" if mod & pygame.KMOD_SHIFT else "")
         printed = getattr(event, "unicode", "")
         name = printed if printed in _BY_PRINT else pygame.key.name(event.key).lower()
+        if event.key == _MENU:
+            name = "menu"
         if self._types(name, printed, held):
             return
-        action = KEYS.get(held + name) or KEYS.get(held.replace("shift+", "") + name)
+        keys = held + name, held.replace("shift+", "") + name
+        action = KEYS.get(keys[0]) or KEYS.get(keys[1])
         other_use = mod & _OTHER_USE and name not in _BY_PRINT
-        if action is not None and not other_use:
+        if action is None or other_use:
+            return
+        if reaches_world(keys, self._window):
             self._do(action, world)
 
     def _types(self, name: str, printed: str, held: str) -> bool:
@@ -134,7 +184,7 @@ class WindowEvents:
         letter = {"backspace": "\b", "tab": "\t"}.get(name, printed)
         if not letter or (letter not in "\b\t" and not letter.isprintable()):
             return False
-        if not sketch.typed and not (letter.isdigit() or letter in ".-("):
+        if not sketch.typed and not (letter.isdigit() or letter in ".-(\b\t"):
             return False  # a number begins so: other keys stay what they are
         sketch.write(letter)
         return True
@@ -154,6 +204,8 @@ class WindowEvents:
 
     def _press(self, world: World, event: pygame.Event) -> None:
         self._window.pointer = event.pos
+        if self._window.now - self._came_back < _COMING_BACK:
+            return  # it brought the window to the front
         follow_pointer(world, self._window)
         self._window.adding = bool(pygame.key.get_mods() & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL))
         self._follow_snapping(world)
@@ -163,15 +215,17 @@ class WindowEvents:
                 picked = body_at(world, self._window.camera, event.pos)
                 set_end(world, self._window, picking.entity, picking.kind, picking.field, picked)
                 return
-            if self._takes_handle(world, event.pos):
+            if self._window.lesson is None and self._takes_handle(world, event.pos):
                 return
             if (impact := clicked_impact(world, self._window, event.pos)) is not None:
                 close_up(world, self._window, impact)
                 return
             self._tool = TOOLS[self._window.tool]
             self._tool.press(world, self._window)
-        elif event.button == pygame.BUTTON_RIGHT:
-            drawing.press(world, self._window, BOX, pygame.BUTTON_RIGHT)
+        elif event.button == pygame.BUTTON_RIGHT and self._window.lesson is None:
+            self._right = self._window.now
+            if thing_at(world, self._window) is None:
+                drawing.press(world, self._window, BOX, pygame.BUTTON_RIGHT)
         by_tool = event.button == pygame.BUTTON_LEFT and self._tool is not None and self._tool.pans
         if event.button == pygame.BUTTON_MIDDLE or by_tool:
             self._panning = event.button
@@ -197,6 +251,12 @@ class WindowEvents:
             self._tool = None
         if event.button == pygame.BUTTON_RIGHT == self._window.sketch.held:
             drawing.release(world, self._window, BOX)
+        elif (
+            event.button == pygame.BUTTON_RIGHT and self._right is not None and thing_at(world, self._window)
+        ):
+            open_context(world, self._window)
+        if event.button == pygame.BUTTON_RIGHT:
+            self._right = None
         if event.button == self._panning:
             self._panning = 0
 
@@ -226,13 +286,16 @@ class WindowEvents:
         window.pins.drag(window.edits, window.target, paused=window.pace.paused)
         follow_pointer(world, window)
 
+    def _come_back(self, world: World, event: pygame.Event) -> None:
+        self._came_back = self._window.now
+
     def _leave(self, world: World, event: pygame.Event) -> None:
         """Let go of everything while another window has the focus."""
         self._window.hand.drop(world)
         self._window.pins.release(self._window.edits)
         self._window.sketch.cancel()
         let_instrument_go(world, self._window)
-        self._panning, self._tool = 0, None
+        self._panning, self._tool, self._right = 0, None, None
 
 
 def follow_snapping(world: World, window: Window) -> None:

@@ -1,6 +1,6 @@
 """Arrows: each kind has its own colour, head and shaft, so that no two differ by colour alone."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -19,6 +19,8 @@ _HEAD = 10.0
 _MAX_DASHES = 600
 _DASH, _GAP = 5.0, 4.0
 """The strokes of a broken shaft, and the spaces between them [px]."""
+_PART_WIDTH = 1.3
+"""Width of the parts of arrows along x and y [px]."""
 _BOLD_LIMIT = 256
 """More arrows than this of one kind are drawn finer, so that something is seen between them."""
 
@@ -41,6 +43,10 @@ class Head(Enum):
         ((-0.6, 0.4), (-1.2, 0.0)), ((-0.6, -0.4), (-1.2, 0.0)),
     )  # fmt: skip
     OPEN = (((0.0, 0.0), (-0.9, 0.45)), ((0.0, 0.0), (-0.9, -0.45)))
+    FORKED = (
+        ((0.0, 0.0), (-1.0, 0.42)), ((0.0, 0.0), (-1.0, -0.42)), ((-1.0, 0.42), (-0.6, 0.0)),
+        ((-1.0, -0.42), (-0.6, 0.0)),
+    )  # fmt: skip
 
 
 _CUT: Strokes = (((-0.3, -0.55), (0.1, 0.55)), ((0.1, -0.55), (0.5, 0.55)))
@@ -78,6 +84,7 @@ class ArrowKind:
 
 
 VELOCITY = ArrowKind("Velocity", "velocity", Head.CLOSED)
+MOMENTUM = ArrowKind("Momentum", "planet", Head.FORKED)
 FORCE = ArrowKind("Net force", "force", Head.DOUBLE)
 CONTACT_NORMAL = ArrowKind("Contact normal", "contact_normal", Head.BAR, width=1.4)
 NORMAL_IMPULSE = ArrowKind("Normal impulse", "normal_impulse", Head.DIAMOND)
@@ -134,6 +141,15 @@ def draw_arrows(
         froms, tos = np.concatenate((froms, marks[0])), np.concatenate((tos, marks[1]))
         shares = np.concatenate((shares, np.tile(share[cut], len(_CUT))))
     on.canvas.lines(froms, tos, colour, width, shares)
+
+
+def draw_parts(start: Points, span: Points, kind: ArrowKind, on: Drawing) -> None:
+    """Draw the parts of arrows (n, 2) [px] along x and y, each from where the arrow begins."""
+    for axis in (0, 1):
+        part = np.zeros_like(span)
+        part[:, axis] = span[:, axis]
+        fine = replace(kind, width=_PART_WIDTH, dashed=True)
+        draw_arrows(start, part, fine, on, 0.85)
 
 
 def _placed(strokes: Strokes, tip: Points, unit: Points, size: NDArray[np.float64]) -> tuple[Points, Points]:

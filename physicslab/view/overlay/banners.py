@@ -70,6 +70,8 @@ def draw_pill(words: Sequence[str], middle: int, top: int, size: int, colour: Co
 
 _MIN_DROPPED = 0.05
 """Less time [s], dropped within a few seconds, cannot be noticed, and would be written as 0.0 s."""
+_HITCHES = 8
+"""Frames of those few seconds that drop time if the computer is too slow; fewer do where it loads."""
 _DROP_SHOWN = 3.0
 """How long [s] time that was dropped is shown."""
 
@@ -81,9 +83,10 @@ class DroppedTime:
         self._seen = 0.0
         self._sum = 0.0
         self._until = 0.0
+        self._frames = 0
 
     def recent(self, dropped: float, now: float) -> float:
-        """Return the time dropped of late [s]; 0 where it is too little to be noticed.
+        """Return the time dropped of late [s]; 0 where it is too little, or was dropped in a few frames.
 
         Parameters
         ----------
@@ -94,10 +97,12 @@ class DroppedTime:
         """
         if dropped > self._seen:
             if now >= self._until:
-                self._sum = 0.0
+                self._sum, self._frames = 0.0, 0
+            self._frames += 1
             self._sum += dropped - self._seen
             self._seen, self._until = dropped, now + _DROP_SHOWN
-        return self._sum if now < self._until and self._sum >= _MIN_DROPPED else 0.0
+        is_slow = self._sum >= _MIN_DROPPED and self._frames >= _HITCHES
+        return self._sum if now < self._until and is_slow else 0.0
 
 
 def draw_banners(banners: Iterable[tuple[str, Colour]], room: Rect, on: Drawing) -> list[Rect]:
@@ -161,6 +166,8 @@ _MAX_SHOWN = 3
 _MAX_WIDTH, _MAX_HEIGHT = 60, 0.4
 """How wide a line may be, in heights of the text, and how much of the room all of them may take: the first
 stands alone where they would take more."""
+_SEEN = 0.5
+"""An error of a place that is smaller in the picture cannot be seen [px]."""
 
 
 def draw_advice(
@@ -168,9 +175,15 @@ def draw_advice(
 ) -> Rect | None:
     """Write what is not to be trusted, in the middle at the top of a room [px]; return where [px].
 
-    The worst comes first, and ``plainly`` alone; what is beyond a limit comes before what has none. Without a
-    warning, or room for it, nothing is drawn.
+    The worst comes first, and ``plainly`` alone; what is beyond a limit comes before what has none. Errors of
+    places without a limit that cannot be seen in the picture are left out ``plainly``. Without a warning, or
+    room for it, nothing is drawn.
     """
+    if plainly:
+        scale = on.camera.scale
+        advice = [
+            one for one in advice if one.limit != 0.0 or one.unit != "m" or one.excess[1] * scale >= _SEEN
+        ]
     if not advice:
         return None
     ordered = sorted(advice, key=lambda one: (bool(one.limit), one.excess), reverse=True)

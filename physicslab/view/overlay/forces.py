@@ -12,7 +12,7 @@ from physicslab.view.canvas.quantities import quantity
 from physicslab.view.overlay import arrows
 from physicslab.view.overlay.contact_samples import resting_of
 from physicslab.view.overlay.labels import Label
-from physicslab.view.overlay.legend import Gauge, Overlays
+from physicslab.view.overlay.legend import FLIP, Gauge, Overlays
 from physicslab.world import World
 
 NORMAL_LENGTH = 26.0
@@ -35,19 +35,13 @@ def draw_vectors(world: World, overlays: Overlays, on: Drawing) -> None:
     pull = strength * world.bodies.inverse_mass[pulled] * world.simulation.dt
     speed = np.concatenate((np.hypot(linear[:, 0], linear[:, 1]), pull))
     overlays.velocity.follow(speed, overlays.reach, world.time)
-    flip = np.array((1.0, -1.0))  # the screen's y points down
-    if overlays.force.per_metre:
-        start = on.camera.project(world.table(Transform)["position"][pulled])
-        span = force * flip * (on.camera.scale / overlays.force.per_metre)
-        arrows.draw_arrows(start, span, arrows.FORCE, on)
-    if overlays.velocity.per_metre:
-        span = linear * flip * (on.camera.scale / overlays.velocity.per_metre)
-        arrows.draw_arrows(on.camera.project(position), span, arrows.VELOCITY, on)
+    overlays.force.draw(world.table(Transform)["position"][pulled], force, arrows.FORCE, on)
+    overlays.velocity.draw(position, linear, arrows.VELOCITY, on, parts=overlays.parts)
     contacts = resting_of(world)
     contacts = contacts[contacts["normal"] > 0.0]
     start = on.camera.project(contacts["place"])
     length = min(NORMAL_LENGTH, max(0.5 * overlays.reach * on.camera.scale, arrows.MIN_LENGTH))
-    arrows.draw_arrows(start, contacts["direction"] * flip * length, arrows.CONTACT_NORMAL, on)
+    arrows.draw_arrows(start, contacts["direction"] * FLIP * length, arrows.CONTACT_NORMAL, on)
 
 
 # ---- the free-body diagram ---------------------------------------------------------------------------------
@@ -66,6 +60,8 @@ class Measured:
         Those on it; none where no body is measured.
     step : LastStep, optional
         What changed its momentum in the last step, where that is known.
+    is_edited : bool
+        Whether something was edited since the last step: forces of contacts are those of that step still.
     number : int
         How often was measured: what shows the figures is built again where it has grown.
     """
@@ -73,6 +69,7 @@ class Measured:
     def __init__(self) -> None:
         self.forces: tuple[free_body.NamedForce, ...] = ()
         self.step: free_body.LastStep | None = None
+        self.is_edited = False
         self.number = 0
         self._stepped = -1, -1  # how many steps and edits there were when a step was seen first
         self._of: tuple[object, ...] = ()
@@ -104,8 +101,8 @@ class Measured:
             return
         self._of, self._steps, self._until = of, world.steps, now + _PERIOD
         self.forces = free_body.forces_on(world, entity)
-        is_edited = self._stepped != (world.steps, world.motion_edits)
-        self.step = None if is_edited else free_body.last_step(world, entity)
+        self.is_edited = self._stepped != (world.steps, world.motion_edits)
+        self.step = None if self.is_edited else free_body.last_step(world, entity)
         self._place = world.component(entity, Transform).position
         self.number += 1
 

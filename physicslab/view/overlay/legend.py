@@ -1,6 +1,7 @@
 """Which overlays are shown, what is kept for them from frame to frame, and their legend."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from physicslab.components import Shape, Velocity
 from physicslab.state.shapes import lengths_of
 from physicslab.view.canvas.camera import Camera, Drawing
-from physicslab.view.canvas.canvas import Align, Rect, TextStyle
+from physicslab.view.canvas.canvas import Align, Points, Rect, TextStyle
 from physicslab.view.canvas.quantities import round_quantity, rounded_up
 from physicslab.view.overlay import arrows
 from physicslab.view.overlay.banners import broken
@@ -22,6 +23,8 @@ _MEMORY = 4.0
 """Time [s] in which the memory of a strong value fades to a third."""
 _SHORTEST, _LONGEST = 0.25, 1.3
 """While the longest arrow is within these shares of the wanted length, the scale stays."""
+FLIP = np.array((1.0, -1.0))
+"""The screen's y points down."""
 
 
 class Gauge:
@@ -68,6 +71,16 @@ class Gauge:
         if wanted > 1e-12 and not _SHORTEST * self.per_metre <= wanted <= _LONGEST * self.per_metre:
             self.per_metre = rounded_up(wanted, 1e-3)
 
+    def draw(
+        self, place: Points, value: Points, kind: arrows.ArrowKind, on: Drawing, *, parts: bool = False
+    ) -> None:
+        """Draw values (n, 2) at places [m] as arrows, and their ``parts`` along x and y, once scaled."""
+        if self.per_metre:
+            start, span = on.camera.project(place), value * FLIP * (on.camera.scale / self.per_metre)
+            arrows.draw_arrows(start, span, kind, on)
+            if parts:
+                arrows.draw_parts(start, span, kind, on)
+
     @property
     def words(self) -> str:
         """The scale, as it stands in the legend."""
@@ -93,14 +106,16 @@ class Overlays:
     ----------
     arrows, impulses : bool
         Whether velocities, forces and normals are shown, and whether impulses are.
+    centres, momenta, parts : bool
+        Whether centres of mass are shown, momenta, and the parts of arrows along x and y.
     keeps_scales : bool
         Whether the scales of arrows stay as they are.
     reach : float
         The wanted length of the strongest arrow [m], chosen when an overlay is turned on.
     velocity, force, impact, rest : Gauge
         The scales: of velocities, forces, impulses of impacts, and impulses that hold bodies apart.
-    body_force : Gauge
-        The scale of the forces on the selection.
+    body_force, momentum : Gauge
+        The scales of the forces on the selection, and of momenta.
     force_labels : Labels
         Where their names stand.
     impacts : RecentImpacts
@@ -113,10 +128,12 @@ class Overlays:
 
     def __init__(self) -> None:
         self.arrows = self.impulses = self.keeps_scales = False
+        self.centres = self.momenta = self.parts = False
         self.reach = 1.0
         self.velocity, self.force = Gauge("m/s"), Gauge("N")
         self.impact, self.rest = Gauge("N s"), Gauge("N s")
         self.body_force, self.force_labels = Gauge("N"), Labels()
+        self.momentum = Gauge("kg m/s")
         self.impacts = RecentImpacts()
         self.labels = Labels()
         self.covered: list[Rect] = []
@@ -132,10 +149,17 @@ class Overlays:
         if overlay == "impulses":
             self.forget()
 
+    def toggle_momenta(self, world: World, camera: Camera) -> None:
+        """Show or hide momenta, as long as other arrows."""
+        self.momenta = not self.momenta
+        if self.momenta and not self.keeps_scales:
+            self.momentum = Gauge(self.momentum.unit)
+            self._measure(world, camera)
+
     def toggle_scales(self) -> None:
         """Let the scales of all arrows stay as they are, or follow what is shown again."""
         self.keeps_scales = not self.keeps_scales
-        for gauge in (self.velocity, self.force, self.impact, self.rest, self.body_force):
+        for gauge in (self.velocity, self.force, self.impact, self.rest, self.body_force, self.momentum):
             gauge.kept = self.keeps_scales
 
     def forget(self) -> None:
@@ -225,6 +249,8 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
             ),
         ]
         remarks.append("Select a body to see each of the forces on it.")
+    if overlays.momenta:
+        rows.append((Sample(arrows.MOMENTUM), arrows.MOMENTUM.name, overlays.momentum.words))
     if overlays.impulses:
         rows += [
             (Sample(arrows.NORMAL_IMPULSE, arrows.IMPACT_WIDTH), "Normal, impact", overlays.impact.words),
@@ -241,22 +267,22 @@ def _rows(overlays: Overlays) -> tuple[list[Row], list[str]]:
     return rows, remarks
 
 
-def legend_of(overlays: Overlays, room: tuple[int, int], on: Drawing) -> Legend | None:
-    """Return the legend of the overlays that are on, its corner at the origin; ``None`` if none is.
+def legends_of(overlays: Overlays, room: tuple[int, int], on: Drawing) -> Iterator[Legend]:
+    """Yield the legend of the overlays that are on, its corner at the origin, in the forms that fit a room.
 
-    Where it would be too wide for the room [px], or take too much of it, scales and remarks are left out, and
-    words become as small as they must.
+    The best comes first; without an overlay there is none. Where it would be too wide for the room [px], or
+    take too much of it, scales and remarks are left out, and words become as small as they must.
     """
-    if not (overlays.arrows or overlays.impulses):
-        return None
+    if not (overlays.arrows or overlays.impulses or overlays.momenta):
+        return
     width = round(_WIDTH * on.size)
-    legend = _laid_out(overlays, width, on)
-    if width <= room[0] and width * legend.size[1] <= _MAX_SHARE * room[0] * room[1]:
-        return legend
+    whole = _laid_out(overlays, width, on)
+    if width <= room[0] and width * whole.size[1] <= _MAX_SHARE * room[0] * room[1]:
+        yield whole
     brief = _laid_out(overlays, 0, on)
-    if brief.size[0] <= room[0]:
-        return brief
-    return _laid_out(overlays, 0, replace(on, size=max(on.size * room[0] // brief.size[0], 8)))
+    if brief.size[0] > room[0]:
+        brief = _laid_out(overlays, 0, replace(on, size=max(on.size * room[0] // brief.size[0], 8)))
+    yield brief
 
 
 def _laid_out(overlays: Overlays, width: int, on: Drawing) -> Legend:

@@ -6,15 +6,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from physicslab.components import Shape, Transform
+from physicslab.components.shape import CIRCLE
 from physicslab.contacts.outlines import Outlines
 from physicslab.diagnostics.period import spring_state
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Look, Numbers, Points, Rect, TextStyle
+from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.rim import rim_of
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.overlay.arrows import VELOCITY, draw_arrows, even_dashes
-from physicslab.view.picture.bodies import POINT_RADIUS
+from physicslab.view.picture.bodies import point_radius
 from physicslab.view.picture.joints import joint_lines
 from physicslab.world import World
 
@@ -32,7 +34,7 @@ def draw_handles(middle: Pixel, places: Sequence[tuple[str, Pixel]], on: Drawing
         start, span = np.array([middle]), np.array([place]) - np.array([middle])
         if kind == "velocity":
             draw_arrows(start, span, VELOCITY, on)
-        elif kind == "angle":
+        elif kind in ("angle", "rest"):  # no arrow: it does not move
             on.canvas.lines(start, start + span, on.theme.accent, 1.0, 0.6)
     spots = np.array([place for _, place in places])
     if len(spots):
@@ -55,7 +57,8 @@ def draw_reading(words: str, pointer: Pixel, on: Drawing, room: Rect | None = No
 _GAP = 4.0
 """Between a body and the line around it [px]."""
 _CORNERS = 48
-"""Straight lines that a circle is drawn as."""
+"""Straight lines that a circle is drawn as; half of them where there are many circles."""
+_MANY = 64
 _WIDTH = 2.0
 _SPRING_WIDTH = 15.0
 """Width of the band along a spring or a joint [px]."""
@@ -65,16 +68,47 @@ _FAR = 1e6
 
 def draw_selection(world: World, entities: Sequence[int], on: Drawing, colour: Colour | None = None) -> None:
     """Draw a line around each body, or along a spring; in a colour, or that of the selection."""
-    for entity in entities:
-        if world.has(entity, Transform):
-            corners = on.camera.project(_outline(world, entity, _GAP / on.camera.scale))
-            on.canvas.lines(corners, np.roll(corners, -1, axis=0), colour or on.theme.accent, _WIDTH)
-            continue
+    chosen = np.array(entities, np.int64)
+    rows = world.entity_index.rows_of(chosen)
+    placed = (rows > 0) & world.table(Transform).present[rows]
+    bodies, rows = chosen[placed].tolist(), rows[placed]
+    shape, gap = world.table(Shape), _GAP / on.camera.scale
+    is_disc = shape.present[rows] & (shape["kind"][rows] == CIRCLE)
+    discs = rows[is_disc]
+    corners = _CORNERS if len(discs) <= _MANY else _CORNERS // 2
+    rims = _rings(world.table(Transform)["position"][discs], shape["radius"][discs] + gap, corners)
+    rims += [_outline(world, bodies[n], on.camera.scale) for n in np.flatnonzero(~is_disc)]
+    _draw_rims(rims, colour or on.theme.accent, _WIDTH, 1.0, on)
+    for entity in chosen[~placed].tolist():
         lines = joint_lines(world, on.camera, entity)
         if (spring := spring_state(world, entity)) is not None:
             lines = on.camera.project(np.array([tuple(spring.start), tuple(spring.end)]))[None]
         if len(lines) and (np.abs(lines) < _FAR).all():
             on.canvas.lines(lines[:, 0], lines[:, 1], colour or on.theme.accent, _SPRING_WIDTH, 0.5)
+
+
+_HAND, _LEAST_BAND = 9.0, 4.0
+"""Radius of the ring of the hand, and the least length of a band [px]."""
+_THROW, _LEAST_THROW = 0.2, 0.2
+"""The arrow of a throw is the way of so long a time [s]; speed from which there is one [m/s]."""
+
+
+def draw_grip(place: Vector2, target: Vector2, thrown: Vector2, on: Drawing) -> None:
+    """Draw a ring where the hand is [m], a band to what it holds, and how fast it would throw that [m/s]."""
+    turns = np.linspace(0.0, 2.0 * math.pi, _CORNERS // 2, endpoint=False)
+    start, end = (on.camera.project(np.array([tuple(spot)])) for spot in (place, target))
+    if not (np.abs(np.concatenate((start, end))) < _FAR).all():
+        return
+    ring = end + _HAND * np.stack((np.cos(turns), np.sin(turns)), axis=1)
+    on.canvas.lines(ring, np.roll(ring, -1, axis=0), on.theme.accent, 1.5, 0.8)
+    if float(np.hypot(*(end - start)[0])) > _LEAST_BAND:
+        on.canvas.lines(start, end, on.theme.accent, 2.5, 0.55)
+    if thrown.magnitude >= _LEAST_THROW:
+        span = on.camera.scale * _THROW * np.array([(thrown.x, -thrown.y)])
+        draw_arrows(start, span, VELOCITY, on)
+        x, y = (start + span)[0].tolist()
+        style = TextStyle(on.size, on.theme.velocity, bold=True)
+        on.canvas.text(quantity(thrown.magnitude, "m/s"), (round(x) + 8, round(y) - on.size), style)
 
 
 def draw_band(corner: tuple[float, float], pointer: tuple[float, float], on: Drawing) -> None:
@@ -84,13 +118,14 @@ def draw_band(corner: tuple[float, float], pointer: tuple[float, float], on: Dra
     on.canvas.lines(corners, np.roll(corners, -1, axis=0), on.theme.accent, 1.0, 0.8)
 
 
-def _outline(world: World, entity: int, gap: float) -> Points:
-    """Return the corners of the line around a body (n, 2) [m]."""
-    transform, core, radius = world.component(entity, Transform), np.zeros((1, 2)), POINT_RADIUS / 100.0
+def _outline(world: World, entity: int, scale: float) -> Points:
+    """Return the corners of the line around a body (n, 2) [m], at a scale [px/m]."""
+    transform, core = world.component(entity, Transform), np.zeros((1, 2))
+    radius = point_radius(world, entity) / scale
     if world.has(entity, Shape):
         shape = world.component(entity, Shape)
         core, radius = np.array([tuple(corner) for corner in shape.core]), shape.rounding
-    corners = rim_of(core, radius + gap, _CORNERS)
+    corners = rim_of(core, radius + _GAP / scale, _CORNERS)
     return _placed(corners, transform.angle, np.array((transform.position.x, transform.position.y)))
 
 
@@ -116,11 +151,29 @@ def draw_cursor(pixel: tuple[float, float], colour: Colour, canvas: Canvas) -> N
 
 def draw_ghost(ghost: Outlines, colour: Colour, on: Drawing) -> None:
     """Draw outlines of bodies that are not there yet."""
-    for n in range(len(ghost.place)):
-        core = ghost.corners[n, : ghost.vertices[n]]
-        own = rim_of(core, float(ghost.radius[n]), _GHOST_CORNERS)
-        corners = on.camera.project(ghost.place[n] + own)
-        on.canvas.lines(corners, np.roll(corners, -1, axis=0), colour, 1.4, _GHOST_OPACITY)
+    is_disc = ghost.vertices == 1
+    rims = [
+        ghost.place[n] + rim_of(ghost.corners[n, : ghost.vertices[n]], float(ghost.radius[n]), _GHOST_CORNERS)
+        for n in np.flatnonzero(~is_disc)
+    ]
+    rims += _rings(ghost.place[is_disc], ghost.radius[is_disc], _GHOST_CORNERS)
+    _draw_rims(rims, colour, 1.4, _GHOST_OPACITY, on)
+
+
+def _rings(places: Points, radii: Numbers, corners: int) -> list[Points]:
+    """Return circles as so many corners each."""
+    turns = np.linspace(0.0, 2.0 * math.pi, corners, endpoint=False)
+    ring = np.stack((np.cos(turns), np.sin(turns)), axis=1)
+    return list(places[:, None] + radii[:, None, None] * ring)
+
+
+def _draw_rims(rims: Sequence[Points], colour: Colour, width: float, opacity: float, on: Drawing) -> None:
+    """Draw closed lines through corners [m], all at once: of hundreds each by itself costs milliseconds."""
+    if not rims:
+        return
+    first = np.concatenate(rims)
+    after = np.concatenate([np.concatenate((rim[1:], rim[:1])) for rim in rims])
+    on.canvas.lines(on.camera.project(first), on.camera.project(after), colour, width, opacity)
 
 
 _DASH, _END, _MAX_ENDS = 9.0, 4.0, 9

@@ -1,5 +1,7 @@
 """Pictures of a world one after the other, for a film, without a window or a display."""
 
+from dataclasses import replace
+
 import numpy as np
 import pygame
 from numpy.typing import NDArray
@@ -37,7 +39,9 @@ class MovingPicture:
         self._labels = Labels()
         camera = Camera(size, scale=100.0)
         camera.look_at(extent, camera.fitting_scale(extent, (0, 0, *size), _AROUND))
-        self._drawing = Drawing(PygameCanvas(self._surface), camera, theme, _TEXT)
+        # The few colours of a film are for bodies: its sky has one.
+        plain = replace(theme, grain=0, sky_top=theme.background, sky_bottom=theme.background)
+        self._drawing = Drawing(PygameCanvas(self._surface), camera, plain, _TEXT)
 
     def pixels(self, world: World) -> NDArray[np.uint8]:
         """Return the world as it is now: uint8 (height, width, 4), red, green, blue and one unused."""

@@ -1,13 +1,14 @@
-"""The backdrop: a grid, and the walls of the world."""
+"""The backdrop: sky, stars where bodies attract each other, a grid, and the walls of the world."""
 
 import math
 
 import numpy as np
 
 from physicslab.view.canvas.camera import Camera, Extent
-from physicslab.view.canvas.canvas import Canvas, Numbers, Points
+from physicslab.view.canvas.canvas import Canvas, Finish, Look, Numbers, Points
 from physicslab.view.canvas.quantities import rounded_up
 from physicslab.view.canvas.theme import Theme
+from physicslab.world import World
 
 _MIN_SPACING = 45.0
 """Least distance of grid lines [px]."""
@@ -50,11 +51,71 @@ def draw_grid(camera: Camera, theme: Theme, canvas: Canvas) -> None:
     canvas.lines(*_lines(camera, xs[xs == 0.0], ys[ys == 0.0]), theme.axis)
 
 
-def draw_bounds(bounds: Extent | None, camera: Camera, theme: Theme, canvas: Canvas) -> None:
-    """Draw the walls of the world, if it has any."""
+def is_in_space(world: World) -> bool:
+    """Whether bodies attract each other: then there are stars, and no grid unless it is wanted."""
+    return world.physics.gravity_mode == "planet"
+
+
+def draw_backdrop(world: World, camera: Camera, theme: Theme, canvas: Canvas, *, grid: bool) -> None:
+    """Begin a picture with what is behind all bodies; it is kept while the camera stands still."""
+    physics = world.physics
+    in_space = is_in_space(world)
+    has_floor = physics.gravity_mode == "linear" and physics.gravity.y < 0.0
+
+    def draw() -> None:
+        if in_space and theme.is_dark:
+            canvas.clear(theme.sky_top, theme.sky_top)
+            _draw_stars(theme, canvas)
+        else:
+            canvas.clear(theme.sky_top, theme.sky_bottom, theme.grain)
+        if grid:
+            draw_grid(camera, theme, canvas)
+        _draw_bounds(physics.bounds, has_floor, camera, theme, canvas)
+
+    canvas.keep((camera.centre, camera.scale, theme.name, grid, in_space, has_floor, physics.bounds), draw)
+
+
+_STARS, _LARGEST_SKY = 3000, 4096.0
+"""Number of stars in a sky so wide [px], and half as high."""
+_FAINTEST, _BRIGHTEST = 0.1, 0.5
+"""Opacity of stars."""
+
+
+def _draw_stars(theme: Theme, canvas: Canvas) -> None:
+    """Draw faint stars, which are so far away that no camera moves them."""
+    chance = np.random.default_rng(3).random((_STARS, 3))
+    place, bright = _LARGEST_SKY * chance[:, :2] * (1.0, 0.5), chance[:, 2] ** 2
+    seen = (place < canvas.size).all(axis=1)
+    place, opacity = place[seen], _FAINTEST + (_BRIGHTEST - _FAINTEST) * bright[seen]
+    for part, width in ((opacity < 0.3, 1.2), (opacity >= 0.3, 1.9)):
+        canvas.lines(place[part], place[part], theme.text, width, opacity[part])
+
+
+_FLOOR, _WALL, _FAR = 40.0, 7.0, 1e6
+"""Thickness of the ground and of the walls at the end of the world, and the farthest place drawn [px]."""
+
+
+def _draw_bounds(
+    bounds: Extent | None, has_floor: bool, camera: Camera, theme: Theme, canvas: Canvas
+) -> None:
+    """Draw the end of the world beyond its bounds: ground where things fall to, and thin walls."""
     if bounds is None:
         return
     xmin, ymin, xmax, ymax = bounds
-    corners = camera.project(np.array([(xmin, ymin), (xmax, ymin), (xmax, ymax), (xmin, ymax)]))
-    corners = np.clip(corners, -1e6, 1e6)
-    canvas.lines(corners, np.roll(corners, -1, axis=0), theme.bounds, 2.0)
+    (left, bottom), (right, top) = np.clip(
+        camera.project(np.array([(xmin, ymin), (xmax, ymax)])), -_FAR, _FAR
+    )
+    floor = _FLOOR if has_floor else _WALL
+    sides = np.array([
+        (left - _WALL, top, left, bottom), (right, top, right + _WALL, bottom),
+        (left - _WALL, top - _WALL, right + _WALL, top),
+        (left - _WALL, bottom, right + _WALL, bottom + floor),
+    ])  # fmt: skip
+    shown = (sides[:, 2] > sides[:, 0]) & (sides[:, 3] > sides[:, 1])
+    low, high = sides[shown, :2], sides[shown, 2:]
+    count = len(low)
+    look = Look.plain(theme.earth, theme.earth, count)
+    look = Look(look.fill, look.rim, np.full(count, Finish.GROUND, np.int64))
+    canvas.boxes(0.5 * (low + high), high - low, np.zeros(count), look)
+    corners = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
+    canvas.lines(corners, np.roll(corners, -1, axis=0), theme.static, 1.5)

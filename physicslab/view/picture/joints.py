@@ -72,23 +72,27 @@ def _draw_pins(world: World, pen: Pen) -> None:
     pen.brackets(centre[to_world], -1.0)
     limited = table["lower_given"][rows] | table["upper_given"][rows]
     if limited.any():
-        arms = _arms(world, at_a)
-        for n in np.flatnonzero(limited).tolist():
+        arms, length = _arms(world, at_a)
+        small = (length > 1e-9) & (
+            length * pen.camera.scale < 1.4 * _LIMIT * pen.unit
+        )  # the arc would hide it
+        for n in np.flatnonzero(limited & ~small).tolist():
             _draw_limits(pen, centre[n], arms[n], float(angle_b[n] - angle_a[n]), table, int(rows[n]))
     pen.screws(centre, turning)
     for n in np.flatnonzero(table["motor_speed_given"][rows]).tolist():
         _draw_motor(pen, centre[n], float(table["motor_speed"][rows[n]]), bool(fixed[1][n]))
 
 
-def _arms(world: World, place: Points) -> NDArray[np.float64]:
-    """Return in which directions the bodies lie that pins turn (n,) [rad]: B, or A where B is the world."""
+def _arms(world: World, place: Points) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return in which directions the bodies lie that pins turn (n,) [rad], and how far off (n,) [m].
+
+    They are B, or A where B is the world.
+    """
     a, b = (np.maximum(end, 0) for end in ends_of(world.entity_index, Pin))
     body, transform = np.where(b == 0, a, b), world.table(Transform)
     way = transform["position"][body] - place
-    arms: NDArray[np.float64] = np.where(
-        np.hypot(way[:, 0], way[:, 1]) > 1e-9, np.arctan2(way[:, 1], way[:, 0]), transform["angle"][body]
-    )
-    return arms
+    length = np.hypot(way[:, 0], way[:, 1])
+    return np.where(length > 1e-9, np.arctan2(way[:, 1], way[:, 0]), transform["angle"][body]), length
 
 
 def _draw_limits(pen: Pen, centre: Points, arm: float, now: float, table: object, row: int) -> None:

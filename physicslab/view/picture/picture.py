@@ -10,12 +10,13 @@ from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.canvas.theme import DARK, Theme
-from physicslab.view.picture.backdrop import draw_bounds, draw_grid
+from physicslab.view.picture.backdrop import draw_backdrop, is_in_space
 from physicslab.view.picture.bodies import draw_bodies
 from physicslab.view.picture.extent import extent_of
 from physicslab.view.picture.fields import draw_fields, draw_flames
 from physicslab.view.picture.joints import draw_joints
 from physicslab.view.picture.springs import draw_springs
+from physicslab.view.picture.squash import Squash
 from physicslab.view.picture.trails import draw_strobes, draw_trails
 from physicslab.world import World
 
@@ -76,17 +77,20 @@ def save_png(
         pygame.image.save(surface, path_or_stream, "picture.png")
 
 
-def draw_world(world: World, camera: Camera, theme: Theme, canvas: Canvas, *, grid: bool = True) -> None:
-    """Draw a world as it is now, with or without the grid. Nothing of the world is changed."""
+def draw_world(
+    world: World, camera: Camera, theme: Theme, canvas: Canvas, *, grid: bool | None = None,
+    squash: Squash | None = None,
+) -> None:  # fmt: skip
+    """Draw a world as it is now, with or without the grid; by default without it in space.
+
+    Nothing of the world is changed.
+    """
     world.synchronise()
-    canvas.clear(theme.background)
-    if grid:
-        draw_grid(camera, theme, canvas)
+    draw_backdrop(world, camera, theme, canvas, grid=not is_in_space(world) if grid is None else grid)
     draw_fields(world, camera, theme, canvas)
-    draw_bounds(world.physics.bounds, camera, theme, canvas)
     draw_strobes(world, camera, theme, canvas)
     draw_trails(world, camera, theme, canvas)
     draw_flames(world, camera, theme, canvas)
-    draw_bodies(world, camera, theme, canvas)
+    draw_bodies(world, camera, theme, canvas, squash)
     draw_springs(world, camera, theme, canvas)
     draw_joints(world, camera, theme, canvas)

@@ -1,32 +1,41 @@
-"""Sparks that fly where bodies hit each other: a matter of the window, not of the world."""
+"""Sparks and rings where bodies hit each other: a matter of the window, not of the world."""
 
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.diagnostics.ledger import read_impacts
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
 from physicslab.view.canvas.theme import Theme
 
 _MAX_SPARKS = 400
 """The oldest sparks make room for new ones beyond that number."""
-_MIN_PER_IMPACT, _MAX_PER_IMPACT = 3, 18
-"""How many sparks an impact makes."""
+_MIN_PER_IMPACT, _MAX_PER_IMPACT = 3, 22
+"""How many sparks an impact makes that takes some energy."""
+_LEAST_LOSS = 1e-3
+"""Energy lost [J] in an impact below which there are no sparks: one that is elastic has none."""
 _MAX_LIFE = 0.4
 """How long the longest-lived spark is seen [s]."""
 _MIN_APPROACH = 25.0
 """Speed of approach [px/s] up to which an impact makes none: it can hardly be seen."""
-_TYPICAL_IMPULSE = 3.0
-"""Impulse [N s] of an impact whose sparks are about two thirds as many and as fast as can be."""
+_TYPICAL_LOSS = 4.0
+"""Energy lost [J] in an impact whose sparks are about two thirds as many and as fast as can be."""
 _WEAK_SPEED, _STRONG_SPEED = 110.0, 460.0
 """Speed of the fastest spark of an impact [px/s], for the weakest and the strongest impact."""
-_FAN = 0.7
-"""How far sparks stray from the plane of contact [rad]."""
+_FAN = 0.8
+"""How far sparks stray from the plane of contact, away from a body that is fixed [rad]."""
 _DRAG = 4.5
 """Rate at which sparks slow down [1/s]."""
 _TAIL = 0.035
 """Time of flight that is seen as a streak [s]."""
+_GLOW = 7.0
+"""Radius of the light of a spark [px]."""
+_MAX_RINGS, _RING_LIFE = 40, 0.16
+"""How many rings are seen at once, and for how long each [s]."""
+_RING_FROM, _RING_TO, _RING_LINES = 3.0, 15.0, 24
+"""Radius of a ring as it begins and ends [px], and how many lines it is drawn as."""
 
 
 class Sparks:
@@ -37,7 +46,9 @@ class Sparks:
     place, velocity : float64 arrays (n, 2)
         Where they are [m] and how fast they fly [m/s], those of older impacts first.
     age, life, strength : float64 arrays (n,)
-        Time they have flown and may fly [s]; how strong the impact was, 0 to 1.
+        Time they have flown and may fly [s]; how much energy the impact took, 0 to 1.
+    rings : float64 array (k, 3)
+        Where impacts were [m], and when [s].
     """
 
     def __init__(self) -> None:
@@ -51,6 +62,7 @@ class Sparks:
         """Put them all out."""
         self.place, self.velocity = np.zeros((0, 2)), np.zeros((0, 2))
         self.age, self.life, self.strength = np.zeros(0), np.zeros(0), np.zeros(0)
+        self.rings = np.zeros((0, 3))
 
     def advance(self, impacts: NDArray[Any], time: float, scale: float) -> None:
         """Let sparks fly on to a time of the world, and add those of new impacts.
@@ -60,13 +72,19 @@ class Sparks:
         impacts : array of IMPACT (n,)
             The impacts since the last call; each spark has flown since its impact.
         time : float
-            The time of the world [s].
+            The time of the world [s]. Where it was set back, what was in flight is gone.
         scale : float
             Pixels per metre: sparks are as large as they look.
         """
-        elapsed = np.full(len(self), max(time - self._time, 0.0))
+        if time < self._time:
+            self.clear()
+        elapsed = np.full(len(self), time - self._time)
         self._time = time
-        impact, of_impact, strength = _sources(impacts, scale)
+        seen = _seen(impacts, scale)
+        self.rings = np.concatenate((self.rings, np.stack((seen["x"], seen["y"], seen["time"]), axis=1)))
+        young = (self.rings[:, 2] <= time) & (time - self.rings[:, 2] < _RING_LIFE)
+        self.rings = self.rings[young][-_MAX_RINGS:]
+        impact, of_impact, strength = _sources(seen)
         direction, speed, life = _chances(impact, of_impact)
         normal = np.stack((impact["normal_x"], impact["normal_y"]), axis=1)
         pace = (_WEAK_SPEED + (_STRONG_SPEED - _WEAK_SPEED) * strength) * speed / scale
@@ -89,7 +107,8 @@ class Sparks:
         self.age, self.life, self.strength = self.age[kept], self.life[kept], self.strength[kept]
 
     def draw(self, camera: Camera, theme: Theme, canvas: Canvas) -> None:
-        """Draw each as a streak along its flight that fades as it grows old."""
+        """Draw each as a streak along its flight that fades as it grows old; and the rings."""
+        self._draw_rings(camera, theme, canvas)
         if not len(self):
             return
         flown = np.minimum(self.age, _TAIL)[:, None]
@@ -98,23 +117,47 @@ class Sparks:
         fresh = np.clip(1.0 - self.age / self.life, 0.0, 1.0)
         inside = ((end > 0.0) & (end < camera.size)).all(axis=1) & (fresh > 0.0)
         bold = self.strength > 0.5
+        if theme.is_dark and inside.any():
+            canvas.glows(end[inside], np.full(int(inside.sum()), _GLOW), theme.spark, 0.7 * fresh[inside])
         for part, width in ((inside & ~bold, 1.6), (inside & bold, 2.4)):
             if part.any():
                 canvas.lines(start[part], end[part], theme.spark, width, fresh[part])
 
+    def _draw_rings(self, camera: Camera, theme: Theme, canvas: Canvas) -> None:
+        """Draw a ring around each point of impact that grows and fades."""
+        age = (self._time - self.rings[:, 2]) / _RING_LIFE
+        centre = camera.project(self.rings[:, :2])
+        inside = ((centre > -_RING_TO) & (centre < np.array(camera.size) + _RING_TO)).all(axis=1)
+        centre, age = centre[inside], age[inside]
+        if not len(centre):
+            return
+        turns = np.linspace(0.0, 2.0 * np.pi, _RING_LINES + 1)
+        radius = _RING_FROM + (_RING_TO - _RING_FROM) * np.sqrt(age)
+        way = np.stack((np.cos(turns), np.sin(turns)), axis=1)
+        corners = centre[:, None, :] + radius[:, None, None] * way
+        opacity = np.repeat(0.6 * (1.0 - age), _RING_LINES)
+        start, end = corners[:, :-1].reshape(-1, 2), corners[:, 1:].reshape(-1, 2)
+        canvas.lines(start, end, theme.spark, 1.4, opacity)
 
-def _sources(impacts: NDArray[Any], scale: float) -> tuple[NDArray[Any], NDArray[np.int64], Numbers]:
+
+def _seen(impacts: NDArray[Any], scale: float) -> NDArray[Any]:
+    """Return those of the impacts that are fast enough to be seen, at a scale [px/m]."""
+    finite = np.isfinite(impacts["x"]) & np.isfinite(impacts["y"])
+    return impacts[finite & (impacts["approach_speed"] * scale > _MIN_APPROACH)]
+
+
+def _sources(impacts: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64], Numbers]:
     """Return for each new spark its impact, its number among those of that impact, and its strength.
 
     With more impacts than there is room for sparks, the strongest make some.
     """
-    finite = np.isfinite(impacts["x"]) & np.isfinite(impacts["y"])
-    impacts = impacts[finite & (impacts["approach_speed"] * scale > _MIN_APPROACH)]
-    strength = 1.0 - np.exp(-impacts["normal_impulse"] / _TYPICAL_IMPULSE)
-    chosen = np.sort(np.argsort(-strength, kind="stable")[: _MAX_SPARKS // _MIN_PER_IMPACT])
-    number = _MIN_PER_IMPACT + (_MAX_PER_IMPACT - _MIN_PER_IMPACT) * strength[chosen]
-    count = np.rint(number).astype(np.int64)
-    source = np.repeat(chosen, count)
+    strongest = np.argsort(-impacts["normal_impulse"] * impacts["approach_speed"], kind="stable")
+    impacts = impacts[np.sort(strongest[: _MAX_SPARKS // _MIN_PER_IMPACT])]
+    lost = read_impacts(impacts).energy_lost
+    impacts, lost = impacts[lost > _LEAST_LOSS], lost[lost > _LEAST_LOSS]
+    strength = 1.0 - np.exp(-lost / _TYPICAL_LOSS)
+    count = np.rint(_MIN_PER_IMPACT + (_MAX_PER_IMPACT - _MIN_PER_IMPACT) * strength).astype(np.int64)
+    source = np.repeat(np.arange(len(impacts)), count)
     first = np.repeat(np.cumsum(count) - count, count)
     return impacts[source], np.arange(len(source)) - first, strength[source]
 
@@ -140,7 +183,10 @@ def _chances(impacts: NDArray[Any], of_impact: NDArray[np.int64]) -> tuple[Numbe
         seed = _scrambled(seed)
         made.append((seed >> np.uint64(11)).astype(np.float64) * 2.0**-53)
     side, stray, speed, life = made
-    angle = np.where(side < 0.5, 0.5, -0.5) * np.pi + _FAN * (2.0 * stray - 1.0)
+    # Away from the plane of contact on the side that is free; between two that move, close to the plane.
+    fixed_a, fixed_b = impacts["inverse_mass_a"] == 0.0, impacts["inverse_mass_b"] == 0.0
+    away = np.where(fixed_a == fixed_b, 0.5 * (2.0 * stray - 1.0), np.where(fixed_a, stray, -stray))
+    angle = np.where(side < 0.5, 1.0, -1.0) * (0.5 * np.pi - _FAN * away)
     return angle, 0.3 + 0.7 * speed, 0.5 + 0.5 * life
 
 

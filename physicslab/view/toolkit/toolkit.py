@@ -34,8 +34,15 @@ _ONLY_WHERE_TAKEN = (
 """Events that Dear ImGui gets only where they are for panels: Tab would go to the first field."""
 _FOR_WINDOWS = (pygame.K_F6, pygame.K_F10, pygame.K_LALT)
 """Keys that go from panel to panel: they are never for the one that has the others."""
+_FOR_FILES = (pygame.K_n, pygame.K_o, pygame.K_s)
+"""Keys that are for files of scenes while Ctrl is held, whatever is being written."""
 _NOWHERE = -3.0e38
 """The reported position of the mouse while it is not for panels."""
+
+
+def is_for_files(event: pygame.Event) -> bool:
+    """Whether a key saves or opens a scene, or makes a new one."""
+    return event.key in _FOR_FILES and bool(getattr(event, "mod", 0) & pygame.KMOD_CTRL)
 
 
 class Toolkit:
@@ -100,9 +107,12 @@ class Toolkit:
         """Whether a mouse button is held that went down on a panel."""
         return any(self._pressed_on.values())
 
-    def covers(self, place: tuple[float, float]) -> bool:
-        """Whether a panel lies at a place of the screen [px]."""
-        return any(is_within(place, rect) for rect in self.covered)
+    def covers(self, place: tuple[float, float], around: int = 0) -> bool:
+        """Whether a panel lies at a place of the screen, or as near to it as that [px]."""
+        return any(
+            is_within(place, (left - around, top - around, width + 2 * around, height + 2 * around))
+            for left, top, width, height in self.covered
+        )
 
     def take(self, event: pygame.Event) -> bool:
         """Let panels have an event first; return whether the world is not to see it.
@@ -140,7 +150,7 @@ class Toolkit:
                 return self.covers(event.pos)
             case pygame.MOUSEWHEEL:
                 return self.covers(self._pointer)
-            case pygame.KEYDOWN | pygame.KEYUP if event.key in _FOR_WINDOWS:
+            case pygame.KEYDOWN | pygame.KEYUP if event.key in _FOR_WINDOWS or is_for_files(event):
                 return False
             case pygame.KEYDOWN | pygame.KEYUP | pygame.TEXTINPUT:
                 return self.has_keys
@@ -304,6 +314,7 @@ def _feed(io: imgui.IO, event: pygame.Event) -> None:
 _MENUS = "##MainMenuBar"
 """The window that Dear ImGui has the menus in; the mark of the keys is put on a menu where they are built."""
 _FLAGS = imgui.WindowFlags_
+_ENTER = (pygame.K_RETURN, pygame.K_KP_ENTER)
 _INERT = _FLAGS.no_nav_inputs | _FLAGS.tooltip | _FLAGS.popup
 
 
@@ -319,7 +330,7 @@ class Walk:
     def __init__(self, toolkit: Toolkit) -> None:
         self._toolkit = toolkit
         self._panel = ""
-        self._begins = self._ends = False
+        self._begins = self._ends = self._from_field = False
 
     def begin(self, keys_go_to: str) -> None:
         """Let keys go to the menus, to the fields of the panel at the right, or to the next panel."""
@@ -328,6 +339,7 @@ class Walk:
         named = {"menu": _MENUS, "fields": "side"}
         self._panel = named.get(keys_go_to) or self._next()
         self._begins = self._toolkit.walked = True
+        self._from_field = False
         self._toolkit.wake()
 
     def _next(self) -> str:
@@ -339,7 +351,10 @@ class Walk:
         return names[walked % len(names)] if names else ""
 
     def follow(self, event: pygame.Event) -> None:
-        """Begin where Tab leaves a field, and end at a click or Esc; before panels take the event."""
+        """Begin where Tab leaves a field, and end at a click or Esc; before panels take the event.
+
+        Enter in a field gives the keys back, too, where they came to the panel by a field alone.
+        """
         toolkit, key = self._toolkit, getattr(event, "key", 0)
         if event.type == pygame.MOUSEBUTTONDOWN:
             toolkit.walked = False
@@ -347,7 +362,10 @@ class Walk:
             window = imgui.get_current_context().nav_window
             if window is not None:  # None where a press in the world has just ended the writing
                 self._panel = str(window.root_window.name)
+                self._from_field = self._from_field or not toolkit.walked
                 toolkit.walked = True
+        elif event.type == pygame.KEYDOWN and key in _ENTER and toolkit.walked and toolkit.typing:
+            self._ends = self._from_field and not event.mod & pygame.KMOD_CTRL
         elif event.type == pygame.KEYDOWN and key == pygame.K_ESCAPE and toolkit.has_keys:
             self._ends = not toolkit.has_popup()
 
@@ -367,7 +385,7 @@ class Walk:
         left = in_menus and not toolkit.has_popup() and panel is not None and panel.name != _MENUS
         if self._ends or left:
             imgui.set_window_focus()
-            self._ends = toolkit.walked = False
+            self._ends = self._from_field = toolkit.walked = False
 
 
 def _has_widgets(window: imgui.internal.Window) -> bool:

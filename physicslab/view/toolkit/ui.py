@@ -7,6 +7,7 @@ from typing import Any
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.view.canvas.drawable_text import drawable, encodable
+from physicslab.view.canvas.surface_cache import RAISED_SIZE, raised_parts
 from physicslab.view.canvas.theme import Colour
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.windows import Windows, widget_label
@@ -63,23 +64,67 @@ class Ui(Windows):
             imgui.unindent(0.8 * self.size)
         self.tip(tip)
         imgui.same_line()
-        room = imgui.get_content_region_avail().x - imgui.calc_text_size(value).x
+        wide = self._figure_width(value)
+        room = imgui.get_content_region_avail().x - wide
         if room < 0:
             imgui.new_line()
-            room = imgui.get_content_region_avail().x - imgui.calc_text_size(value).x
+            room = imgui.get_content_region_avail().x - wide
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(room, 0.0))
-        self.text(value, colour if lesser else None)
+        self._figure(value, colour if lesser else None)
+
+    def _figure_width(self, words: str) -> float:
+        """Return how wide a figure is [px]."""
+        wide = 0.0
+        for part, raised in raised_parts(words):
+            imgui.push_font(None, imgui.get_font_size() * (RAISED_SIZE if raised else 1.0))
+            wide += imgui.calc_text_size(part).x
+            imgui.pop_font()
+        return wide
+
+    def _figure(self, words: str, colour: Colour | None) -> None:
+        """Write a figure whose powers are small figures, all at one height: fonts lack some of the raised."""
+        parts = raised_parts(words)
+        if len(parts) == 1:
+            self.text(words, colour)
+            return
+        self.words.append(words)
+        place, paper = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
+        paint = packed(colour or self.theme.text)
+        left = place.x
+        for part, raised in parts:
+            imgui.push_font(None, imgui.get_font_size() * (RAISED_SIZE if raised else 1.0))
+            paper.add_text(ImVec2(left, place.y), paint, part)
+            left += imgui.calc_text_size(part).x
+            imgui.pop_font()
+        imgui.dummy(ImVec2(left - place.x, imgui.get_text_line_height()))
 
     def tip(self, words: str) -> None:
         """Show words beside the cursor while it rests on what was drawn last."""
         if words and imgui.is_item_hovered(_TIP_FLAGS):
             words = drawable(words)
             self.words.append(words)
+            self._place_tip()
             if imgui.begin_tooltip():
                 imgui.push_text_wrap_pos(22 * self.size)
                 imgui.text_unformatted(words)
                 imgui.pop_text_wrap_pos()
                 imgui.end_tooltip()
+
+    def _place_tip(self) -> None:
+        """Have the tip beside the panel that it is for: it covers nothing of what was gone to."""
+        panel = imgui.internal.get_current_window_read().root_window
+        if panel is None or not panel.flags & imgui.WindowFlags_.no_move:
+            return
+        low, high, room = imgui.get_item_rect_min(), imgui.get_item_rect_max(), imgui.get_io().display_size
+        left, top, right = panel.pos.x, panel.pos.y, panel.pos.x + panel.size.x
+        if left > 0.5 * room.x:
+            imgui.set_next_window_pos(ImVec2(left, low.y), imgui.Cond_.always, ImVec2(1.0, 0.0))
+        elif right < 0.5 * room.x:
+            imgui.set_next_window_pos(ImVec2(right, low.y), imgui.Cond_.always)
+        elif top > 0.5 * room.y:
+            imgui.set_next_window_pos(ImVec2(low.x, top), imgui.Cond_.always, ImVec2(0.0, 1.0))
+        else:
+            imgui.set_next_window_pos(ImVec2(low.x, high.y), imgui.Cond_.always)
 
     # ---- what is clicked -----------------------------------------------------------------------------------
 
@@ -256,6 +301,25 @@ class Ui(Windows):
         imgui.pop_style_color()
         self.note(label)
         return self._did(clicked, action)
+
+    def option(self, label: str, words: str, *, on: bool) -> bool:
+        """Draw a line of a choice, broken to the panel's width, and return whether it was clicked."""
+        inset, room = 1.6 * self.size, imgui.get_content_region_avail().x
+        high = imgui.calc_text_size(words, wrap_width=room - inset).y
+        corner = imgui.get_cursor_screen_pos()
+        clicked, _ = imgui.selectable(widget_label("", label), on, 0, ImVec2(room, high + 0.4 * self.size))
+        self.note(label)
+        after, paper, radius = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list(), 0.38 * self.size
+        middle = ImVec2(
+            corner.x + 0.8 * self.size, corner.y + 0.2 * self.size + 0.5 * imgui.get_text_line_height()
+        )
+        paper.add_circle(middle, radius, packed(self.theme.text), 0, 1.5)
+        if on:
+            paper.add_circle_filled(middle, 0.55 * radius, packed(self.theme.accent))
+        imgui.set_cursor_screen_pos(ImVec2(corner.x + inset, corner.y + 0.2 * self.size))
+        self.text(words, wrapped=True)
+        imgui.set_cursor_screen_pos(after)
+        return bool(clicked)
 
     def slider(
         self, label: str, value: float, low: float, high: float, shown: str, width: float = -1.0

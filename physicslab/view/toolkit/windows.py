@@ -15,7 +15,7 @@ from physicslab.view.toolkit.style import Fonts
 _FLAGS = imgui.WindowFlags_
 _FIXED = (
     _FLAGS.no_title_bar | _FLAGS.no_resize | _FLAGS.no_move | _FLAGS.no_collapse | _FLAGS.no_saved_settings
-    | _FLAGS.no_bring_to_front_on_focus | _FLAGS.no_nav_focus
+    | _FLAGS.no_bring_to_front_on_focus | _FLAGS.no_nav_focus | _FLAGS.no_focus_on_appearing
 )  # fmt: skip
 _FLOATING = _FLAGS.no_collapse | _FLAGS.always_auto_resize
 _ONLY_SIDES = (
@@ -23,7 +23,13 @@ _ONLY_SIDES = (
     | imgui.internal.DockNodeFlagsPrivate_.no_close_button
 )  # fmt: skip
 """The middle stays in sight, and takes the mouse."""
+_BESIDE = _FLAGS.no_focus_on_appearing
 _APART = _FLAGS.no_saved_settings | _FLAGS.no_docking
+_DIRECTIONS = {"right": imgui.Dir.right, "left": imgui.Dir.left, "below": imgui.Dir.down}
+_WIDE = 44.0
+"""Width of the world's room from which on windows stand at its sides, not below, in heights of the text."""
+LEAST_WORLD = 17.0
+"""Width, and height, that windows leave to the world if they can lie over each other instead."""
 _TITLE = 6.0
 """Height of what a floating window has above what fills it, at most, in heights of the text."""
 _UNSEEN = "\u200b"
@@ -83,6 +89,9 @@ class Windows:
         self.once = imgui.Cond_.first_use_ever
         self.keys_go_to = self.focused = ""
         self.scenes = 0
+        self._sides, self._whole = 0, 0.0  # the dock space, and its width [px]
+        self._raised: dict[str, object] = {}  # what each window showed when it was put in front
+        self._put: set[str] = set()  # windows that were docked, as they stood nowhere before
         self.room: Rect = (0, 0, 1 << 20, 1 << 20)
         self.do_next: Callable[..., object] = lambda action, *arguments: None
 
@@ -123,11 +132,75 @@ class Windows:
         unseen = _FLAGS.no_background | _FLAGS.no_mouse_inputs | _FLAGS.no_docking | _FLAGS.no_nav
         imgui.begin("sides", None, _FIXED | unseen)
         imgui.pop_style_var(2)
-        name = imgui.get_id("sides")
-        imgui.dock_space(name, ImVec2(0.0, 0.0), _ONLY_SIDES)
+        self._sides, self._whole = imgui.get_id("sides"), float(rect[2])
+        imgui.dock_space(self._sides, ImVec2(0.0, 0.0), _ONLY_SIDES)
         imgui.end()
-        node = imgui.internal.dock_builder_get_central_node(name)
+        node = imgui.internal.dock_builder_get_central_node(self._sides)
         return round(node.pos.x), round(node.pos.y), round(node.size.x), round(node.size.y)
+
+    def stand_beside(
+        self, name: str, side: str, share: float, least: float, *, stacks: bool = True, again: bool = False
+    ) -> None:
+        """Have the window that is begun next docked at a side of the world, if it never was elsewhere.
+
+        Parameters
+        ----------
+        name : str
+            The name with which it is begun.
+        side : str
+            ``"right"``, ``"left"`` or ``"below"``; where the world is narrow it is below all the same.
+        share : float
+            How much of the world's room it takes.
+        least : float
+            The least height of a window above or below it, or width of one beside it, in heights of the text:
+            where there is less, both are in the same place, as tabs.
+        stacks : bool
+            Whether it shares its side with others that stand there, above and below each other.
+        again : bool
+            Whether it is docked there though it was elsewhere.
+        """
+        when = imgui.Cond_.always if again else self.once
+        internal = imgui.internal
+        known = internal.find_window_by_name(name) or internal.find_window_settings_by_id(
+            internal.im_hash_str(name)
+        )
+        if known is not None and when != imgui.Cond_.always:
+            return
+        if side != "below" and self._whole < _WIDE * self.size:
+            side = "below"
+        imgui.set_next_window_dock_id(self._node(side, share, least * self.size, stacks=stacks), when)
+        self._put.add(name)
+
+    def _node(self, side: str, share: float, least: float, *, stacks: bool) -> int:
+        """Return the place at a side for one more window; ``least`` is in pixels."""
+        internal, is_below = imgui.internal, side == "below"
+        world = internal.dock_builder_get_central_node(self._sides)
+        x, y = world.pos.x + 0.5 * world.size.x, world.pos.y + world.size.y
+        last = None
+        for window in imgui.get_current_context().windows:
+            node = internal.dock_builder_get_node(window.dock_id) if window.dock_id else None
+            if node is None or not (window.active or window.was_active):
+                continue
+            lies = "below" if node.pos.y >= y else "right" if node.pos.x > x else "left"
+            if lies == side and (last is None or _rank(node, stacks=stacks) >= _rank(last, stacks=stacks)):
+                last = node
+        if last is not None and stacks:
+            if (last.size.x if is_below else last.size.y) < 2.0 * least:
+                return last.id_
+            across = imgui.Dir.right if is_below else imgui.Dir.down
+            return int(internal.dock_builder_split_node_py(last.id_, across, 0.5)[0])
+        left_over = (1.0 - share) * (world.size.y if is_below else world.size.x)
+        if last is not None and left_over < LEAST_WORLD * self.size:
+            return last.id_
+        return int(internal.dock_builder_split_node_py(world.id_, _DIRECTIONS[side], share)[0])
+
+    def raise_tab(self, shows: object = None) -> None:
+        """Put the window in front of its tabs, where it shows another thing than before."""
+        window = imgui.internal.get_current_window_read()
+        if self._raised.get(window.name, self) != shows or window.appearing:
+            self._raised[str(window.name)] = shows
+            if window.dock_node is not None and window.dock_node.tab_bar is not None:
+                window.dock_node.tab_bar.next_selected_tab_id = window.tab_id
 
     @contextmanager
     def floating(
@@ -139,10 +212,11 @@ class Windows:
         """
         free = imgui.get_main_viewport()  # without the menu bar
         low, room = free.work_pos, free.work_size
-        when = self.once if docks else imgui.Cond_.appearing
-        imgui.set_next_window_pos(ImVec2(*middle), when, ImVec2(0.5, 0.5))
+        if title not in self._put:  # a place would take it out of where it is docked
+            when = self.once if docks else imgui.Cond_.appearing
+            imgui.set_next_window_pos(ImVec2(*middle), when, ImVec2(0.5, 0.5))
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
-        _, stays = imgui.begin(title, True, _FLOATING if docks else _FLOATING | _APART)
+        _, stays = imgui.begin(title, True, (_FLOATING | _BESIDE) if docks else (_FLOATING | _APART))
         place, size = imgui.get_window_pos(), imgui.get_window_size()
         x, y = (
             max(min(place.x, low.x + room.x - size.x), low.x),
@@ -151,6 +225,8 @@ class Windows:
         if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
             imgui.set_window_pos(ImVec2(x, y))
         self.words.append(title)
+        if docks:
+            self.raise_tab(self._raised.get(title))
         try:
             yield
         finally:
@@ -161,7 +237,7 @@ class Windows:
     @contextmanager
     def child(self, name: str, size: ImVec2) -> Iterator[bool]:
         """Begin a part of a window that is scrolled by itself; the yielded value says whether it is seen."""
-        yield bool(imgui.begin_child(name, size))
+        yield bool(imgui.begin_child(name, size, imgui.ChildFlags_.nav_flattened))
         imgui.end_child()
 
     @contextmanager
@@ -199,3 +275,8 @@ class Windows:
     def held(self, label: str) -> str:
         """Return a label without words for what is written or dragged in, which ends with the scene."""
         return widget_label("", f"{label} of scene {self.scenes}")
+
+
+def _rank(node: imgui.internal.DockNode, *, stacks: bool) -> tuple[float, float]:
+    """Return what is largest for the place that a window shares: the last of a stack, or the largest."""
+    return (node.pos.y, node.pos.x) if stacks else (node.size.x * node.size.y, 0.0)

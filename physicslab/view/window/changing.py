@@ -5,8 +5,11 @@ from collections.abc import Callable, Iterator, Sequence
 
 from physicslab.components import (
     Charge,
+    Colour,
     Drag,
     Held,
+    Layer,
+    MadeOf,
     Mass,
     Material,
     Medium,
@@ -30,11 +33,11 @@ from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
 from physicslab.ecs.text import in_words
 from physicslab.ecs.vector import Vector2
-from physicslab.history import AddComponent, RemoveComponent, SetField
+from physicslab.history import AddComponent, Command, RemoveComponent, SetField
 from physicslab.state.attached import local_point as in_frame
 from physicslab.state.joint_rows import KINDS
+from physicslab.view.window.ends import local_point, point_of
 from physicslab.view.window.placing import refused_change
-from physicslab.view.window.spring_tool import local_point, point_of
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -42,7 +45,7 @@ _SIZE = 0.25
 """Radius of a shape that a body is given, half the width of a box [m]."""
 _ABOVE = 1.0
 """How far above a body the spring holds it that it is given [m]."""
-_BY_TOOLS: tuple[type[Component], ...] = (Held,)
+_BY_TOOLS: tuple[type[Component], ...] = (Held, MadeOf)
 """Components that are added and removed by tools alone."""
 
 
@@ -54,6 +57,11 @@ def change_fields(world: World, window: Window, changes: Sequence[SetField]) -> 
             window.notify(f"{change.words(world)}: {refused}", 6.0, failed=True)
             return
     window.edits.do_all(changes)
+
+
+def refused_command(world: World, command: Command) -> str:
+    """Return why a command cannot be done where it puts a body; of other commands nothing."""
+    return _refused_place(world, command) if isinstance(command, SetField) else ""
 
 
 def _refused_place(world: World, change: SetField) -> str:
@@ -78,7 +86,7 @@ def addable(world: World, entities: Sequence[int]) -> dict[str, tuple[str, Calla
         apart = not kind.physical and any(spec.kind == "entity" for spec in kind.FIELDS)
         if kind in _BY_TOOLS or apart or all(world.has(entity, kind) for entity in entities):
             continue
-        for words, make in _makers(world, kind):
+        for words, make in makers(world, kind):
             found[words] = _meaning(kind), make
     return found
 
@@ -126,7 +134,7 @@ def _meaning(kind: type[Component]) -> str:
     return _MEANINGS.get(kind) or (kind.__doc__ or "").strip().split("\n")[0].split(": ")[0].rstrip(".")
 
 
-def _makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable[[int], Component]]]:
+def makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable[[int], Component]]]:
     """Yield (label, factory) pairs of a component; none if it cannot be created."""
     if kind is Shape:
         yield "Shape: circle", lambda entity: Shape.circle(_SIZE)
@@ -179,6 +187,8 @@ _MEANINGS: dict[type[Component], str] = {
     Mass: "forces move it; without mass, a moving body is infinitely heavy",
     Shape: "it can touch others",
     Material: "its restitution and friction",
+    Colour: "it has a colour of its own",
+    Layer: "it touches some bodies and not others",
     Charge: "it acts on other charges, and electric and magnetic fields on it",
     Drag: "a medium slows it, as air does",
     Medium: "it is filled with a fluid: bodies pass through, float and are slowed",

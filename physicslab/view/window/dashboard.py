@@ -6,9 +6,11 @@ from weakref import WeakKeyDictionary
 
 from physicslab.components import Graph, GraphLine, Meter, Name, Slider, Transform
 from physicslab.components.graph import TIME
+from physicslab.diagnostics.fits import Fit
 from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.component import Component
 from physicslab.history import History
+from physicslab.view.window.fitting import Fitting
 from physicslab.view.window.record import Key, PastSamples, Record
 from physicslab.world import World
 
@@ -94,12 +96,12 @@ class Dashboard:
         The times of the cursors A and B [s].
     free_axes : set of int
         Graphs whose axes were moved by hand, and do not follow what is recorded.
-    active : int, optional
-        The graph that is open where there is room for one alone.
     picture_of : int, optional
         The graph of which a picture is to be written.
     past : PastSamples, optional
         What is being measured again of the time before there was such a line.
+    fitting : Fitting
+        The curves that graphs show beside their lines.
     labels : dict of int to str
         What bodies that are measured are called, those that are gone among them.
     """
@@ -112,9 +114,9 @@ class Dashboard:
         self.pointed: float | None = None
         self.marks: list[float | None] = [None, None]
         self.free_axes: set[int] = set()
-        self.active: int | None = None
         self.picture_of: int | None = None
         self.past: PastSamples | None = None
+        self.fitting = Fitting()
         self.labels: dict[int, str] = {}
         self._known: set[Key] = set()
         self._own: WeakKeyDictionary[World, frozenset[int]] = WeakKeyDictionary()
@@ -129,9 +131,9 @@ class Dashboard:
     @property
     def state(self) -> tuple[object, ...]:
         """The state that panels are built from, but for the samples."""
-        panels = self.graphs, self.meters, self.sliders, self.active
+        panels = self.graphs, self.meters, self.sliders
         filled = None if self.past is None else round(self.past.share, 2)
-        return *panels, self.pointed, *self.marks, len(self.free_axes), filled
+        return *panels, self.pointed, *self.marks, len(self.free_axes), filled, self.fitting.state
 
     def begin(self, world: World, before: World | None, *, is_new: bool) -> None:
         """Follow another world; ``before`` is the one that showed the same scene until now, if one did.
@@ -149,10 +151,15 @@ class Dashboard:
         self.before = self.record.renamed(bodies) if before is not None else Record()
         self.record = Record()
         self.free_axes.clear()
+        self.fitting.spans.clear()
         self.labels.clear()
         self.marks, self.pointed = [None, None], None
         self._sampled = self._structure = self.past = None
         self._known.clear()
+
+    def keep(self, world: World) -> None:
+        """Take the instruments of a world for its own from now on: they are in its file."""
+        self._own[world] = frozenset(_instruments(world))
 
     def fill(self, history: History) -> None:
         """Measure a part of what lines were before they were made, where there are such lines."""
@@ -187,7 +194,6 @@ class Dashboard:
 
     def _find(self, world: World) -> None:
         lines: dict[int, list[LineShown]] = {}
-        known = {graph.entity for graph in self.graphs}
         for entity, line in _all(world, GraphLine):
             if line.graph is not None:
                 shown = LineShown(entity, (line.body, line.quantity))
@@ -207,12 +213,16 @@ class Dashboard:
         )
         there = {graph.entity for graph in self.graphs}
         self.free_axes &= there
-        self.active = self.active if self.active in there and there <= known else None
+        self.fitting.keep(there)
         bodies = {key[0] for graph in self.graphs for key in graph.keys}
         bodies |= {meter.key[0] for meter in self.meters} | {slider.target for slider in self.sliders}
         for body in bodies:
             if body is not None and body in world.entity_index.row_of:
                 self.labels[body] = world.label(body)
+
+    def fitted(self, graph: GraphShown, key: Key) -> Fit | None:
+        """Return the curve that is fitted to a line of a graph, ``None`` if there is none."""
+        return self.fitting.of(graph.entity, graph.across, key, self.record, self.marks)
 
     def label(self, body: int | None) -> str:
         """Return what is written for a body, or for the world."""

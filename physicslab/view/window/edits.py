@@ -1,10 +1,14 @@
 """The selection, the properties of the next body, and edits of the world: commands of one history."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
-from physicslab.ecs.component import Component
+from physicslab.components import Transform
+from physicslab.components.made_of import SUBSTANCES
+from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import LENGTH_LIMIT, Field, InvalidValue
 from physicslab.history import Command, Group, History, SetField
 from physicslab.prefabs import BodyOptions
@@ -32,6 +36,10 @@ class Selection:
         else:
             self.entities = (*self.entities, entity)
 
+    def bodies(self, world: World) -> list[int]:
+        """Return those of them that have a place."""
+        return [entity for entity in self.entities if world.has(entity, Transform)]
+
     def clear(self) -> None:
         """Select nothing."""
         self.entities = ()
@@ -47,7 +55,7 @@ type Shown = tuple[int, type[Component], str]
 
 
 class Edits:
-    """The edits of one world. While time stands still they can be shown before they are done.
+    """The edits of one world. They can be shown before they are done, as while a number is dragged.
 
     Parameters
     ----------
@@ -55,12 +63,26 @@ class Edits:
         Where edits and steps go.
     refused : callable
         Called with the reason where an edit is refused.
+    loosen : callable
+        Called before each edit, with what the hand holds still in it.
+    allows : callable
+        Returns whether an edit may be made: lessons shut most.
+
+    Attributes
+    ----------
+    held : bool
+        Whether a number is dragged: edits of fields are shown until it is let go, and are one edit then.
     """
 
-    def __init__(self, history: History, refused: Callable[[str], None]) -> None:
+    def __init__(
+        self, history: History, refused: Callable[[str], None], loosen: Callable[[World], None],
+        allows: Callable[[Command], bool] = lambda command: True,
+    ) -> None:  # fmt: skip
         self.history = history
-        self._refused = refused
+        self._refused, self._loosen, self._allows = refused, loosen, allows
         self._shown: dict[Shown, Any] = {}
+        self._words, self._at_release = "", Group("")
+        self.held = self._in_run = False
 
     @property
     def world(self) -> World:
@@ -68,8 +90,15 @@ class Edits:
         return self.history.world
 
     def do(self, command: Command) -> tuple[int, ...]:
-        """Carry out an edit and return the entities that it made; where it is refused, say why."""
-        self.take_back_shown()
+        """Carry out an edit and return the entities that it made; where it is refused, say why.
+
+        What is shown as it is dragged is an edit of its own, and the first of the two.
+        """
+        self.keep()
+        if not self._allows(command):
+            self._refused("The lesson has this shut; Esc leaves the lesson")
+            return ()
+        self._loosen(self.world)
         try:
             return self.history.do(command)
         except (InvalidValue, KeyError, TypeError, ValueError) as error:
@@ -80,13 +109,16 @@ class Edits:
         """Carry out commands as one edit, named by its words or those of the first; return as :meth:`do`."""
         if not commands:
             return ()
+        if self.held:
+            self._show_all(commands, words)
+            return ()
         one = commands[0]
         named = words or one.words(self.world)
         return self.do(one if len(commands) == 1 and not words else Group(named, commands))
 
     def write(self, command: Command) -> None:
         """Carry out what a hand does while time runs."""
-        self.take_back_shown()
+        self.keep()
         self.history.write(command)
 
     def show(self, entity: int, kind: type[Component], name: str, value: object) -> None:
@@ -99,6 +131,8 @@ class Edits:
         """
         part = self.world.component(entity, kind)
         before = getattr(part, name)
+        if before == value:
+            return
         try:
             setattr(part, name, value)
             part.validate()
@@ -109,20 +143,67 @@ class Edits:
 
     def keep(self) -> None:
         """Make one edit of all that was shown."""
-        changes = [
-            SetField(entity, kind.__name__, name, getattr(self.world.component(entity, kind), name))
-            for entity, kind, name in self._shown
-            if self.world.has(entity, kind)
-        ]
-        self.take_back_shown()
-        self.do_all(changes)
+        changes, words, self._words = self._take_back_shown(), self._words, ""
+        if changes:
+            self.do(
+                changes[0]
+                if len(changes) == 1 and not words
+                else Group(words or changes[0].words(self.world), changes)
+            )
 
-    def take_back_shown(self) -> None:
-        """Give all fields the values that they had before they were shown with others."""
+    def keep_for_run(self) -> None:
+        """Make what is shown an edit before a step; a part of the run, while a number is dragged."""
+        if not self.held:
+            self.keep()
+        elif changes := [*self._take_back_shown(), *self._at_release.commands]:
+            self._at_release = Group("")
+            if not self._in_run:
+                self.history.divide()  # one undo goes back to where the drag began
+            self._in_run = True
+            try:
+                for change in changes:
+                    self.history.write(change)
+            except InvalidValue as error:
+                self._refused(str(error))
+
+    def hold(self) -> None:
+        """Begin to show edits of fields: a number is dragged."""
+        self.keep()
+        self.held, self._in_run = True, False
+
+    def release(self) -> None:
+        """Let the number go that was dragged: all that it did is one edit, or a part of the run."""
+        if self._in_run:
+            self.keep_for_run()
+            self.history.divide()
+        self.held = False
+        last, self._at_release = self._at_release, Group("")
+        self.keep()
+        self.do_all(last.commands, last.text)
+
+    def _show_all(self, commands: Sequence[Command], words: str) -> None:
+        """Show the fields that commands set; others, as of laws, wait for the next step or the release."""
+        fields = [one for one in commands if isinstance(one, SetField)]
+        if len(fields) < len(commands):
+            self._at_release = Group(words, commands)
+            return
+        self._words = words
+        try:
+            for one in fields:
+                self.show(one.entity, COMPONENTS[one.component], one.field, one.value)
+        except InvalidValue as error:
+            self._refused(str(error))
+
+    def _take_back_shown(self) -> list[SetField]:
+        """Give fields the values that they had before they were shown; return what gives them the others."""
+        changes = []
         for (entity, kind, name), before in self._shown.items():
             if self.world.has(entity, kind):
-                setattr(self.world.component(entity, kind), name, before)
+                part = self.world.component(entity, kind)
+                changes.append(SetField(entity, kind.__name__, name, getattr(part, name)))
+                setattr(part, name, before)
         self._shown.clear()
+        return changes
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,12 +218,31 @@ class Recipe:
         Mass per area [kg/m^2].
     restitution, friction : float
         Of its surface.
+    material, colour : str
+        What it is made of, if that has a name, and its colour, as "#rrggbb".
     """
 
     size: float = 0.0
     density: float = 5.0
     restitution: float = 0.4
     friction: float = 0.5
+    material: str = ""
+    colour: str = ""
+
+    @property
+    def grain(self) -> float:
+        """Radius of what is poured [m]."""
+        return self.size or 0.12
+
+    def of(self, material: str) -> Recipe:
+        """Return the same with density, surface and colour of a material of the table, or of none."""
+        known = SUBSTANCES.get(material)
+        if known is None:
+            return replace(self, material="", colour="")
+        return replace(
+            self, density=known.areal_density, restitution=known.restitution, friction=known.friction,
+            material=material, colour=known.colour,
+        )  # fmt: skip
 
     def body(self, area: float) -> BodyOptions:
         """Return the options of a body of an area [m^2]."""

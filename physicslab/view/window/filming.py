@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from physicslab.export.film import Film
 from physicslab.history import History
 from physicslab.view.canvas.canvas import Canvas, Rect
+from physicslab.view.window.naming import Naming
 from physicslab.world import World
 
 if TYPE_CHECKING:
@@ -43,16 +44,16 @@ class Filming:
     ----------
     choosing : bool
         Whether the panel is shown in which a film is chosen.
-    what, name : str
-        Of what the next film is to be, and the name of its file.
-    refused : str
-        Why it could not be begun.
+    what : str
+        Of what the next film is to be.
+    naming : Naming
+        The name of its file, and why it could not be begun.
     """
 
     def __init__(self, notify: Callable[[str, bool], None]) -> None:
         self._notify = notify
         self.choosing = False
-        self.what, self.name, self.refused = ALL, "", ""
+        self.what, self.naming = ALL, Naming()
         self._film: Film | None = None
         self._size = 0, 0
         self._spacing = 1.0 / _RATE

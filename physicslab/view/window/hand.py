@@ -30,6 +30,8 @@ _MARGIN = 0.01
 """Share of its size up to which it comes near at any speed."""
 _PASSES = 4
 """How often the limits of several neighbours are gone through."""
+_THROWN = 0.5
+"""Speed [m/s] from which a body that is let go counts as thrown."""
 _MIN_THROW_TIME = 0.03
 """Time [s] over which a speed can be measured at all; a shorter pull is no throw."""
 
@@ -176,6 +178,8 @@ class Hand:
     ----------
     entity : int, optional
         The body that is held.
+    throws : int
+        How many were thrown.
     write : callable
         Carries out a command of the hand.
     """
@@ -184,8 +188,10 @@ class Hand:
         self._config = config
         self.write: Callable[[World, Command], object] = lambda world, command: command.carry_out(world)
         self.entity: int | None = None
+        self.throws = 0
         self._before = (Vector2(), 0.0)
         self._was_moved_by_time = False
+        self._loose_at: Vector2 | None = None
         self._path: deque[_Sample] = deque()
 
     def take(self, world: World, entity: int, place: Vector2, now: float) -> bool:
@@ -196,17 +202,43 @@ class Hand:
         self.drop(world)
         if not (world.has(entity, Transform) and world.has(entity, Velocity)):
             return False
+        self._was_moved_by_time = False
+        self._grip(world, entity, place)
+        self.entity = entity
+        self._path = deque([_Sample(now, place)])
+        return True
+
+    def _grip(self, world: World, entity: int, place: Vector2) -> None:
+        """Hold a body by a point of the world [m]."""
         transform, velocity = world.component(entity, Transform), world.component(entity, Velocity)
         grip = (place - transform.position).rotated(-transform.angle)
-        self._before = velocity.linear, velocity.angular
-        self._was_moved_by_time = False
+        self._before, self._loose_at = (velocity.linear, velocity.angular), None
         self._set(world, entity, Velocity, "linear", Vector2())
         self._set(world, entity, Velocity, "angular", 0.0)
         self.write(world, AddComponent(entity, Held(grip)))
         world.edited()
-        self.entity = entity
-        self._path = deque([_Sample(now, place)])
-        return True
+
+    def loosen(self, world: World) -> None:
+        """Let go for an edit; the body is taken again when the hand moves on, or time does.
+
+        So what the hand did ends before the edit and what it does later begins after it: undo takes back
+        the edit alone, and where the edit has put the body it stays.
+        """
+        if self.entity is not None and world.has(self.entity, Held):
+            self._put_back_velocity(world, self.entity)
+            self._loose_at = self._path[-1].place
+            self.write(world, RemoveComponent(self.entity, Held.__name__))
+            world.edited()
+
+    def _take_again(self, world: World, paused: bool) -> None:
+        """Take what was let go for an edit, by the point where the hand was then."""
+        entity, place = self.entity, self._loose_at
+        if entity is None or place is None:
+            return
+        if not (world.has(entity, Transform) and world.has(entity, Velocity)):
+            self.entity = None
+        elif not paused or self._path[-1].place != place:
+            self._grip(world, entity, place)
 
     def move(self, place: Vector2, now: float) -> None:
         """Note where the hand is [m]."""
@@ -226,7 +258,8 @@ class Hand:
         paused : bool
             Whether time stands still: the body is then put where the hand is.
         """
-        if self.entity is None:
+        self._take_again(world, paused)
+        if self.entity is None or self._loose_at is not None:
             return
         if not world.has(self.entity, Held) or not world.has(self.entity, Transform):
             self.entity = None  # it was removed, or taken out of the hand
@@ -253,13 +286,23 @@ class Hand:
         While time stands still nothing is thrown; a body that was only put elsewhere goes on as before.
         """
         self.move(place, now)
+        if not paused:
+            self._take_again(world, paused)
         if self.entity is not None and world.has(self.entity, Held):
-            linear, angular = self._throw(), 0.0
             if paused:
-                linear, angular = (Vector2(), 0.0) if self._was_moved_by_time else self._before
-            self._set(world, self.entity, Velocity, "linear", linear)
-            self._set(world, self.entity, Velocity, "angular", angular)
+                self._put_back_velocity(world, self.entity)
+            else:
+                thrown = self._throw()
+                self.throws += thrown.magnitude > _THROWN
+                self._set(world, self.entity, Velocity, "linear", thrown)
+                self._set(world, self.entity, Velocity, "angular", 0.0)
         self._let_go(world)
+
+    def _put_back_velocity(self, world: World, entity: int) -> None:
+        """Give a body the velocity with which it was taken; none where time ran meanwhile."""
+        linear, angular = (Vector2(), 0.0) if self._was_moved_by_time else self._before
+        self._set(world, entity, Velocity, "linear", linear)
+        self._set(world, entity, Velocity, "angular", angular)
 
     def drop(self, world: World) -> None:
         """Let go without a throw, as when the window is left: the body starts from rest."""
@@ -271,12 +314,26 @@ class Hand:
         if self.entity is not None and world.has(self.entity, Held):
             self.write(world, RemoveComponent(self.entity, Held.__name__))
             world.edited()
-        self.entity = None
+        self.entity, self._loose_at = None, None
 
     def _set(self, world: World, entity: int, kind: type[Component], name: str, value: Any) -> None:
         """Give a field another value; one that it has already is not written again."""
         if getattr(world.component(entity, kind), name) != value:
             self.write(world, SetField(entity, kind.__name__, name, value))
+
+    @property
+    def target(self) -> Vector2 | None:
+        """Where the hand is that holds a body [m]."""
+        return None if self.entity is None or not self._path else self._path[-1].place
+
+    def throw(self, now: float) -> Vector2:
+        """Return the velocity [m/s] of what is held if it were let go at a time of the window."""
+        if self.target is None:
+            return Vector2()
+        path = self._path.copy()
+        self.move(self._path[-1].place, now)
+        thrown, self._path = self._throw(), path
+        return thrown
 
     def _throw(self) -> Vector2:
         """Return the mean velocity [m/s] over the last of the hand's path, no faster than allowed."""

@@ -13,6 +13,7 @@ from physicslab.diagnostics.ledger import NO_IMPACTS, read_impacts
 from physicslab.ecs.vector import Vector2
 from physicslab.history import History
 from physicslab.view.window.pace import Pace
+from physicslab.view.window.record import PastSamples
 from physicslab.world import World
 
 type Records = NDArray[Any]
@@ -57,6 +58,7 @@ class ImpactList:
         self.shown = self.only_selected = self.falling = False
         self.sorted_by = "time"
         self._reader = ImpactReader()
+        self._past: PastSamples | None = None  # what is made again for impacts that the log has no more
         self._world: World | None = None
         self.records = _with_derived(NO_IMPACTS)
         self._room = self.records
@@ -74,13 +76,32 @@ class ImpactList:
             self.clear()
             self._reader.follow(world)
             new = _of_one_line(world.contacts.impacts)
+            is_whole = world.contacts.logged <= len(world.contacts.log)
+            at_end = history.step_count == history.steps_range[1]
+            self._past = None if is_whole and at_end else PastSamples(history, ())
         else:
             new = self._reader.new(world)
         if len(new):
             self._take(_with_derived(new))
+        self._fill(history)
         at_end = history.step_count == history.steps_range[1]
         if at_end and len(self.records) and self.records["time"].max() > world.time:
             self._put(self.records[self.records["time"] <= world.time])
+
+    @property
+    def fills(self) -> bool:
+        """Whether steps are being made again for impacts that the log has no more."""
+        return self._past is not None and self.shown
+
+    def _fill(self, history: History) -> None:
+        """Make a part of the steps again whose impacts are missing, and take these in at the end."""
+        past = self._past
+        if past is None or not past.is_of(history):
+            self._past = None
+        elif past.go_on():
+            self._past = None
+            if past.world is not None and len(past.world.contacts.impacts):
+                self._take(_with_derived(past.world.contacts.impacts))
 
     def _take(self, new: Records) -> None:
         """Add impacts that are new, or that were made again."""
@@ -214,8 +235,8 @@ class Microscope:
         How many impacts were shown.
     frame : str
         The observer, one of ``FRAMES``.
-    shows_formula : bool, optional
-        Whether the formula is written out; ``None`` as the level has it.
+    shows_more, shows_formula : bool, optional
+        Whether all about it is shown, and the formula is written out; ``None`` as the level has it.
     waits_for : tuple of int, optional
         The bodies at whose next impact time is to stand still, all where it is empty; ``None`` where it runs.
     slow : SlowRun, optional
@@ -228,6 +249,7 @@ class Microscope:
         self.collision: Collision
         self.result: Result
         self.frame = "Lab"
+        self.shows_more: bool | None = None
         self.shows_formula: bool | None = None
         self.waits_for: tuple[int, ...] | None = None
         self.slow: SlowRun | None = None

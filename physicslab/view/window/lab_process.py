@@ -35,6 +35,9 @@ class LabProcess:
         Why nothing was found, after a run that failed.
     """
 
+    option = "--json"
+    """What the command is told by to write its report."""
+
     def __init__(self, command: Sequence[str]) -> None:
         self._command = tuple(command)
         self._process: subprocess.Popen[bytes] | None = None
@@ -59,12 +62,18 @@ class LabProcess:
         self._place = tempfile.TemporaryDirectory(prefix="physicslab-")
         scene = Path(self._place.name) / "scene.json"
         write(scene)
-        command = (*self._command, str(scene), *arguments, "--progress", "--json", str(self._report))
+        command = (*self._command, str(scene), *arguments, "--progress", self.option, str(self._report))
         with self._log.open("wb") as log:
             self._process = subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=log
             )
         self.share, self.failure = 0.0, ""
+
+    @staticmethod
+    def read(report: Path) -> dict[str, Any]:
+        """Return what the command has written."""
+        found: dict[str, Any] = json.loads(report.read_text("utf-8"))
+        return found
 
     def ended(self) -> dict[str, Any] | None:
         """Return the report of a run that has ended just now; empty, with a ``failure``, where it failed."""
@@ -76,8 +85,7 @@ class LabProcess:
             return None
         try:
             if self._process.returncode == 0:
-                found: dict[str, Any] = json.loads(self._report.read_text("utf-8"))
-                return found
+                return self.read(self._report)
             self.failure = self._last_words() or f"it ended with status {self._process.returncode}"
             return {}
         finally:

@@ -1,7 +1,7 @@
 """Whether there is room for what is to be made, and where it snaps."""
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,12 +12,15 @@ from physicslab.contacts import outlines
 from physicslab.contacts.outlines import Outlines, overlap, overlapping
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
+from physicslab.state.solid import may_touch, solid_rows
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.picture.backdrop import grid_spacing
 from physicslab.world import World
 
 _ALLOWED = 1e-3
 """Overlap [m] that is no obstacle: what is put down on a floor by eye."""
+_FOOT = 0.5
+"""How far from what is below the foot of something may be put down to stand on it [m]."""
 _BEYOND = "there is no room beyond the walls"
 _STRIDE, _MAX_STRIDES, _HALVINGS = 0.1, 64, 10
 """A way is looked at every so many metres, at so many places at most, and then more closely."""
@@ -33,7 +36,7 @@ def refused_place(world: World, wanted: Outlines) -> str:
     """Return why something cannot be made here; empty where it can."""
     if _is_outside(world, wanted):
         return _BEYOND
-    others = outlines_of(world)
+    others = outlines_of(world, solid_rows(world))
     for n in range(len(wanted.place)):
         for other in overlapping(wanted, n, others):
             if overlap(wanted, n, others, int(other))[0] > _ALLOWED:
@@ -67,10 +70,24 @@ def _row_of(world: World, entity: int) -> NDArray[np.int64]:
 
 
 def _overlapping(world: World, entity: int) -> float:
-    """Return by how much a body overlaps any other [m]; at least 0."""
-    rows = world.batch(Transform, Shape).rows
+    """Return by how much a body overlaps any other that it can touch [m]; at least 0."""
     own = _row_of(world, entity)
-    return _deepest(outlines_of(world, own), outlines_of(world, rows[rows != own[0]]))
+    return _deepest(outlines_of(world, own), outlines_of(world, _touched(world, own)))
+
+
+def _touched(world: World, own: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the rows (n,) of all shapes that can touch that of one row (1,)."""
+    rows = solid_rows(world)
+    if own[0] not in rows:  # a medium
+        return rows[:0]
+    rows = rows[rows != own[0]]
+    touched: NDArray[np.int64] = rows[may_touch(world, np.full(len(rows), own[0]), rows)]
+    return touched
+
+
+def area_of(world: World, entity: int) -> float:
+    """Return the area of a body's shape [m^2]; 0 without a shape."""
+    return float(outlines_of(world, _row_of(world, entity)).area[0]) if world.has(entity, Shape) else 0.0
 
 
 def _is_outside(world: World, shapes: Outlines) -> bool:
@@ -86,9 +103,9 @@ def _is_outside(world: World, shapes: Outlines) -> bool:
 def free_way(world: World, entity: int, way: Vector2) -> Vector2:
     """Return the part of a way [m] that leads a body no deeper into what cannot move: it slides along it."""
     row = world.entity_index.row_of[entity]
-    shaped = world.batch(Transform, Shape).rows
-    walls = outlines_of(world, shaped[~world.table(Velocity).present[shaped]])
     own = outlines_of(world, np.array([row], np.int64))
+    touched = _touched(world, np.array([row], np.int64))
+    walls = outlines_of(world, touched[~world.table(Velocity).present[touched]])
     if not len(walls.place) or not world.has(entity, Shape):
         return way
     allowed = max(_deepest(own, walls), _ALLOWED)
@@ -253,3 +270,22 @@ class Snapping:
         low, high = (np.zeros(2), np.zeros(2)) if about is None else extent_about(about)
         found = snapped(world, camera, middle, low, high, without)
         self.place, self.marks = found.place + (cursor - middle), found.marks
+
+
+def put_down(world: World, places: Sequence[Vector2], *, each: bool) -> Sequence[Vector2]:
+    """Return points [m] so far down, or up, that what is at them stands on what is just below.
+
+    Parameters
+    ----------
+    each : bool
+        Whether each of them is put down, so that a row goes along the ground; else all alike.
+    """
+    solid, floor = outlines_of(world, solid_rows(world)), (world.physics.bounds or (0.0, -math.inf))[1]
+    low = min(place.y for place in places)
+    feet = [(place.x, place.y if each else low) for place in places]
+    falls = [min(y - floor, *(solid.gaps(x, y).tolist() or [math.inf])) for x, y in feet]
+    if max(map(abs, falls)) > _FOOT:
+        return places
+    if not each:
+        falls = [min(falls, key=abs)] * len(falls)
+    return [place - Vector2(0.0, fall) for place, fall in zip(places, falls, strict=True)]

@@ -275,12 +275,15 @@ class PastSamples:
     ----------
     record : Record
         A moment for each step, as far as they were made.
+    world : World, optional
+        As it was after the last step that was made again, with the log of its impacts.
     share : float
         How much of the way is done, from 0 to 1.
     """
 
     def __init__(self, history: History, keys: tuple[Key, ...]) -> None:
         self.keys, self.record, self.share = keys, Record(), 0.0
+        self.world: World | None = None
         self._branches = history.branches
         self._steps = max(history.steps_range[1], 1)
         self._stride = -(-self._steps // CAPACITY)
@@ -295,9 +298,10 @@ class PastSamples:
         until = time.perf_counter() + _SLICE
         try:
             for world, played in self._again:
+                self.world = world
                 if played.columns:
                     return True
-                if played.step % self._stride == 0:
+                if self.keys and played.step % self._stride == 0:
                     reading = Reading(world)
                     values = {key: reading.value(key[1], key[0]) for key in self.keys}
                     if not all(map(math.isnan, values.values())):  # no body yet, no moments

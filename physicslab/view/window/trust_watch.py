@@ -2,13 +2,12 @@
 
 import sys
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 from physicslab.components import Held, Transform, Velocity
 from physicslab.files.checks import SceneError
-from physicslab.files.writer import WorldSnapshot, text_pieces
+from physicslab.files.writer import SceneText, WorldSnapshot
 from physicslab.view.window.lab_process import LabProcess
 from physicslab.world import World
 
@@ -95,8 +94,8 @@ class TrustWatch(LabProcess):
         self._is_still = True  # whether nothing was edited since the frame before
         self._settled = self._began = self._next_look = 0.0
         self._snapshot: WorldSnapshot | None = None
-        self._writing: Iterator[bytes | None] | None = None
-        self._scene: list[bytes] = []
+        self._writing: SceneText | None = None
+        self._scene: bytes | None = None
 
     # ---- what is known -------------------------------------------------------------------------------------
 
@@ -161,8 +160,8 @@ class TrustWatch(LabProcess):
         """Drop what was found, and what is under way: the world was edited."""
         self.abandon()
         self._seen, self._settled = seen, now
-        self._snapshot = self._writing = None
-        self._scene, self._bodies, self.left_out = [], (), ""
+        self._snapshot = self._writing = self._scene = None
+        self._bodies, self.left_out = (), ""
         self._drop()
 
     def _drop(self) -> None:
@@ -187,11 +186,11 @@ class TrustWatch(LabProcess):
 
     def _start(self, world: World, now: float) -> None:
         """Write the scene of the last edit, a little in each frame, and begin when it is written."""
-        if not self._is_written():
+        content = self._text()
+        if content is None:
             return
         elapsed = world.time - self.since
         seconds = max(elapsed + _AHEAD_S, _AHEAD * elapsed)
-        content = b"".join(self._scene)
         self._began = now
         try:
             self.begin(lambda path: path.write_bytes(content), "--trust", "--seconds", repr(seconds))
@@ -199,25 +198,16 @@ class TrustWatch(LabProcess):
             self.stop()
             self.failure = error.strerror or str(error)
 
-    def _is_written(self) -> bool:
-        """Go on to write the scene, and return whether it is; where it cannot be, that is a failure."""
-        if self._scene and self._writing is None:
-            return True
-        assert self._snapshot is not None
-        if self._writing is None:
-            self._writing = text_pieces(self._snapshot)
-        deadline = time.perf_counter() + _WRITING_S
-        try:
-            for piece in self._writing:
-                if piece is not None:
-                    self._scene.append(piece)
-                if time.perf_counter() >= deadline:
-                    return False
-        except (SceneError, ValueError) as error:  # ValueError: a number that is not finite
-            self._writing, self.failure = None, str(error)
-            return False
-        self._writing = None
-        return True
+    def _text(self) -> bytes | None:
+        """Go on to write the scene; return its text once it is whole. What hinders it is a failure."""
+        if self._scene is None:
+            assert self._snapshot is not None
+            self._writing = self._writing or SceneText(self._snapshot, time.perf_counter)
+            try:
+                self._scene = self._writing.go_on(_WRITING_S)
+            except (SceneError, ValueError) as error:  # ValueError: a number that is not finite
+                self._writing, self.failure = None, str(error)
+        return self._scene
 
     def _look(self, now: float) -> None:
         """Look whether it has ended; read what it found, or give it up."""

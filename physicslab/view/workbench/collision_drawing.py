@@ -11,9 +11,11 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.components import Shape
 from physicslab.diagnostics.collision import Body, Collision
 from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.canvas import overlap
 from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.canvas.rim import rim_of
 from physicslab.view.canvas.theme import Colour, Theme, mixed
+from physicslab.view.picture.bodies import named_colour
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.world import World
@@ -100,7 +102,7 @@ class Sketch:
         x = min(max(place.x - 0.5 * size.x, 0.0), max(self.width - size.x, 0.0))
         y = min(max(place.y - 0.5 * size.y, 0.0), max(self.height - size.y, 0.0))
         for _ in range(4):
-            taken = next((one for one in self._words if _overlap(one, (x, y, size.x, size.y))), None)
+            taken = next((one for one in self._words if overlap(one, (x, y, size.x, size.y))), None)
             if taken is None:
                 break
             below = taken[1] + taken[3]
@@ -108,11 +110,6 @@ class Sketch:
         self._words.append((x, y, size.x, size.y))
         self._paper.add_text(self._at(Vector2(x, y)), packed(colour), words)
         self.ui.words.append(words)
-
-
-def _overlap(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> bool:
-    (x, y, w, h), (u, v, p, q) = one, other
-    return x < u + p and u < x + w and y < v + q and v < y + h
 
 
 @contextmanager
@@ -148,9 +145,10 @@ _SHORT = 2.0
 """Arrows shorter than that are not drawn [px]."""
 
 
-def colours_of(theme: Theme, seen: Collision) -> tuple[Colour, Colour]:
+def colours_of(world: World, theme: Theme, seen: Collision) -> tuple[Colour, Colour]:
     """Return the colours of A and of B: their own in the world; of two alike B has a tint of it."""
-    a, b = (theme.body(body.entity) if body.is_free else theme.static for body in (seen.a, seen.b))
+    bodies = seen.a, seen.b
+    a, b = (named_colour(world, theme, one.entity) if one.is_free else theme.static for one in bodies)
     return a, mixed(theme.text, b, _TINT) if a == b else b
 
 
@@ -171,12 +169,12 @@ def draw_bodies(ui: Ui, world: World, seen: Collision, size: tuple[float, float]
     speeds = [m.linear.magnitude for body in (seen.a, seen.b) for m in (body.before, body.after)]
     per_speed = _REACH * min(width, height) / max(*speeds, 1e-300)
     with sketch(ui, width, height) as paper:
-        for body, colour in zip((seen.a, seen.b), colours_of(theme, seen), strict=True):
+        for body, colour in zip((seen.a, seen.b), colours_of(world, theme, seen), strict=True):
             _draw_body(paper, world, body, seen, at, scale, colour)
         _draw_axes(paper, seen, at(middle))
         for spot in seen.spots:
             paper.disc(at(spot.place), 4.0, theme.contact_normal, theme.background)
-        for name, body, colour in zip("AB", (seen.a, seen.b), colours_of(theme, seen), strict=True):
+        for name, body, colour in zip("AB", (seen.a, seen.b), colours_of(world, theme, seen), strict=True):
             start = at(body.centre)
             for motion, mark, before in ((body.before, "", True), (body.after, "'", False)):
                 way = per_speed * _down(motion.linear)
@@ -246,7 +244,7 @@ def _beyond(start: Place, end: Place, by: float) -> Place:
 # ---- velocities at the contact, and momenta ----------------------------------------------------------------
 
 
-def draw_contact(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
+def draw_contact(ui: Ui, world: World, seen: Collision, size: tuple[float, float]) -> None:
     """Draw how B moves against A at the contact, split along n (upwards) and t (to the left)."""
     theme, (width, height) = ui.theme, size
     spot = max(seen.spots, key=lambda one: one.normal_impulse)
@@ -271,12 +269,12 @@ type _Chain = tuple[list[Vector2], tuple[str, ...], tuple[Colour, ...], bool]
 """Momenta put tip to tail, their names and colours, and whether they are those before."""
 
 
-def draw_momenta(ui: Ui, seen: Collision, size: tuple[float, float]) -> None:
+def draw_momenta(ui: Ui, world: World, seen: Collision, size: tuple[float, float]) -> None:
     """Draw momenta tip to tail: the sum of both is the same arrow before and after.
 
     If impulses do not move one of them, the momentum of the other changes by the impulse.
     """
-    theme, (a_colour, b_colour) = ui.theme, colours_of(ui.theme, seen)
+    theme, (a_colour, b_colour) = ui.theme, colours_of(world, ui.theme, seen)
     before, after = ([b.momentum(m) for b, m in zip((seen.a, seen.b), ms, strict=True)]
                      for ms in ((seen.a.before, seen.b.before), (seen.a.after, seen.b.after)))  # fmt: skip
     if seen.a.is_free and seen.b.is_free:
@@ -349,10 +347,10 @@ def _beside(start: Place, end: Place, by: float) -> Place:
 # ---- energy ------------------------------------------------------------------------------------------------
 
 
-def draw_energies(ui: Ui, seen: Collision, width: float) -> None:
+def draw_energies(ui: Ui, world: World, seen: Collision, width: float) -> None:
     """Draw the kinetic energies before and after as bars, with what was lost and to what, and write them."""
     theme = ui.theme
-    a_colour, b_colour = colours_of(theme, seen)
+    a_colour, b_colour = colours_of(world, theme, seen)
     parts = []
     for a, b in ((seen.a.before, seen.b.before), (seen.a.after, seen.b.after)):
         (a_along, a_turn), (b_along, b_turn) = seen.a.energies(a), seen.b.energies(b)
@@ -386,7 +384,6 @@ def draw_energies(ui: Ui, seen: Collision, width: float) -> None:
                 shade = theme.background if own else theme.text
                 _label_bar(paper, name, (x, end), top + 0.5 * high, shade)
                 x = end
-    _write_losses(ui, seen, full)
 
 
 def _label_bar(paper: Sketch, name: str, span: tuple[float, float], middle: float, colour: Colour) -> None:
@@ -398,8 +395,9 @@ def _label_bar(paper: Sketch, name: str, span: tuple[float, float], middle: floa
             return
 
 
-def _write_losses(ui: Ui, seen: Collision, full: float) -> None:
-    """Write what was lost and to what; rounding beside the ``full`` energy [J] is treated as zero."""
+def build_losses(ui: Ui, seen: Collision) -> None:
+    """Write what was lost and to what; rounding beside the energy before is treated as zero."""
+    full = sum(sum(body.energies(body.before)) for body in (seen.a, seen.b))
     bounced, friction = (without_rounding(part, full) for part in seen.lost)
     ui.row("Lost in the bounce", quantity(bounced, "J"), "Taken by the normal impulse: restitution")
     ui.row("Lost to friction", quantity(friction, "J"), "Taken by the friction impulse")

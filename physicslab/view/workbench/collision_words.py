@@ -56,14 +56,18 @@ def body_name(world: World, entity: int, wall: int) -> str:
 
 
 def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[str]:
-    """Return what happened, a sentence each; ``names`` are those of A and B."""
+    """Return what happened, a sentence each; ``names`` are those of A and B.
+
+    The first says who hit whom, the second how they part; the rest is for those who want to know more.
+    """
     spot = max(collision.spots, key=lambda one: one.normal_impulse)
     vn, vt = collision.approach(spot)
     left, slides = collision.approach(spot, after=True)
-    told = [f"B ({names[1]}) met A ({names[0]}) at {quantity(-vn, 'm/s')} along the normal n."]
+    told = [f"{_who(collision, names)} at {quantity(-vn, 'm/s')}."]
+    told.append(_bounce(collision, result, -left / vn if vn else 0.0))
+    told.append("These speeds are along the normal n of the contact.")
     if len(collision.spots) == 2:
         told.append("Two points met at once, as when a box lands flat: both impulses are found together.")
-    told.append(_bounce(collision, result, -left / vn if vn else 0.0))
     told += list(_rotation(collision))
     told.append(_friction(collision, result, vt, slides))
     told += list(_law(collision, result))
@@ -75,10 +79,24 @@ def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[
     return told
 
 
+def _who(collision: Collision, names: tuple[str, str]) -> str:
+    """Return which of the two moved into the other."""
+    a, b = (f"{name} ({letter})" for name, letter in zip(names, "AB", strict=True))
+    of_a = collision.a.before.linear.dot(collision.normal)
+    of_b = -collision.b.before.linear.dot(collision.normal)
+    if not (collision.a.is_free and collision.b.is_free):
+        return f"{b} hit {a}" if collision.b.is_free else f"{a} hit {b}"
+    none = AGREES * collision.speed_scale
+    if of_a > none and of_b > none:
+        return f"{a} and {b} ran into each other"
+    first, second, other = (a, b, of_b) if of_a > of_b else (b, a, of_a)
+    return f"{first} caught up with {second}" if other < -none else f"{first} hit {second}"
+
+
 def _bounce(collision: Collision, result: Result, found: float) -> str:
     e = collision.restitution
     if e == 0.0 and abs(found) < AGREES:
-        return "It does not bounce (e = 0): afterwards they move alike along n."
+        return "They do not bounce (e = 0)."
     words = f"They part at {percentage(found)} of that speed"
     return f"{words}; the materials have e = {e:.3g}."
 
@@ -89,8 +107,8 @@ def _rotation(collision: Collision) -> Iterator[str]:
     plain, turning = 1.0 / (collision.a.inverse_mass + collision.b.inverse_mass), 1.0 / response.kn
     if len(collision.spots) == 2:
         yield (
-            f"One point by itself would give way by turning, and act like {quantity(turning, 'kg')} and not "
-            f"like {quantity(plain, 'kg')}; two at once hold each other, so that it turns less."
+            f"At one point alone it would turn out of the way, as if only {quantity(turning, 'kg')} were hit "
+            f"in place of {quantity(plain, 'kg')}; two points hold it, and it turns less."
         )
     elif turning < _SOFTER * plain:
         yield (

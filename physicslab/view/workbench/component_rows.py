@@ -1,39 +1,60 @@
-"""The rows of a component's fields: one for each, whatever it holds, of one entity or of several at once."""
+"""The rows of a component's fields, and of numbers as people think of them: a slope, a throw, degrees."""
 
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
+import numpy as np
 from imgui_bundle import imgui
+from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Material, Shape, Spring, Trail, Transform, Velocity
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.component import Component
-from physicslab.ecs.fields import Field
+from physicslab.ecs.fields import LENGTH_LIMIT, Field
 from physicslab.ecs.quantity_text import points_text
 from physicslab.ecs.vector import Vector2
-from physicslab.history import SetField
+from physicslab.history import AddComponent, Command, SetField
 from physicslab.state.joint_rows import KINDS
-from physicslab.view.canvas.quantities import without_rounding
+from physicslab.view.canvas.quantities import ROUNDING, without_rounding, without_turns
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.changing import change_fields, set_end
-from physicslab.view.window.window import Picking, Window
+from physicslab.view.window.changing import change_fields, refused_command, set_end
+from physicslab.view.window.context import Picking
+from physicslab.view.window.plain_numbers import hang, hanging_of, incline, slope_of, way_of
+from physicslab.view.window.window import Window
 from physicslab.view.workbench.number_field import ABSENT, NumberFields
 from physicslab.world import World
 
 _VARIOUS = "various"
-_LESSER = ("inertia", "fixed_rotation")
+_LESSER = ("inertia", "fixed_rotation", "colour", "collide", "breaks", "breaks_torque")
 """Fields that have no row where few figures are wanted."""
 _MAX_LISTED = 60
 """How many entities a list shows; others are clicked in the world."""
+
+_LENGTH = Field(
+    "length", "number", unit="m", above=0.0, limit=LENGTH_LIMIT, meaning="from its pin to its middle"
+)
+_ANGLE = Field("angle", "number", unit="deg", meaning="from straight down, counter-clockwise")
+_SLOPE = Field(
+    "slope", "number", unit="deg", above=0.0, maximum=89.0, meaning="how steep it is; its foot stays"
+)
+_SPEED = Field(
+    "speed", "number", unit="m/s", meaning="how fast, and where to: counter-clockwise from the right"
+)
+_DIRECTION = Field("direction", "number", unit="deg", meaning="counter-clockwise from the right")
+"""Numbers as people think of them."""
 
 type Kind = type[Component]
 
 
 @dataclass(frozen=True, slots=True)
 class ComponentRows:
-    """Builds the rows of the components of the selection, and makes edits of what is written there."""
+    """Builds the rows of the selection, and makes edits of what is written there.
+
+    They are those of the fields of its components; of one body those of a pendulum, a slope and a throw too.
+    """
 
     ui: Ui
     numbers: NumberFields
@@ -43,65 +64,99 @@ class ComponentRows:
     def build(self, kind: Kind) -> None:
         """Build a row for each field of a component that all of the selection has."""
         ui, world, window = self.ui, self.world, self.window
-        held = [world.component(entity, kind) for entity in window.selection.entities]
-        rows = [spec for spec in kind.FIELDS if all(_is_shown(spec, part) for part in held)]
+        chosen = window.selection.entities
+        first, columns = world.component(chosen[0], kind), world.table(kind)
+        picked = world.entity_index.rows_of(np.array(chosen, np.int64))
+        rows = [spec for spec in kind.FIELDS if kind is not Shape or self._is_of_all(spec, picked)]
         scales = scales_of(world) if kind in (Transform, Velocity) else {}
         if window.level == "Explore":
             rows = [spec for spec in rows if spec.name not in _LESSER]
         if rows:
             ui.gap(0.2)
+        if window.level == "Explore" and [spec.name for spec in rows] == ["width", "height"]:
+            self._pair(kind, rows, [_common(columns[spec.name][picked]) for spec in rows])
+            return
         for spec in rows:
             key, scale = f"{kind.__name__}.{spec.name}", scales.get(spec.unit, 0.0)
-            values = [getattr(part, spec.name) for part in held]
+            column = columns[spec.name][picked]
+            is_common = bool((column == column[0]).all())
             match spec.kind:
                 case "vector":
-                    values = [Vector2(*(without_rounding(part, scale) for part in value)) for value in values]
-                    self._vector(kind, spec, key, values)
+                    column = np.where(np.abs(column) <= ROUNDING * scale, 0.0, column)
+                    self._vector(kind, spec, key, (_common(column[:, 0]), _common(column[:, 1])))
                 case "flag":
-                    words = _label(spec) if _common(values) is not None else f"{_label(spec)} ({_VARIOUS})"
-                    on = all(value is True for value in values)
+                    on = bool(column.all())
+                    words = _label(spec) if is_common else f"{_label(spec)} ({_VARIOUS})"
                     if ui.checkbox(words, on, spec.meaning):
                         self._set(kind, spec, not on)
                 case "choice":
-                    now = _common(values) or _VARIOUS
+                    now = getattr(first, spec.name) if is_common else _VARIOUS
                     self.numbers.label(ui, key, _label(spec), spec)
-                    if (chosen := ui.choice(key, now, spec.choices)) != now:
-                        self._set(kind, spec, chosen)
+                    if (chosen_one := ui.choice(key, now, spec.choices)) != now:
+                        self._set(kind, spec, chosen_one)
                 case "entity":
-                    if len(values) == 1:
-                        self._entity(kind, spec, key, values[0])
+                    if len(chosen) == 1:
+                        self._entity(kind, spec, key, getattr(first, spec.name))
                 case "points":
-                    shared = _common(values)
-                    self._number(kind, spec, key, None if shared is None else points_text(shared))
-                case _:
+                    shared = points_text(getattr(first, spec.name)) if is_common else None
+                    self._number(kind, spec, key, shared)
+                case "number" | "whole":
+                    given = columns[f"{spec.name}_given"][picked] if spec.derived == ABSENT else None
+                    if given is not None and not given.any():
+                        self._number(kind, spec, key, ABSENT)
+                        continue
+                    if given is not None and not given.all():
+                        self._number(kind, spec, key, None)
+                        continue
                     if spec.unit in scales:
-                        values = [without_rounding(value, scale) for value in values]
-                    if spec.derived == ABSENT:
-                        values = [
-                            value if part.is_given(spec.name) else ABSENT
-                            for value, part in zip(values, held, strict=True)
-                        ]
-                    self._number(kind, spec, key, _common(values))
+                        column = np.where(np.abs(column) <= ROUNDING * scale, 0.0, column)
+                    now = _common(column)
+                    if isinstance(now, str):
+                        column = np.degrees(column) if self._in_degrees(spec) else column
+                        spec, now = _with_mean(spec, column), _common(column)
+                    self._number(kind, spec, key, now)
+                case _:
+                    self._number(kind, spec, key, getattr(first, spec.name) if is_common else None)
+
+    def _is_of_all(self, spec: Field, picked: NDArray[np.int64]) -> bool:
+        """Whether shapes of each kind among the selection have a size."""
+        kinds = np.unique(self.world.table(Shape)["kind"][picked]).tolist()
+        names = next(one.choices for one in Shape.FIELDS if one.name == "kind")
+        return all(spec.name in Shape.HAS[names[kind - 1]] for kind in kinds)
+
+    def _pair(self, kind: Kind, specs: Sequence[Field], now: Sequence[Any]) -> None:
+        """Build one row for two numbers of the same unit."""
+        parts = [
+            (f"{kind.__name__}.{spec.name}", spec, value, partial(self._commit, kind, spec))
+            for spec, value in zip(specs, now, strict=True)
+        ]
+        words = ", ".join(spec.name for spec in specs).capitalize()
+        self.numbers.pair_row(self.ui, words, words, parts)
+
+    def _commit(self, kind: Kind, spec: Field, new: object) -> None:
+        """Give a number to all that is selected, or raise ``InvalidValue``."""
+        if new is not None:
+            spec.check(new)
+        for entity in self.window.selection.entities:  # some fields depend on others: a radius is above 0
+            kind(**(self.world.component(entity, kind).given() | {spec.name: new}))
+        self._set(kind, spec, new)
+
+    def _in_degrees(self, spec: Field) -> bool:
+        return spec.unit == "rad" and self.window.level != "Engineer"
 
     def _number(self, kind: Kind, spec: Field, key: str, now: Any) -> None:
-        def commit(new: object) -> None:
-            if new is not None:
-                spec.check(new)
-            for entity in self.window.selection.entities:  # some fields depend on others: a radius is above 0
-                kind(**(self.world.component(entity, kind).given() | {spec.name: new}))
-            self._set(kind, spec, new)
-
-        if spec.unit != "rad" or self.window.level != "Explore":
+        commit = partial(self._commit, kind, spec)
+        if not self._in_degrees(spec):
             self.numbers.row(self.ui, key, _label(spec), spec, now, commit)
             return
-        degrees = math.degrees(now) if isinstance(now, float) else now
+        degrees = without_turns(math.degrees(now)) if isinstance(now, float) else now
 
         def commit_degrees(new: float | None) -> None:
             commit(None if new is None else math.radians(new))
 
         self.numbers.row(self.ui, key, _label(spec), replace(spec, unit="deg"), degrees, commit_degrees)
 
-    def _vector(self, kind: Kind, spec: Field, key: str, values: Sequence[Vector2]) -> None:
+    def _vector(self, kind: Kind, spec: Field, key: str, now: tuple[Any, Any]) -> None:
         def commit(axis: int, new: float) -> None:
             spec.check((new, new))
 
@@ -111,8 +166,7 @@ class ComponentRows:
 
             self._change(kind, spec, moved)
 
-        parts = _common([value.x for value in values]), _common([value.y for value in values])
-        self.numbers.vector_row(self.ui, key, _label(spec), spec, parts, commit)
+        self.numbers.vector_row(self.ui, key, _label(spec), spec, now, commit)
 
     def _entity(self, kind: Kind, spec: Field, key: str, end: int | None) -> None:
         """Build the list of the bodies that a field can name; one can be clicked in the world as well."""
@@ -139,8 +193,73 @@ class ComponentRows:
         chosen, name = self.window.selection.entities, kind.__name__
 
         def change(world: World, window: Window) -> None:
+            if spec.fixed:  # the component is made again
+                held = ((one, world.component(one, kind).given()) for one in chosen)
+                made = [AddComponent(one, kind(**given | {spec.name: value_of(one)})) for one, given in held]
+                window.edits.do_all(made)
+                return
             changes = [SetField(entity, name, spec.name, value_of(entity)) for entity in chosen]
             change_fields(world, window, changes)
+
+        self.window.do_first(change)
+
+    def build_hanging(self, body: int) -> None:
+        """Build length and angle of a pendulum."""
+        hanging = hanging_of(self.world, body)
+        if hanging is None:
+            return
+        length, degrees = hanging.arm.magnitude, math.degrees(hanging.angle)
+
+        def commit_length(new: float) -> None:
+            _LENGTH.check(new)
+            self._do(hang(self.world, hanging, new, hanging.angle), "length of the pendulum")
+
+        def commit_angle(new: float) -> None:
+            self._do(hang(self.world, hanging, length, math.radians(new)), "angle of the pendulum")
+
+        parts = [
+            ("Pendulum.length", _LENGTH, length, commit_length),
+            ("Pendulum.angle", _ANGLE, without_rounding(degrees, 360.0), commit_angle),
+        ]
+        self.numbers.pair_row(self.ui, "Pendulum", "Pendulum", parts)
+
+    def build_slope(self, body: int) -> None:
+        """Build the angle of a ramp."""
+        slope = slope_of(self.world, body)
+        if slope is None:
+            return
+
+        def commit(new: float) -> None:
+            _SLOPE.check(new)
+            self._do(incline(self.world, body, slope, math.radians(new)), "angle of the slope")
+
+        self.numbers.row(self.ui, "Slope", "Slope", _SLOPE, math.degrees(slope.angle), commit)
+
+    def build_throw(self, body: int) -> None:
+        """Build speed and direction of a body."""
+        velocity = self.world.component(body, Velocity).linear
+        speed = without_rounding(velocity.magnitude, scales_of(self.world)["m/s"])
+        degrees = math.degrees(velocity.angle) if speed else 0.0
+
+        def commit(speed: float, degrees: float) -> None:
+            _SPEED.check(speed)
+            self._do([SetField(body, "Velocity", "linear", way_of(speed, degrees))], "")
+
+        parts = [
+            ("Throw.speed", _SPEED, speed, lambda new: commit(new, degrees)),
+            ("Throw.direction", _DIRECTION, degrees, lambda new: commit(speed, new)),
+        ]
+        self.numbers.pair_row(self.ui, "Throw", "Speed, to", parts)
+
+    def _do(self, commands: Sequence[Command], words: str) -> None:
+        """Make one edit, before the click that ended the writing is done; or say why it is refused."""
+
+        def change(world: World, window: Window) -> None:
+            refused = next(filter(None, (refused_command(world, one) for one in commands)), "")
+            if refused:
+                window.notify(refused, 6.0, failed=True)
+            else:
+                window.edits.do_all(commands, words)
 
         self.window.do_first(change)
 
@@ -151,16 +270,15 @@ def _ends(world: World, entity: int, none: str) -> dict[int | None, str]:
     return {None: none} | {other: world.label(other) for other in sorted(bodies)[:_MAX_LISTED]}
 
 
-def _common(values: Sequence[Any]) -> Any:
-    """Return the value that all have, or ``None``."""
-    return values[0] if all(value == values[0] for value in values) else None
+def _common(column: NDArray[Any]) -> Any:
+    """Return the number that all have, or between which they are, in words."""
+    low, high = column.min().item(), column.max().item()
+    return low if low == high else f"{low:.3g} to {high:.3g}"
 
 
-def _is_shown(spec: Field, held: Component) -> bool:
-    """Whether a field has a row: sizes of the other kind of shape and what cannot change have none."""
-    if isinstance(held, Shape):
-        return spec.name in Shape.HAS[held.kind]
-    return spec.kind == "entity" or not spec.fixed
+def _with_mean(spec: Field, column: NDArray[Any]) -> Field:
+    """Return a field whose tip has the mean of several numbers."""
+    return replace(spec, meaning=f"{spec.meaning}; their mean is {column.mean():.4g}")
 
 
 def _label(spec: Field) -> str:
@@ -175,6 +293,7 @@ ORDER: dict[Kind, int] = {
 _JOINED = {
     "lower": "From limit", "upper": "To limit", "motor_speed": "Motor speed", "max_torque": "Motor at most",
     "max_force": "Motor at most", "breaks": "Breaks at", "breaks_torque": "or at",
+    "collide": "Its ends touch each other",
 }  # fmt: skip
 _JOINING: tuple[type[Component], ...] = (Spring, *KINDS)
 """The components with two ends."""
@@ -191,6 +310,7 @@ _NAMES = {
         for spec in kind.FIELDS
         if spec.name in _JOINED
     },
+    ("Layer", "number"): "Layer", ("Layer", "touches"): "Touches layer", ("MadeOf", "material"): "Made of",
     ("Slot", "axis"): "Way", ("Slot", "turns"): "What slides turns",
     ("Gear", "first"): "First joint", ("Gear", "second"): "Second joint",
     ("Pulley", "wheel_a"): "First wheel", ("Pulley", "wheel_b"): "Second wheel",

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from physicslab.history import SetSimulation
 from physicslab.view.canvas.quantities import round_quantity
-from physicslab.view.controls import file_actions
+from physicslab.view.controls import file_actions, saving
 from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lab_process import ErrorStudy, Sample
@@ -44,7 +44,7 @@ def build_error_plot(ui: Ui, window: Window) -> None:
 
 
 def _build_progress(ui: Ui, window: Window) -> None:
-    study, (left, top, width, _) = window.error_study, window.room()
+    study, (left, top, width, _) = window.error_study, window.framing.room()
     place, stop = (left + 0.5 * width, top + 4.0 * ui.size), partial(window.do_next, file_actions.study_error)
     with ui.floating("Measuring the error", place, stop):
         ui.bar("Measuring this scene with every method", f"{study.share:.0%}", study.share, ui.theme.accent)
@@ -53,12 +53,12 @@ def _build_progress(ui: Ui, window: Window) -> None:
 
 def _build_result(ui: Ui, window: Window) -> None:
     study, size, (width, height) = window.error_study, ui.size, window.canvas.size
-    room = 0.9 * window.room()[2]
+    room = 0.9 * window.framing.room()[2]
     beside = room >= (_TABLE + _PLOT[0]) * size
     wide = (_TABLE + _PLOT[1]) * size
     wide = min(room, wide) if beside else min(max(room, 0.6 * width), 0.9 * width)
     high = min(0.9 * height - _WORDS * size, _HEIGHT * size)
-    with ui.floating(_TITLE, window.middle, window.closing_of("error_study.shown")):
+    with ui.floating(_TITLE, window.framing.middle, window.closing_of("error_study.shown")):
         with ui.wrapping(wide):
             ui.faint(
                 f"How far bodies are off after {study.seconds:g} s: each mark is one run, left is fast, low "
@@ -75,7 +75,7 @@ def _build_result(ui: Ui, window: Window) -> None:
         if ui.button("Close"):
             study.shown = False
         imgui.same_line()
-        save, tip = file_actions.save_table, "Write the table to a file"
+        save, tip = saving.save_table, "Write the table to a file"
         ui.button("CSV of all runs", tip, save, "errors", study.csv, shown="CSV")
 
 

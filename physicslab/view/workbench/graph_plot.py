@@ -29,10 +29,14 @@ _WEIGHT = 0.13
 """Width of a line, in heights of the text."""
 _FAINT = 0.35
 """Opacity of the run before."""
+_POINTS, _OVER = 400, 0.8
+"""Points and opacity of a curve that is fitted."""
 _CLICK = 4.0
 """A press that moves the mouse no further than this [px] is a click; further, it moves the plot."""
 _BELOW = 2.6
 """Height of what is written below a plot, in heights of the text."""
+_LABELLED = 5.0
+"""Height of a plot from which on the axis of time has its name, in heights of the text."""
 
 
 class GraphPlot:
@@ -53,7 +57,7 @@ class GraphPlot:
         if not implot.begin_plot(f"##plot {graph.entity}", ImVec2(-1.0, height), flags):
             return None
         axis_of = self._set_up_axes(ui, world, graph, window, height - _BELOW * ui.size, follows=follows)
-        self._draw_lines(ui, graph, window, axis_of)
+        self._draw_lines(ui, world, graph, window, axis_of)
         self._draw_moments(ui, world, window, graph, axis_of)
         hovered = self._follow_mouse(window, graph)
         ui.places.setdefault(f"Plot of graph {graph.number}", _plot_rect())
@@ -67,6 +71,8 @@ class GraphPlot:
     ) -> dict[Key, implot.ImAxis_]:
         """Set up an axis for each unit, three at most; return which axis each line has."""
         across = "time [s]" if graph.across is None else _heading([graph.across])
+        if graph.across is None and height < _LABELLED * ui.size:
+            across = ""  # the moment is written beside the plot, with its unit
         keys = [line.key for line in graph.lines]
         self._set_up(ui, world, implot.ImAxis_.x1, across, graph, window, keys, follows=follows)
         units = list(dict.fromkeys(QUANTITIES[key[1]].unit for key in keys))
@@ -91,6 +97,8 @@ class GraphPlot:
         ui.words.append(label)
         if follows:
             low, high = self._range(world, axis, graph, window, keys)
+            if axis == implot.ImAxis_.x1 and graph.across is None:
+                low, high = window.dashboard.fitting.spans.get(graph.entity, (low, high))
             implot.setup_axis_limits(axis, low, high, implot.Cond_.always)
 
     def _range(
@@ -118,12 +126,12 @@ class GraphPlot:
     # ---- lines ---------------------------------------------------------------------------------------------
 
     def _draw_lines(
-        self, ui: Ui, graph: GraphShown, window: Window, axis_of: dict[Key, implot.ImAxis_]
+        self, ui: Ui, world: World, graph: GraphShown, window: Window, axis_of: dict[Key, implot.ImAxis_]
     ) -> None:
         dashboard = window.dashboard
         keys = set(graph.keys)
         self._drawn = {kept: drawn for kept, drawn in self._drawn.items() if kept[1] in keys}
-        for line, colour in zip(graph.lines, colours_of(ui.theme, graph), strict=True):
+        for line, colour in zip(graph.lines, colours_of(world, ui.theme, graph), strict=True):
             implot.set_axes(implot.ImAxis_.x1, axis_of[line.key])
             name = line_name(graph, line.key, window)
             ui.words.append(name)
@@ -135,6 +143,17 @@ class GraphPlot:
                     implot.plot_line(label, x[part], y[part], look)
                     if is_before:
                         ui.words.append(f"{name} before")
+            self._draw_fit(ui, window, graph, line.key, widget_label(name, f"{line.entity} fitted"))
+
+    @staticmethod
+    def _draw_fit(ui: Ui, window: Window, graph: GraphShown, key: Key, label: str) -> None:
+        """Draw the curve that is fitted to a line, over what is seen of the axis."""
+        fitted = window.dashboard.fitted(graph, key)
+        if fitted is not None:
+            limits = implot.get_plot_limits()
+            x = np.linspace(limits.x.min, limits.x.max, _POINTS)
+            look = _look(ui.theme.text, _OVER, 0.5 * _WEIGHT * ui.size)
+            implot.plot_line(label, x, np.ascontiguousarray(fitted.curve(x)), look)
 
     def _points(self, graph: GraphShown, key: Key, record: Record, *, is_before: bool) -> _Drawn:
         """Return the points of a line that can be seen."""

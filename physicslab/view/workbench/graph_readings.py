@@ -10,9 +10,17 @@ from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import BODY_QUANTITIES, QUANTITIES, WORLD_QUANTITIES
 from physicslab.diagnostics.quantities import why_undefined
 from physicslab.diagnostics.scales import scales_of
-from physicslab.view.canvas.quantities import product, quantity, quotient, without_rounding, written_unit
+from physicslab.view.canvas.quantities import (
+    product,
+    quantity,
+    quotient,
+    with_error,
+    without_rounding,
+    written_unit,
+)
 from physicslab.view.canvas.theme import Colour, Theme, mixed
 from physicslab.view.controls import dashboard_actions
+from physicslab.view.picture.bodies import named_colour
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.dashboard import GraphShown
@@ -101,11 +109,12 @@ _MARK = 1.1
 """Length of the mark in a line's colour, in heights of the text."""
 
 
-def colours_of(theme: Theme, graph: GraphShown) -> list[Colour]:
+def colours_of(world: World, theme: Theme, graph: GraphShown) -> list[Colour]:
     """Return the colour of each line: that of its body, in turn for those of the world; tints of the same."""
     found: list[Colour] = []
     for n, line in enumerate(graph.lines):
-        colour = own = theme.body(n if line.key[0] is None else line.key[0])
+        body = line.key[0]
+        colour = own = theme.body(n) if body is None else named_colour(world, theme, body)
         while colour in found and colour != theme.text:
             colour = mixed(theme.text, colour, _TINT)
         found.append(colour if colour != theme.text else own)
@@ -118,20 +127,26 @@ def line_name(graph: GraphShown, key: Key, window: Window) -> str:
     return key[1] if alone else named_key(key, window)
 
 
+def build_words(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
+    """Build what is written beside the plot of a graph: its cursors, if there are any, and its lines."""
+    build_cursors(ui, window, graph)
+    build_readings(ui, world, window, graph)
+
+
 def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
     """Write every line with its colour, and its value at the moment under the cursor or at that shown.
 
-    Between two cursors its slope and its area are written in place of the value.
+    A curve that is fitted, or between two cursors slope and area, are written in place of the value.
     """
     dashboard = window.dashboard
     row = dashboard.record.nearest(world.time if dashboard.pointed is None else dashboard.pointed)
     if not graph.lines:
         ui.faint("Lines: choose what is plotted")
         return
-    spans = _spans(window, graph)
+    spans = _fits(window, graph) or _spans(window, graph)
     style = imgui.get_style()
     used, room = 0.0, imgui.get_content_region_avail().x
-    for colour, key in _entries(ui, graph):
+    for colour, key in _entries(ui, world, graph):
         name = line_name(graph, key, window)
         if spans is not None:
             if colour is not None:
@@ -167,10 +182,10 @@ def build_moment(ui: Ui, world: World, window: Window) -> None:
     ui.text(words)
 
 
-def _entries(ui: Ui, graph: GraphShown) -> list[tuple[Colour | None, Key]]:
+def _entries(ui: Ui, world: World, graph: GraphShown) -> list[tuple[Colour | None, Key]]:
     """Return what is across, and every line with its colour."""
     across: list[tuple[Colour | None, Key]] = [] if graph.across is None else [(None, graph.across)]
-    colours = colours_of(ui.theme, graph)
+    colours = colours_of(world, ui.theme, graph)
     return [*across, *((colour, line.key) for colour, line in zip(colours, graph.lines, strict=True))]
 
 
@@ -245,6 +260,29 @@ def _spans(window: Window, graph: GraphShown) -> dict[Key, str] | None:
         words = "slope not defined" if np.isnan(slope) else f"slope {_words(slope, quotient(own, unit))}"
         more = "not all recorded" if np.isnan(area) else f"area {_words(area, product(own, unit))}"
         found[line.key] = f"{words}, {more}"
+    return found
+
+
+def _fits(window: Window, graph: GraphShown) -> dict[Key, str] | None:
+    """Return the curve that is fitted to each line in words; ``None`` if the graph fits none."""
+    dashboard = window.dashboard
+    if graph.entity not in dashboard.fitting.kinds:
+        return None
+    unit = "s" if graph.across is None else QUANTITIES[graph.across[1]].unit
+    found: dict[Key, str] = {key: "" for key in graph.keys}
+    for line in graph.lines:
+        fitted, own = dashboard.fitted(graph, line.key), QUANTITIES[line.key[1]].unit
+        if fitted is None:
+            found[line.key] = "no such curve fits"
+            continue
+        parts = []
+        for one in fitted.parameters:
+            of = own if one.up else unit
+            for _ in range(-one.across):
+                of = quotient(of, unit)
+            parts.append(f"{one.name} {with_error(one.value, one.error, written_unit(of))}")
+        parts.append(f"leaves {_words(fitted.rest, own)} (rms)")
+        found[line.key] = ", ".join(parts)
     return found
 
 

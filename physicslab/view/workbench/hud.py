@@ -1,23 +1,29 @@
 """The figures over the picture, banners and panels."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable
+from itertools import product
 
 from physicslab.diagnostics.warnings import ModelWarning, find_warnings
-from physicslab.view.canvas.canvas import Rect
-from physicslab.view.canvas.theme import Colour
+from physicslab.view.canvas.canvas import Rect, overlap
+from physicslab.view.canvas.theme import Colour, mixed
 from physicslab.view.controls.actions import has_gravity
+from physicslab.view.controls.share_actions import finish_sharing
+from physicslab.view.controls.tour import follow_tour
 from physicslab.view.overlay import banners
 from physicslab.view.overlay.edges import draw_axis_numbers, draw_edge_arrows, draw_scale_bar
-from physicslab.view.overlay.legend import legend_of
+from physicslab.view.overlay.legend import Legend, legends_of
 from physicslab.view.overlay.marks import draw_selection
 from physicslab.view.window.window import Window
 from physicslab.view.workbench import figures
 from physicslab.view.workbench.interface import Interface
 from physicslab.world import World
 
-_STRIP, _LEAST = 6, 14
-"""How high the strip is in which words make way for windows, and how much of its width must be left, in
-heights of the text."""
+_STRIP, _LEAST = 6, (14.0, 6.5)
+"""How high the strip is in which words make way for windows, and how much of its width must be left: as a
+rule, and where there is no such strip; in heights of the text."""
+_ROUGHLY = 5.0
+"""How finely [s] it is said how long compiling takes: it is estimated."""
 _MESSAGE_WIDTH = 0.7
 """How wide a message beside the scale bar may be, as a share of what is left for the world."""
 
@@ -62,7 +68,9 @@ class Hud:
             window.impacts.follow(world, window.edits.history)
         if window.error_study.poll():
             self._announce(window.error_study.failure)
+        finish_sharing(window)
         window.trust.follow(world, window.now)
+        follow_tour(world, window)
         taken = self._draw_over_world(world)
         details = self._details if window.level == "Engineer" else []
         interface.build(world, self._figures, [*self._measures, *details], elapsed)
@@ -100,14 +108,18 @@ class Hud:
         found: list[tuple[str, Colour]] = []
         if window.filming.running:
             found.append((window.filming.words, theme.accent))
-        if window.pace.paused:
-            found.append(("PAUSED", theme.paused))
         if window.pace.speed != 1.0:
             name = "SLOW MOTION" if window.pace.speed < 1.0 else "FAST MOTION"
             found.append((f"{name} {window.pace.speed:g}x", theme.slow))
         if world.physics.gravity_mode == "planet" and has_gravity(world):
             found.append(("PLANET MODE", theme.planet))
-        if dropped := self._dropped.recent(window.pace.dropped, window.now):
+        dropped = self._dropped.recent(window.pace.dropped, window.now)
+        if window.preparing is not None:
+            slowly = ", slow motion until then" if dropped else ""
+            left = _ROUGHLY * math.ceil(window.preparing / _ROUGHLY)
+            words = f"First start: preparing the physics{slowly} ({left:.0f} s)"
+            found.append((words, theme.slow if dropped else theme.notice))
+        elif dropped and not window.pace.paused:
             found.append((f"The computer is too slow: {dropped:.1f} s were skipped", theme.slow))
         return found
 
@@ -132,36 +144,63 @@ class Hud:
         numbers = draw_axis_numbers(on, room, bar[0]) if window.grid else 0
         taken = [bar, *self._draw_messages(bar, numbers)]
         bottom = min(rect[1] for rect in taken) - margin
-        begin, wide = self._free_span(top, top + _STRIP * size)
-        begin, across = begin + margin, wide - 2 * margin
-        shown = banners.draw_banners(
-            self._banners(world), (begin, top + margin, across, bottom - top - margin), on
-        )
-        below = shown[-1][1] + shown[-1][3] + margin if shown else top + margin
+        begin, wide, edge = self._free_strip(at_top=True)
+        begin, across, first = begin + margin, wide - 2 * margin, edge + margin
+        shown = banners.draw_banners(self._banners(world), (begin, first, across, bottom - first), on)
+        below = shown[-1][1] + shown[-1][3] + margin if shown else first
         advice = self._draw_advice(world, (begin, below, across, bottom - below))
         taken += [*shown, *([] if advice is None else [advice])]
-        legend = legend_of(window.overlays, (width - 2 * margin, height), on)
-        if legend is not None:
-            taken.append(legend.draw(left + margin, top + margin, on))
-        above = left, top, width, max(height - numbers, 1)
-        draw_edge_arrows(world, on, above, [*taken, *self._windows])
+        legends = legends_of(window.overlays, (width - 2 * margin, height), on)
+        taken += self._draw_legend(legends, room, margin, taken)
+        inner = left, top, width, max(height - numbers, 1)
+        draw_edge_arrows(world, on, inner, [*taken, *self._windows])
         return taken
 
-    def _free_span(self, top: int, bottom: int) -> tuple[int, int]:
-        """Return where the widest part of a strip begins that no window lies over, and how wide it is [px].
+    def _draw_legend(self, forms: Iterable[Legend], room: Rect, margin: int, taken: list[Rect]) -> list[Rect]:
+        """Draw the first form of the legend for which there is a place that nothing takes; return where."""
+        left, top, width, height = room
+        others = [*taken, *self._windows]
+        tops = [top + margin, *sorted(y + high + margin for _, y, _, high in others)]
+        for legend in forms:
+            across, down = legend.size
+            for x in (left + margin, left + width - across - margin):
+                for y in tops:
+                    if not any(overlap((x, y, across, down), one) for one in others) and (
+                        top < y <= max(top + height - down - margin, top + margin)
+                    ):
+                        return [legend.draw(x, y, self._window.drawing)]
+        return []
 
-        The strip is that of the world's room from ``top`` to ``bottom`` [px]. Where windows leave too little
-        of it, it is all of that.
+    def _free_strip(self, *, at_top: bool) -> tuple[int, int, int]:
+        """Return where a strip begins that no window lies over, how wide it is, and its outer edge [px].
+
+        It is the one nearest to the top of the world's room, or to its foot, of which windows leave enough.
         """
-        left, _, width, _ = self._interface.visible
+        left, top, width, height = self._interface.visible
+        text, foot = self._interface.text, top + height
         if not self._interface.toolkit.has_popup():  # what a menu lies over stays where it is
             self._windows = self._interface.covered
+        edges = (
+            [y + high for _, y, _, high in self._windows] if at_top else [y for _, y, _, _ in self._windows]
+        )
+        outer = top if at_top else foot
+        near = sorted((edge for edge in edges if top < edge < foot), reverse=not at_top)
+        for least, edge in product(_LEAST, [outer, *near]):
+            low = edge if at_top else edge - _STRIP * text
+            span = self._free_span(low, low + _STRIP * text)
+            if span[1] >= least * text:
+                return *span, edge
+        return left, width, outer
+
+    def _free_span(self, top: int, bottom: int) -> tuple[int, int]:
+        """Return the begin and the width of the widest part of a strip that no window lies over [px]."""
+        left, _, width, _ = self._interface.visible
         at, widest = left, (left, 0)
         over = [(x, x + wide) for x, y, wide, high in self._windows if y < bottom and y + high > top]
         for begin, end in [*sorted(over), (left + width, 0)]:
             widest = max(widest, (at, min(begin, left + width) - at), key=lambda span: span[1])
             at = max(at, end)
-        return widest if widest[1] >= _LEAST * self._interface.text else (left, width)
+        return widest
 
     def _draw_messages(self, bar: Rect, numbers: int) -> list[Rect]:
         """Draw what went wrong or was just done, beside the scale bar or above it; return where.
@@ -170,10 +209,12 @@ class Hud:
         """
         window, on, theme, size = self._window, self._window.drawing, self._window.theme, self._interface.text
         _, top, _, height = self._interface.visible
-        left, width = self._free_span(top + height - _STRIP * size, top + height)
+        left, width, edge = self._free_strip(at_top=False)
         colour = theme.error if window.notice_failed else theme.notice
-        words = (window.error, theme.error), (window.notice, colour)
-        middle, bottom = left + width // 2, top + height - numbers
+        colour = mixed(theme.panel, colour, window.notice_share)
+        paused = "PAUSED" if window.pace.paused else ""
+        words = (window.error, theme.error), (window.notice, colour), (paused, theme.paused)
+        middle, bottom = left + width // 2, min(edge, top + height - numbers)
         messages = banners.lay_out_messages(words, on, round(_MESSAGE_WIDTH * width))
         if any(middle + message.width // 2 > bar[0] - size // 2 for message in messages):
             messages = banners.lay_out_messages(words, on, width - size)

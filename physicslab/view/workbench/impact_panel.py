@@ -9,7 +9,7 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.diagnostics.ledger import ledger_csv
 from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.controls import impact_actions
-from physicslab.view.controls.file_actions import save_table
+from physicslab.view.controls.saving import save_table
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.impacts import COLUMNS
@@ -30,14 +30,17 @@ _TIPS = (
 _HEIGHT = 11.0
 """Height of the table, in heights of the text."""
 _SLACK = 1.5
+_LEAST = 24.0
+"""Width that it has beside others at least, in heights of the text."""
 
 
 def build_impacts(ui: Ui, world: World, window: Window) -> None:
     """Build the table in a window of its own."""
-    left, top, width, _ = window.room()
+    left, top, width, _ = window.framing.room()
     wide = sum(_WIDTHS) * ui.size + len(_WIDTHS) * 2.0 * imgui.get_style().cell_padding.x + _SLACK * ui.size
     wide = min(wide, max(width, 0.6 * window.canvas.size[0]) - 2.0 * ui.size)
     place = left + 0.5 * width, top + 0.5 * (_HEIGHT + 7.5) * ui.size
+    ui.stand_beside("Impacts", "below", 0.36, _LEAST)
     with ui.floating("Impacts", place, window.closing_of("impacts.shown"), docks=True):
         _build_head(ui, world, window)
         rows = window.impacts.order(window.selection.entities)
@@ -71,8 +74,9 @@ def _build_head(ui: Ui, world: World, window: Window) -> None:
     ui.same_line_if_room("CSV")
     table, tip = partial(ledger_csv, world, window.impacts.records), "Write all of them to a file"
     ui.button("CSV of impacts", tip, save_table, "impacts", table, shown="CSV", enabled=count > 0)
-    ui.same_line_if_room(f"{count} impacts")
-    ui.faint(f"{count} impacts", wrapped=False)
+    words = f"{count} impact{'' if count == 1 else 's'}"
+    ui.same_line_if_room(words)
+    ui.faint(words, wrapped=False)
 
 
 def _build_table(ui: Ui, world: World, window: Window, rows: Any, size: ImVec2) -> None:

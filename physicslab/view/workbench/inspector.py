@@ -1,12 +1,27 @@
 """The selection, in numbers that can be changed, and in values derived from them."""
 
 import math
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
 from imgui_bundle import imgui
 
-from physicslab.components import Drag, Held, Mass, Name, Shape, Spring, Strobe, Trail, Transform, Velocity
+from physicslab.components import (
+    Drag,
+    Held,
+    MadeOf,
+    Mass,
+    Material,
+    Name,
+    Shape,
+    Spring,
+    Strobe,
+    Trail,
+    Transform,
+    Velocity,
+)
+from physicslab.components.made_of import SUBSTANCES
 from physicslab.components.name import why_no_id
 from physicslab.diagnostics.free_body import LastStep
 from physicslab.diagnostics.joints import JointState, joint_states
@@ -16,7 +31,7 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.quantities import quantity, vector_quantity, without_rounding
-from physicslab.view.controls.actions import duplicate_selected
+from physicslab.view.controls.copies import duplicate_selected
 from physicslab.view.controls.dashboard_actions import plot_selected
 from physicslab.view.controls.joining import attachments
 from physicslab.view.controls.tools import remove_selected
@@ -24,6 +39,7 @@ from physicslab.view.overlay.forces import Measured
 from physicslab.view.overlay.instruments import readings_of
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window import changing
+from physicslab.view.window.materials import choose_material, made_of, materials
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.component_rows import ORDER, ComponentRows
 from physicslab.view.workbench.number_field import NumberFields
@@ -65,9 +81,6 @@ def _build_motion(ui: Ui, world: World, entity: int, *, is_brief: bool) -> None:
     angular = without_rounding(velocity.angular, scales["rad/s"])
     ui.rule(0.2)
     speed = linear.magnitude
-    ui.row("Speed", quantity(speed, "m/s"))
-    if speed > 0.0 and not is_brief:
-        ui.row("Direction", f"{math.degrees(linear.angle):.1f}°", "counter-clockwise from the right")
     if not world.has(entity, Mass):
         return
     mass = world.component(entity, Mass)
@@ -117,6 +130,9 @@ def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
     ui.faint("Forces on it")
     for one in measured.forces:
         ui.row(one.name.capitalize(), quantity(one.force.magnitude, "N"), vector_quantity(one.force, "N"))
+    if measured.is_edited and any(one.pair is not None for one in measured.forces):
+        ui.faint("Contacts push as in the last step: one more (.) finds their forces after the change.")
+        return
     total = measured.net
     largest = max((one.force.magnitude for one in measured.forces), default=0.0)
     _vector_row(ui, "Sum", total, largest, "N", "The sum of all forces")
@@ -138,6 +154,17 @@ def build_pairs(ui: Ui, measured: Measured) -> None:
             other, friction, restitution = one.pair
             ui.faint(f"With {other}: mu = {friction:.4g}, e = {restitution:.4g}")
             ui.tip("For this pair mu is the root of both frictions multiplied, e the smaller restitution")
+
+
+def build_pair(ui: Ui, world: World, one: int, other: int) -> None:
+    """Write the friction and the restitution of two bodies, if both have a surface."""
+    if not all(world.has(entity, Material) for entity in (one, other)):
+        return
+    a, b = (world.component(entity, Material) for entity in (one, other))
+    mu, e = math.sqrt(a.friction * b.friction), min(a.restitution, b.restitution)
+    ui.rule(0.2)
+    ui.row("mu of the pair", f"{mu:.4g}", "The root of both frictions multiplied")
+    ui.row("e of the pair", f"{e:.4g}", "The smaller restitution")
 
 
 def _build_impulses(ui: Ui, step: LastStep) -> None:
@@ -170,6 +197,7 @@ _LABELS = 0.36
 _SECOND_COLUMN = 0.52
 """The begin of the second column of boxes to tick, as a share of the panel's width."""
 _NAME = Field("id", "text", owner="Name", meaning="its name; without one it is called by its kind")
+_MADE_OF = Field("made of", "choice", meaning="sets density, restitution, friction and colour")
 _SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
     (Velocity, "Can move", "Without it the body is fixed"),
     (Mass, "Has mass", "A body that can move and has none is infinitely heavy"),
@@ -183,17 +211,29 @@ _SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
 def build_inspector(ui: Ui, numbers: NumberFields, world: World, window: Window) -> None:
     """Build the rows of the selection. One body: all its fields; several: what they have in common."""
     chosen, is_brief = window.selection.entities, window.level == "Explore"
+    world.synchronise()
     first, is_one = chosen[-1], len(chosen) == 1
     numbers.share = _LABELS
     ui.heading(world.label(first) if is_one else f"{len(chosen)} selected")
-    ui.faint(_kind(world, first) if is_one else "Changes go to all of them")
+    words = _kind(world, first) if is_one else "Changes go to all of them"
+    ui.same_line_if_room(words)
+    ui.faint(words)
     if is_one:
         _build_name(ui, numbers, world, window, first)
     kinds = [type(part) for part in world.components(first) if isinstance(part, Component)]
-    kinds = [kind for kind in kinds if kind is not Held and all(world.has(one, kind) for one in chosen)]
+    kinds = [kind for kind in kinds if kind is not Held and _all_have(world, chosen, kind)]
     rows = ComponentRows(ui, numbers, world, window)
+    if is_one:
+        rows.build_hanging(first)
+        rows.build_slope(first)
     for kind in sorted(kinds, key=lambda kind: ORDER.get(kind, len(ORDER))):
+        if kind is MadeOf:
+            continue
         rows.build(kind)
+        if kind is Velocity and is_one:
+            rows.build_throw(first)
+        if kind is Shape:
+            _build_material(ui, numbers, world, window)
     if is_one:
         for label, value in readings_of(world, first):
             ui.row(label, value)
@@ -202,8 +242,22 @@ def build_inspector(ui: Ui, numbers: NumberFields, world: World, window: Window)
         if not is_brief or window.overlays.arrows:
             build_forces(ui, window.measured, is_brief=window.level != "Engineer")
         build_pairs(ui, window.measured)
+    elif len(chosen) == 2:
+        build_pair(ui, world, *chosen)
     _build_components(ui, world, window)
     _build_buttons(ui, world, window)
+
+
+def _all_have(world: World, entities: Sequence[int], kind: type[Component]) -> bool:
+    """Whether each of some entities has a component."""
+    rows = world.entity_index.rows_of(np.array(entities, np.int64))
+    return bool(world.table(kind).present[rows].all())
+
+
+def _differing(world: World, entities: Sequence[int], kind: type[Component], field: str) -> list[int]:
+    """Return one of some entities for each value of a field that is among them, or for none."""
+    rows = world.entity_index.rows_of(np.array(entities, np.int64))
+    return [entities[n] for n in np.unique(world.table(kind)[field][rows], return_index=True)[1]]
 
 
 def _build_name(ui: Ui, numbers: NumberFields, world: World, window: Window, entity: int) -> None:
@@ -218,17 +272,37 @@ def _build_name(ui: Ui, numbers: NumberFields, world: World, window: Window, ent
     numbers.row(ui, "Name", "Name", _NAME, held, commit)
 
 
+def _build_material(ui: Ui, numbers: NumberFields, world: World, window: Window) -> None:
+    """Build the list of materials, and the name of one of one's own."""
+    chosen = window.selection.entities
+    names = {made_of(world, entity) for entity in _differing(world, chosen, MadeOf, "material")}
+    now = names.pop() if len(names) == 1 else None
+    numbers.label(ui, "MadeOf", "Made of", _MADE_OF)
+    picked = ui.choice("MadeOf", now, lambda: materials(world), shown="not said" if now is None else now)
+    if now in SUBSTANCES:
+        ui.tip(SUBSTANCES[now].source)
+    if picked != now and picked is not None:
+        window.do_first(choose_material, chosen, picked)
+    elif picked != now:
+        window.do_first(changing.take, chosen, MadeOf)
+    if now is not None and now not in SUBSTANCES:
+        numbers.row(
+            ui, "MadeOf.material", "called", MadeOf.FIELDS[0], now,
+            lambda name: window.do_first(choose_material, chosen, MadeOf(name).material),
+        )  # fmt: skip
+
+
 def _build_components(ui: Ui, world: World, window: Window) -> None:
     """Build what components can be added, and which can be taken away."""
     chosen = window.selection.entities
-    if not all(world.has(entity, Transform) for entity in chosen):
+    if not _all_have(world, chosen, Transform):
         return
     ui.rule(0.2)
     width = imgui.get_content_region_avail().x
     for n, (kind, words, tip) in enumerate(_SWITCHES):
         if n % 2 and _SECOND_COLUMN * width + ui.checkbox_width(words) <= width:
             imgui.same_line(_SECOND_COLUMN * width + imgui.get_style().window_padding.x)
-        on = all(world.has(entity, kind) for entity in chosen)
+        on = _all_have(world, chosen, kind)
         if ui.checkbox(words, on, tip):
             if on:
                 window.do_next(changing.take, chosen, kind)

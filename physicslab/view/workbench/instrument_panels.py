@@ -16,8 +16,8 @@ from physicslab.state.attached import place_of
 from physicslab.systems.gate import GateSystem
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.controls.file_actions import save_table
 from physicslab.view.controls.measuring import keep_note
+from physicslab.view.controls.saving import save_table
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.measuring import Writing
 from physicslab.view.window.window import Window
@@ -39,16 +39,15 @@ _ARROWS = "→↗↑↖←↙↓↘"
 
 
 def build_stopwatch(ui: Ui, world: World, window: Window) -> None:
-    """Build it in a window of its own, which begins in a corner of the room where no graph is."""
+    """Build it in a window of its own, beside the world."""
     system = world.schedule.find(GateSystem)
     gates = len(world.batch(Gate))
     every = laps(system.crossings, gates) if system is not None else []
     left, top, width, _ = ui.room
     columns = _COLUMNS if width > _width(_COLUMNS) * ui.size else _COLUMNS[_NARROW:]
-    half = 0.5 * _width(columns) * ui.size
-    is_taken = any(graph.side == "right" for graph in window.dashboard.graphs)
-    place = left + half if is_taken else left + width - half, top + 10.0 * ui.size
-    with ui.floating("Stopwatch", place, window.closing_of("shows_stopwatch")):
+    place = left + 0.5 * width, top + 10.0 * ui.size
+    ui.stand_beside("Stopwatch", "right", 0.34, 9.0)
+    with ui.floating("Stopwatch", place, window.closing_of("shows_stopwatch"), docks=True):
         _build_times(ui, world, every, gates)
         _build_table(ui, world, every[-(_ROWS if columns is _COLUMNS else _FEWER_ROWS) :], columns)
         table, tip = partial(crossings_csv, world), "Write all of them to a file"

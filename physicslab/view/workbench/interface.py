@@ -4,23 +4,35 @@ from collections.abc import Callable, Sequence
 from operator import attrgetter
 
 import pygame
+from imgui_bundle import imgui
 
 from physicslab.view.canvas.canvas import Canvas, Rect
+from physicslab.view.controls.tools import TOOLS
 from physicslab.view.toolkit.style import bar_height
-from physicslab.view.toolkit.toolkit import Toolkit, Walk
+from physicslab.view.toolkit.toolkit import Toolkit, Walk, is_for_files
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.toolkit.windows import LEAST_WORLD
 from physicslab.view.window.window import Window
 from physicslab.view.workbench import world_panel
+from physicslab.view.workbench.about_panel import AboutPanel
+from physicslab.view.workbench.context_menu import build_context
+from physicslab.view.workbench.copies_panel import CopiesPanel
 from physicslab.view.workbench.error_plot import build_error_plot
 from physicslab.view.workbench.figures import Line, WorldFigures
-from physicslab.view.workbench.file_panels import Gallery, build_film, build_open, build_recovery, build_save
+from physicslab.view.workbench.file_browser import FileBrowser
+from physicslab.view.workbench.file_panels import build_film, build_recovery, build_save
+from physicslab.view.workbench.first_minute import CommandSearch, build_cards, build_tour
+from physicslab.view.workbench.gallery import Gallery
 from physicslab.view.workbench.impact_panel import build_impacts
 from physicslab.view.workbench.inspector import build_inspector
 from physicslab.view.workbench.instrument_panels import NotePanel, build_stopwatch
+from physicslab.view.workbench.lesson_panel import LessonPanel
 from physicslab.view.workbench.menus import build_help, build_menu_bar, build_palette
 from physicslab.view.workbench.microscope_panel import build_microscope
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.view.workbench.scene_panels import ScenePanels
+from physicslab.view.workbench.share_panel import build_share, build_sharing
+from physicslab.view.workbench.thumbnails import Thumbnails
 from physicslab.view.workbench.transport import build_history, build_transport
 from physicslab.world import World
 
@@ -73,13 +85,15 @@ class Layout:
 
 _PERIOD = 0.2
 """Time [s] after which panels are built again where nothing was done: faster digits cannot be read."""
-_RECIPES = {"circle": "Circle", "box": "Box"}
-"""The tools that make bodies to a recipe."""
+_BESIDE = 12
+"""How near to a panel a press makes no body: it may have been meant for that [px]."""
 _WATCHED = attrgetter(
-    "canvas.size", "dashboard.state", "edits.history.branches", "error_study.shown", "figures",
-    "filming.choosing", "filming.refused", "help", "impacts.shown", "level", "lists_history",
-    "measured.number", "microscope.state", "naming_refused", "opening_refused", "pace.paused", "pace.speed",
-    "recovery.offered", "selection.entities", "shows_gallery", "shows_stopwatch", "tool", "trust.state",
+    "canvas.size", "context", "copying", "dashboard.state", "edits.history.branches", "error_study.shown",
+    "figures", "filming.choosing", "filming.naming.refused", "help", "impacts.shown", "level",
+    "lists_history",
+    "measured.number", "microscope.state", "pace.paused", "pace.speed", "scenes.recovery.offered",
+    "scenes.shows_gallery", "search", "selection.entities", "sharing.choosing", "sharing.naming.refused",
+    "shows_cards", "shows_stopwatch", "tool", "tour", "trust.state",
 )  # fmt: skip
 """The state of a window that panels show beside figures."""
 type _Build = Callable[[Ui, World, Window], None]
@@ -87,7 +101,8 @@ _BEFORE: dict[str, _Build] = {
     "shows_stopwatch": build_stopwatch, "impacts.shown": build_impacts, "microscope.record": build_microscope,
 }  # fmt: skip
 _AFTER: dict[str, _Build] = {
-    "naming": build_save, "filming.choosing": build_film, "opening": build_open,
+    "scenes.naming": build_save, "filming.choosing": build_film,
+    "sharing.choosing": build_share,
     "lists_history": build_history, "help": build_help,
 }  # fmt: skip
 """The builders of the panels that are open: those below others at first, and those above them."""
@@ -117,18 +132,25 @@ class Interface:
         self.ui = Ui(self.toolkit.fonts, window.theme)
         self.ui.do_next = window.do_next
         self._numbers = NumberFields()
-        self._gallery = Gallery()
+        self._thumbnails = Thumbnails()
+        self._gallery, self._browser = Gallery(self._thumbnails), FileBrowser(self._thumbnails)
+        self._search = CommandSearch()
         self._scene_panels = ScenePanels()
-        self._note = NotePanel()
+        self._copies, self._lesson = CopiesPanel(), LessonPanel()
+        self._note, self._about = NotePanel(), AboutPanel()
         self._next = 0.0
-        self._offer_height = 0  # of the offer to restore a session [px]
+        self._offer_height = self._bar_height = (
+            0  # of what is offered at the top of the room, and the first [px]
+        )
         self._seen: tuple[object, ...] = ()
         self._free: Rect | None = None  # what docked windows leave of the world's room [px]
         self._arrangement = ""
+        self._fitted: tuple[object, ...] = ()  # for which sizes of window and text windows were docked
+        self._built: tuple[object, ...] = ()  # for which they were built last
 
     def forget(self) -> None:
         """Drop all that is half written or dragged in panels: it was for a world that is shown no more."""
-        self._numbers, self._note = NumberFields(), NotePanel()
+        self._numbers, self._note, self._about = NumberFields(), NotePanel(), AboutPanel()
         self._scene_panels.forget()
         self.ui.scenes += 1
 
@@ -144,13 +166,15 @@ class Interface:
 
     def room(self) -> Rect:
         """Return what is left for the world [px]."""
-        return self.layout.room if self._free is None else self._free
+        left, top, width, height = self.layout.room if self._free is None else self._free
+        bar = min(self._bar_height, height - 1)
+        return left, top + bar, width, height - bar
 
     @property
     def visible(self) -> Rect:
         """The part of the window where words can be drawn over the world: no panel covers it [px]."""
         left, top, width, height = self.layout.visible if self._free is None else self._free
-        taken = min(self._offer_height, height - 1) if self._window.recovery.offered else 0
+        taken = min(self._offer_height, height - 1)
         return left, top + taken, width, height - taken
 
     def take(self, event: pygame.Event) -> bool:
@@ -160,9 +184,16 @@ class Interface:
         """
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self.toolkit.follow_pointer(event.pos)
+        if self._search.take(self._window, event):
+            return True
         self._walk.follow(event)
         taken = self.toolkit.take(event)
-        if event.type == pygame.MOUSEBUTTONDOWN and not taken:
+        if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
+            self._window.pointer_beside_panel = self.toolkit.covers(event.pos, _BESIDE)
+        if event.type == pygame.KEYDOWN and taken and event.key == pygame.K_ESCAPE:
+            self._window.closed_at = self._window.now
+        saves = event.type == pygame.KEYDOWN and is_for_files(event)
+        if (event.type == pygame.MOUSEBUTTONDOWN and not taken) or saves:
             refusal = self._finish_fields()
             if refusal:
                 self._window.notify(refusal, 6.0, failed=True)
@@ -174,7 +205,7 @@ class Interface:
         Text for bodies that are shown no more is dropped.
         """
         self._begin_numbers()
-        return self._numbers.finish() or self._note.finish(self._window)
+        return self._numbers.finish() or self._note.finish(self._window) or self._about.finish(self._window)
 
     def _begin_numbers(self) -> None:
         self._numbers.begin((self._window.edits.world, self._window.selection.entities))
@@ -192,6 +223,8 @@ class Interface:
             Time [s] since the last frame.
         """
         window = self._window
+        if self._is_cramped():
+            window.arrangement = ""
         rearranged = window.arrangement != self._arrangement
         if rearranged:
             self._arrangement = window.arrangement
@@ -209,10 +242,22 @@ class Interface:
             self.ui.begin(window.theme, self.layout.visible, rearranged=rearranged and not window.arrangement)
             self._walk.mark()
             self._build(world, figures, lines)
+            if window.edits.held and not imgui.is_any_item_active():
+                window.do_next(lambda _, window: window.edits.release())
 
         if self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build):
             self._walk.end()
+            self._built = window.canvas.size, self.text
             window.arrangement = self._arrangement = self.toolkit.arrangement()
+
+    def _is_cramped(self) -> bool:
+        """Whether docked windows leave the world no width since the text or the window has another size."""
+        sizes, fitted = (self._window.canvas.size, self.text), self._fitted
+        if sizes != self._built or sizes == fitted:
+            return False
+        self._fitted = sizes
+        least = min(LEAST_WORLD * self.text, self.layout.visible[2])
+        return bool(fitted) and self._free is not None and self._free[2] < least
 
     def _follow_keys(self) -> None:
         """Let keys go to a menu or a panel, if they are to."""
@@ -229,7 +274,10 @@ class Interface:
         return (
             world, world.motion_edits, world.revision, world.time if window.pace.paused else None,
             window.error_study.share if window.error_study.running else None,
-            window.naming is None, window.opening is None, window.measuring.writing is None,
+            window.sharing.share if window.sharing.running else None,
+            window.scenes.naming and window.scenes.naming.refused, window.measuring.writing is None,
+            window.lesson and window.lesson.state,
+            window.scenes.opening and (window.scenes.opening.refused, window.scenes.opening.folder),
             *_WATCHED(window),
         )  # fmt: skip
 
@@ -245,43 +293,75 @@ class Interface:
         if window.figures:
             with ui.panel("side", layout.side):
                 world_panel.build_levels(ui, window)
+                imgui.begin_disabled(window.lesson is not None)  # numbers can be looked at, not changed
                 if window.selection.entities:
                     build_inspector(ui, self._numbers, world, window)
                 else:
+                    self._about.build(ui, world, window)
+                    ui.gap(0.2)
                     world_panel.build_world(ui, world, figures, window)
-                    if window.tool in _RECIPES:
-                        world_panel.build_recipe(ui, self._numbers, _RECIPES[window.tool], window)
+                    drawn = TOOLS[window.tool].draws
+                    if drawn is not None and drawn.by_recipe:
+                        world_panel.build_recipe(ui, self._numbers, drawn.title.split()[-1], window)
                     if window.level == "Engineer":
                         world_panel.build_settings(ui, self._numbers, world, window)
+                imgui.end_disabled()
                 if window.level != "Explore":
                     ui.rule(0.3)
-                    world_panel.build_figures(ui, lines)
-                if window.level != "Explore" or not window.selection.entities:
+                    if window.selection.entities:
+                        ui.heading("The world")
+                    world_panel.build_figures(ui, lines, after_bars=not window.selection.entities)
                     ui.rule(0.3)
-                    self._build_counts(ui, figures)
-        self._scene_panels.build(ui, self._numbers, world, window, self.visible)
+                    self._build_counts(ui, figures, window)
+        self._scene_panels.build(ui, self._numbers, world, window, layout.visible, self.visible)
+        self._copies.build(ui, world, window)
+        build_context(ui, world, window)
+        if window.lesson is not None:
+            self._lesson.build(ui, window, window.lesson)
         for panel, build in _BEFORE.items():
             if window.is_open(panel):
                 build(ui, world, window)
         if window.measuring.writing is not None:
             self._note.build(ui, window)
-        if window.recovery.offered:
-            self._offer_height = build_recovery(ui, window, layout.visible)
+        self._build_offers(ui)
         build_error_plot(ui, window)
+        if window.sharing.running:
+            build_sharing(ui, window)
         for panel, build in _AFTER.items():
             if window.is_open(panel):
                 build(ui, world, window)
-        if window.shows_gallery:
+        if window.search is not None:
+            self._search.build(ui, world, window)
+        if window.scenes.opening is not None:
+            self._browser.build(ui, world, window)
+        elif window.scenes.shows_gallery:
             self._gallery.build(ui, window)
-            if not self._gallery.is_complete:
-                self.toolkit.wake()
+        if (window.scenes.opening is not None or window.scenes.shows_gallery) and self._thumbnails.missing:
+            self.toolkit.wake()
 
-    def _build_counts(self, ui: Ui, figures: WorldFigures) -> None:
+    def _build_offers(self, ui: Ui) -> None:
+        """Build what is offered at the top of the world's room, one below the other."""
+        window, (left, top, width, height) = self._window, self.layout.visible
+        if self._free is not None:
+            left, top, width, height = self._free
+        self._offer_height = 0
+        for shown, build in (
+            (window.scenes.recovery.offered, build_recovery), (window.shows_cards, build_cards),
+            (window.tour is not None, build_tour),
+        ):  # fmt: skip
+            if shown:
+                free = left, top + self._offer_height, width, height - self._offer_height
+                self._offer_height += build(ui, window, free)
+            if build is build_recovery:  # a bar over all of the width, as those of the window
+                self._bar_height = self._offer_height
+
+    def _build_counts(self, ui: Ui, figures: WorldFigures, window: Window) -> None:
         """Write the numbers that say how much there is to do."""
         ui.row("Bodies", f"{figures.bodies}" + (f", {figures.asleep} asleep" if figures.asleep else ""))
         ui.row("Contacts", f"{figures.contacts}", "Pairs that touch", lesser=False)
-        ui.row("Candidate pairs", f"{figures.candidate_pairs}", "Pairs that are near each other")
-        ui.row("Frame rate", f"{figures.frame_rate:.0f} FPS")
+        if window.level == "Engineer":
+            ui.row("Candidate pairs", f"{figures.candidate_pairs}", "Pairs that are near each other")
+            ui.row("Frame rate", f"{figures.frame_rate:.0f} FPS")
 
     def draw(self, canvas: Canvas) -> None:
         """Show panels as they were built last."""

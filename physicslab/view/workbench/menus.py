@@ -6,16 +6,21 @@ from pathlib import Path
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.ecs.text import printable
+from physicslab.files.listing import scene_files
+from physicslab.languages.catalogue import languages
+from physicslab.lessons.catalogue import titles
 from physicslab.scenes import SCENES
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import actions, file_actions
 from physicslab.view.controls.controls import CONTROLS, Control
-from physicslab.view.controls.file_actions import scene_files
 from physicslab.view.controls.joining import JOINTS
+from physicslab.view.controls.lesson_actions import choose_language, open_lesson
+from physicslab.view.controls.saving import scene_words
 from physicslab.view.controls.spawning import BODIES, GROUPS
 from physicslab.view.controls.tool import ICONS, Tool
 from physicslab.view.controls.tools import DRAWING, MORE_TOOLS, PALETTE, key_of
+from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.window import Window
@@ -27,6 +32,8 @@ _MENUS = {"File": ("file", "quit"), "Edit": ("edit",), "World": ("laws",), "Inst
           "View": ("show", "view", "window"),
           "Help": ("help",)}  # fmt: skip
 """Which groups of controls each menu shows."""
+_LANGUAGES = {"en": "English", "de": "Deutsch"}
+"""What speakers of languages call them, by their codes."""
 _MAX_TITLE = 60
 
 
@@ -40,7 +47,11 @@ def build_menu_bar(ui: Ui, world: World, window: Window) -> None:
         with ui.menu(name) as shown:
             if shown:
                 _build_controls(ui, groups, world, window)
-        for follows, title, build in (("File", "Scenes", _build_scenes), ("Edit", "Draw", _build_tools)):
+        for follows, title, build in (
+            ("File", "Scenes", _build_scenes),
+            ("File", "Lessons", _build_lessons),
+            ("Edit", "Draw", _build_tools),
+        ):
             if name == follows:
                 with ui.menu(title) as shown:
                     if shown:
@@ -51,7 +62,7 @@ def build_menu_bar(ui: Ui, world: World, window: Window) -> None:
 
 def _build_right(ui: Ui, world: World, window: Window) -> None:
     """Build the badge at the right, and the title of the scene where there is room for both."""
-    title = shortened(printable(world.title or world.name or "A scene"), _MAX_TITLE)
+    title = shortened(printable(scene_words(world, window)), _MAX_TITLE)
     room, width = imgui.get_content_region_avail().x, imgui.calc_text_size(title).x
     beside = room - width - ui.size
     is_titled = badge_width(ui, world, window) <= beside
@@ -76,7 +87,8 @@ def _build_controls(ui: Ui, groups: tuple[str, ...], world: World, window: Windo
         for control in CONTROLS:
             if control.group == group:
                 on, keys = control.on(world, window), control.label
-                ui.item(control.title, control.pressed, keys=keys, on=on, tip=control.tip)
+                enabled = control.is_open(window)
+                ui.item(control.title, control.pressed, keys=keys, on=on, enabled=enabled, tip=control.tip)
         if group == "file":
             with ui.menu("Recent files") as shown:
                 if shown:
@@ -85,7 +97,7 @@ def _build_controls(ui: Ui, groups: tuple[str, ...], world: World, window: Windo
 
 def _build_recent(ui: Ui, window: Window) -> None:
     """Build a line for each of the files that were opened or saved last."""
-    there = window.recent.there
+    there = window.scenes.recent.there
     if not there:
         ui.faint("None was opened or saved yet", wrapped=False)
     for number, path in enumerate(there, start=1):
@@ -101,25 +113,45 @@ def _build_tools(ui: Ui, world: World, window: Window) -> None:
         for tool in (DRAWING[drawn.name] for drawn in group):
             ui.item(
                 f"Draw {tool.title}", actions.choose_tool, tool, shown=_words(tool), keys=key_of(tool),
-                on=window.tool == tool.name, tip=tool.usage,
+                on=window.tool == tool.name, tip=tool.usage, enabled=_is_open(window, tool),
             )  # fmt: skip
 
 
+def _is_open(window: Window, tool: Tool) -> bool:
+    """Whether a tool can be taken: a lesson shuts those that it does not name."""
+    return window.lesson is None or window.lesson.opens_tool(tool.name)
+
+
 def _build_scenes(ui: Ui, world: World, window: Window) -> None:
-    """Build a line for each scene, built-in or in the working directory."""
-    for name, scene in SCENES.items():
-        is_shown, action = world.title == scene.title, file_actions.open_from_list
-        ui.item(scene.title, action, name, identity=name, on=is_shown, tip=scene.description)
+    """Build a line for each scene in the working directory, and for each that is built in."""
     try:
         files = scene_files(Path.cwd())
     except OSError as error:
+        files = []
         ui.faint(f"Files could not be listed: {error}")
-        return
     if files:
-        ui.rule()
         ui.faint("Files in the working directory")
     for path in files:
         ui.item(printable(path.name), file_actions.open_from_list, path, identity=str(path))
+    if files:
+        ui.rule()
+    for name, scene in SCENES.items():
+        is_shown, action = world.title == scene.title, file_actions.open_from_list
+        ui.item(scene.title, action, name, identity=name, on=is_shown, tip=scene.description)
+
+
+def _build_lessons(ui: Ui, world: World, window: Window) -> None:
+    """Build a line for each lesson that comes with the program."""
+    if window.lesson is not None:
+        _build_controls(ui, ("lesson",), world, window)
+        ui.rule()
+    with ui.menu("Language of lessons") as shown:
+        for code in languages() if shown else ():
+            ui.item(_LANGUAGES.get(code, code), choose_language, code, on=window.language == code)
+    ui.rule()
+    now = "" if window.lesson is None else window.lesson.lesson.name
+    for name, title in titles(window.language).items():
+        ui.item(title, open_lesson, name, identity=name, on=name == now)
 
 
 # ---- help --------------------------------------------------------------------------------------------------
@@ -137,7 +169,7 @@ def build_help(ui: Ui, world: World, window: Window) -> None:
     lines = [(_keys(control), f"{control.does}{_GAP}") for control in CONTROLS]
     room = _SHARE * window.canvas.size[0]
     columns = next((n for n in range(_MAX_COLUMNS, 1, -1) if _width(lines, n) <= room), 1)
-    with ui.floating("Keys and buttons", window.middle, window.closing_of("help"), docks=True):
+    with ui.floating("Keys and buttons", window.framing.middle, window.closing_of("help"), docks=True):
         rows = -(-len(lines) // columns)
         if imgui.begin_table("keys", 2 * columns, imgui.TableFlags_.sizing_fixed_fit):
             for n in range(rows):
@@ -181,19 +213,24 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
         imgui.push_style_var(imgui.StyleVar_.button_text_align, ImVec2(0.0, 0.5))
         room, gap = imgui.get_content_region_avail(), imgui.get_style().item_spacing.y
         least = _LOWEST * ui.size
-        shown = _shown(int((room.y + gap) / (least + gap)) - 1)
+        shown = [tool for tool in _shown(int((room.y + gap) / (least + gap)) - 1) if _is_open(window, tool)]
         buttons = len(shown) + 1
         height = min(1.9 * ui.size, max((room.y - (buttons - 1) * gap) // buttons, least))
-        behind = [tool for tool in (*PALETTE, *MORE_TOOLS) if tool not in shown]
+        behind = [tool for tool in (*PALETTE, *MORE_TOOLS) if tool not in shown and _is_open(window, tool)]
         size = room.x, height
         for tool in shown:
             ui.button(
                 tool.title, _tip(tool), actions.choose_tool, tool, shown=_words(tool),
                 on=window.tool == tool.name, size=size,
             )  # fmt: skip
+            if window.tool != tool.name:
+                _colour_icon(ui, tool)
         hidden = next((tool for tool in behind if tool.name == window.tool), None)
         words = f"{ICONS['more']}  More" if hidden is None else _words(hidden)
         tip = "More to put into the world"
+        if not behind:
+            imgui.pop_style_var()
+            return
         with ui.list("More", tip, shown=words, on=hidden is not None, size=size) as is_open:
             for tool in behind if is_open else ():
                 ui.item(
@@ -201,6 +238,29 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
                     on=window.tool == tool.name, tip=tool.usage,
                 )  # fmt: skip
         imgui.pop_style_var()
+
+
+ICON_COLOURS = {
+    "spring": "spring", "rope": "rope", "block": "static", "pendulum": "rod", "rod": "rod", "pin": "rod",
+    "ruler": "velocity", "protractor": "velocity", "gate": "velocity", "note": "paused", "remove": "error",
+}  # fmt: skip
+"""The colours of icons: those of the things in the picture, or of what is measured and taken away."""
+ICON_BODIES = {"circle": 0, "box": 1, "polygon": 4}
+"""Those of bodies, by their number among the theme's."""
+
+
+def _colour_icon(ui: Ui, tool: Tool) -> None:
+    """Paint the icon of the button that was built last in the colour of its thing."""
+    theme = ui.theme
+    if tool.name in ICON_BODIES:
+        colour = theme.bodies[ICON_BODIES[tool.name]]
+    elif tool.name in ICON_COLOURS:
+        colour = getattr(theme, ICON_COLOURS[tool.name])
+    else:
+        return
+    low, high, text = imgui.get_item_rect_min(), imgui.get_item_rect_max(), imgui.get_text_line_height()
+    place = ImVec2(low.x + imgui.get_style().frame_padding.x, 0.5 * (low.y + high.y - text))
+    imgui.get_window_draw_list().add_text(place, packed(colour), ICONS[tool.name])
 
 
 def _shown(room: int) -> list[Tool]:

@@ -1,5 +1,6 @@
 """The microscope: one impact large, in words, and by the law of impact with the numbers put in."""
 
+from collections.abc import Sequence
 from functools import partial
 
 from imgui_bundle import ImVec2, imgui
@@ -11,66 +12,69 @@ from physicslab.view.controls import impact_actions
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.impacts import FRAMES
 from physicslab.view.window.window import Action, Window
-from physicslab.view.workbench.collision_drawing import draw_bodies, draw_contact, draw_energies, draw_momenta
+from physicslab.view.workbench.collision_drawing import (
+    build_losses,
+    draw_bodies,
+    draw_contact,
+    draw_energies,
+    draw_momenta,
+)
 from physicslab.view.workbench.collision_words import AGREES, Step, body_name, law_steps, story
 from physicslab.world import World
 
-_PICTURE, _WORDS = 24.0, 29.0
-"""Widths of the drawings and of the words beside them, in heights of the text."""
-_TALL, _LOW = 38.0, 13.0
-"""Height of both where there is room, and height of the bodies' drawing."""
+_WIDE, _TALL, _LOW = 27.0, 36.0, 12.0
+"""Width and height where it lies over the world, height of the bodies' drawing, in heights of the text."""
+_FIRST = 2
+"""Sentences that come first."""
 _SMALL = 8.6
 """Height of the drawings below that."""
-_SHARE = 0.94
-"""How much of the window it may take."""
 _RESTING = 1e-4
 """Speed of approach [m/s] up to which rigid contacts may take a point for resting."""
+_FROM_ELSEWHERE = 1e-9
+"""Share of the largest momentum above which a sum that is not kept is no rounding."""
 _FLAT = 0.6
 """Height of a drawing as a share of its width, at most."""
 
 
 def build_microscope(ui: Ui, world: World, window: Window) -> None:
-    """Build it in a window of its own."""
-    wide, high, beside = _room(ui, window)
-    left, top, across, _ = window.room()
-    place = left + 0.5 * across, top + 0.5 * (high + 9.0 * ui.size)
+    """Build it in a window of its own: what happened, both bodies, momenta, energies, and the rest below."""
+    left, top, across, down = window.framing.room()
+    ui.stand_beside("Collision microscope", "right", 0.5, 0.0, stacks=False)
+    place = left + 0.5 * across, top + 0.5 * down
     with ui.floating("Collision microscope", place, window.closing_of("microscope.record"), docks=True):
-        _build_head(ui, world, window, wide)
-        if imgui.is_window_docked():
-            free = imgui.get_content_region_avail()
-            wide, high = free.x, max(free.y, 6.0 * ui.size)
-            beside = wide >= (_PICTURE + _WORDS) * ui.size
-        drawn = _PICTURE * ui.size if beside else wide - 1.2 * ui.size
-        with ui.child("drawings", ImVec2(_PICTURE * ui.size if beside else wide, high)) as is_seen:
+        ui.raise_tab(window.microscope.number)
+        size = ui.extent(_WIDE * ui.size, _TALL * ui.size)
+        with ui.child("impact", ImVec2(size.x, max(size.y, 8.0 * ui.size))) as is_seen:
             if is_seen:
-                _build_drawings(ui, world, window, drawn - 0.8 * ui.size)
-                if not beside:
-                    _build_words(ui, world, window)
-        if beside:
-            imgui.same_line()
-            with ui.child("words", ImVec2(wide - _PICTURE * ui.size - ui.size, high)) as is_seen:
-                if is_seen:
-                    _build_words(ui, world, window)
+                _build(ui, world, window, imgui.get_content_region_avail().x)
 
 
-def _room(ui: Ui, window: Window) -> tuple[float, float, bool]:
-    """Return the width and height of what is below the head [px], and whether words are beside drawings."""
-    width = window.canvas.size[0]
-    across = window.room()[2] - 2.5 * ui.size
-    beside = across >= (_PICTURE + _WORDS) * ui.size
-    wide = (_PICTURE + _WORDS) * ui.size if beside else min(max(across, 0.6 * width), _WORDS * ui.size)
-    high = min(_TALL * ui.size, _SHARE * window.room()[3] - 9.5 * ui.size)
-    return min(wide, _SHARE * width - 2.0 * ui.size), max(high, 8.0 * ui.size), beside
+def _build(ui: Ui, world: World, window: Window, wide: float) -> None:
+    microscope = window.microscope
+    collision, seen = microscope.collision, microscope.seen
+    told = story(collision, microscope.result, _names(world, collision))
+    _build_head(ui, window, imgui.get_cursor_pos_x() + wide)
+    for sentence in told[:_FIRST]:
+        ui.text(sentence, wrapped=True)
+    _build_momentum(ui, seen)
+    build_losses(ui, seen)
+    ui.gap(0.3)
+    draw_bodies(ui, world, seen, (wide, min(_LOW * ui.size, _FLAT * wide)))
+    ui.faint("Thin and dashed: before. Thick: after (with ').")
+    ui.faint("Kinetic energy", wrapped=False)
+    draw_energies(ui, world, seen, wide)
+    ui.gap(0.3)
+    more = window.level == "Engineer" if microscope.shows_more is None else microscope.shows_more
+    if ui.button("More", "Other observers, turning, friction, and the law with its numbers", on=more):
+        microscope.shows_more = more = not more
+    if more:
+        _build_more(ui, world, window, told[_FIRST:], wide)
 
 
-def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
-    """Build when and what it was, what can be done from there, and the observers."""
-    microscope, collision = window.microscope, window.microscope.collision
-    a, b = _names(world, collision)
-    pair = f"mu = {collision.friction:.4g}, e = {collision.restitution:.4g}"
-    with ui.wrapping(wide):
-        ui.text(f"At {collision.time:.6f} s   ·   A: {a}   ·   B: {b}   ·   {pair}")
-    end = imgui.get_cursor_pos_x() + wide
+def _build_head(ui: Ui, window: Window, end: float) -> None:
+    """Build when it was, and what can be done from there; ``end`` is the right edge [px]."""
+    microscope = window.microscope
+    ui.faint(f"At {microscope.collision.time:.6f} s", wrapped=False)
     buttons: tuple[tuple[str, str, Action, bool], ...] = (
         ("Earlier", "The impact before this one; time goes back to it",
          partial(impact_actions.go_beside, by=-1), False),
@@ -86,48 +90,45 @@ def _build_head(ui: Ui, world: World, window: Window, wide: float) -> None:
         if n:
             ui.same_line_if_room(label, end)
         ui.button(label, tip, action, on=on)
-    for n, (frame, tip) in enumerate(FRAMES.items()):
-        label = f"Seen by: {frame}"
-        if n:
-            ui.same_line_if_room(frame, end)
-        if ui.button(label, f"Velocities, momenta and energies as an observer finds them. {tip}",
-                     shown=frame, on=microscope.frame == frame):  # fmt: skip
+
+
+def _build_more(ui: Ui, world: World, window: Window, told: Sequence[str], wide: float) -> None:
+    """Build the observers, the rest of the words and drawings, and the law."""
+    microscope = window.microscope
+    seen, end = microscope.seen, imgui.get_cursor_pos_x() + wide
+    ui.faint("Seen by", wrapped=False)
+    for frame, tip in FRAMES.items():
+        ui.same_line_if_room(frame, end)
+        tip = f"Velocities, momenta and energies as an observer finds them. {tip}"
+        if ui.button(f"Seen by: {frame}", tip, shown=frame, on=microscope.frame == frame):
             microscope.frame = frame
-    imgui.same_line()
-    ui.faint("observer", wrapped=False)
+    collision = microscope.collision
+    ui.row("Friction and restitution", f"mu = {collision.friction:.4g}, e = {collision.restitution:.4g}")
+    for sentence in told:
+        ui.text(sentence, wrapped=True)
+    _build_velocities(ui, seen)
+    ui.gap(0.3)
+    half, gap = 0.5 * (wide - ui.size), ui.size
+    high, left = min(_SMALL * ui.size, half), imgui.get_cursor_pos_x()
+    ui.faint("B against A", wrapped=False)
+    imgui.same_line(left + half + gap)
+    both = seen.a.is_free and seen.b.is_free
+    ui.faint("Momenta, tip to tail" if both else "Momentum and impulse", wrapped=False)
+    draw_contact(ui, world, seen, (half, high))
+    imgui.same_line(0.0, gap)
+    draw_momenta(ui, world, seen, (half, high))
+    ui.gap(0.3)
+    _build_law(ui, window)
 
 
 def _names(world: World, seen: Collision) -> tuple[str, str]:
     return body_name(world, seen.a.entity, seen.wall), body_name(world, seen.b.entity, seen.wall)
 
 
-def _build_drawings(ui: Ui, world: World, window: Window, wide: float) -> None:
-    seen = window.microscope.seen
-    draw_bodies(ui, world, seen, (wide, min(_LOW * ui.size, _FLAT * wide)))
-    ui.faint("Thin and dashed: before. Thick: after (with ').")
-    half, gap = 0.5 * (wide - ui.size), ui.size
-    high = min(_SMALL * ui.size, half)
-    ui.faint("B against A at the contact", wrapped=False)
-    imgui.same_line(half + gap)
-    both = seen.a.is_free and seen.b.is_free
-    ui.faint("Momenta, tip to tail" if both else "Momentum and impulse", wrapped=False)
-    draw_contact(ui, seen, (half, high))
-    imgui.same_line(0.0, gap)
-    draw_momenta(ui, seen, (half, high))
-    ui.faint("Kinetic energy", wrapped=False)
-    draw_energies(ui, seen, wide)
-
-
-def _build_words(ui: Ui, world: World, window: Window) -> None:
-    """Build what happened in words, the velocities, and the law with its numbers."""
+def _build_law(ui: Ui, window: Window) -> None:
+    """Build the law with its numbers, beside the result of the solver."""
     microscope = window.microscope
     collision, result = microscope.collision, microscope.result
-    for sentence in story(collision, result, _names(world, collision)):
-        ui.text(sentence, wrapped=True)
-    ui.gap(0.3)
-    _build_velocities(ui, microscope.seen)
-    _build_momentum(ui, microscope.seen)
-    ui.gap(0.3)
     shown = window.level == "Engineer" if microscope.shows_formula is None else microscope.shows_formula
     if ui.button(
         "The law with its numbers", "The formula line by line, beside the result of the solver", on=shown
@@ -159,7 +160,10 @@ def _build_velocities(ui: Ui, seen: Collision) -> None:
 
 
 def _build_momentum(ui: Ui, seen: Collision) -> None:
-    """Write the momenta of both together before and after, or the impulse on the one that is free."""
+    """Write the momenta of both together before and after, and the impulse on the one that is free.
+
+    Joints, and impacts at the same moment, may give either of them momentum too: that has a row of its own.
+    """
     before, after = (
         seen.a.momentum(a) + seen.b.momentum(b)
         for a, b in ((seen.a.before, seen.b.before), (seen.a.after, seen.b.after))
@@ -167,9 +171,14 @@ def _build_momentum(ui: Ui, seen: Collision) -> None:
     scale = max(body.momentum(m).magnitude for body in (seen.a, seen.b) for m in (body.before, body.after))
     ui.row("Momentum before", _vector(before, scale), "The sum over the bodies that impulses move")
     ui.row("Momentum after", _vector(after, scale))
+    rest = after - before
     if not (seen.a.is_free and seen.b.is_free):
         tip = "Given by the other one, which no impulse moves"
         ui.row("Impulse on it", quantity(seen.impulse.magnitude, "N s"), tip)
+        rest = rest - seen.impulse if seen.b.is_free else rest + seen.impulse
+    if rest.magnitude > _FROM_ELSEWHERE * scale:
+        tip = "Joints, or other impacts at the same moment, gave it: momentum is kept with theirs counted"
+        ui.row("From joints and others", _vector(rest, scale), tip)
 
 
 def _vector(value: Vector2, scale: float) -> str:

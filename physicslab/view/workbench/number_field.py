@@ -2,8 +2,9 @@
 
 import contextlib
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import pygame
@@ -25,6 +26,8 @@ _FIGURES = 6
 """Figures to which a number is shown where there is room."""
 _PART = 6
 """Characters that the field of a part of a vector has room for."""
+_NARROW = 4.2
+"""Width of a field that has room for that, in heights of the text."""
 _SMALL = 1e-3
 """One figure may be enough for smaller numbers than this."""
 _VARIOUS = "various"
@@ -141,20 +144,30 @@ class NumberFields:
         commit: CommitPart,
     ) -> None:  # fmt: skip
         """Build the row of a vector: a field for each part; ``commit`` is called with its number as well."""
-        self.label(ui, key, words, spec)
-        unit = _unit_shown(spec, None)
+        parts = [
+            (f"{key}.{name}", spec, value[axis], partial(commit, axis))
+            for axis, name in enumerate(("x", "y"))
+        ]
+        self.pair_row(ui, key, words, parts)
+
+    def pair_row(
+        self, ui: Ui, key: str, words: str, parts: Sequence[tuple[str, Field, float | None, Commit]]
+    ) -> None:
+        """Build the row of two numbers: of each its field's key, its description, it, and where it goes."""
+        self.label(ui, key, words, parts[0][1])
+        units = [_unit_shown(spec, None) for _, spec, _, _ in parts]
+        units = units[-1:] if units[0] == units[-1] else units
         gap = imgui.get_style().item_spacing.x
-        room = 0.5 * (imgui.get_content_region_avail().x - _width(ui, unit) - gap)
+        taken = sum(_width(ui, unit) for unit in units) + gap
+        room = 0.5 * (imgui.get_content_region_avail().x - taken)
         refusals = []
-        for axis, name in enumerate(("x", "y")):
-
-            def commit_part(new: float, axis: int = axis) -> None:
-                commit(axis, new)
-
-            if axis:
+        for n, (name, spec, value, commit) in enumerate(parts):
+            if n:
                 imgui.same_line()
-            refusals.append(self.build(ui, f"{key}.{name}", value[axis], spec, room, commit_part))
-        _finish(ui, unit, next(filter(None, refusals), ""))
+            refusals.append(self.build(ui, name, value, spec, room, commit))
+            if n == 0 and len(units) > 1:
+                _finish(ui, units[0], "")
+        _finish(ui, units[-1], next(filter(None, refusals), ""))
 
     def build(
         self, ui: Ui, key: str, value: float | str | None, spec: Field, width: float, commit: Commit,
@@ -221,19 +234,18 @@ class NumberFields:
         imgui.same_line()
 
     def _drag(self, ui: Ui, key: str, value: float, spec: Field, commit: Commit) -> None:
-        """Change a number while its label is dragged."""
-        if imgui.is_item_active() and imgui.is_mouse_dragging(0, 2.0):
-            if self._dragged is None or self._dragged[0] != key:
-                self._dragged = key, value
+        """Change a number while its label is dragged: one edit, until it is let go."""
+        if imgui.is_item_activated():
+            self._dragged = key, value
+            ui.do_next(lambda _, window: window.edits.hold())
+        if self._dragged is not None and imgui.is_item_active() and imgui.is_mouse_dragging(0, 2.0):
             held = pygame.key.get_mods()
             factor = _FINER if held & pygame.KMOD_SHIFT else _COARSER if held & pygame.KMOD_CTRL else 1.0
             moved = imgui.get_mouse_drag_delta(0, 2.0).x
             least = math.degrees(1.0) if spec.unit == "deg" else 1.0
             new = self._dragged[1] + moved * factor * _DRAG * max(abs(self._dragged[1]), least)
             with contextlib.suppress(InvalidValue):  # at the end of its range a drag does nothing more
-                commit(float(f"{new:.6g}"))
-        elif self._dragged is not None and self._dragged[0] == key:
-            self._dragged = None
+                commit(round(new) if spec.kind == "whole" else float(f"{new:.6g}"))
         else:
             tip = "Drag to change; Shift: finer, Ctrl: coarser"
             ui.tip(f"{spec.meaning}\n{tip}" if spec.meaning else tip)
@@ -243,11 +255,12 @@ def _shown(value: float | str | None, spec: Field, width: float) -> str:
     """Return a value as it stands in a field: a number to as many figures as the field has room for [px]."""
     if value is None:
         return _VARIOUS
-    if isinstance(value, str):
-        return value
-    if spec.kind == "vector":
-        return shown_vector_part(value)
     room = width - 2.0 * imgui.get_style().frame_padding.x
+    if isinstance(value, str):
+        is_span = spec.kind in ("number", "whole", "vector") and imgui.calc_text_size(value).x > room
+        return _VARIOUS if is_span else value
+    if spec.kind == "vector" or width < _NARROW * imgui.get_font_size():
+        return shown_vector_part(value)
     texts = [shown_number(value, figures) for figures in range(_FIGURES, 1, -1)]
     return next((text for text in texts if imgui.calc_text_size(text).x <= room), texts[-1])
 

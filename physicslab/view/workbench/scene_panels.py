@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Graph
 from physicslab.components.graph import TIME
+from physicslab.diagnostics.fits import FITS
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.controls import dashboard_actions
@@ -14,20 +15,28 @@ from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.toolkit.windows import widget_label
 from physicslab.view.window.dashboard import GraphShown
+from physicslab.view.window.fitting import gate_span
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
 from physicslab.view.workbench import graph_readings
 from physicslab.view.workbench.graph_plot import GraphPlot
 from physicslab.view.workbench.number_field import NumberFields
-from physicslab.view.workbench.panel_places import bar_at_top, has_room, is_bar, places
+from physicslab.view.workbench.panel_places import bar_at_top, has_room, places
 from physicslab.view.workbench.small_panels import MeterPanels, SliderPanels
 from physicslab.world import World
 
-_FLAGS = imgui.WindowFlags_.no_collapse
+_FLAGS = imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_focus_on_appearing
 _LEAST_PLOT = 6.0
 """Height of a plot at least, in heights of the text: what is below the rest can be scrolled to."""
-_LEAST = (12.0, 9.0)
-"""Width and height down to which a graph can be made by hand, in heights of the text."""
+_ROOMY, _PER_LINE = (15.0, 10.0), 1.4
+"""Width and height of a graph, and height for each line, with which its readings stand above the plot [text
+heights]; in less room the plot comes first, and the readings below it can be scrolled to."""
+_SHARE = 0.45
+"""Share of the world's room that the first graph takes."""
+_LEAST = (15.0, 12.0)
+"""Least width of graphs beside each other, and height of those below each other, in heights of the text."""
+_SIZE = (27.0, 20.0)
+"""Width and height of a graph that lies over the world, in heights of the text."""
 
 
 def owner_of(entity: int) -> str:
@@ -36,111 +45,87 @@ def owner_of(entity: int) -> str:
 
 
 class GraphPanels:
-    """The windows of graphs. One that was moved by hand stays where it was put."""
+    """The windows of graphs: beside the world at their sides, unless they were moved by hand."""
 
     def __init__(self) -> None:
-        self._put: dict[int, Rect] = {}
-        self._moved: set[int] = set()
+        self._sides: dict[int, str] = {}
         self._plots: dict[int, GraphPlot] = {}
 
-    def put_back(self) -> None:
-        """Let every graph be put where it is at first, those that were moved or docked too."""
-        self._put, self._moved = {}, set()
+    def build(self, ui: Ui, world: World, window: Window) -> None:
+        """Build every graph."""
+        graphs = window.dashboard.graphs
+        self._sides = {graph.entity: self._sides.get(graph.entity, graph.side) for graph in graphs}
+        self._plots = {graph.entity: self._plots.get(graph.entity) or GraphPlot() for graph in graphs}
+        pointed = [self._build(ui, world, window, graph) for graph in graphs]
+        window.dashboard.pointed = next((time for time in reversed(pointed) if time is not None), None)
 
-    def free(self, graphs: tuple[GraphShown, ...]) -> dict[int, str]:
-        """Return the graphs that are put beside each other, and the side of each."""
-        living = {graph.entity for graph in graphs}
-        self._moved &= living
-        self._put = {entity: rect for entity, rect in self._put.items() if entity in living}
-        self._plots = {entity: plot for entity, plot in self._plots.items() if entity in living}
-        return {graph.entity: graph.side for graph in graphs if graph.entity not in self._moved}
-
-    def build(self, ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
-        """Build every graph at its place."""
-        pointed: float | None = None
-        bar: Rect | None = None
-        for graph in window.dashboard.graphs:
-            place = places.get(graph.entity)
-            if place is not None and is_bar(place, ui.size):
-                self._put.pop(graph.entity, None)
-                bar = place
-                continue
-            hovered = self._build(ui, world, window, graph, place)
-            pointed = hovered if hovered is not None else pointed
-        if bar is not None:
-            _build_bar(ui, window, bar, places)
-        window.dashboard.pointed = pointed
-
-    def _build(
-        self, ui: Ui, world: World, window: Window, graph: GraphShown, place: Rect | None
-    ) -> float | None:
+    def _build(self, ui: Ui, world: World, window: Window, graph: GraphShown) -> float | None:
         """Build one; return the time under the cursor, if the cursor is in its plot."""
-        entity = graph.entity
-        title = _title(graph, window)
-        known = imgui.internal.find_window_by_name(owner_of(entity))
-        if known is not None and known.dock_id and ui.once != imgui.Cond_.always:
-            self._moved.add(entity)  # a place would take it out of where it is docked
-        elif place is not None and place != self._put.get(entity):
-            when = imgui.Cond_.first_use_ever if known is None else imgui.Cond_.always
-            imgui.set_next_window_pos(ImVec2(place[0], place[1]), when)
-            imgui.set_next_window_size(ImVec2(place[2], place[3]), when)
-            self._put[entity] = place
+        entity, title = graph.entity, _title(graph, window)
+        is_sent, self._sides[entity] = self._sides[entity] != graph.side, graph.side
+        ui.stand_beside(owner_of(entity), graph.side, _SHARE, _LEAST[graph.side == "right"], again=is_sent)
         room = imgui.get_io().display_size
-        least = ImVec2(
-            *(min(share * ui.size, px) for share, px in zip(_LEAST, (room.x, room.y), strict=True))
-        )
-        if place is not None:
-            least = ImVec2(min(least.x, place[2]), min(least.y, place[3]))
-        imgui.set_next_window_size_constraints(least, room)
+        imgui.set_next_window_size(ImVec2(_SIZE[0] * ui.size, _SIZE[1] * ui.size), ui.once)
+        imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
         shown, stays = imgui.begin(widget_label(f"{title} ", f"graph {entity}"), True, _FLAGS)
         ui.words.append(drawable(title))
+        ui.raise_tab()
         hovered: float | None = None
-        self._follow_hand(entity)
+        place, size = imgui.get_window_pos(), imgui.get_window_size()
+        x, y = max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0)
+        if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
+            imgui.set_window_pos(ImVec2(x, y))
         if shown:
-            self._build_head(ui, world, window, graph)
-            graph_readings.build_cursors(ui, window, graph)
-            graph_readings.build_readings(ui, world, window, graph)
-            height = max(imgui.get_content_region_avail().y, _LEAST_PLOT * ui.size)
-            plot = self._plots.setdefault(entity, GraphPlot())
-            hovered = plot.build(ui, world, window, graph, height)
+            free, wanted = imgui.get_content_region_avail(), _ROOMY[1] + _PER_LINE * len(graph.lines)
+            is_roomy = free.x >= _ROOMY[0] * ui.size and free.y >= wanted * ui.size
+            self._build_head(ui, world, window, graph, is_roomy=is_roomy)
+            if is_roomy:
+                graph_readings.build_words(ui, world, window, graph)
+            free, words = imgui.get_content_region_avail(), 0.0
+            if not is_roomy:
+                words = (len(graph.lines) + 1) * imgui.get_text_line_height_with_spacing()
+            height = max(free.y - words, min(_LEAST_PLOT * ui.size, free.y))
+            hovered = self._plots[entity].build(ui, world, window, graph, height)
+            if not is_roomy:
+                graph_readings.build_moment(ui, world, window)
+                graph_readings.build_words(ui, world, window, graph)
         imgui.end()
         if not stays:
             window.do_next(dashboard_actions.close_graph, graph)
         return hovered
 
-    def _follow_hand(self, entity: int) -> None:
-        """Note whether a graph was moved or resized by hand, and keep its title within the display."""
-        place, size, room = imgui.get_window_pos(), imgui.get_window_size(), imgui.get_io().display_size
-        put = self._put.get(entity)
-        held = imgui.is_mouse_dragging(0) and imgui.is_window_focused()
-        if held and put is not None and (place.x, place.y, size.x, size.y) != tuple(map(float, put)):
-            self._moved.add(entity)
-        x, y = max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0)
-        if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
-            imgui.set_window_pos(ImVec2(x, y))
-
-    def _build_head(self, ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
-        """Build the choice of lines, and what can be done with them."""
+    def _build_head(self, ui: Ui, world: World, window: Window, graph: GraphShown, *, is_roomy: bool) -> None:
+        """Build the choice of lines, and what can be done with them: one row where there is little room."""
         number, dashboard = graph.number, window.dashboard
         with ui.list(f"Lines of graph {number}", "The plotted quantities", shown="Lines") as is_open:
             if is_open:
                 self._build_lines(ui, world, window, graph)
         across = f"Across: {'time' if graph.across is None else graph.across[1]}"
-        ui.same_line_if_room(across)
         tip = "The quantity on the horizontal axis: the time, or another one"
-        with ui.list(f"Across graph {number}", tip, shown=across) as is_open:
-            if is_open:
-                self._build_across(ui, world, window, graph)
-        ui.same_line_if_room("Follow")
-        follows = graph.entity not in dashboard.free_axes
-        tip = "Let the axes follow the recording; scroll or drag in the plot to look closer"
-        if ui.button(f"Follow graph {number}", tip, shown="Follow", on=follows):
-            dashboard.free_axes ^= {graph.entity}
-        ui.same_line_if_room("More")
-        with ui.list(f"More of graph {number}", "Cursors, files, place", shown="More") as is_open:
+        follows, follow = graph.entity not in dashboard.free_axes, f"Follow graph {number}"
+        if is_roomy:
+            ui.same_line_if_room(across)
+            with ui.list(f"Across graph {number}", tip, shown=across) as is_open:
+                if is_open:
+                    self._build_across(ui, world, window, graph)
+            ui.same_line_if_room("Follow")
+            tip = "Let the axes follow the recording; scroll or drag in the plot to look closer"
+            if ui.button(follow, tip, shown="Follow", on=follows):
+                dashboard.free_axes ^= {graph.entity}
+        words = "More" if is_roomy else "..."
+        ui.same_line_if_room(words)
+        with ui.list(f"More of graph {number}", "Cursors, fits, files, place", shown=words) as is_open:
+            if is_open and not is_roomy:
+                with ui.menu(across) as is_unfolded:
+                    if is_unfolded:
+                        self._build_across(ui, world, window, graph)
+                if ui.item(follow, shown="Follow the recording", on=follows):
+                    dashboard.free_axes ^= {graph.entity}
+                ui.rule()
             if is_open:
                 self._build_more(ui, world, window, graph)
-        graph_readings.build_moment(ui, world, window)
+        if is_roomy:
+            graph_readings.build_moment(ui, world, window)
 
     @staticmethod
     def _build_lines(ui: Ui, world: World, window: Window, graph: GraphShown) -> None:
@@ -173,6 +158,19 @@ class GraphPanels:
         if ui.item("No cursors", enabled=dashboard.marks != [None, None]):
             dashboard.marks[:] = [None, None]
         ui.rule()
+        fitting, entity = dashboard.fitting, graph.entity
+        for kind in FITS:
+            if ui.item(f"Fit a {kind}", on=fitting.kinds.get(entity) == kind):
+                fitting.kinds[entity] = kind
+        if ui.item("No fit", enabled=entity in fitting.kinds):
+            del fitting.kinds[entity]
+        span = gate_span(world, (key[0] for key in graph.keys))
+        if ui.item("From gate to gate", enabled=span is not None) and span is not None:
+            dashboard.marks[:], fitting.spans[entity] = span, span
+            dashboard.free_axes.discard(entity)
+        if ui.item("All of the time", enabled=entity in fitting.spans):
+            del fitting.spans[entity]
+        ui.rule()
         ui.item("Save as a table (CSV)", dashboard_actions.save_table, graph)
         if ui.item("Save as a picture (PNG)"):
             dashboard.picture_of = graph.entity
@@ -181,25 +179,6 @@ class GraphPanels:
         if ui.item(f"Put it at the {other}"):
             body, name = graph.across or (None, TIME)
             window.do_next(dashboard_actions.change, graph.entity, Graph(name, body, other))
-
-
-def _build_bar(ui: Ui, window: Window, bar: Rect, places: dict[int, Rect]) -> None:
-    """Build what opens a graph, by its number, where there is room for one alone."""
-    with ui.panel("bar of graphs", bar, padded=False, rounded=True):
-        height = imgui.get_content_region_avail().y
-        imgui.set_cursor_pos_y(imgui.get_cursor_pos_y() + 0.5 * (height - imgui.get_text_line_height()))
-        ui.faint("Graph", wrapped=False)
-        for graph in window.dashboard.graphs:
-            place = places.get(graph.entity)
-            if place is None:
-                continue
-            imgui.same_line()
-            imgui.set_cursor_pos_y(0.5 * (bar[3] - height))
-            tip, is_open = f"Open {_title(graph, window)}", not is_bar(place, ui.size)
-            if ui.button(
-                f"Open graph {graph.number}", tip, shown=f"{graph.number}", on=is_open, size=(0, height)
-            ):
-                window.dashboard.active = graph.entity
 
 
 def _title(graph: GraphShown, window: Window) -> str:
@@ -218,21 +197,24 @@ class ScenePanels:
         self._meters = MeterPanels()
         self._sliders = SliderPanels()
 
-    def build(self, ui: Ui, numbers: NumberFields, world: World, window: Window, area: Rect) -> None:
-        """Build all that the scene has, within a part of the window."""
+    def build(
+        self, ui: Ui, numbers: NumberFields, world: World, window: Window, whole: Rect, area: Rect
+    ) -> None:
+        """Build all that the scene has, in the ``whole`` room of the world; meters lie in ``area``."""
         dashboard = window.dashboard
-        if ui.once == imgui.Cond_.always:
-            self._graphs.put_back()
-        if not dashboard.is_shown:
+        has_graphs = not dashboard.graphs or has_room(whole, ui.size)
+        if has_graphs:
+            self._graphs.build(ui, world, window)
+        has_small = bool(dashboard.meters or dashboard.sliders)
+        if has_graphs and not has_small:
             return
-        if not has_room(area, ui.size):
+        if not has_graphs or not has_room(area, ui.size):
             _build_room_maker(ui, window, bar_at_top(area, ui.size))
             return
         small = [*self._meters.sizes(ui, world, window), *self._sliders.sizes(ui, window)]
-        found = places(area, ui.size, self._graphs.free(dashboard.graphs), small, dashboard.active)
+        found = places(area, ui.size, small)
         self._meters.build(ui, world, window, found)
         self._sliders.build(ui, numbers, world, window, found)
-        self._graphs.build(ui, world, window, found)
 
     def forget(self) -> None:
         """Drop what is dragged or half written in panels, and how wide they were."""
@@ -254,7 +236,7 @@ class ScenePanels:
 def _build_room_maker(ui: Ui, window: Window, place: Rect) -> None:
     """Build a button that makes room where the panel at the right leaves none, as in a small window."""
     with ui.panel("bar of panels", place, padded=False, rounded=True):
-        tip = "There is no room for graphs here: this hides the panel at the right (I brings it back)"
-        size = imgui.get_content_region_avail()
-        if ui.button("Show graphs", tip, shown="Graphs", size=(size.x, size.y), enabled=window.figures):
+        tip = "There is no room for them here: this hides the panel at the right (I brings it back)"
+        size, words = imgui.get_content_region_avail(), "Graphs" if window.dashboard.graphs else "Meters"
+        if ui.button("Show meters", tip, shown=words, size=(size.x, size.y), enabled=window.figures):
             window.figures = False

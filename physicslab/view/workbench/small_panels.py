@@ -154,7 +154,7 @@ _ENDS = (("low", "From"), ("high", "To"))
 
 
 class SliderPanels:
-    """The panels of sliders. A number is kept while the slider is held, and changed once it is let go."""
+    """The panels of sliders. A slider that is held stands where it was moved to."""
 
     def __init__(self) -> None:
         self._held: dict[int, float] = {}
@@ -190,17 +190,15 @@ class SliderPanels:
         label, width = f"Slider {slider.number}", imgui.get_content_region_avail().x - _VALUE * ui.size
         moved = ui.slider(label, value, slider.low, slider.high, "", width)
         ui.tip(f"From {slider.low:g} to {slider.high:g} {written_unit(slider.unit)}".strip())
-        held = imgui.is_item_active()
-        imgui.same_line()
-        ui.text(words)
         if moved is not None:
             moved = _rounded(moved, slider)
             self._held[slider.entity] = moved
             if moved != value:
-                window.do_next(dashboard_actions.slide, slider, moved, held=True)
-        if not held and slider.entity in self._held:
-            last = self._held.pop(slider.entity)
-            window.do_next(dashboard_actions.slide, slider, last, held=False)
+                window.do_next(dashboard_actions.slide, slider, moved)
+        if not imgui.is_item_active():
+            self._held.pop(slider.entity, None)
+        imgui.same_line()
+        ui.text(words)
 
 
 def _build_slider_menu(

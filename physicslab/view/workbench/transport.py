@@ -15,6 +15,7 @@ from physicslab.world import World
 
 _SPEEDS = {"4x": 4.0, "2x": 2.0, "1x": 1.0, "1/2x": 0.5, "1/4x": 0.25, "1/8x": 0.125, "1/16x": 0.0625}
 _HINT = "Drag: throw  ·  Left: circle  ·  Right: box  ·  Space: pause  ·  F1: keys"
+_HINT_OF_LESSONS = "Space: pause  ·  F6: next panel  ·  Esc: leave the lesson"
 _HEIGHT, _NARROW, _WIDE = 1.9, 2.4, 5.2
 """Height of the buttons, and their widths, in heights of the text."""
 _GRAB_PADDING = 2.0
@@ -87,7 +88,8 @@ def _mark(ui: Ui, window: Window, first: int, last: int) -> None:
 
 def _build_line(ui: Ui, world: World, window: Window) -> None:
     """Build the line of the steps that were made, to be gone through by dragging, and the hint beside it."""
-    room, hint = imgui.get_content_region_avail().x, imgui.calc_text_size(_HINT).x + ui.size
+    words = _HINT if window.lesson is None else _HINT_OF_LESSONS
+    room, hint = imgui.get_content_region_avail().x, imgui.calc_text_size(words).x + ui.size
     is_hinted = room - hint > _MIN_LINE * ui.size
     history = window.edits.history
     first, last = history.steps_range
@@ -105,7 +107,7 @@ def _build_line(ui: Ui, world: World, window: Window) -> None:
         window.do_next(actions.seek, round(place))
     if is_hinted:
         imgui.same_line()
-        ui.faint(_HINT, wrapped=False)
+        ui.faint(words, wrapped=False)
 
 
 # ---- the history -------------------------------------------------------------------------------------------
@@ -121,11 +123,12 @@ def build_history(ui: Ui, world: World, window: Window) -> None:
     """Build the list in a window of its own."""
     history = window.edits.history
     entries, done = history.entries, history.position
-    left, top, _, _ = window.room()
+    left, top, _, _ = window.framing.room()
     width, height = ui.fitted(_LIST_WIDTH * ui.size, _LIST_HEIGHT * ui.size)
     place = left + 0.5 * width + ui.size, top + 0.5 * height + 4.0 * ui.size
+    ui.stand_beside("History", "right", 0.3, 8.0)
     with ui.floating("History", place, window.closing_of("lists_history"), docks=True):
-        ui.button("Undo", "Undo the last edit or run (Ctrl+Z)", actions.undo, enabled=done > 0)
+        ui.button("Undo", "Undo the last edit, and the run since (Ctrl+Z)", actions.undo, enabled=done > 0)
         imgui.same_line()
         ui.button("Redo", "Redo what was undone (Ctrl+Y)", actions.redo, enabled=done < len(entries))
         below = _LINE * (len(history.branches) + 2) * ui.size if history.branches else 0.0

@@ -8,18 +8,21 @@ from imgui_bundle import imgui
 from imgui_bundle.imgui import ImVec2
 
 from physicslab.components import Charge
+from physicslab.components.made_of import SUBSTANCES
 from physicslab.diagnostics.energy import ACCOUNT_WORDS, flows
 from physicslab.ecs.config import COLLISIONS, CONTACTS, INTEGRATORS, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetPhysics, SetSimulation
+from physicslab.integrators import Integrator
 from physicslab.view.canvas.quantities import quantity, round_quantity, without_rounding
 from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.controls.actions import gravity_in_words, has_gravity
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.desk import LEVELS
 from physicslab.view.window.edits import Recipe
-from physicslab.view.window.window import LEVELS, Window
+from physicslab.view.window.window import Window
 from physicslab.view.workbench.figures import Line, WorldFigures
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.world import World
@@ -40,12 +43,14 @@ _ERROR_TIP = (
     "The change without a cause. It comes from computing in steps, not from physics: "
     "shorter steps make it smaller"
 )
-_COLOURS = {"impacts": 4, "friction": 5, "damping": 6, "contact": 2, "overlap": 3, "fields": 1}
+_COLOURS = {"impacts": 4, "friction": 5, "damping": 6, "contact": 2, "overlap": 3, "fields": 1, "motors": 0}
 """Which of the colours of bodies an account has; they can be told apart by the colour-blind, too."""
 _BEYOND = 0.25
 """Share of what is below zero that bars have room for above it."""
-_LABEL = 0.85
-"""Height of the names on the bar, in heights of the text."""
+_LABEL, _SPOT = 0.85, 0.26
+"""Height of the names below the bar, and radius of the spots before them, in heights of the text."""
+_NAMED = 0.01
+"""Share of all that is shown from which a part has its name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +144,7 @@ def _rounded(energy: float) -> str:
 
 
 def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
-    """Build a bar as wide as the panel, in parts as long as their energies; what has room is named on it.
+    """Build a bar as wide as the panel, in parts as long as their energies, and their names below it.
 
     Parts below zero lie to the left of a line, the others to its right.
     """
@@ -147,7 +152,7 @@ def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
     if whole == 0.0:
         return
     ui.faint(title, wrapped=False)
-    width, height = imgui.get_content_region_avail().x, round(1.25 * ui.size)
+    width, height = imgui.get_content_region_avail().x, round(0.7 * ui.size)
     corner, paper = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
     end = ImVec2(corner.x + width, corner.y + height)
     paper.add_rect_filled(corner, end, packed(ui.theme.key))
@@ -161,8 +166,6 @@ def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
             paper.add_rect_filled(
                 ImVec2(left, corner.y), ImVec2(high, corner.y + height), packed(part.colour)
             )
-            name = part.name if part.energy >= 0.0 else f"-{part.name}"
-            _write_name(ui, name, (left, corner.y, high - left, height))
         left += long
     zero = corner.x + sum(max(-part.energy, 0.0) for part in parts) / whole * width
     if zero > corner.x:
@@ -170,19 +173,25 @@ def _build_bar(ui: Ui, title: str, parts: list[Part]) -> None:
     imgui.dummy(ImVec2(width, height))
     figures = [f"{part.name} {quantity(part.energy, 'J')}" for part in parts]
     ui.tip(". ".join(("; ".join(figures), _ZERO_TIP)))
+    _write_names(ui, [part for part in parts if abs(part.energy) >= _NAMED * whole])
 
 
-def _write_name(ui: Ui, name: str, rect: tuple[float, float, float, float]) -> None:
-    """Write a name into the middle of a part of the bar, or its first letters where there is less room."""
-    left, top, width, height = rect
+def _write_names(ui: Ui, parts: Sequence[Part]) -> None:
+    """Write the names of parts in lines, each after a spot of its colour."""
     imgui.push_font(None, _LABEL * ui.size)
-    for words in (name, name[:3], name[:1].strip("-")):
-        needed = imgui.calc_text_size(words)
-        if needed.x + 2.0 <= width:
-            place = ImVec2(left + 0.5 * (width - needed.x), top + 0.5 * (height - needed.y))
-            imgui.get_window_draw_list().add_text(place, packed(ui.theme.background), words)
-            ui.words.append(words)
-            break
+    radius = _SPOT * ui.size
+    for n, part in enumerate(parts):
+        words = part.name if part.energy >= 0.0 else f"-{part.name}"
+        needed = imgui.calc_text_size(words).x + 3.5 * radius
+        if n:
+            imgui.same_line(spacing=0.7 * ui.size)
+            if imgui.get_content_region_avail().x < needed:
+                imgui.new_line()
+        place = imgui.get_cursor_screen_pos()
+        middle = ImVec2(place.x + radius, place.y + 0.55 * imgui.get_font_size())
+        imgui.get_window_draw_list().add_circle_filled(middle, radius, packed(part.colour))
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 3.0 * radius)
+        ui.faint(words, wrapped=False)
     imgui.pop_font()
 
 
@@ -205,14 +214,11 @@ def build_levels(ui: Ui, window: Window) -> None:
 
 
 def build_world(ui: Ui, world: World, figures: WorldFigures, window: Window) -> None:
-    """Build the part for everyone: what this is, its energies, its gravity."""
-    ui.heading(world.title or world.name or "A scene")
-    if world.description:
-        ui.faint(world.description)
-    ui.gap(0.2)
+    """Build the part for everyone: its energies, its gravity."""
     build_energies(ui, figures, error=window.level == "Explore")
-    momentum = without_rounding(figures.momentum.linear.magnitude, figures.scales["kg m/s"])
-    ui.row("Total momentum", quantity(momentum, "kg m/s"))
+    if window.level != "Explore":
+        momentum = without_rounding(figures.momentum.linear.magnitude, figures.scales["kg m/s"])
+        ui.row("Total momentum", quantity(momentum, "kg m/s"))
     ui.gap(0.2)
     _build_gravity(ui, world, window)
 
@@ -250,9 +256,16 @@ def _pull(world: World, window: Window, name: str) -> None:
         window.edits.do(SetPhysics({"gravity_mode": "linear", "gravity": gravity}))
 
 
-def build_figures(ui: Ui, lines: Sequence[Line]) -> None:
-    """Build lines of figures as they are."""
-    for line in lines:
+_IN_BARS = ("Kinetic energy", "Potential energy", "Total energy")
+
+
+def build_figures(ui: Ui, lines: Sequence[Line], *, after_bars: bool) -> None:
+    """Build lines of figures as they are; ``after_bars`` leaves out the energies that the bars have."""
+    for line, then in zip(lines, [*lines[1:], None], strict=False):
+        if after_bars and line.label in _IN_BARS:
+            if then is not None and then.kind == "detail":
+                ui.faint(line.label, wrapped=False)
+            continue
         match line.kind:
             case "heading":
                 ui.gap(0.2)
@@ -304,11 +317,25 @@ def build_settings(ui: Ui, numbers: NumberFields, world: World, window: Window) 
         chosen = ui.choice(words, now, choices)
         if chosen != now:
             window.do_next(_change, held, name, _SLEEPING[chosen] if name == "sleeping" else chosen)
-        if name == "integrator" and now == "auto":
+        if name == "integrator":
             for plan in dict.fromkeys(world.plans):
-                ui.faint(f"auto takes {plan.integrator.name}: {plan.reason}")
+                if now != plan.integrator.name:
+                    ui.faint(f"{now} takes {plan.integrator.name}: {plan.reason}")
+                ui.faint(_cost(plan.integrator))
     if charged:
         _build_electric_field(ui, numbers, world, window)
+
+
+def _cost(method: Integrator) -> str:
+    """Return in words what a method costs, and what a shorter step gives."""
+    each = f"{method.evaluations} evaluation{'' if method.evaluations == 1 else 's'} of all forces a step"
+    if not method.evaluations:
+        return "Solved in closed form: the step is only how often the motion is shown."
+    if method.chooses_steps:
+        return f"It costs at least {each}, and divides steps until it keeps to the tolerance."
+    less = f"half of it takes twice the time and leaves 1/{2**method.order:.0f} of the error"
+    kept = " Energy does not drift." if method.symplectic else " Energy drifts."
+    return f"It costs {each}; {less}.{kept}"
 
 
 def _build_electric_field(ui: Ui, numbers: NumberFields, world: World, window: Window) -> None:
@@ -346,6 +373,8 @@ def _change(
     window.edits.do(command({name: value}))
 
 
+_UNSAID = "not said"
+_MADE_OF = Field("material", "choice", meaning="sets density, restitution, friction and colour")
 _ZERO = {"size": "in turn"}
 """Words for a 0 that is no number: sizes that differ from one body to the next."""
 
@@ -354,11 +383,18 @@ def build_recipe(ui: Ui, numbers: NumberFields, title: str, window: Window) -> N
     """Build a row for each property of what is made next, under a title."""
     ui.rule(0.2)
     ui.heading(f"Next {title.lower()}")
+    numbers.label(ui, "new material", "Made of", _MADE_OF)
+    now = window.recipe.material or _UNSAID
+    if (chosen := ui.choice("new material", now, (*SUBSTANCES, _UNSAID))) != now:
+        window.do_next(lambda _, window: window.put("recipe", window.recipe.of(chosen)))
     for spec in Recipe.FIELDS:
 
         def commit(new: float, spec: Field = spec) -> None:
             spec.check(new)
-            window.do_next(lambda _, window: window.put("recipe", replace(window.recipe, **{spec.name: new})))
+            changed = replace(window.recipe, **{spec.name: new})  # type: ignore[arg-type]
+            window.do_next(lambda _, window: window.put("recipe", changed))
 
         zero, value = _ZERO.get(spec.name, ""), getattr(window.recipe, spec.name)
+        if zero and window.tool in window.sketch.ways:
+            zero = "as drawn last"
         numbers.row(ui, f"new {spec.name}", spec.name.capitalize(), spec, value, commit, zero=zero)

@@ -5,12 +5,14 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from physicslab.components import Transform
+from physicslab.components import Held, Transform, Velocity
 from physicslab.diagnostics.joints import joint_states
+from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import is_within
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls import drawing
+from physicslab.view.controls.copies import coming
 from physicslab.view.controls.measuring import spot_of
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.tools import SELECT, TOOLS
@@ -18,11 +20,16 @@ from physicslab.view.overlay import marks
 from physicslab.view.overlay.forces import draw_free_body, draw_vectors
 from physicslab.view.overlay.impulses import draw_impulses
 from physicslab.view.overlay.instruments import draw_instruments, instruments_of
+from physicslab.view.overlay.whole import draw_wholes
 from physicslab.view.picture.joints import joint_at
 from physicslab.view.picture.picture import draw_world
 from physicslab.view.window.changing import plain_kind
+from physicslab.view.window.placing import refused_place
 from physicslab.view.window.window import Window
 from physicslab.world import World
+
+_COPIES = 200
+"""How many of the copies that are to be made are shown at most."""
 
 
 class WorldView:
@@ -42,13 +49,23 @@ class WorldView:
         window, on = self._window, self._window.drawing
         camera, theme, canvas, overlays = on.camera, on.theme, on.canvas, window.overlays
         window.sparks.advance(impacts, world.time, camera.scale)
+        window.dust.advance(world)
+        window.sounds.play(world, impacts)
+        if window.sounds.failure and window.sounds.on:
+            window.sounds.on = False
+            window.notify(f"No sound: {window.sounds.failure}", 6.0, failed=True)
+        window.squash.note(impacts, world.time)
+        plays = window.level == "Explore" and not (window.pace.paused or window.reduced_motion)
         window.microscope.note(impacts, world.time)
         if overlays.impulses:
             overlays.impacts.note(world, impacts, overlays.reach)
-        draw_world(world, camera, theme, canvas, grid=window.grid)
+        draw_world(world, camera, theme, canvas, grid=window.grid, squash=window.squash if plays else None)
+        window.dust.draw(world.time, camera, theme, canvas)
         window.sparks.draw(camera, theme, canvas)
         if overlays.arrows:
             draw_vectors(world, overlays, on)
+        if overlays.centres or overlays.momenta:
+            draw_wholes(world, window.selection.entities, overlays, on)
         if overlays.impulses:
             self._draw_impulses(world, on)
         marks.draw_selection(world, window.selection.entities, on)
@@ -57,6 +74,7 @@ class WorldView:
             marks.draw_band(camera.to_screen(window.band), window.pointer, on)
         self._draw_instruments(world, on)
         if not window.filming.running:  # a film has no cursor
+            self._draw_hand(world, on)
             self._draw_handles(world, on)
             self._draw_ghost(world, on)
             self._draw_snapping(on)
@@ -64,6 +82,18 @@ class WorldView:
                 marks.draw_cursor(window.pointer, theme.accent, canvas)
             self._draw_joint(world, on)
         self._draw_sketch(world, on)
+
+    def _draw_hand(self, world: World, on: Drawing) -> None:
+        """Draw a band from what is held to the hand, and the velocity of a throw before it is let go."""
+        window, target = self._window, self._window.hand.target
+        entity = window.hand.entity
+        if target is None or entity is None or not world.has(entity, Transform):
+            return
+        transform = world.component(entity, Transform)
+        grip = world.component(entity, Held).grip if world.has(entity, Held) else Vector2()
+        place = transform.position + grip.rotated(transform.angle)
+        thrown = Vector2() if window.pace.paused else window.hand.throw(window.now)
+        marks.draw_grip(place, target, thrown, on)
 
     def _draw_snapping(self, on: Drawing) -> None:
         """Draw where what is dragged snaps, and the length of a spring whose pin is dragged."""
@@ -107,7 +137,7 @@ class WorldView:
             drawn = TOOLS[window.sketch.name or tool.name].draws
             words = "" if drawn is None else drawing.reading(world, drawn, window)
         if words and idle and state.dragged is None and state.writing is None:
-            marks.draw_reading(words, window.pointer, on, window.room())
+            marks.draw_reading(words, window.pointer, on, window.framing.room())
 
     def _draw_handles(self, world: World, on: Drawing) -> None:
         """Draw the handles of the selection while paused, and the number that one has given."""
@@ -115,7 +145,11 @@ class WorldView:
         if entity is None or not world.has(entity, Transform):
             return
         middle = camera.to_screen(world.component(entity, Transform).position)
-        places = [(one.kind, camera.to_screen(one.place)) for one in window.handles.of(world, entity, camera)]
+        rests = not world.has(entity, Velocity) or not world.component(entity, Velocity).linear
+        places = [
+            ("rest" if one.kind == "velocity" and rests else one.kind, camera.to_screen(one.place))
+            for one in window.handles.of(world, entity, camera)
+        ]
         marks.draw_handles(middle, places, on)
         if window.handles.words:
             marks.draw_reading(window.handles.words, window.pointer, on)
@@ -123,13 +157,18 @@ class WorldView:
     def _draw_ghost(self, world: World, on: Drawing) -> None:
         """Show what a click or letting go makes, in the colour of errors where there is no room."""
         window = self._window
+        if window.copying is not None:
+            for _, one in coming(world, window, window.copying)[:_COPIES]:
+                marks.draw_ghost(one, on.theme.error if refused_place(world, one) else on.theme.accent, on)
+            return
         drawn = TOOLS[window.sketch.name or window.tool].draws
         idle = (window.hand.entity, window.handles.dragged) == (None, None) and not window.pointer_on_panel
         if drawn is None or drawn.build is None or not idle or not window.has_pointed:
             return
         if not window.sketch.grips and (
             body_at(world, on.camera, window.pointer) is not None
-            or not is_within(window.pointer, window.room())
+            or not is_within(window.pointer, window.framing.room())
+            or window.pointer_beside_panel
         ):
             return
         shown = drawing.ghost(world, drawn, window)
@@ -151,7 +190,8 @@ class WorldView:
                 words = f"{plain_kind(joint.kind)}: {quantity(joint.force.magnitude, 'N')}"
                 if joint.torque:
                     words += f", {quantity(joint.torque, 'N m')}"
-                marks.draw_reading(words, at, on, window.room())
+                marks.draw_selection(world, (joint.entity,), on)
+                marks.draw_reading(words, at, on, window.framing.room())
 
     def _draw_sketch(self, world: World, on: Drawing) -> None:
         """Draw a joint or a polygon in the making, and a line around the body that a joint holds next."""

@@ -4,13 +4,14 @@ import math
 from functools import partial
 
 from physicslab.components import Mass, Material, Shape, Spring, Transform
+from physicslab.components.vertices import regular
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.accuracy.contacts.case import Pose, pose_case
 from physicslab.lab.accuracy.figures import number
 from physicslab.lab.closed_forms import rolled, slid, stopped_by_friction
 from physicslab.lab.worlds import GRAVITY, PLANETS, empty_world, floor
-from physicslab.prefabs import box, circle
+from physicslab.prefabs import box, circle, ground
 from physicslab.world import World
 
 _SLOPE = math.pi / 6.0
@@ -122,7 +123,7 @@ SLIDING = (
 _R = 0.25
 _DISC_SPEED, _DISC_MU = 3.0, 0.3
 _SPIN, _GROOVE_MU = 20.0, 0.5
-_HILL, _WHEEL, _LEAN = 3.0, 0.5, 0.1
+_HILL, _WHEEL, _LEAN, _SEGMENTS = 3.0, 0.5, 0.1, 72
 
 
 def _thrown_disc(simulation: SimulationConfig) -> World:
@@ -137,10 +138,13 @@ def _gone(t: float) -> dict[str, Pose]:
     return {"disc": (way, _R, -rim / _R)}
 
 
-def _groove(simulation: SimulationConfig) -> World:
-    """Return a disc at the origin that spins between two planes of 45 degrees."""
+def _groove(chained: bool, simulation: SimulationConfig) -> World:
+    """Return a disc at the origin that spins between two planes of 45 degrees, of boxes or of a chain."""
     world, out = empty_world(simulation), (_R + 0.5) * math.sqrt(0.5)
-    for side in (-1.0, 1.0):
+    if chained:
+        notch = -_R * math.sqrt(2.0)
+        ground(world, [(2.0, 2.0 + notch), (0.0, notch), (-2.0, 2.0 + notch)], friction=_GROOVE_MU)
+    for side in () if chained else (-1.0, 1.0):
         box(
             world, (side * out, -out), width=4, height=1, angle=side * 0.25 * math.pi, static=True,
             friction=_GROOVE_MU,
@@ -159,9 +163,14 @@ def _spun(t: float) -> dict[str, Pose]:
     return {"disc": (0.0, 0.0, _SPIN * t - 0.5 * slowing * t * t)}
 
 
-def _over_hill(simulation: SimulationConfig) -> World:
+def _over_hill(chained: bool, simulation: SimulationConfig) -> World:
+    """Return a disc on a hill, which is a disc, or a chain of which the arcs are its circle."""
     world, away = empty_world(simulation), _HILL + _WHEEL
-    circle(world, (0, 0), radius=_HILL, static=True, friction=2.0)
+    if chained:
+        outer = regular(_SEGMENTS, _HILL / math.cos(math.pi / _SEGMENTS))
+        ground(world, [*outer, outer[0]], friction=2.0)
+    else:
+        circle(world, (0, 0), radius=_HILL, static=True, friction=2.0)
     start = away * math.sin(_LEAN), away * math.cos(_LEAN)
     circle(world, start, radius=_WHEEL, friction=2.0, name="disc")
     return world
@@ -197,13 +206,21 @@ ROLLING = (
         "roll_slip", "A disc of 3 m/s that slides and then rolls, mu = 0.3",
         "where it is, and how far it has turned, after 0.2 and 1 s", _thrown_disc, (12, 60), _gone,
     ),
-    _rolling(
-        "roll_groove", "A disc of 20 rad/s spins down in a groove of 45 degrees, mu = 0.5",
-        "where it is, and how far it has turned, after 0.25 and 2 s", _groove, (15, 120), _spun, wanted=1e-8,
+    *(
+        _rolling(
+            f"roll_groove{tail}", f"A disc of 20 rad/s spins down in a groove of 45 degrees{of}, mu = 0.5",
+            "where it is, and how far it has turned, after 0.25 and 2 s", partial(_groove, chained),
+            (15, 120), _spun, wanted=1e-8,
+        )
+        for tail, chained, of in (("", False, ""), ("_chain", True, ", a corner of a chain"))
     ),
-    _rolling(
-        "roll_hill", "A disc rolls over a round hill", "where it is, and how far it has turned, after 1.5 s",
-        _over_hill, (90,), _on_hill, source=_EQUATION, wanted=1e-8,
+    *(
+        _rolling(
+            f"roll_hill{tail}", f"A disc rolls over a round hill{of}",
+            "where it is, and how far it has turned, after 1.5 s", partial(_over_hill, chained), (90,),
+            _on_hill, source=_EQUATION, wanted=1e-8,
+        )
+        for tail, chained, of in (("", False, ""), ("_chain", True, f", a chain of {_SEGMENTS} segments"))
     ),
     *(
         pose_case(

@@ -1,6 +1,7 @@
-"""Springs by hand: between a body and another or a point of the world, and dragged by their pins."""
+"""Points of bodies and of the world; springs between two, and their fixed ends, which are dragged."""
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -8,10 +9,12 @@ import numpy as np
 from physicslab.components import Mass, Rod, Rope, Shape, Spring, Transform, Velocity
 from physicslab.contacts.outlines import outlines_of
 from physicslab.diagnostics.period import spring_state
+from physicslab.ecs.component import Component
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetField
 from physicslab.state.attached import local_point as in_frame
+from physicslab.state.joint_rows import KINDS
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.window.edits import Edits
@@ -167,3 +170,26 @@ def _gap(world: World, entity: int, part: Any) -> float:
     """Return the distance of the ends of a spring, a rod or a rope whose second end is fixed [m]."""
     end: Vector2 = part.anchor_b
     return (end - point_of(world, part.a or entity, part.anchor_a)).magnitude
+
+
+_BODY_OF = {"anchor_a": "a", "anchor_b": "b", "wheel_a": "", "wheel_b": ""}
+"""The points of springs and joints, and the field with the body that each is on; wheels are on none."""
+
+
+def brought(
+    parts: Sequence[Component], number: Mapping[int, int], offset: Vector2 = Vector2()
+) -> list[Component]:
+    """Return copies of the components of an entity, at an offset [m], that name others by new numbers."""
+    is_body, found = any(isinstance(part, Transform) for part in parts), []
+    for part in parts:
+        given = part.given()
+        if isinstance(part, Transform):
+            given["position"] = part.position + offset
+        elif isinstance(part, (Spring, *KINDS)):
+            for point, end in _BODY_OF.items():
+                if point in given and given.get(end) is None and not (end == "a" and is_body):
+                    given[point] = given[point] + offset
+            named = (spec.name for spec in part.FIELDS if spec.kind == "entity")
+            given |= {end: number[given[end]] for end in named if given[end] is not None}
+        found.append(type(part)(**given))
+    return found

@@ -1,0 +1,123 @@
+"""Say what a lesson is, check its theories against the engine, or print it for pupils to write on."""
+
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterator
+from dataclasses import asdict
+from functools import partial
+
+from physicslab.commands import FAILED, CommandError
+from physicslab.commands.output import Output
+from physicslab.files.json_text import json_bytes
+from physicslab.kernels.tiers import Tiers
+from physicslab.languages.language import Language, language
+from physicslab.lessons.catalogue import LESSONS, find_lesson, lesson_in
+from physicslab.lessons.check import Row, check_lesson
+from physicslab.lessons.lesson import Lesson, Prose
+from physicslab.lessons.worksheet import worksheet
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Declare what the command takes."""
+    parser.add_argument(
+        "lesson", metavar="NAME|FILE", nargs="?", help="a lesson; without one, all that come with the program"
+    )
+    parser.add_argument("--check", action="store_true", help="compare every theory with the engine: a table")
+    parser.add_argument("--language", metavar="CODE", default="", help="of a lesson that has it, as de")
+    parser.add_argument("--worksheet", metavar="FILE", help="write a page to print, without solutions")
+    parser.add_argument("--json", metavar="FILE", help="write what was found as JSON (- for stdout)")
+
+
+def execute(arguments: Namespace) -> int:
+    """Print what was asked for; exit 1 where a theory does not hold, or holds where it must not."""
+    output = None if arguments.json is None else Output("--json", arguments.json)
+    sheet = None if arguments.worksheet is None else Output("--worksheet", arguments.worksheet)
+    if sheet is not None and (arguments.lesson is None or arguments.check or output is not None):
+        raise CommandError("--worksheet: must stand beside one lesson, and without --check and --json")
+    names = LESSONS if arguments.lesson is None else (arguments.lesson,)
+    lessons = [lesson_in(name, arguments.language) for name in names]
+    if sheet is not None:
+        if arguments.lesson not in LESSONS:
+            sheet.refuse_same(arguments.lesson, "the lesson")
+        find = partial(find_lesson, language=lessons[0].language)
+        sheet.write(worksheet(lessons[0], find).encode())
+        return 0
+    if arguments.check:
+        return _check(lessons, output)
+    if output is not None:
+        output.write(json_bytes({"format": "physicslab-lessons/1", "lessons": [*map(_summary, lessons)]}))
+    if output is None or not output.to_stdout:
+        print("\n".join(_line(one) for one in lessons) if arguments.lesson is None else _about(lessons[0]))
+    return 0
+
+
+def _check(lessons: list[Lesson], output: Output | None) -> int:
+    told = output is None or not output.to_stdout
+    own = language(lessons[0].language)
+    rows: list[Row] = []
+    if told:
+        print(f"| {' | '.join(_heads(own))} |\n|---|---|---|--:|--:|--:|--:|---|")
+    with Tiers(True):
+        for lesson in lessons:
+            for row in check_lesson(lesson):
+                rows.append(row)
+                if told and row.measured == row.measured:
+                    print(f"| {' | '.join(_cells(row, own))} |", flush=True)
+    if output is not None:
+        output.write(json_bytes({"format": "physicslab-lesson-check/1", "rows": [*map(_object, rows)]}))
+    wrong = [row for row in rows if not row.passed]
+    if wrong:
+        said = "; ".join(f"{one.lesson}, line {one.line}, {one.block}: {one.case}" for one in wrong)
+        raise CommandError(f"not as the lesson says: {said}", FAILED)
+    return 0
+
+
+def _object(row: Row) -> dict[str, object]:
+    """Return a row for JSON, which has null where there is no number."""
+    return {key: None if value != value else value for key, value in asdict(row).items()}
+
+
+def _heads(own: Language) -> Iterator[str]:
+    yield from (own.say("lesson"), own.say("compared"), own.say("case"), own.say("measured"))
+    yield from (own.say("by theory"), own.say("gap"), own.say("tolerance"), "")
+
+
+def _cells(row: Row, own: Language) -> Iterator[str]:
+    """Yield a row of the table; a gap is a share of the theory's value, or has a unit."""
+    unit = f" {row.unit}" if row.unit else ""
+    of_gap = unit if row.absolute else ""
+    yield from (row.lesson, row.quantity, row.case)
+    yield from (own.decimal(f"{number:.9g}{unit}") for number in (row.measured, row.theory))
+    yield from (own.decimal(f"{row.gap:.1e}{of_gap}"), f"{row.tolerance:.0e}{of_gap}")
+    held = own.say("holds") if row.holds else own.say("fails, as it should")
+    yield held if row.passed else f"**{own.say('not as it should be')}**"
+
+
+def _line(lesson: Lesson) -> str:
+    level = language(lesson.language).say("level {level}", level=lesson.level)
+    return f"{lesson.name:<20}  {level}  {lesson.minutes:>3} min  {lesson.title}"
+
+
+def _about(lesson: Lesson) -> str:
+    """Return what a lesson is: its needs, its steps, what is asked and compared in each."""
+    own = language(lesson.language)
+    lines = [f"{lesson.title} ({lesson.name}, {lesson.language})"]
+    needs = "; " + own.say("needs {what}", what=", ".join(lesson.needs)) if lesson.needs else ""
+    lines.append(own.say("level {level}", level=lesson.level) + f", {lesson.minutes} min{needs}")
+    for step in lesson.steps:
+        lines.append(f"  {step.depth}. {step.heading or own.say('Beginning')}")
+        kinds = [getattr(part, "kind", type(part).__name__.lower()) for part in step.parts]
+        names = [getattr(part, "name", "") for part in step.parts]
+        lines += [
+            f"     {kind:<8} {name}" for kind, name, part in zip(kinds, names, step.parts, strict=True)
+            if not isinstance(part, Prose)
+        ]  # fmt: skip
+    return "\n".join(lines)
+
+
+def _summary(lesson: Lesson) -> dict[str, object]:
+    return {
+        "name": lesson.name, "title": lesson.title, "language": lesson.language, "level": lesson.level,
+        "minutes": lesson.minutes, "needs": list(lesson.needs),
+        "checks": [question.name for question in lesson.questions("check")],
+        "compares": [compare.name for compare in lesson.compares()],
+    }  # fmt: skip

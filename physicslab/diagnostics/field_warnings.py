@@ -1,0 +1,73 @@
+"""Warnings of fields: bodies in one place, where a force has no direction, and thrust that is lost."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Charge, Held, Mass, Molecule, Thrust, Transform
+from physicslab.diagnostics.step_warnings import ModelWarning
+from physicslab.systems.coulomb import CoulombSystem
+from physicslab.systems.gravity import GravitySystem
+from physicslab.systems.molecule import MoleculeSystem
+from physicslab.world import World
+
+_RESOLVED, _SQUARED = 1e-15, 1e-150
+"""Share of their largest coordinate, and distance [m], below which two places are one: its square is 0."""
+_SLOPE = 0.7548776662466927
+"""Places are sorted along a direction in which no grid or line of bodies lies."""
+
+
+def field_warnings(world: World) -> Iterator[ModelWarning]:
+    """Yield two bodies in one place that act on each other, and a push on what cannot move."""
+    yield from _coincident(world)
+    thrust = world.batch(Thrust, Transform)
+    lost = thrust.entities[world.bodies.inverse_mass[thrust.rows] == 0.0]
+    lost = [entity for entity in lost.tolist() if not world.has(entity, Held)]
+    if lost:
+        what = "has a Thrust that moves nothing: a body with Mass and Velocity would be pushed"
+        yield ModelWarning.about(world, lost[0], what, None, "", None, "a Velocity and a Mass")
+
+
+def _coincident(world: World) -> Iterator[ModelWarning]:
+    """Yield the first pair, for each law that has no force between two in one place."""
+    rules = (
+        (GravitySystem, Mass, "mass", "gravity"),
+        (CoulombSystem, Charge, "charge", "Coulomb's law"),
+        (MoleculeSystem, Molecule, "depth", "the force of molecules"),
+    )
+    softened = world.physics.softening > 0.0
+    for system, kind, weight, law in rules:
+        force = world.schedule.find(system)
+        if force is None or not (force.attractors > 1 or force.crowd > 1) or (softened and not force.crowd):
+            continue
+        rows = world.batch(kind, Transform).rows
+        rows = rows[(world.table(kind)[weight][rows] != 0.0) & ~world.table(Held).present[rows]]
+        pair = _in_one_place(world.table(Transform)["position"][rows])
+        if pair is None or not world.bodies.inverse_mass[rows[list(pair)]].any():
+            continue
+        one, other = (int(world.entity_index.entities[rows[n]]) for n in pair)
+        what = f"is in the place of another body: {law} has no direction there, and leaves the two out"
+        setting = "places apart" if force.crowd else "places apart, or physics.softening > 0,"
+        warning = ModelWarning.about(world, one, what, None, "", None, setting)
+        yield replace(warning, because=f"{world.label(other)} is nearer than numbers tell")
+
+
+def _in_one_place(position: NDArray[np.float64]) -> tuple[int, int] | None:
+    """Return two of the places (n, 2) that are nearer to each other than numbers resolve, if any are."""
+    if len(position) < 2:
+        return None
+    along = position[:, 0] + _SLOPE * position[:, 1]
+    order = np.argsort(along, kind="stable")
+    along, sorted_places = along[order], position[order]
+    same = np.maximum(_RESOLVED * np.abs(sorted_places).max(axis=1), _SQUARED)
+    for shift in range(1, len(order)):
+        near = np.flatnonzero(along[shift:] - along[:-shift] <= 2.0 * same[shift:])
+        if not len(near):
+            return None
+        apart = np.abs(sorted_places[near + shift] - sorted_places[near]).max(axis=1)
+        found = near[apart <= same[near + shift]]
+        if len(found):
+            return int(order[found[0]]), int(order[found[0] + shift])
+    return None

@@ -1,0 +1,91 @@
+"""Colours of the inside of bodies: what light and materials make of them, pixel by pixel.
+
+A pixel is 32 bits of four 8-bit channels in any order.
+"""
+
+import math
+
+from physicslab.kernels import inlined
+
+_EVERY_OTHER = 0x00FF00FF
+"""Two channels of a pixel, with room between them for products."""
+WHITE, BLACK = 0xFFFFFFFF, 0
+_HATCH_SPACING = 10.0
+"""Distance between the lines that mark what cannot move [px]."""
+_HATCH = 0.12
+"""Share of the rim's colour in these lines."""
+_BRIGHT, _DIM = 0.2, 0.24
+"""Share of white where light falls on a body, and of black on the side away from it."""
+FINISHES = ("FLAT", "POINT", "LIT", "RUBBER", "GROUND", "WOOD", "STEEL", "STONE", "ICE", "GLASS")
+"""How the inside of a body is painted, by number: :class:`physicslab.view.canvas.canvas.Finish`."""
+FLAT, _POINT, LIT, _RUBBER, GROUND, _WOOD, _STEEL, _STONE, _ICE, _GLASS = range(len(FINISHES))
+
+
+@inlined
+def mixed(under: int, over: int, share: float) -> int:
+    """Return ``under`` with a share (0..1) of ``over`` laid on it, channel by channel."""
+    a = int(share * 256.0 + 0.5)
+    low = ((under & _EVERY_OTHER) * (256 - a) + (over & _EVERY_OTHER) * a) >> 8
+    high = ((under >> 8) & _EVERY_OTHER) * (256 - a) + ((over >> 8) & _EVERY_OTHER) * a
+    return (low & _EVERY_OTHER) | (high & (_EVERY_OTHER << 8))
+
+
+@inlined
+def unit(value: float) -> float:
+    """Return a value held within 0..1."""
+    return min(max(value, 0.0), 1.0)
+
+
+@inlined
+def _share_of(place: float, period: float) -> float:
+    """Return how far a place is in its period, 0 to 1."""
+    turns = place / period
+    return turns - math.floor(turns)
+
+
+@inlined
+def _speck(i: int, j: int) -> float:
+    """Return a number from 0 to 1 that looks random."""
+    n = (i * 374761393 + j * 668265263) & 0xFFFFFFFF
+    n = ((n ^ (n >> 13)) * 1274126177) & 0xFFFFFFFF
+    return float((n >> 16) & 255) / 255.0
+
+
+@inlined
+def textured(finish: int, u: float, v: float, colour: int, edge: int, under: int) -> int:
+    """Return the colour of a material at a place in the body's own frame [px], before what is under it."""
+    if finish == GROUND:
+        across = _HATCH_SPACING * abs(_share_of((u + v) * 0.7071067811865476, _HATCH_SPACING) - 0.5)
+        return mixed(colour, edge, _HATCH * unit(1.25 - across))
+    if finish == _WOOD:
+        wave = _share_of(u, 90.0)
+        grain = abs(_share_of(v + 7.0 * wave * (1.0 - wave), 6.0) - 0.5)
+        return mixed(colour, BLACK, 0.04 + 0.2 * unit(1.0 - 6.0 * grain))
+    if finish == _STEEL:
+        sheen = 0.16 * unit(1.0 - 5.0 * abs(_share_of(u + v, 120.0) - 0.5))
+        brushed = mixed(colour, BLACK, 0.09 * _speck(int(u / 41.0 + 1e4), int(v + 1e4)))
+        return mixed(brushed, WHITE, sheen)
+    if finish == _STONE:
+        return mixed(colour, BLACK, 0.2 * _speck(int(0.4 * u + 1e4), int(0.4 * v + 1e4)))
+    streak = max(
+        1.0 - 14.0 * abs(_share_of(u - 0.6 * v, 47.0) - 0.3),
+        0.6 - 14.0 * abs(_share_of(u - 0.6 * v, 47.0) - 0.5),
+    )
+    clear = 0.8 if finish == _ICE else 0.45
+    return mixed(mixed(under, colour, clear), WHITE, 0.35 * unit(streak))
+
+
+@inlined
+def lit(fill: int, finish: int) -> int:
+    """Return the colour of a body where light falls on it."""
+    if finish in (FLAT, GROUND):
+        return fill
+    return mixed(fill, WHITE, 0.3 * _BRIGHT if finish == _RUBBER else _BRIGHT)
+
+
+@inlined
+def shaded(fill: int, finish: int) -> int:
+    """Return the colour of a body on the side away from the light."""
+    if finish == FLAT:
+        return fill
+    return mixed(fill, BLACK, 1.8 * _DIM if finish == GROUND else _DIM)

@@ -1,0 +1,1 @@
+"""Lessons: read, run beside their theory, graded. The format is in ``docs/lessons.md``."""

@@ -1,0 +1,58 @@
+"""The lessons that come with the program, in their order."""
+
+from functools import cache
+from pathlib import Path
+
+from physicslab.ecs.text import printable, suggestion
+from physicslab.lessons.blocks import LessonError
+from physicslab.lessons.lesson import Lesson
+from physicslab.lessons.reader import read_lesson
+
+LIBRARY = Path(__file__).parent / "library"
+LESSONS = (
+    "projectile", "terminal_velocity", "incline", "atwood", "rolling", "collision", "centre_of_mass",
+    "bounces", "billiards", "cradle", "ballistic_pendulum", "pendulum", "damped_spring", "coupled_pendulums",
+    "kepler", "error", "pi",
+)  # fmt: skip
+"""Their names; ``library/NAME.md`` is the file, ``library/de/NAME.md`` its words in German."""
+
+
+@cache
+def titles(language: str = "") -> dict[str, str]:
+    """Return the titles of all of them by their names, in a language if it is there."""
+    found = {}
+    for name in LESSONS:
+        words = LIBRARY / language / f"{name}.md"
+        with (words if words.is_file() else LIBRARY / f"{name}.md").open(encoding="utf-8") as file:
+            found[name] = next(line for line in file if line.startswith("title:")).partition(":")[2].strip()
+    return found
+
+
+def lesson_in(name_or_path: str, language: str) -> Lesson:
+    """Return a lesson in a language, as :func:`find_lesson`, and refuse one that it does not have."""
+    lesson = find_lesson(name_or_path, language)
+    if language and lesson.language != language:
+        path = lesson.path.parent / language / lesson.path.name
+        raise LessonError(f"{printable(str(path))}: no such file: {lesson.name} is not there in {language}")
+    return lesson
+
+
+def find_lesson(name_or_path: str, language: str = "") -> Lesson:
+    """Return a lesson by its name, or from a file; its words in a language if it has them.
+
+    Raises
+    ------
+    LessonError
+        If there is none, or anything in it is not allowed.
+
+    Examples
+    --------
+    >>> find_lesson("projectile").title
+    'How far does a ball fly?'
+    """
+    if name_or_path in LESSONS:
+        return read_lesson(LIBRARY / f"{name_or_path}.md", language)
+    if not Path(name_or_path).exists() and not name_or_path.endswith(".md"):
+        likely = suggestion(name_or_path, LESSONS) or f"; the lessons are {', '.join(LESSONS)}"
+        raise LessonError(f"{name_or_path}: no such file, and no lesson of this name{likely}")
+    return read_lesson(name_or_path, language)

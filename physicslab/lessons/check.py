@@ -1,0 +1,234 @@
+"""Lessons against the engine: every theory, where it holds and where it must not, and every answer."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity, in_unit, in_words, same_dimension
+from physicslab.files.checks import SceneError
+from physicslab.languages.language import language
+from physicslab.lessons.blocks import LessonError
+from physicslab.lessons.figures import Figures, record_run
+from physicslab.lessons.lesson import Compare, Lesson, Question, Reply, Run
+from physicslab.lessons.setup import AS_IT_IS, Case
+from physicslab.lessons.words import case_words, with_run
+from physicslab.state.masses import Diverged
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One theory or answer in one case.
+
+    Attributes
+    ----------
+    lesson, block : str
+        Where it stands; ``line`` is its line.
+    quantity, case : str
+        What is compared, and in which case.
+    measured, theory : float
+        In the ``unit``; NaN where it has no number.
+    gap, tolerance : float
+        A share of the theory's value, or in the unit where ``absolute``.
+    holds : bool
+        Whether the theory is to hold.
+    passed : bool
+        Whether it does as it is to; a theory that is to fail does so beyond the tolerance.
+    """
+
+    lesson: str
+    block: str
+    line: int
+    quantity: str
+    case: str
+    unit: str
+    measured: float
+    theory: float
+    gap: float
+    tolerance: float
+    absolute: bool
+    holds: bool
+    passed: bool
+
+
+class LessonRuns:
+    """The runs of one lesson; each is made once."""
+
+    def __init__(self, lesson: Lesson) -> None:
+        self.lesson = lesson
+        self._made: dict[tuple[int, tuple[tuple[str, str], ...]], Figures] = {}
+
+    def figures(self, run: Run | None, case: Case = AS_IT_IS) -> Figures:
+        """Return the figures of a run in a case; without a run those of the scene at its beginning."""
+        key = (run.line if run else 0, case.values)
+        if key not in self._made:
+            run = run or self._no_run
+            self._made[key] = record_run(self.lesson.setup, run, self.lesson.quantities, case)
+        return self._made[key]
+
+    def keep(self, run: Run, figures: Figures, case: Case = AS_IT_IS) -> None:
+        """Take the figures of a run that was made elsewhere, as in the window."""
+        self._made[run.line, case.values] = figures
+
+    @cached_property
+    def _no_run(self) -> Run:
+        return Run("", 0, Expression("0 s"), None, Expression("0 s"), (), AS_IT_IS)
+
+    def right_answer(self, question: Question) -> float:
+        """Return the number that is right, in the unit of the question."""
+        assert question.answer is not None
+        return self._number(question, question.answer)
+
+    def number(self, question: Question, reply: Reply) -> float:
+        """Return the number of a foreseen mistake, in the unit of the question."""
+        assert reply.value is not None
+        return self._number(question, reply.value)
+
+    def curve(self, question: Question, reply: Reply | None = None) -> list[float]:
+        """Return the curve that is right, or a foreseen mistake, at each sample [SI]."""
+        expression = question.answer if reply is None else reply.value
+        assert expression is not None
+        return self.figures(question.run).series(expression)
+
+    def _number(self, question: Question, expression: Expression) -> float:
+        value, unit = expression.value(self.figures(question.run)), question.unit
+        if value.dimension == Quantity(0.0).dimension:  # the angle of an arctangent is in radians
+            value = replace(value, has_unit=True)
+        return in_unit(value, unit, expression.text)
+
+
+def check_lesson(lesson: Lesson) -> Iterator[Row]:
+    """Yield a row for each theory and answer of a lesson, in each of its cases.
+
+    Raises
+    ------
+    LessonError
+        If one cannot be evaluated: which line, and why.
+    """
+    runs = LessonRuns(lesson)
+    for part in lesson.parts():
+        if isinstance(part, Compare | Question):
+            try:
+                yield from _compared(runs, part) if isinstance(part, Compare) else _answered(runs, part)
+            except (InvalidText, SceneError, Diverged) as error:
+                raise LessonError(f"{lesson.path}: line {part.line}: {part.name}: {error}") from error
+
+
+def _compared(runs: LessonRuns, compare: Compare) -> Iterator[Row]:
+    for case in (*compare.cases, *compare.fails):
+        row = row_of(runs.lesson, compare, case, runs.figures(compare.run, case))
+        if row.holds == (case in compare.fails):
+            what = "must not hold" if row.holds else "must hold"
+            raise InvalidText(f"'{compare.holds.text}' {what} in the case '{case.text}'")
+        yield row
+
+
+def row_of(lesson: Lesson, compare: Compare, case: Case, figures: Figures) -> Row:
+    """Return theory beside measurement in a case of which these are the figures.
+
+    Raises
+    ------
+    InvalidText
+        If one of both has no value.
+    """
+    measured, theory, gap = gap_of(compare, figures)
+    tolerance = compare.tolerance.value(figures)
+    absolute, holds = _is_absolute(tolerance, theory), compare.holds.holds(figures)
+    if not absolute:
+        gap = _share(gap, theory.value)
+    return Row(
+        lesson.name, compare.name, compare.line, compare.quantity,
+        case_words(language(lesson.language), with_run(compare.run, case)), si_unit(theory),
+        measured.value, theory.value, gap, tolerance.value, absolute, holds,
+        (gap <= tolerance.value) == holds,
+    )  # fmt: skip
+
+
+def gap_of(compare: Compare, figures: Figures) -> tuple[Quantity, Quantity, float]:
+    """Return what is measured, the theory's value, and their gap [SI]; along a run where it is widest.
+
+    The theory's value along a run, of which a tolerance is a share, is the greatest of all.
+    """
+    if not compare.along:
+        measured, theory = compare.measured.value(figures), compare.theory.value(figures)
+        same_dimension(measured, theory, compare.theory.text)
+        return measured, theory, abs(measured.value - theory.value)
+    measured, theory, _ = gap_of(_at_once(compare), figures.at(0))
+    first, second = (figures.series(expression) for expression in (compare.measured, compare.theory))
+    gap = max(abs(a - b) for a, b in zip(first, second, strict=True))
+    worst = max(range(len(first)), key=lambda i: abs(second[i]))
+    return (
+        Quantity(first[worst], measured.dimension, True),
+        Quantity(second[worst], theory.dimension, True),
+        gap,
+    )
+
+
+def _at_once(compare: Compare) -> Compare:
+    return replace(compare, along=False)
+
+
+def _is_absolute(tolerance: Quantity, theory: Quantity) -> bool:
+    if tolerance.dimension == Quantity(0.0).dimension:
+        return False
+    same_dimension(tolerance, theory, "tolerance")
+    return True
+
+
+def _share(gap: float, of: float) -> float:
+    return gap / abs(of) if of else (math.inf if gap else 0.0)
+
+
+_UNITS = {
+    "no unit": "", "m s^-1": "m/s", "m s^-2": "m/s^2", "m^2 kg s^-2": "J", "m kg s^-1": "N s",
+    "m^2 kg s^-1": "N m s",
+}  # fmt: skip
+"""Powers of units as a table has them."""
+
+
+def si_unit(quantity: Quantity) -> str:
+    """Return the SI unit of a quantity; empty for a pure number."""
+    words = in_words(quantity.dimension)
+    return _UNITS.get(words, words)
+
+
+def _answered(runs: LessonRuns, question: Question) -> Iterator[Row]:
+    """Yield the answers that the engine can tell: a choice's condition, a number, a goal."""
+    figures = runs.figures(question.run)
+    for reply in question.replies:
+        if reply.when is not None:
+            yield _told(runs, question, reply.text, reply.when.holds(figures), reply.right)
+        if reply.shown_by is not None:
+            runs.lesson.setup.world(reply.shown_by)
+    if question.form == "number":
+        right = runs.right_answer(question)
+        yield _told(runs, question, f"{right:.6g} {question.unit}", math.isfinite(right), True)
+        for reply in question.replies:
+            wrong = runs.number(question, reply)
+            is_wrong = abs(wrong - right) > question.tolerance * abs(right)
+            yield _told(runs, question, f"{reply.text} = {wrong:.6g} is a mistake", is_wrong, True)
+    if question.form == "curve":
+        measured = runs.curve(question)
+        for reply in question.replies:
+            gap = curve_gap(runs.curve(question, reply), measured)
+            what = f"{reply.text} is a mistake, {gap:.0%} away"
+            yield _told(runs, question, what, gap > 2.0 * question.tolerance, True)
+    if question.goal is not None and question.solution is not None:
+        solved = question.goal.holds(runs.figures(question.run, question.solution))
+        yield _told(runs, question, f"{question.goal.text}: {question.solution.text}", solved, True)
+        yield _told(runs, question, f"{question.goal.text}: as it is", question.goal.holds(figures), False)
+
+
+def curve_gap(drawn: Sequence[float], measured: Sequence[float]) -> float:
+    """Return the root mean square of the distance of two curves, as a share of what the second spans."""
+    squares = [(a - b) ** 2 for a, b in zip(drawn, measured, strict=True)]
+    span = max(measured) - min(measured) or abs(measured[0]) or 1.0
+    return math.sqrt(sum(squares) / len(squares)) / span
+
+
+def _told(runs: LessonRuns, question: Question, what: str, found: bool, expected: bool) -> Row:
+    nan = math.nan
+    return Row(
+        runs.lesson.name, question.name, question.line, question.prompt, what, "", nan, nan, nan, nan, False,
+        expected, found == expected,
+    )  # fmt: skip

@@ -1,0 +1,362 @@
+"""Runs of a lesson as samples, and the figures that expressions read from them.
+
+Samples are taken after each step. Between them a quantity is the polynomial through the six samples around
+it, so that a moment is not bound to steps: the error is of the sixth power of a step if nothing collides.
+"""
+
+from __future__ import annotations
+
+import ast
+import bisect
+import itertools
+import math
+from collections.abc import Callable, Iterable, Sequence
+
+from physicslab.components.quantities import QUANTITIES, why_not_of
+from physicslab.diagnostics.quantities import Reading
+from physicslab.ecs.quantity_text import Dimension, Expression, InvalidText, Quantity
+from physicslab.files.checks import SceneError
+from physicslab.lessons.conditions import Comparison, comparison, difference
+from physicslab.lessons.lesson import Run
+from physicslab.lessons.setup import AS_IT_IS, Case, Parameters, Setup
+from physicslab.world import World
+
+_AROUND = 6
+"""Samples that an interpolation goes through."""
+_HALVINGS = 60
+"""How often an interval is halved in which a moment is."""
+_ROUNDING = 1e-6
+"""Share of a step by which a sum of steps is rounded at most."""
+_SECOND = Quantity(1.0, (0, 0, 1, 0), True)
+COLLISIONS = "world.collisions"
+"""The number of impacts since the run began."""
+_NAMES = {quantity.column.replace(" ", "_"): name for name, quantity in QUANTITIES.items()}
+"""Quantities as expressions call them: ``vx``, ``kinetic``, ``energy``."""
+
+
+def quantity_of(name: str, ids: Iterable[str]) -> tuple[str | None, str]:
+    """Return the entity and the quantity that ``ball.x`` stands for; ``None`` for the world.
+
+    Raises
+    ------
+    InvalidText
+        If there is none such; with the names that there are.
+    """
+    entity, _, column = name.partition(".")
+    known = [*ids, "world"]
+    if entity not in known:
+        raise InvalidText(f"'{name}' is no quantity: must begin with one of {', '.join(known)}")
+    body = None if entity == "world" else 1
+    if name != COLLISIONS and (column not in _NAMES or why_not_of(_NAMES[column], body) is not None):
+        some = [short for short, long in _NAMES.items() if why_not_of(long, body) is None and ":" not in long]
+        raise InvalidText(f"'{name}' is no quantity: {entity} has {', '.join(some)}")
+    return (None if body is None else entity), _NAMES.get(column, column)
+
+
+def unit_of(name: str) -> str:
+    """Return the SI unit of ``ball.x``."""
+    return "1" if name == COLLISIONS else QUANTITIES[_NAMES[name.partition(".")[2]]].unit
+
+
+class Record:
+    """Samples of a run: times [s], and the values of quantities [SI], each as many.
+
+    Parameters
+    ----------
+    world : World
+        What is recorded; it may go on between samples.
+    names : iterable of str
+        What of it, as ``ball.x``.
+
+    Attributes
+    ----------
+    end : float
+        When the run ends [s]; samples after that serve to interpolate before it.
+    """
+
+    def __init__(self, world: World, names: Iterable[str]) -> None:
+        ids = {world.label(entity): entity for entity in world.entities()}
+        self._world = world
+        self.end = world.time
+        self.times: list[float] = []
+        self.columns: dict[str, list[float]] = {name: [] for name in names}
+        self.dimensions = {name: _dimension(unit_of(name)) for name in self.columns}
+        self._sources = []
+        for name in self.columns:
+            entity, quantity = quantity_of(name, ids)
+            self._sources.append((quantity, None if entity is None else ids[entity]))
+
+    @property
+    def samples(self) -> range:
+        """Those until the end."""
+        return range(bisect.bisect_right(self.times, self.end))
+
+    def add(self) -> None:
+        """Take a sample of the world as it is now."""
+        self.end = self._world.time
+        self.times.append(self.end)
+        reading = Reading(self._world)
+        for column, (quantity, body) in zip(self.columns.values(), self._sources, strict=True):
+            value = self._world.collisions if quantity == "collisions" else reading.value(quantity, body)
+            column.append(float(value))
+
+
+class Figures:
+    """The figures of a run, and parameters: the scope in which a lesson's expressions are evaluated.
+
+    A quantity by its name is that at the end of the run. Functions of expressions look at all of it:
+    ``start``, ``greatest``, ``least``, ``mean``, ``slope``, ``at(time, E)``, ``when(a < b[, n])``,
+    ``peak(n, E)``, ``period(E)`` and ``count(a < b)``.
+
+    Parameters
+    ----------
+    record : Record
+        The samples.
+    parameters : Parameters
+        The values of the run.
+    now : float or int, optional
+        At which time [s], or at which sample, quantities are read; at the end where absent.
+    """
+
+    def __init__(self, record: Record, parameters: Parameters, now: float | int | None = None) -> None:
+        self.record, self.parameters = record, parameters
+        self.now = record.end if now is None else now
+
+    def named(self, name: str) -> Quantity | None:
+        """Return the value of a parameter, of a quantity, or the ``time``."""
+        if (parameter := self.parameters.named(name)) is not None:
+            return parameter
+        column = self.record.times if name == "time" else self.record.columns.get(name)
+        if column is None:
+            return None
+        dimension = _SECOND.dimension if name == "time" else self.record.dimensions[name]
+        value = column[self.now] if isinstance(self.now, int) else self.between(column, self.now)
+        return Quantity(value, dimension, name != COLLISIONS)
+
+    def called(self, name: str, arguments: list[ast.expr], whole: Expression) -> Quantity | None:
+        """Return the value of a function of the run; ``None`` where there is none of that name."""
+        function = _FUNCTIONS.get(name)
+        if function is None:
+            return None
+        least, most, read = function
+        if not least <= len(arguments) <= most:
+            raise InvalidText(f"{name} takes {least}{'' if least == most else f' or {most}'} parts")
+        return read(self, *(Expression(whole.text, argument) for argument in arguments))
+
+    def at(self, now: float | int) -> Figures:
+        """Return the figures of the same run at another time [s], or sample."""
+        return Figures(self.record, self.parameters, now)
+
+    def series(self, expression: Expression) -> list[float]:
+        """Return an expression's value at each sample [SI]."""
+        return [expression.value(self.at(sample)).value for sample in self.record.samples]
+
+    def moment(self, margin: Callable[[Figures], float], number: int = 1) -> float:
+        """Return when a margin becomes positive for the ``number``-th time [s]; NaN if it never does."""
+        signs = [margin(self.at(sample)) > 0.0 for sample in range(len(self.record.times))]
+        for sample in range(1, len(signs)):
+            if signs[sample] and not signs[sample - 1]:
+                number -= 1
+                if not number:
+                    return self._root(margin, sample)
+        return math.nan
+
+    def _root(self, margin: Callable[[Figures], float], sample: int) -> float:
+        before, after = self.record.times[sample - 1 : sample + 1]
+        for _ in range(_HALVINGS):
+            middle = 0.5 * (before + after)
+            before, after = (before, middle) if margin(self.at(middle)) > 0.0 else (middle, after)
+        return 0.5 * (before + after)
+
+    def between(self, column: Sequence[float], time: float) -> float:
+        """Return the value of samples at a time [s], by Lagrange's polynomial through those around it."""
+        times = self.record.times[: len(column)]
+        place = bisect.bisect_left(times, time)
+        if place < len(times) and times[place] == time:
+            return column[place]
+        if not (times and times[0] <= time <= times[-1]):
+            raise InvalidText(f"the run has no time {time:.6g} s")
+        first = max(0, min(place - _AROUND // 2, len(times) - _AROUND))
+        nodes = range(first, min(first + _AROUND, len(times)))
+        total = 0.0
+        for i in nodes:
+            weight = 1.0
+            for j in nodes:
+                if j != i:
+                    weight *= (time - times[j]) / (times[i] - times[j])
+            total += weight * column[i]
+        return total
+
+    def extreme(self, series: Sequence[float], sample: int, sign: float) -> float:
+        """Return the extreme value of samples near one of them, ``sign`` 1 for the greatest, -1 the least.
+
+        Where they bend as strongly before and after it, the polynomial has it; at a kink, as at an impact, or
+        at an end it is the sample.
+        """
+        near = [series[i - 1] - 2.0 * series[i] + series[i + 1] for i in range(sample - 1, sample + 2)
+                if 0 < i < len(series) - 1]  # fmt: skip
+        if len(near) < 2 or not all(0.5 < bend / near[-1] < 2.0 for bend in near if near[-1]):
+            return series[sample]
+        times = self.record.times[: len(series)]
+        low, high = times[max(sample - 1, 0)], times[min(sample + 1, len(times) - 1)]
+        for _ in range(_HALVINGS):
+            third = (high - low) / 3.0
+            left, right = (self.between(series, time) for time in (low + third, high - third))
+            low, high = (low + third, high) if sign * left < sign * right else (low, high - third)
+        best = self.between(series, 0.5 * (low + high))
+        return sign * max(sign * best, sign * series[sample])
+
+
+def _like(of: Figures, expression: Expression, value: float) -> Quantity:
+    usual = expression.value(of.at(0))
+    return Quantity(value, usual.dimension, usual.has_unit)
+
+
+def _start(of: Figures, expression: Expression) -> Quantity:
+    return expression.value(of.at(0))
+
+
+def _greatest(of: Figures, expression: Expression, sign: float = 1.0) -> Quantity:
+    series = of.series(expression)
+    sample = max(range(len(series)), key=lambda i: sign * series[i])
+    return _like(of, expression, of.extreme(series, sample, sign))
+
+
+def _least(of: Figures, expression: Expression) -> Quantity:
+    return _greatest(of, expression, -1.0)
+
+
+def _mean(of: Figures, expression: Expression) -> Quantity:
+    times, series = of.record.times, of.series(expression)
+    span = times[len(series) - 1] - times[0]
+    areas = (0.5 * (series[i] + series[i + 1]) * (times[i + 1] - times[i]) for i in range(len(series) - 1))
+    return _like(of, expression, sum(areas) / span)
+
+
+def _slope(of: Figures, expression: Expression) -> Quantity:
+    """Return the slope of the line of least squares through all samples."""
+    series = of.series(expression)
+    times = of.record.times[: len(series)]
+    middle, mean = sum(times) / len(times), sum(series) / len(series)
+    above = sum((t - middle) * (value - mean) for t, value in zip(times, series, strict=True))
+    usual = _like(of, expression, above / sum((t - middle) ** 2 for t in times))
+    length, mass, time, charge = usual.dimension
+    return Quantity(usual.value, (length, mass, time - 1, charge), True)
+
+
+def _at(of: Figures, time: Expression, expression: Expression) -> Quantity:
+    return expression.value(of.at(time.value(of).value))
+
+
+def _when(of: Figures, condition: Expression, number: Expression | None = None) -> Quantity:
+    compared, n = comparison(condition), 1 if number is None else round(number.value(of).value)
+    time = of.moment(lambda figures: difference(compared, figures), n)
+    if math.isnan(time):
+        raise InvalidText(f"'{condition.text}': that does not happen {n} times within the run")
+    return Quantity(time, _SECOND.dimension, True)
+
+
+def _count(of: Figures, condition: Expression) -> Quantity:
+    compared: Comparison = comparison(condition)
+    signs = [difference(compared, of.at(i)) > 0.0 for i in of.record.samples]
+    return Quantity(float(sum(now and not before for before, now in itertools.pairwise(signs))))
+
+
+def _peak(of: Figures, number: Expression, expression: Expression) -> Quantity:
+    series, n = of.series(expression), round(number.value(of).value)
+    peaks = [i for i in range(1, len(series) - 1) if series[i - 1] < series[i] >= series[i + 1]]
+    if not 1 <= n <= len(peaks):
+        raise InvalidText(f"'{expression.text}': the run has {len(peaks)} peaks, not {n}")
+    return _like(of, expression, of.extreme(series, peaks[n - 1], 1.0))
+
+
+def _period(of: Figures, expression: Expression) -> Quantity:
+    """Return the mean time from one crossing of zero upwards to the next."""
+    series = of.series(expression)
+    ups = [i for i in range(1, len(series)) if series[i - 1] <= 0.0 < series[i]]
+    if len(ups) < 2:
+        raise InvalidText(f"'{expression.text}': it crosses zero upwards fewer than twice within the run")
+    first, last = (of._root(lambda figures: expression.value(figures).value, i) for i in (ups[0], ups[-1]))
+    return Quantity((last - first) / (len(ups) - 1), _SECOND.dimension, True)
+
+
+_FUNCTIONS: dict[str, tuple[int, int, Callable[..., Quantity]]] = {
+    "start": (1, 1, _start), "greatest": (1, 1, _greatest), "least": (1, 1, _least),
+    "mean": (1, 1, _mean), "slope": (1, 1, _slope), "at": (2, 2, _at), "when": (1, 2, _when),
+    "count": (1, 1, _count), "peak": (2, 2, _peak), "period": (1, 1, _period),
+}  # fmt: skip
+"""The functions of a run, with how many expressions they take."""
+FUNCTIONS = frozenset(_FUNCTIONS)
+
+
+def _dimension(unit: str) -> Dimension:
+    return Expression(unit).value().dimension if unit != "1" else Quantity(0.0).dimension
+
+
+class LiveRun:
+    """A run of a lesson that is being made: :meth:`sample` after each step of its ``world``.
+
+    Attributes
+    ----------
+    case : Case
+        What differs from the scene as it is.
+    world : World
+        What is stepped.
+    record : Record
+        The samples so far.
+    limit : float
+        The longest that it takes [s].
+    """
+
+    def __init__(self, setup: Setup, run: Run, names: Iterable[str], case: Case = AS_IT_IS) -> None:
+        self.case = Case(case.text, (*run.case.values, *case.values), case.note)
+        self.world, self._parameters = setup.world(self.case), setup.values(self.case)
+        self.record = Record(self.world, names)
+        self.record.add()
+        self._until, self._after = run.until, 0
+        self.limit = (run.seconds or run.limit).value(self._parameters).value
+
+    @property
+    def figures(self) -> Figures:
+        """What was found so far."""
+        return Figures(self.record, self._parameters)
+
+    def sample(self) -> bool:
+        """Take a sample after a step, and return whether the run has ended.
+
+        After an event a few steps more are made, for what is read between samples.
+
+        Raises
+        ------
+        SceneError
+            If the event does not come in time.
+        """
+        self.record.add()
+        if self._until is None:
+            return self.world.time >= self.limit - _ROUNDING * self.world.simulation.dt
+        self._after += bool(self._after) or self._until.margin(self.figures) > 0.0
+        if self._after < _AROUND // 2:
+            if self.world.time > self.limit:
+                raise SceneError(f"the run did not come to '{self._until.text}' within {self.limit:g} s")
+            return False
+        self.record.end = self.figures.moment(self._until.margin)
+        return True
+
+
+def record_run(setup: Setup, run: Run, names: Iterable[str], case: Case = AS_IT_IS) -> Figures:
+    """Make a run of a lesson, and return its figures.
+
+    Raises
+    ------
+    SceneError
+        If it does not end in time, or a case is not of the scene.
+    """
+    live = LiveRun(setup, run, names, case)
+    if run.seconds is not None:
+        for _ in live.world.stepping(seconds=live.limit):
+            live.record.add()
+    else:
+        live.world.step()
+        while not live.sample():
+            live.world.step()
+    return live.figures

@@ -1,0 +1,63 @@
+"""The words of a lesson that are the program's own, in the lesson's language."""
+
+import re
+
+from physicslab.languages.language import Language
+from physicslab.lessons.lesson import Run
+from physicslab.lessons.setup import AS_IT_IS, Case
+
+_SIGNS = tuple(
+    (re.compile(pattern), sign)
+    for pattern, sign in (
+        (r"\s*\bdeg\b", "°"), (r"\s*\bpercent\b", " %"), (r"\bpi\b", "π"), (r"\bsqrt\b", "√"),
+        (r"\s*\*\s*", " · "), ("<=", "≤"), (">=", "≥"), ("!=", "≠"),
+    )
+)  # fmt: skip
+_POWER = re.compile(r"\^(-?\d+)\b")
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def kind_words(language: Language) -> dict[str, str]:
+    """Return what the kinds of a lesson's parts are called."""
+    return {
+        "predict": language.say("Predict"), "run": language.say("Run"), "compare": language.say("Compare"),
+        "explain": language.say("Explain"), "check": language.say("Check"), "recall": language.say("Recall"),
+    }  # fmt: skip
+
+
+def sureness_words(language: Language) -> dict[str, str]:
+    """Return how sure a learner may be, by the names that answers have."""
+    return {
+        "guess": language.say("guess"), "unsure": language.say("unsure"), "sure": language.say("sure"),
+        "certain": language.say("certain"),
+    }  # fmt: skip
+
+
+def formula(language: Language, text: str) -> str:
+    """Return an expression as it is shown, with the signs of print.
+
+    >>> formula(Language("de"), "2*pi*sqrt(rod/(9.81 m/s^2)) <= 0.5 s"), formula(Language("en"), "30 deg")
+    ('2 · π · √(rod/(9,81 m/s²)) ≤ 0,5 s', '30°')
+    """
+    for pattern, sign in _SIGNS:
+        text = pattern.sub(sign, text)
+    return language.decimal(_POWER.sub(lambda found: found[1].translate(_RAISED), text))
+
+
+def measure(language: Language, number: float, unit: str, figures: int = 4) -> str:
+    """Return a number and its unit."""
+    return formula(language, f"{number:.{figures}g} {'' if unit == '1' else unit}".rstrip())
+
+
+def case_words(language: Language, case: Case) -> str:
+    """Return what differs in a case, and its note."""
+    text = language.say("as it is") if case.text == AS_IT_IS.text else formula(language, case.text)
+    return f"{text} ({case.note})" if case.note else text
+
+
+def with_run(run: Run, case: Case) -> Case:
+    """Return a run's own case and one more as one case."""
+    values = {name: value for one in (run.case, case) for name, value in one.values}
+    text = "; ".join(f"{name} = {value}" for name, value in values.items()) or AS_IT_IS.text
+    notes = "; ".join(one.note for one in (run.case, case) if one.note)
+    return Case(text, tuple(values.items()), notes)

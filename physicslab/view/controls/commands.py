@@ -1,0 +1,139 @@
+"""All that can be done, opened or plotted, as one list that is searched by a few letters."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from physicslab.components.quantities import QUANTITIES
+from physicslab.ecs.text import printable
+from physicslab.files.listing import scene_files
+from physicslab.lessons.catalogue import titles
+from physicslab.scenes import SCENES
+from physicslab.view.controls import actions, dashboard_actions
+from physicslab.view.controls.controls import CONTROLS
+from physicslab.view.controls.file_actions import open_from_list
+from physicslab.view.controls.lesson_actions import opener
+from physicslab.view.controls.tools import TOOLS, key_of
+from physicslab.view.window.desk import LEVELS
+from physicslab.view.window.window import Action, Window
+from physicslab.world import World
+
+SHOWN = 10
+"""So many are found at most."""
+_APART, _START, _RUN = 1.0, 3.0, 2.0
+"""What a letter counts: anywhere, at the start of a word, and right after the letter found before."""
+_LEAST = 1.5
+"""What letters must count on average, or what they spell is not meant."""
+_SPREAD = 0.3
+"""What a letter between them takes away."""
+_OF_TIP = 0.3
+"""What is found in a tip counts as much as this share of the same in a name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """One line of the list.
+
+    Attributes
+    ----------
+    words, keys, tip : str
+        What it is called, what is pressed for it, or what kind of thing it is, and what it does.
+    action : callable
+        What it does.
+    """
+
+    words: str
+    keys: str
+    tip: str
+    action: Action
+
+
+def commands() -> Iterator[Command]:
+    """Yield every command there is: keys and menus, tools, levels, scenes, and graphs of quantities."""
+    for control in CONTROLS:
+        if control.group and control.label != "Ctrl+K":
+            yield Command(control.title, control.label, control.tip, control.pressed)
+    named = {control.tool.name for control in CONTROLS if control.group and control.tool is not None}
+    for tool in TOOLS.values():
+        if tool.name not in named:
+            yield Command(
+                tool.title, key_of(tool) or "tool", tool.usage, partial(actions.choose_tool, tool=tool)
+            )
+    for level, words in LEVELS.items():
+        yield Command(f"Level: {level}", "level", words, partial(_choose_level, level=level))
+    for name, scene in SCENES.items():
+        yield Command(scene.title, "scene", scene.description, partial(open_from_list, source=name))
+    for name, title in titles().items():
+        yield Command(title, "lesson", "predict, run, compare, explain", opener(name))
+    for path in _own_scenes():
+        yield Command(printable(path.name), "file", str(path), partial(open_from_list, source=path))
+    for name, quantity in QUANTITIES.items():
+        of = "of the selection" if quantity.of_body else "of the world"
+        yield Command(f"Graph: {name}", "graph", of, partial(dashboard_actions.plot_quantity, name=name))
+
+
+def _own_scenes() -> list[Path]:
+    """Return the scene files of the working directory; none where it cannot be read."""
+    try:
+        return scene_files(Path.cwd())
+    except OSError:
+        return []
+
+
+def _choose_level(world: World, window: Window, level: str) -> None:
+    window.level, window.figures = level, True
+
+
+def find(text: str, among: list[Command]) -> list[Command]:
+    """Return what fits a text best, the best first: all its words are in the name, or in the tip.
+
+    The letters of a word stand there in this order, with others between them.
+    """
+    wanted = text.lower().split()
+    rated = []
+    for command in among:
+        parts = [
+            max(rate(word, command.words.lower()), _OF_TIP * _rate_whole(word, command.tip.lower()))
+            for word in wanted
+        ]
+        if all(parts):
+            rated.append((sum(parts) - 0.01 * len(command.words), command))
+    rated.sort(key=lambda one: -one[0])
+    return [command for _, command in rated[:SHOWN]]
+
+
+def rate(word: str, within: str) -> float:
+    """Return how well the letters of a word are found in a text, in their order; 0 where they are not.
+
+    The first of them begins a word of the text.
+
+    >>> rate("gravity", "gravity") > rate("gvty", "gravity") > rate("ravt", "gravity") == 0.0
+    True
+    """
+    if rating := _rate_whole(word, within):
+        return rating
+    text, rating, last = f" {within}", 0.0, 0
+    for letter in word:
+        at, initial = text.find(letter, last + 1), text.find(f" {letter}", last) + 1
+        if last == 0 or (initial and at != last + 1):
+            at = initial  # that of a later word is meant more often than a letter within one
+        if at <= 0:
+            return 0.0
+        rating += _RUN if 0 < last == at - 1 else _START if at == initial else _APART
+        last = at
+    between = last - text.find(f" {word[0]}") - len(word)
+    return max(rating - _SPREAD * between, _SPREAD) if rating > _LEAST * len(word) else 0.0
+
+
+def _rate_whole(word: str, within: str) -> float:
+    """Return how well a text holds a word as it is written."""
+    at = f" {within}".find(f" {word}")
+    found = at >= 0 or word in within
+    return len(word) * (_RUN + (_START if at >= 0 else _APART)) if found else 0.0
+
+
+def run(world: World, window: Window, command: Command) -> None:
+    """Do what was found, and close the search."""
+    window.search = None
+    command.action(world, window)

@@ -1,0 +1,202 @@
+"""Actions that make a page of a scene, for any browser."""
+
+import os
+from pathlib import Path
+
+from physicslab.components import Held, Shape, Slider, Velocity
+from physicslab.components.slider import GRAVITY
+from physicslab.ecs.component import COMPONENTS, Component
+from physicslab.ecs.text import printable, unique_name
+from physicslab.export.page import field_words
+from physicslab.files.replace import create_file, reason_of, replace_file
+from physicslab.files.scene import SceneError, file_stem, save_scene
+from physicslab.view.controls.saving import name_of
+from physicslab.view.window.naming import Naming, free_name, new_paths
+from physicslab.view.window.sharing import FROM_START, Sharing, Slid
+from physicslab.view.window.window import Window
+from physicslab.world import World
+
+_VALUES = 9
+"""How many values a slider of the scene gets in the page."""
+_MOST = 200
+"""How many entities are offered."""
+_LIMIT = 600.0
+"""The longest run that the panel takes [s]."""
+
+
+def toggle_sharing(world: World, window: Window) -> None:
+    """Let the user choose a page, or no longer; stop the one that is being made."""
+    sharing = window.sharing
+    if sharing.running:
+        stop_sharing(world, window)
+        return
+    sharing.choosing = not sharing.choosing
+    if sharing.choosing:
+        stem = file_stem(name_of(world, window))
+        sharing.naming = Naming(free_name(new_paths(Path.cwd(), stem, ".html")))
+        _take_sliders(world, window)
+
+
+def _take_sliders(world: World, window: Window) -> None:
+    """Let the page have the sliders of the scene; those of another scene are dropped."""
+    names = _names(world)
+    found = [
+        Slid(f"{names[one.entity]}.{one.changes}", f"{one.low:g}:{one.high:g}:{_VALUES}")
+        for entity in sorted(world.batch(Slider).entities.tolist())
+        for one in (world.component(entity, Slider),)
+        if one.changes != GRAVITY and one.entity in names
+    ]
+    known = varying(world)
+    for n, slid in enumerate(window.sharing.slid):
+        if n < len(found):
+            slid.path, slid.span = found[n].path, found[n].span
+        elif slid.path not in known:
+            slid.path = ""
+
+
+def _names(world: World) -> dict[int | None, str]:
+    """Return what the command line calls each entity."""
+    names: dict[str, int] = {}
+    for entity in world.entities()[:_MOST]:
+        names[unique_name(world.label(entity), names)] = entity
+    return {entity: name for name, entity in names.items()}
+
+
+def varying(world: World) -> dict[str, str]:
+    """Return the words of each field that may be varied: the numbers of what moves, then of the rest."""
+    found = {"": words_of("")}
+    moving = set(world.batch(Velocity).entities.tolist())
+    for entity, name in sorted(_names(world).items(), key=lambda named: named[0] not in moving):
+        for part in world.components(entity) if entity is not None else ():
+            kind = type(part)
+            if not isinstance(part, Component) or not kind.physical or kind is Held:
+                continue
+            sizes = Shape.HAS[part.kind] if isinstance(part, Shape) else None
+            for spec in kind.FIELDS:
+                if sizes is None or spec.name in sizes:
+                    for end in _ENDS.get(spec.kind, ()):
+                        path = f"{name}.{kind.__name__}.{spec.name}{end}"
+                        found[path] = words_of(path)
+    return found
+
+
+_ENDS = {"number": ("",), "vector": (".x", ".y")}
+"""What is added to the names of fields to name a number of them."""
+
+
+def words_of(path: str) -> str:
+    """Return a path of a field in words.
+
+    >>> words_of("ball.Velocity.linear.x"), words_of("")
+    ('ball: velocity x', 'nothing')
+    """
+    if not path:
+        return "nothing"
+    end = path[-1] if path[-2:] in (".x", ".y") else ""
+    name, _, field = (path[:-2] if end else path).rsplit(".", 2)
+    return f"{printable(name)}: {field_words(field, end)}"
+
+
+def choose_slid(world: World, slid: Slid, path: str) -> None:
+    """Let a slider of the page change another quantity, at first around the value that it has now."""
+    slid.path, slid.refused = path, ""
+    if not path:
+        return
+    end = path[-1] if path[-2:] in (".x", ".y") else ""
+    name, kind, field = (path[:-2] if end else path).rsplit(".", 2)
+    entity = next(entity for entity, known in _names(world).items() if known == name)
+    value = getattr(world.component(entity or 0, COMPONENTS[kind]), field)
+    now = getattr(value, end) if end else value
+    spec = next(spec for spec in COMPONENTS[kind].FIELDS if spec.name == field)
+    low, high = sorted((0.5 * now, 1.5 * now)) if now else (0.0, 5.0)
+    low, high = max(low, spec.lowest), min(high, spec.highest)
+    slid.span = f"{low:.6g}:{high:.6g}:{_VALUES}"
+
+
+def begin_sharing(world: World, window: Window, over: Path | None = None) -> None:
+    """Begin to make the page that was chosen; where it cannot be, say why."""
+    sharing, naming = window.sharing, window.sharing.naming
+    path = naming.path(
+        (".html", ".htm"), over, lambda there: "" if there.is_file() else ": another name is needed"
+    )
+    if path is None:
+        return
+    naming.refused = _why_not(sharing.seconds, path.parent)
+    for slid in sharing.slid:
+        form = not slid.path or slid.span.count(":") == 2
+        slid.refused = "" if form else "must be from : to : how many values, as 1:5:9"
+    if naming.refused or any(slid.refused for slid in sharing.slid):
+        return
+    history = window.edits.history
+    here, begin = history.step_count, 0 if sharing.begins == FROM_START else history.step_count
+    window.hand.drop(world)
+    window.edits.keep()
+
+    def write(scene: Path) -> None:
+        if begin != here:
+            history.seek(begin)
+        try:
+            save_scene(world, scene)
+        finally:
+            if begin != here:
+                history.seek(here)
+
+    try:
+        sharing.make(write, path)
+    except (OSError, SceneError) as error:
+        naming.refused = f"The page could not be made: {reason_of(error)}"
+        return
+    sharing.choosing = False
+
+
+def _why_not(seconds: str, folder: Path) -> str:
+    """Return why no page can be made of so many seconds in a folder, empty if it can be."""
+    try:
+        is_time = 0.0 < float(seconds) <= _LIMIT
+    except ValueError:
+        is_time = False
+    if not is_time:
+        return f"{seconds.strip() or 'Nothing'} is no time: a number above 0, {_LIMIT:g} s at most"
+    if not os.access(folder, os.W_OK):
+        missing = "Nothing may be written in" if folder.is_dir() else "There is no folder"
+        return f"{missing} {printable(str(folder))}"
+    return ""
+
+
+def stop_sharing(world: World, window: Window) -> None:
+    """Give up the page that is being made."""
+    window.sharing.abandon()
+    window.notify("The page was given up")
+
+
+def _refuse(sharing: Sharing) -> None:
+    """Say why there is no page: beside the values that it cannot be made with, or beside its name."""
+    for slid in sharing.slid:
+        said, sign, reason = sharing.failure.partition(f' = "{slid.span}": ')
+        if slid.path and sign and slid.path.removesuffix(".x").removesuffix(".y").endswith(said.split()[-1]):
+            slid.refused = reason
+            return
+    sharing.naming.refused = sharing.failure.removeprefix("physicslab: ")
+
+
+def finish_sharing(window: Window) -> None:
+    """Write the page where it has been made just now, or say why there is none."""
+    sharing = window.sharing
+    report = sharing.ended()
+    if report is None:
+        return
+    if not report:
+        sharing.choosing = True
+        _refuse(sharing)
+        return
+    page: bytes = report["page"]
+    try:
+        (create_file if not sharing.path.exists() else replace_file)(sharing.path, page)
+    except OSError as error:
+        sharing.choosing = True
+        sharing.naming.refused = f"The page could not be saved: {reason_of(error)}"
+        return
+    size = f"{len(page) / 1000:,.0f} kB"
+    window.notify(
+        f"Saved {printable(str(sharing.path))}, {size}: any browser plays it, without a network", 8.0
+    )

@@ -1,0 +1,469 @@
+"""The panel of a lesson: predict, run, compare, explain, one below the other as far as they are done."""
+
+from functools import partial
+
+from imgui_bundle import ImVec2, imgui
+
+from physicslab.ecs.quantity_text import InvalidText, evaluate
+from physicslab.ecs.text import printable
+from physicslab.files.checks import SceneError
+from physicslab.languages.language import language
+from physicslab.lessons.answers import Graded
+from physicslab.lessons.check import Row, row_of
+from physicslab.lessons.lesson import SURENESS, Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
+from physicslab.lessons.setup import AS_IT_IS, Case
+from physicslab.lessons.words import formula, sureness_words
+from physicslab.state.masses import Diverged
+from physicslab.view.canvas.quantities import percentage, quantity, written_unit
+from physicslab.view.controls import lesson_actions
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.lesson import OpenLesson
+from physicslab.view.window.window import Window
+from physicslab.view.workbench.lesson_plots import CurveField, factor_of, plot_compared, plot_run
+
+_SHARE, _LEAST = 0.44, 22.0
+"""How much of the world's room it takes, and its least width in heights of the text."""
+_SIZE = (26.0, 34.0)
+"""Width and height where it is not docked, in heights of the text."""
+_PREDICT, _RUN, _COMPARE, _EXPLAIN, _CHECK, _RECALL = (
+    "\uf0eb",
+    "\uf04b",
+    "\uf24e",
+    "\uf075",
+    "\uf058",
+    "\uf1da",
+)
+_RIGHT, _WRONG, _LOCKED = "\uf00c", "\uf00d", "\uf023"
+_NUMBER = 8.0
+"""Width of a field for a number, in heights of the text."""
+
+
+class LessonPanel:
+    """What is half written or chosen in it is kept from frame to frame."""
+
+    def __init__(self) -> None:
+        self._lesson: OpenLesson | None = None
+        self._begin()
+
+    def _begin(self) -> None:
+        self._drafts: dict[str, str] = {}
+        self._choices: dict[str, int] = {}
+        self._sure: dict[str, str] = {}
+        self._refused: dict[str, str] = {}
+        self._curves: dict[str, CurveField] = {}
+        self._graded: dict[str, tuple[object, Graded]] = {}
+        self._rows: dict[tuple[str, object, int], Row | str] = {}
+        self._parts, self._step = 0, -1
+
+    def build(self, ui: Ui, window: Window, lesson: OpenLesson) -> None:
+        """Build it beside the world."""
+        if lesson is not self._lesson:
+            self._lesson = lesson
+            self._begin()
+        ui.stand_beside("Lesson", "right", _SHARE, _LEAST)
+        close = partial(window.do_next, lesson_actions.leave_lesson)
+        with ui.floating("Lesson", window.framing.middle, close, docks=True):
+            size = ui.extent(_SIZE[0] * ui.size, _SIZE[1] * ui.size)
+            with ui.child("of the lesson", ImVec2(size.x, size.y)) as is_seen:
+                if is_seen:
+                    self._build_head(ui, lesson)
+                    self._build_step(ui, window, lesson)
+
+    def _build_head(self, ui: Ui, lesson: OpenLesson) -> None:
+        ui.heading(lesson.lesson.title)
+        if lesson.told or lesson.failure:
+            ui.text(lesson.failure or lesson.told, ui.theme.notice, wrapped=True)
+        imgui.align_text_to_frame_padding()
+        ui.faint("Your name", wrapped=False)
+        imgui.same_line()
+        learner, editing = ui.field("Your name", lesson.learner, -1.0)
+        if learner != lesson.learner:
+            lesson.learner = learner[:200]
+        elif not editing and imgui.is_item_deactivated_after_edit():
+            lesson.write()
+        ui.tip(f"For your teacher; with your answers it is kept in {printable(str(lesson.path))}")
+        steps = lesson.lesson.steps
+        for n, step in enumerate(steps):
+            if n:
+                imgui.same_line()
+            mark = _RIGHT if lesson.is_done(n) else f"{n + 1}"
+            tip = step.heading or "The beginning"
+            ui.button(f"Step {n + 1}", tip, lesson_actions.go_to_step, n, shown=mark, on=n == lesson.step,
+                      size=(1.8 * ui.size, 0.0))  # fmt: skip
+        imgui.same_line()
+        ui.faint(f"step {lesson.step + 1} of {len(steps)}", wrapped=False)
+        ui.rule(0.2)
+
+    def _build_step(self, ui: Ui, window: Window, lesson: OpenLesson) -> None:
+        """Build the parts of a step as far as they are open, and what leads on."""
+        step, parts = lesson.lesson.steps[lesson.step], lesson.shown(lesson.step)
+        if step.heading:
+            ui.heading(step.heading)
+        for n, part in enumerate(parts):
+            ui.gap(0.3)
+            if n == self._parts > 0 and not isinstance(parts[n - 1], Run):
+                imgui.set_scroll_here_y(0.1)
+            self._build_part(ui, window, lesson, part)
+            if isinstance(part, Run) and n + 1 == self._parts < len(parts):
+                imgui.set_scroll_here_y(0.7)  # what is said to the predictions stays in sight
+        self._parts = len(parts) if lesson.step == self._step else 0
+        self._step = lesson.step
+        if all(map(lesson.is_past, parts)) and len(parts) == len(step.parts):
+            ui.rule(0.4)
+            if lesson.step + 1 < len(lesson.lesson.steps):
+                ui.button("Next step", "", lesson_actions.go_to_step, lesson.step + 1, on=True)
+            else:
+                self._build_end(ui, lesson)
+
+    def _build_end(self, ui: Ui, lesson: OpenLesson) -> None:
+        """Say what came of the lesson."""
+        ui.text("That was the lesson.", ui.theme.heading)
+        ui.text(
+            f"Your answers are in {printable(lesson.path.name)}: a file of your own, to be handed in.",
+            wrapped=True,
+        )
+        ui.button("Leave the lesson", "Shift+L", lesson_actions.leave_lesson, on=True)
+
+    def _build_part(self, ui: Ui, window: Window, lesson: OpenLesson, part: Part) -> None:
+        match part:
+            case Prose():
+                for paragraph in part.text.split("\n\n"):
+                    ui.text(" ".join(paragraph.split()), wrapped=True)
+                    ui.gap(0.2)
+            case Question(kind="predict"):
+                self._build_prediction(ui, window, lesson, part)
+            case Question():
+                _title(ui, _CHECK, "Check")
+                self._build_question(ui, window, lesson, part, part.name, part.kind, lesson.lesson)
+            case Run():
+                self._build_run(ui, window, lesson, part)
+            case Compare():
+                self._build_compare(ui, window, lesson, part)
+            case Explain():
+                self._build_explain(ui, lesson, part)
+            case Recall():
+                _title(ui, _RECALL, "Of earlier lessons")
+                for name, check in part.asks:
+                    other = lesson.find(name)
+                    for question in other.questions("check"):
+                        if question.name == check and question.form != "goal":
+                            ui.faint(other.title)
+                            self._build_question(
+                                ui, window, lesson, question, f"{name}/{check}", "recall", other
+                            )
+                            ui.gap(0.3)
+                self._build_pass(ui, lesson, part)
+
+    # ---- predict, check ------------------------------------------------------------------------------------
+
+    def _build_prediction(self, ui: Ui, window: Window, lesson: OpenLesson, part: Question) -> None:
+        answer = lesson.given.get(part.name)
+        _title(ui, _PREDICT if answer is None else _LOCKED, "Predict" if answer is None else "You predicted")
+        ui.text(part.prompt, wrapped=True)
+        if answer is not None:
+            ui.text(f"{_given_words(part, answer)} ({answer.get('sure', '')})", wrapped=True)
+            return
+        found = self._build_room(ui, lesson, part, part.name)
+        ui.faint(language(lesson.lesson.language).say("How sure?"), wrapped=False)
+        words = sureness_words(language(lesson.lesson.language))
+        for n, word in enumerate(SURENESS):
+            if n:
+                ui.same_line_if_room(words[word])
+            if ui.button(
+                f"Sure {part.name}: {word}", shown=words[word], on=self._sure.get(part.name) == word
+            ):
+                self._sure[part.name] = word
+        sure = self._sure.get(part.name)
+        ready = found is not None and sure is not None
+        tip = "It cannot be changed afterwards" if ready else "First your prediction, and how sure you are"
+        if ui.button(f"Lock in {part.name}", tip, shown=f"{_LOCKED}  Lock it in", enabled=ready) and found:
+            self._refused[part.name] = lesson.answer(part.name, part, {**found, "sure": sure})
+        self._say_refused(ui, part.name)
+
+    def _build_question(
+        self, ui: Ui, window: Window, lesson: OpenLesson, part: Question, name: str, kind: str, of: Lesson
+    ) -> None:
+        ui.text(part.prompt, wrapped=True)
+        if part.form == "goal":
+            self._build_values(ui, window, lesson, part)
+        else:
+            found = self._build_room(ui, lesson, part, name)
+            if ui.button(f"Check {name}", shown="Check", enabled=found is not None) and found:
+                self._refused[name] = lesson.answer(name, part, found)
+        self._say_refused(ui, name)
+        if name in lesson.given:
+            self._build_verdict(ui, lesson, part, name, kind)
+        elif kind != "recall":
+            self._build_pass(ui, lesson, part)
+
+    def _build_pass(self, ui: Ui, lesson: OpenLesson, part: Question | Explain | Recall) -> None:
+        if not lesson.is_past(part):
+            imgui.same_line() if not isinstance(part, Recall) else None
+            if ui.button(f"Pass {part.name}", "You can come back to it", shown="Go on without an answer"):
+                lesson.passed.add(part.name)
+                lesson.number += 1
+
+    def _say_refused(self, ui: Ui, name: str) -> None:
+        if self._refused.get(name):
+            ui.text(self._refused[name], ui.theme.error, wrapped=True)
+
+    def _build_room(self, ui: Ui, lesson: OpenLesson, part: Question, name: str) -> dict[str, object] | None:
+        """Build where an answer is given, and return it; ``None`` while there is none."""
+        if part.form == "choice":
+            for n, reply in enumerate(part.replies, start=1):
+                if ui.option(f"{name}: {reply.text}", reply.text, on=self._choices.get(name) == n):
+                    self._choices[name] = n
+            return {"choice": self._choices[name]} if name in self._choices else None
+        if part.form == "curve":
+            field = self._curves.setdefault(name, CurveField())
+            points = field.build(ui, lesson, part)
+            return {"curve": points} if len(points) > 1 else None
+        draft, _ = ui.field(f"Answer {name}", self._drafts.get(name, ""), _NUMBER * ui.size)
+        self._drafts[name] = draft
+        imgui.same_line()
+        ui.text(written_unit(part.unit))
+        if not draft.strip():
+            return None
+        try:
+            evaluate(draft, part.unit)
+        except InvalidText as error:
+            ui.text(str(error), ui.theme.error, wrapped=True)
+            return None
+        return {"value": draft.strip()}
+
+    def _build_verdict(self, ui: Ui, lesson: OpenLesson, part: Question, name: str, kind: str) -> None:
+        """Build an answer, and what is said to it; to a prediction only after its run."""
+        graded = self._grade(lesson, part, name, kind)
+        ui.text(f"You predicted: {graded.given}" if kind == "predict" else graded.given, wrapped=True)
+        colour = ui.theme.accent if graded.right else ui.theme.error
+        ui.text(f"{_RIGHT}  Right." if graded.right else f"{_WRONG}  Not so.", colour)
+        if graded.feedback:
+            ui.text(graded.feedback, wrapped=True)
+        if graded.idea:
+            ui.faint(f"Behind it: {graded.idea}")
+            sources = lesson.lesson.sources
+            ui.tip("; ".join(words for key, words in sources.items() if f"[{key}]" in graded.idea))
+        if not graded.right and kind == "predict":
+            ui.text(f"It is: {graded.expected}", wrapped=True)
+        shown = next((one.shown_by for one in part.replies if one.feedback == graded.feedback), None)
+        if shown is not None and part.run is not None and kind != "recall" and not graded.right:
+            ui.button(f"Show {name}", "A run that shows it", lesson_actions.begin_run, part.run, shown,
+                      shown=f"{_RUN}  Show it: {shown.text}", enabled=not lesson.running)  # fmt: skip
+
+    def _grade(self, lesson: OpenLesson, part: Question, name: str, kind: str) -> Graded:
+        answer, kept = lesson.given[name], self._graded.get(name)
+        if kept is None or kept[0] != answer:
+            kept = self._graded[name] = dict(answer), lesson.graded(name, kind, part)
+        return kept[1]
+
+    # ---- run -----------------------------------------------------------------------------------------------
+
+    def _build_run(self, ui: Ui, window: Window, lesson: OpenLesson, part: Run) -> None:
+        ends = (
+            f"for {part.seconds.text}" if part.seconds else f"until {part.until.text}" if part.until else ""
+        )
+        _title(ui, _RUN, f"Run {ends}")
+        trial, is_open = lesson.trial, lesson.open_to(part)
+        mine = trial is not None and trial.run.line == part.line
+        made = lesson.made(part)
+        words = f"{_RUN}  Run again" if made else f"{_RUN}  Run"
+        case = f" with {part.case.text}" if part.case.values else ""
+        tip = "" if is_open else "Lock in your prediction first"
+        ui.button(f"Run {part.name}", tip, lesson_actions.begin_run, part, shown=words + case,
+                  on=is_open and not made, enabled=is_open and not lesson.running)  # fmt: skip
+        shown = trial if mine else made
+        if shown is None:
+            return
+        if not shown.ended:
+            imgui.progress_bar(shown.share, ImVec2(-1.0, 0.5 * ui.size), "")
+        if shown.failure:
+            ui.text(shown.failure, ui.theme.error, wrapped=True)
+        if shown.case.values:
+            ui.faint(f"Shown: {', '.join(f'{name} = {text}' for name, text in shown.case.values)}")
+        plot_run(ui, lesson, shown)
+        for question in lesson.predictions(part) if made is not None else ():
+            if question.name in lesson.given:
+                self._build_verdict(ui, lesson, question, question.name, "predict")
+                ui.gap(0.2)
+
+    def _build_values(self, ui: Ui, window: Window, lesson: OpenLesson, part: Question | Compare) -> None:
+        """Build the values that a learner may choose, and the button that runs with them."""
+        run, setup, ready = part.run, lesson.lesson.setup, True
+        if run is None or not setup.opened:
+            return
+        for name, (low, high) in setup.opened.items():
+            label = f"{part.name}: {name}"
+            note = setup.notes.get(name, "")
+            imgui.align_text_to_frame_padding()
+            ui.faint(name, wrapped=False)
+            ui.tip(note)
+            imgui.same_line(4.0 * ui.size)
+            text, editing = ui.field(label, lesson.values[name], _NUMBER * ui.size)
+            lesson.values[name] = text
+            try:
+                value, least, most = (setup.quantity(name, one) for one in (text, low, high))
+            except InvalidText as error:
+                ui.text(str(error), ui.theme.error, wrapped=True)
+                ready = False
+                continue
+            imgui.same_line()
+            moved = ui.slider(f"Slide {label}", value, least, most, f"{low} to {high}")
+            ui.tip(f"{note}: {low} to {high}" if note else "")
+            if moved is not None and not editing:
+                lesson.values[name] = _in_unit_of(moved, low)
+            if not least <= value <= most:
+                ui.text(f"{name} must be from {low} to {high}", ui.theme.error, wrapped=True)
+                ready = False
+        case = lesson.own_case()
+        if ui.button(f"Run own {part.name}", "", shown=f"{_RUN}  Run with these values",
+                     enabled=ready and not lesson.running and lesson.open_to(run)):  # fmt: skip
+            window.do_next(lesson_actions.begin_run, run, case)
+        made = lesson.made(run, case)
+        if isinstance(part, Question) and made is not None and made is lesson.trial:
+            answer = {"values": dict(case.values)}
+            if lesson.given.get(part.name) != answer:
+                self._refused[part.name] = lesson.answer(part.name, part, answer)
+
+    # ---- compare, explain ----------------------------------------------------------------------------------
+
+    def _build_compare(self, ui: Ui, window: Window, lesson: OpenLesson, part: Compare) -> None:
+        own = language(lesson.lesson.language)
+        _title(ui, _COMPARE, f"{own.say('Compare')}: {part.quantity}")
+        ui.text(f"Theory: {formula(own, part.theory.text)}", wrapped=True)
+        ui.faint(f"It holds for {formula(own, part.holds.text)}")
+        tried = lesson.own_cases(part.run)
+        cases = list(dict.fromkeys((AS_IT_IS, *part.cases, *part.fails, *tried)))
+        rows = [self._row(lesson, part, case) for case in cases]
+        predicted = _predicted(lesson, part)
+        flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
+        if imgui.begin_table(f"rows of {part.name}", 5 if predicted else 4, flags):
+            for n in range(5 if predicted else 4):
+                imgui.table_setup_column(f"{n}", imgui.TableColumnFlags_.width_stretch, 1.0 if n else 1.4)
+            heads = ("", *(["predicted"] if predicted else []), "theory", "measured", "gap")
+            imgui.table_next_row()
+            for head in heads:
+                imgui.table_next_column()
+                ui.faint(head, wrapped=False)
+            for n, (case, row) in enumerate(zip(cases, rows, strict=True), start=1):
+                self._build_row(ui, window, lesson, part, n, case, row, predicted)
+            imgui.end_table()
+        found = [(n, row) for n, row in enumerate(rows, start=1) if isinstance(row, Row)]
+        if not part.along and len(found) > 1:
+            plot_compared(ui, part, found, predicted)
+        if lesson.lesson.setup.opened and imgui.tree_node_ex(f"Your own values###own {part.name}"):
+            self._build_values(ui, window, lesson, part)
+            imgui.tree_pop()
+        ui.note(f"Own values {part.name}")
+
+    def _row(self, lesson: OpenLesson, part: Compare, case: Case) -> Row | str | None:
+        """Return theory beside measurement of a case, why there is none, or ``None`` before its run."""
+        made = lesson.made(part.run, case)
+        if made is None:
+            return None
+        key = part.name, case.values, id(made)
+        if key not in self._rows:
+            try:
+                self._rows[key] = row_of(lesson.lesson, part, case, made.live.figures)
+            except (InvalidText, SceneError, Diverged) as error:
+                self._rows[key] = str(error)
+        return self._rows[key]
+
+    def _build_row(
+        self, ui: Ui, window: Window, lesson: OpenLesson, part: Compare, number: int, case: Case,
+        row: Row | str | None, predicted: float | None,
+    ) -> None:  # fmt: skip
+        values = ", ".join(f"{name} = {text}" for name, text in case.values)
+        imgui.table_next_row()
+        imgui.table_next_column()
+        words = f"{number}. {'as run' if case is AS_IT_IS else values}"
+        ui.text(f"{words}: {case.note}" if case.note else words, wrapped=True)
+        imgui.table_next_column()
+        if predicted is not None:
+            if case is AS_IT_IS and isinstance(row, Row):
+                ui.text(quantity(predicted, written_unit(row.unit)), wrapped=True)
+            imgui.table_next_column()
+        if row is None:
+            button, tip = f"Run {part.name} {number}", f"Run it with {values}"
+            ui.button(button, tip, lesson_actions.begin_run, part.run,
+                      case, shown=f"{_RUN}  Run", enabled=not lesson.running)  # fmt: skip
+            return
+        if isinstance(row, str):
+            ui.text(row, ui.theme.error, wrapped=True)
+            return
+        unit = written_unit(row.unit)
+        ui.text(quantity(row.theory, unit).strip(), wrapped=True)
+        imgui.table_next_column()
+        ui.text(quantity(row.measured, unit).strip(), wrapped=True)
+        imgui.table_next_column()
+        gap = (quantity(row.gap, unit) if row.absolute else percentage(row.gap)).replace(" ", "\u00a0")
+        near = row.gap <= row.tolerance
+        ui.text(
+            f"{_RIGHT if near else _WRONG} {gap}", ui.theme.accent if near else ui.theme.error, wrapped=True
+        )
+        ui.tip(_gap_words(row, near=near))
+
+    def _build_explain(self, ui: Ui, lesson: OpenLesson, part: Explain) -> None:
+        _title(ui, _EXPLAIN, "Explain")
+        ui.text(part.prompt, wrapped=True)
+        given = lesson.given.get(part.name)
+        if given is not None:
+            ui.text(f"You: {given['text']}", wrapped=True)
+            ui.gap(0.2)
+            ui.text(f"Compare with: {part.answer}", ui.theme.heading, wrapped=True)
+            return
+        draft = self._drafts.get(part.name, "")
+        self._drafts[part.name], _ = ui.field(f"Explain {part.name}", draft, -1.0, lines=4)
+        ready = bool(self._drafts[part.name].strip())
+        tip = "" if ready else "First a sentence of your own"
+        if ui.button(f"Say {part.name}", tip, shown="Compare with the model answer", enabled=ready):
+            text = self._drafts[part.name].strip()
+            self._refused[part.name] = lesson.answer(part.name, part, {"text": text})
+        self._say_refused(ui, part.name)
+        self._build_pass(ui, lesson, part)
+
+
+def _title(ui: Ui, icon: str, words: str) -> None:
+    """Write what kind of part begins here."""
+    ui.rule(0.2)
+    ui.text(f"{icon}  {words}", ui.theme.accent, wrapped=True)
+
+
+def _given_words(part: Question, answer: dict[str, object]) -> str:
+    if part.form == "choice":
+        return part.replies[int(str(answer["choice"])) - 1].text
+    if part.form == "number":
+        text = str(answer["value"])
+        return text if any(map(str.isalpha, text)) else f"{text} {written_unit(part.unit)}".strip()
+    return "A curve, as drawn below"
+
+
+def _predicted(lesson: OpenLesson, part: Compare) -> float | None:
+    """Return the number that was predicted of what is compared [SI], if there is one."""
+    for one in lesson.predictions(part.run):
+        same = one.answer is not None and one.answer.text == part.measured.text
+        if one.form == "number" and same and one.name in lesson.given:
+            return factor_of(one.unit) * evaluate(str(lesson.given[one.name]["value"]), one.unit)
+    return None
+
+
+def _gap_words(row: Row, *, near: bool) -> str:
+    """Return in words what the gap between theory and measurement says."""
+    if row.holds:
+        return (
+            "Within the tolerance: the theory holds"
+            if near
+            else "Beyond the tolerance, though it should hold"
+        )
+    return (
+        "The theory need not hold here, and is near" if near else "The theory does not hold here, as it says"
+    )
+
+
+def _in_unit_of(value: float, text: str) -> str:
+    """Return a number [SI] in the unit of another one.
+
+    >>> _in_unit_of(0.5235987755982988, "5 deg"), _in_unit_of(0.25, "1")
+    ('30 deg', '0.25')
+    """
+    unit = text.strip().lstrip("-+.0123456789e").strip()
+    return f"{value / factor_of(unit or '1'):.4g} {unit}".strip()

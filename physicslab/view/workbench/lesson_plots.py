@@ -1,0 +1,239 @@
+"""The graphs of a lesson: prediction, theory and measurement in one; a curve that is drawn with the mouse."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from imgui_bundle import ImVec2, imgui, implot
+from numpy.typing import NDArray
+
+from physicslab.ecs.quantity_text import Expression, InvalidText, evaluate
+from physicslab.lessons.check import Row, si_unit
+from physicslab.lessons.figures import quantity_of
+from physicslab.lessons.lesson import Compare, Question
+from physicslab.view.canvas.quantities import rounded_up, written_unit
+from physicslab.view.canvas.theme import Colour
+from physicslab.view.toolkit.style import as_vector
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.lesson import Curve, OpenLesson, Trial
+
+type _Numbers = NDArray[np.float64]
+
+_HEIGHT = 11.0
+"""Height of a graph, in heights of the text."""
+_WEIGHT = 0.13
+"""Width of a line, in heights of the text."""
+_DASHES = 40
+"""Dashes of a line that is theory."""
+_BINS = 120
+"""Places along a curve that is drawn."""
+_SHADE = 0.25
+"""Opacity of the gap between two lines."""
+_FLAGS = (
+    implot.Flags_.no_menus
+    | implot.Flags_.no_mouse_text
+    | implot.Flags_.no_title
+    | implot.Flags_.no_box_select
+)
+_LOCK = implot.AxisFlags_.lock
+PREDICTED, THEORY, MEASURED = "predicted", "theory", "measured"
+
+
+def factor_of(unit: str) -> float:
+    """Return how many SI units a unit is.
+
+    >>> factor_of("cm"), factor_of("1")
+    (0.01, 1.0)
+    """
+    return 1.0 if unit == "1" else Expression(unit).value().value
+
+
+def plot_run(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
+    """Build the graphs of a run, with what was predicted of them and what theory says."""
+    for n, curve in enumerate(trial.curves):
+        try:
+            units = [si_unit(one.value(trial.live.figures.at(0))) for one in (curve.against, curve.along)]
+        except InvalidText:
+            continue
+        labels = [
+            f"{_plain(one)} [{written_unit(unit)}]" if unit else _plain(one)
+            for one, unit in zip((curve.against, curve.along), units, strict=True)
+        ]
+        if _begin(ui, f"{trial.run.name} {n}", labels[0], labels[1], legend=_has_more(lesson, trial, curve)):
+            _plot_lines(ui, lesson, trial, curve)
+            implot.end_plot()
+
+
+def _has_more(lesson: OpenLesson, trial: Trial, curve: Curve) -> bool:
+    """Whether a graph shows more than what is measured."""
+    drawn = [one.answer.text for one in lesson.predictions(trial.run) if one.form == "curve" and one.answer]
+    theory = [one.measured.text for one in lesson.lesson.compares() if one.name in trial.theory]
+    return curve.along.text in (*drawn, *theory)
+
+
+def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve) -> None:
+    x, y = np.array(curve.x), np.array(curve.y)
+    theme = ui.theme
+    if curve.against.text == "time":
+        for question in lesson.predictions(trial.run):
+            if (
+                question.answer is not None
+                and question.answer.text == curve.along.text
+                and question.form == "curve"
+            ):
+                drawn = np.array(lesson.given.get(question.name, {}).get("curve", []), dtype=float)
+                if len(drawn) > 1:
+                    predicted = np.interp(x, drawn[:, 0], drawn[:, 1] * factor_of(question.unit))
+                    shade = _look(ui, theme.notice, _SHADE)
+                    shade.fill_color, shade.fill_alpha = as_vector(theme.notice), _SHADE
+                    implot.plot_shaded("##gap", x, predicted, y, shade)
+                    implot.plot_line(PREDICTED, drawn[:, 0].copy(), drawn[:, 1] * factor_of(question.unit),
+                                     _look(ui, theme.notice))  # fmt: skip
+                    ui.words.append(PREDICTED)
+    implot.plot_line(MEASURED, x, y, _look(ui, theme.accent))
+    for compare in lesson.lesson.compares():
+        if compare.name in trial.theory and compare.measured.text == curve.along.text:
+            theory = np.array(trial.theory[compare.name])
+            dashes = np.linspace(0, len(theory) - 1, min(2 * _DASHES, len(theory))).round().astype(int)
+            dashes = dashes[: len(dashes) // 2 * 2]
+            look = _look(ui, theme.text)
+            look.flags = implot.LineFlags_.segments
+            implot.plot_line(THEORY, x[dashes], theory[dashes], look)
+            ui.words.append(THEORY)
+
+
+def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predicted: float | None) -> None:
+    """Build the graph of a comparison: in each case, by its number, theory, measurement and prediction."""
+    unit = written_unit(rows[0][1].unit)
+    label = f"{part.quantity} [{unit}]" if unit else part.quantity
+    if not _begin(ui, part.name, "case", label):
+        return
+    numbers = np.array([float(n) for n, _ in rows])
+    implot.setup_axis_ticks(implot.ImAxis_.x1, [float(n) for n, _ in rows], [f"{n}" for n, _ in rows], False)
+    theory = np.array([row.theory for _, row in rows])
+    measured = np.array([row.measured for _, row in rows])
+    gap = _look(ui, ui.theme.error)
+    gap.flags = implot.LineFlags_.segments
+    both = np.stack([theory, measured], axis=1).ravel()
+    implot.plot_line("##gaps", np.repeat(numbers, 2), both, gap)
+    for name, x, y, marker, size, colour in (
+        (THEORY, numbers, theory, implot.Marker_.square, 0.42, ui.theme.text),
+        (MEASURED, numbers, measured, implot.Marker_.circle, 0.26, ui.theme.accent),
+        (PREDICTED, numbers[:1], np.array([predicted or 0.0]), implot.Marker_.diamond, 0.36, ui.theme.notice),
+    ):
+        if name == PREDICTED and (predicted is None or rows[0][0] != 1):
+            continue
+        look = _look(ui, colour)
+        look.marker, look.marker_size = marker, size * ui.size
+        look.marker_line_color = as_vector(colour)
+        look.marker_fill_color = as_vector(colour, 0.0 if name == THEORY else 1.0)
+        implot.plot_scatter(name, x, y, look)
+        ui.words.append(name)
+    implot.end_plot()
+
+
+def _plain(expression: Expression) -> str:
+    """Return the words for an expression: of a quantity as the window calls it, and whose it is."""
+    owner = expression.text.partition(".")[0]
+    try:
+        entity, name = quantity_of(expression.text, [owner])
+    except InvalidText:
+        return expression.text
+    return name if entity is None else f"{name} of {owner}"
+
+
+def _begin(ui: Ui, name: str, across: str, along: str, *, legend: bool = True) -> bool:
+    """Begin a graph with what it shows written above it."""
+    implot.get_style().plot_padding = ImVec2(0.3 * ui.size, 0.3 * ui.size)
+    ui.faint(along, wrapped=False)
+    flags = _FLAGS if legend else _FLAGS | implot.Flags_.no_legend
+    if not implot.begin_plot(f"##{name}", ImVec2(-1.0, _HEIGHT * ui.size), flags):
+        return False
+    fit = implot.AxisFlags_.auto_fit
+    implot.setup_axes(across, "", fit, fit)
+    implot.setup_legend(implot.Location_.north_east, implot.LegendFlags_.horizontal)
+    ui.words.append(across)
+    return True
+
+
+def _look(ui: Ui, colour: Colour, opacity: float = 1.0) -> implot.Spec:
+    spec = implot.Spec()
+    spec.line_color, spec.line_weight = as_vector(colour, opacity), _WEIGHT * ui.size
+    return spec
+
+
+class CurveField:
+    """A curve that is drawn with the mouse over a graph, or typed as pairs of numbers."""
+
+    def __init__(self) -> None:
+        self._values: dict[int, float] = {}
+        self._last: int | None = None
+        self._text, self._refusal = "", ""
+
+    def build(self, ui: Ui, lesson: OpenLesson, part: Question) -> list[list[float]]:
+        """Build it, and return the points that are drawn: times [s] and values, in the question's unit."""
+        end, low, high = _axes(lesson, part)
+        unit = written_unit(part.unit)
+        name = part.answer.text if part.answer is not None else ""
+        ui.faint("Draw it: press the button of the mouse in the graph, and go along.")
+        if implot.begin_plot(f"##draw {part.name}", ImVec2(-1.0, 1.3 * _HEIGHT * ui.size),
+                             _FLAGS | implot.Flags_.no_legend):  # fmt: skip
+            implot.setup_axes("time [s]", f"{name} [{unit}]" if unit else name, _LOCK, _LOCK)
+            implot.setup_axes_limits(0.0, end, low, high, implot.Cond_.always)
+            implot.setup_finish()
+            place, size = implot.get_plot_pos(), implot.get_plot_size()
+            ui.places.setdefault(
+                f"Draw {part.name}", (round(place.x), round(place.y), round(size.x), round(size.y))
+            )
+            self._follow_mouse(end, low, high)
+            if self._values:
+                points = np.array(sorted(self._values.items()))
+                implot.plot_line(
+                    PREDICTED, points[:, 0] * end / _BINS, points[:, 1].copy(), _look(ui, ui.theme.notice)
+                )
+            implot.end_plot()
+        self._build_text(ui, part, end)
+        return [[n * end / _BINS, value] for n, value in sorted(self._values.items())]
+
+    def _follow_mouse(self, end: float, low: float, high: float) -> None:
+        """Let the curve follow the mouse while its button is pressed."""
+        if not (imgui.is_mouse_down(0) and (self._last is not None or implot.is_plot_hovered())):
+            self._last = None
+            return
+        mouse = implot.get_plot_mouse_pos()
+        here = min(max(round(mouse.x / end * _BINS), 0), _BINS)
+        value = min(max(mouse.y, low), high)
+        last = here if self._last is None else self._last
+        before = self._values.get(last, value)
+        for n in range(min(last, here), max(last, here) + 1):
+            share = 1.0 if here == last else (n - last) / (here - last)
+            self._values[n] = before + share * (value - before)
+        self._last, self._text = here, ""
+
+    def _build_text(self, ui: Ui, part: Question, end: float) -> None:
+        """Build the field in which points are typed: who has no mouse draws with it."""
+        ui.faint("or type it, time and value: 0 1; 0.5 0.7; 1 0", wrapped=False)
+        text, _ = ui.field(f"Points {part.name}", self._text, -3.5 * ui.size)
+        if text != self._text:
+            self._text, self._refusal = text, ""
+            try:
+                pairs = [one.split() for one in text.split(";") if one.strip()]
+                found = {round(evaluate(x, "s") / end * _BINS): evaluate(y, part.unit) for x, y in pairs}
+                self._values = {n: value for n, value in found.items() if 0 <= n <= _BINS}
+            except (InvalidText, ValueError):
+                self._refusal = "Pairs of a time and a value, with ; between them"
+        imgui.same_line()
+        if ui.button(f"Clear {part.name}", shown="Clear"):
+            self._values, self._text, self._refusal = {}, "", ""
+        if self._refusal:
+            ui.text(self._refusal, ui.theme.error, wrapped=True)
+
+
+def _axes(lesson: OpenLesson, part: Question) -> tuple[float, float, float]:
+    """Return the end of the run [s] and the ends of the values: roomy ones, which tell little."""
+    assert part.answer is not None
+    figures, factor = lesson.runs.figures(part.run), factor_of(part.unit)
+    series = [value / factor for value in figures.series(part.answer)]
+    most = rounded_up(1.2 * max(max(map(abs, series)), 1e-12))
+    low = -most if min(series) < -1e-9 * most else 0.0
+    return float(figures.record.end) or math.inf, low, most

@@ -1,0 +1,140 @@
+"""A key or a click does what was meant: it closes, removes and undoes no more than that."""
+
+from __future__ import annotations
+
+import pygame
+import pytest
+from desk import SETTLED, Desk, click, click_at, empty_world, sized, tap
+from random_edits import state_hash
+
+from physicslab import load_scene
+from physicslab.components import Trail
+from physicslab.prefabs import circle
+
+CTRL = pygame.KMOD_CTRL
+
+
+@pytest.fixture
+def desk() -> Desk:
+    """Return a window with a ball at rest, which is not selected."""
+    world = empty_world(gravity=(0, 0))
+    circle(world, (0, 0), name="ball")
+    return Desk(world)
+
+
+def test_escape_quits_only_a_while_after_something_was_closed(desk: Desk) -> None:
+    for key in ("l", "n"):  # opens the gallery, selects the ball
+        tap(desk, key)
+        for _ in range(2):
+            tap(desk, "escape")
+            assert not desk.window.closing
+        assert "Esc again" in desk.window.notice
+    desk.frames(70)
+    tap(desk, "escape")
+    assert desk.window.closing
+
+
+def test_leaving_says_what_would_be_lost(desk: Desk) -> None:
+    tap(desk, "r")
+    desk.window.scenes.next_world = empty_world()
+    desk.frames(70)
+    tap(desk, "escape")
+    assert not desk.window.closing and "is lost" in desk.window.notice
+    tap(desk, "escape")
+    assert desk.window.closing
+
+
+@pytest.mark.parametrize("opener", ["l", "f1"])
+def test_no_key_acts_behind_what_lies_over_the_world(desk: Desk, opener: str) -> None:
+    ball = desk.world.entity("ball")
+    desk.window.selection.take(ball)
+    tap(desk, opener)
+    before = desk.world.motion_edits, desk.window.tool, desk.window.figures, desk.window.pace.paused
+    for key in (
+        "t",
+        "r",
+        "i",
+        "a",
+        "n",
+        "g",
+        "l" if opener == "f1" else "u",
+        "e",
+        "delete",
+        "space",
+        "return",
+    ):
+        tap(desk, key)
+    tap(desk, "a", CTRL)
+    tap(desk, "d", CTRL)
+    assert before == (
+        desk.world.motion_edits, desk.window.tool, desk.window.figures, desk.window.pace.paused
+    )  # fmt: skip
+    assert desk.world.entities() == [ball] and not desk.world.table(Trail).handles
+    tap(desk, "escape" if opener == "l" else opener)  # letters are for the search of the gallery
+    assert not desk.window.in_front
+    tap(desk, "r")
+    assert desk.world.entities() == []
+
+
+def test_keys_are_for_the_world_after_a_click_in_a_window_beside_it(desk: Desk) -> None:
+    tap(desk, "z")
+    desk.frames(SETTLED)
+    click(desk, "Only the selection")
+    tap(desk, "i")
+    assert not desk.window.figures
+    tap(desk, "space")
+    assert desk.window.pace.paused
+    tap(desk, "r")
+    assert desk.world.entities() == []
+
+
+@pytest.mark.parametrize("paused", [False, True])
+def test_one_undo_takes_back_the_last_edit_and_the_run_since(desk: Desk, *, paused: bool) -> None:
+    desk.frames(10)
+    before = state_hash(desk.world)
+    tap(desk, "r")
+    assert "one Ctrl+Z" in desk.window.notice and not desk.world.entities()
+    desk.frames(20)
+    if paused:
+        tap(desk, "space")
+    after = desk.world.time
+    tap(desk, "z", CTRL)
+    assert len(desk.world.entities()) == 1 and state_hash(desk.world) == before
+    tap(desk, "y", CTRL)
+    assert not desk.world.entities() and desk.world.time == pytest.approx(after)
+
+
+def test_undo_takes_back_a_throw_and_leaves_what_was_made_before(desk: Desk) -> None:
+    click_at(desk, desk.pixel(2.0, 2.0))
+    desk.frames(10)
+    made = desk.world.entities()
+    start = desk.world.time
+    desk.drag((2.0, 2.0), (4.0, 0.0), 5)
+    desk.frames(10)
+    tap(desk, "z", CTRL)
+    assert desk.world.entities() == made and desk.world.time == pytest.approx(start, abs=0.02)
+    tap(desk, "z", CTRL)
+    assert len(desk.world.entities()) == 1
+
+
+def test_with_no_edit_undo_goes_back_to_the_start(desk: Desk) -> None:
+    for _ in range(2):
+        desk.frames(12)
+        tap(desk, "space")
+        tap(desk, "space")
+    tap(desk, "z", CTRL)
+    assert desk.world.time == 0.0 and "ran 0." in desk.window.notice
+
+
+def test_a_click_on_a_spark_opens_the_microscope_in_a_pause_alone() -> None:
+    desk = sized((1280, 720), load_scene("drop"))
+    while not desk.world.contacts.logged:
+        desk.frames()
+    desk.frames(3)
+    record = desk.world.contacts.impacts[-1]
+    for opens in (False, True):
+        desk.press(float(record["x"]), float(record["y"]))
+        desk.release(float(record["x"]), float(record["y"]))
+        desk.frames(2)
+        assert desk.window.microscope.is_open == opens
+        desk.window.pace.paused = True

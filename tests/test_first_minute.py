@@ -1,0 +1,197 @@
+"""The first minute: cards that are gone once used, a tour that waits for each act, the search of commands."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pygame
+import pytest
+from desk import SETTLED, Desk, click, sized, tap, write
+
+from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.desktop.preferences import load_preferences, save_preferences
+from physicslab.view.controls import commands
+from physicslab.view.controls.tour import STEPS
+from physicslab.view.window.tour import Tour
+from physicslab.view.window.window import Window
+
+CTRL = pygame.KMOD_CTRL
+SIZE = (1280, 720)
+
+
+def found(desk: Desk) -> list[str]:
+    """Return what the search shows, the best first."""
+    return [label.removeprefix("Found: ") for label in desk.ui.places if label.startswith("Found: ")]
+
+
+def search(desk: Desk, text: str) -> list[str]:
+    tap(desk, "k", CTRL)
+    write(desk, text)
+    desk.frames(SETTLED)
+    return found(desk)
+
+
+# ---- cards -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("size", "scale"), [(SIZE, 1.0), ((800, 600), 1.5), ((640, 480), 1.75)])
+def test_the_cards_lie_within_the_room_of_the_world(size: tuple[int, int], scale: float) -> None:
+    desk = sized(size, text_scale=scale)
+    desk.window.shows_cards = True
+    desk.frames(SETTLED)
+    left, top, width, height = desk.sandbox.interface.layout.visible
+    room = pygame.Rect(left, top, width, height)
+    for label in ("Play", "Learn", "Build", "Close"):
+        assert room.contains(pygame.Rect(desk.ui.places[label])), label
+
+
+def test_keys_and_clicks_reach_the_world_beside_the_cards() -> None:
+    desk = sized(SIZE)
+    desk.window.shows_cards = True
+    desk.frames(SETTLED)
+    tap(desk, "space")
+    assert desk.window.pace.paused
+    desk.press(0.0, -1.0)
+    desk.frames()
+    desk.release(0.0, -1.0)
+    desk.frames(SETTLED)
+    assert len(desk.world.batch(Shape)) == 1 and desk.window.shows_cards
+
+
+def test_each_card_opens_what_it_names() -> None:
+    desk = sized(SIZE)
+    for card in ("Play", "Learn", "Build"):
+        desk.window.shows_cards = True
+        desk.frames(SETTLED)
+        click(desk, card)
+        assert not desk.window.shows_cards, card
+        assert desk.window.scenes.shows_gallery == (card == "Learn")
+        desk.window.scenes.shows_gallery = False
+    assert desk.window.scenes.source is None and desk.world.time == 0.0 and len(desk.world.batch(Shape)) == 1
+
+
+def test_escape_closes_the_cards_and_the_help_brings_them_back() -> None:
+    desk = sized(SIZE)
+    desk.window.shows_cards = True
+    desk.frames(SETTLED)
+    tap(desk, "escape")
+    assert not (desk.window.shows_cards or desk.window.closing)
+    click(desk, "Help")
+    click(desk, "First steps")
+    assert desk.window.shows_cards
+
+
+def test_cards_that_were_used_are_remembered(tmp_path: Path) -> None:
+    desk, path = sized(SIZE), tmp_path / "preferences.json"
+    for welcomed in (False, True):
+        desk.window.welcomed = welcomed
+        save_preferences(path, desk.window)
+        again = Window(desk.window.canvas)
+        load_preferences(path, again)
+        assert again.welcomed is welcomed
+
+
+# ---- the tour ----------------------------------------------------------------------------------------------
+
+
+def shown(desk: Desk) -> str:
+    desk.frames(SETTLED)
+    return "" if desk.window.tour is None else STEPS[desk.window.tour.number].title
+
+
+def test_the_tour_goes_on_by_acts_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    desk = sized(SIZE)
+    desk.world.spawn(Transform((0.0, 0.0)), Velocity(), Mass(1.0), Shape(kind="circle", radius=0.5))
+    desk.frames(SETTLED)
+    tap(desk, "f1", CTRL)
+    assert shown(desk) == "Throw"
+    desk.frames(60)
+    assert shown(desk) == "Throw", "time alone is no act"
+    place = desk.world.component(desk.world.batch(Shape).entities[0], Transform).position
+    desk.drag((place.x, place.y), (2.0, 0.0), 8)
+    assert shown(desk) == "Pause"
+    tap(desk, "space")
+    assert shown(desk) == "Draw"
+    desk.press(-3.0, 1.0, "right")
+    desk.frames()
+    desk.release(-3.0, 1.0, "right")
+    assert shown(desk) == "Spring"
+    click(desk, "Skip this step")
+    assert shown(desk) == "Gravity"
+    tap(desk, "g")
+    assert shown(desk) == "Microscope"
+    click(desk, "Skip this step")
+    assert shown(desk) == "Undo"
+    tap(desk, "z", CTRL)
+    assert shown(desk) == "Save"
+    tap(desk, "s", CTRL)
+    assert shown(desk) == "Save", "a name is not a file yet"
+    tap(desk, "return")
+    assert shown(desk) == "" and list(tmp_path.glob("*.json"))
+
+
+def test_the_tour_waits_in_another_scene_for_what_is_done_there() -> None:
+    desk = sized(SIZE)
+    desk.window.tour = Tour([step.title for step in STEPS].index("Gravity"))
+    assert shown(desk) == "Gravity"
+    click(desk, "Scenes")
+    click(desk, "Two planets")
+    assert desk.world.name == "two_planets" and shown(desk) == "Gravity"
+    tap(desk, "escape")
+    assert shown(desk) == "" and not desk.window.closing
+
+
+# ---- the search --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "best"),
+    [("pause", "Pause"), ("gvty", "Gravity"), ("redo", "Redo"), ("cradle", "Newton's cradle"),
+     ("kinetic", "Graph: kinetic energy"), ("BALL floor", "A ball on a floor"), ("gear", "Gear")],
+)  # fmt: skip
+def test_a_few_letters_find_a_command(text: str, best: str) -> None:
+    assert commands.find(text, list(commands.commands()))[0].words == best
+
+
+def test_what_is_nowhere_is_not_found_and_half_input_changes_nothing() -> None:
+    desk = sized(SIZE)
+    before = desk.window.edits.history.position
+    assert search(desk, "grq") == [] and "Nothing is called so" in desk.ui.words
+    tap(desk, "return")
+    assert desk.window.is_open("search")
+    tap(desk, "escape")
+    assert not desk.window.is_open("search")
+    assert desk.window.edits.history.position == before and not desk.window.closing
+
+
+def test_arrows_mark_a_line_and_enter_does_it() -> None:
+    desk = sized(SIZE)
+    lines = search(desk, "pause")
+    assert lines[:2] == ["Pause", "Pause at the next impact"]
+    tap(desk, "down")
+    assert desk.window.search is not None and desk.window.search.row == 1
+    tap(desk, "up")
+    tap(desk, "return")
+    assert desk.window.pace.paused and desk.window.search is None
+
+
+def test_a_click_opens_a_scene_that_was_found() -> None:
+    desk = sized(SIZE)
+    assert search(desk, "two planets")[0] == "Two planets"
+    click(desk, "Found: Two planets")
+    assert desk.world.name == "two_planets" and desk.window.search is None
+
+
+def test_a_quantity_that_is_found_is_plotted() -> None:
+    desk = sized(SIZE)
+    assert search(desk, "total energy")[0] == "Graph: total energy"
+    tap(desk, "return")
+    (graph,) = desk.window.dashboard.graphs
+    assert [line.key for line in graph.lines] == [(None, "total energy")]
+
+
+def test_every_command_does_its_work_or_says_why_not() -> None:
+    names = [command.words for command in commands.commands()]
+    assert len(names) > 150
+    assert {"Search"}.isdisjoint(names)

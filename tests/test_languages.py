@@ -1,0 +1,117 @@
+"""Catalogues: every text of the program has its translation, with the same gaps, and none is left over."""
+
+import ast
+import re
+from dataclasses import replace
+from gettext import NullTranslations
+
+import pytest
+
+from physicslab.languages.catalogue import FOLDER, SOURCE, languages, messages, translations
+from physicslab.languages.language import Language, language
+from physicslab.lessons.catalogue import find_lesson
+from physicslab.lessons.worksheet import worksheet
+
+PACKAGE = FOLDER.parent
+SAYING = {"say": 1, "say_count": 2}
+"""What translates, and how many texts it takes."""
+GAP = re.compile(r"\{[a-z_]+\}")
+
+
+class Doubled(NullTranslations):
+    """A pseudo-language: each letter of a text stands twice, so that it takes twice the room."""
+
+    def gettext(self, message: str) -> str:
+        return re.sub(r"\{[a-z_]+\}|\w", lambda found: found[0] * (1 if "{" in found[0] else 2), message)
+
+    def ngettext(self, msgid1: str, msgid2: str, n: int) -> str:
+        return self.gettext(msgid1 if n == 1 else msgid2)
+
+
+def said() -> dict[tuple[str, ...], str]:
+    """Return all texts that the program says, each with where it is."""
+    found: dict[tuple[str, ...], str] = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        source = path.read_text(encoding="utf-8")
+        if ".say" not in source:
+            continue
+        for node in ast.walk(ast.parse(source)):
+            if (
+                isinstance(node, ast.Call)
+                and isinstance(node.func, ast.Attribute)
+                and node.func.attr in SAYING
+            ):
+                texts = node.args[: SAYING[node.func.attr]]
+                where = f"{path.relative_to(PACKAGE)}:{node.lineno}"
+                assert all(isinstance(one, ast.Constant) for one in texts), f"{where}: say takes whole texts"
+                found[tuple(str(ast.literal_eval(one)) for one in texts)] = where
+    return found
+
+
+def own(code: str) -> dict[tuple[str, ...], list[str]]:
+    return messages((FOLDER / f"{code}.po").read_text(encoding="utf-8"), f"{code}.po")
+
+
+@pytest.mark.parametrize("code", languages()[1:])
+def test_every_text_has_a_translation_and_none_is_left_over(code: str) -> None:
+    texts, catalogue = said(), own(code)
+    head = catalogue.pop(("",))[0]
+    assert "charset=UTF-8" in head
+    assert not {text: where for text, where in texts.items() if text not in catalogue}, "without translation"
+    assert not set(catalogue) - set(texts), "of no text of the program"
+    number = int(re.findall(r"nplurals=(\d)", head)[0])
+    for source, target in catalogue.items():
+        assert len(target) == (number if len(source) > 1 else 1) and all(target), source
+        assert all(set(GAP.findall(one)) == set(GAP.findall(source[-1])) for one in target), source
+
+
+def test_a_text_without_a_translation_is_found() -> None:
+    assert ("How sure?",) in said() and ("{n} minute", "{n} minutes") in said()
+
+
+def test_numbers_dates_and_plurals_are_those_of_the_language() -> None:
+    german, english = language("de"), language()
+    assert german.decimal("0.5 m to 1.25 m, 3.") == "0,5 m to 1,25 m, 3."
+    assert english.decimal("0.5 m") == "0.5 m" and language("xx").say("How sure?") == "How sure?"
+    assert [german.say_count("{n} minute", "{n} minutes", n) for n in (0, 1, 2)] == [
+        "0 Minuten", "1 Minute", "2 Minuten",
+    ]  # fmt: skip
+    assert english.say_count("{n} minute", "{n} minutes", 1) == "1 minute"
+    assert languages()[0] == SOURCE and "de" in languages()
+
+
+def test_the_pseudo_language_doubles_texts_and_keeps_gaps() -> None:
+    doubled = Language("qps", Doubled())
+    assert doubled.say("given: {answer}", answer="7") == "ggiivveenn: 7"
+    assert doubled.say_count("{n} minute", "{n} minutes", 2) == "2 mmiinnuutteess"
+
+
+def test_a_worksheet_in_the_pseudo_language_has_no_word_of_the_program_undoubled(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("physicslab.languages.language.translations", lambda code: Doubled())
+    page = worksheet(replace(find_lesson("rolling"), language="qps"), find_lesson)
+    for word in ("Predict", "Run", "Compare", "Explain", "Check", "Recall", "Sources", "value", "case"):
+        assert f">{word}<" not in page and f">{Doubled().gettext(word)}<" in page
+    assert not re.findall(
+        r"\b(Name|Date|level|needs|minutes|How|Make|holds|over)\b:? ", page.split("<h2>")[0]
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('msgid "a"\nmsgstr "b"\nmsgid "a"\nmsgstr "c"', "one.po: line 5: 'a' stands twice"),
+        ('msgid "a"\nmsg "b"', "one.po: line 2: "), ('msgid "a', "one.po: line 1: "),
+    ],
+)  # fmt: skip
+def test_what_is_no_catalogue_is_refused(text: str, words: str) -> None:
+    with pytest.raises(ValueError, match="line") as refused:
+        messages(text, "one.po")
+    assert words in str(refused.value)
+
+
+def test_lines_of_a_catalogue_go_on() -> None:
+    found = messages('# note\n\nmsgid ""\n"a "\n"b"\nmsgstr "\\"c\\" "\n"d\\n"\n', "one.po")
+    assert found == {("a b",): ['"c" d\n']}
+    assert translations("de").gettext("How sure?") == "Wie sicher bist du?"

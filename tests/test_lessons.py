@@ -1,0 +1,219 @@
+"""The lessons that come with the program, against the engine: where theories hold and where not."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from physicslab.cli import main
+from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity
+from physicslab.languages.catalogue import languages
+from physicslab.lessons.catalogue import LESSONS, LIBRARY, find_lesson
+from physicslab.lessons.check import LessonRuns, check_lesson
+from physicslab.lessons.conditions import Condition
+from physicslab.lessons.figures import Figures, Record
+from physicslab.lessons.lesson import Recall
+from physicslab.lessons.reader import read_lesson
+from physicslab.lessons.setup import Case, Parameters
+from physicslab.lessons.worksheet import worksheet
+from physicslab.world import World
+
+_LOOSE = 30.0
+"""How many times its widest gap a tolerance may be."""
+_ROUNDING = 1e-9
+"""A share or an amount that is tight however small the gap is."""
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_every_theory_holds_where_it_says_and_fails_where_it_says(name: str) -> None:
+    lesson = find_lesson(name)
+    rows = list(check_lesson(lesson))
+    assert not [row for row in rows if not row.passed]
+    for compare in lesson.compares():
+        own = [row for row in rows if row.block == compare.name]
+        holding = [row for row in own if row.holds]
+        assert holding and len(own) == len(compare.cases) + len(compare.fails)
+        widest, tolerance = max(row.gap for row in holding), max(row.tolerance for row in holding)
+        assert tolerance <= max(_LOOSE * widest, _ROUNDING), f"{compare.name} is loose"
+        assert all(row.gap > 2.0 * row.tolerance for row in own if not row.holds)
+    assert any(compare.fails for compare in lesson.compares()), "the case where it stops holding"
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_a_lesson_has_its_parts(name: str) -> None:
+    lesson = find_lesson(name)
+    assert lesson.name == name
+    assert [step.depth for step in lesson.steps if step.heading] == [1, 2, 3]
+    assert all(step.heading.endswith("?") for step in lesson.steps if step.heading), "driving questions"
+    predicted = list(lesson.questions("predict"))
+    assert len(predicted) >= 2 and list(lesson.questions("check"))
+    ideas = {reply.idea for question in lesson.questions() for reply in question.replies if reply.idea}
+    assert len(ideas) >= 2, "misconceptions"
+    assert any("[" in idea for idea in ideas), "with a source"
+    assert all(question.right or question.form == "choice" for question in lesson.questions())
+    for part in lesson.parts():
+        if isinstance(part, Recall):
+            assert len(part.asks) == 2
+            for asked, check in part.asks:
+                assert LESSONS.index(asked) < LESSONS.index(name)
+                assert check in {question.name for question in find_lesson(asked).questions("check")}
+    assert LESSONS.index(name) < 1 or any(isinstance(part, Recall) for part in lesson.parts())
+
+
+def test_the_library_is_the_list_in_each_language() -> None:
+    for folder in (LIBRARY, *(LIBRARY / code for code in languages()[1:])):
+        assert {path.stem for path in folder.glob("*.md")} == set(LESSONS), folder
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_a_lesson_in_german_has_other_words_and_the_same_physics(name: str) -> None:
+    english, german = find_lesson(name), find_lesson(name, "de")
+    assert german.language == "de" and german.digest == english.digest
+    assert german.setup.document["entities"] == english.setup.document["entities"]
+    assert [one.theory.text for one in german.compares()] == [one.theory.text for one in english.compares()]
+    text = (LIBRARY / "de" / f"{name}.md").read_text(encoding="utf-8")
+    assert not re.findall(r"\d\.\d.*", text), "a decimal comma"
+    same = set(german.setup.notes.values()) & set(english.setup.notes.values()) - {"", "I / m R²"}
+    assert not same and not set(question.prompt for question in german.questions()) & set(
+        question.prompt for question in english.questions()
+    )
+
+
+def test_the_report_and_the_worksheet_are_in_the_language_of_the_lesson(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    answers, page = tmp_path / "a.json", tmp_path / "blatt.html"
+    given = {"seconds": {"values": {"rod": "0,994 m"}}, "wide": {"value": "2,4 s", "sure": "unsure"}}
+    answers.write_text(json.dumps({"format": "physicslab-answers/1", "lesson": "pendulum", "answers": given}))
+    assert main(["grade", "pendulum", str(answers), "--language", "de"]) == 0
+    report = capsys.readouterr().out
+    assert "Ohne Namen: 1 von 4 Fragen richtig." in report and "(Sage voraus, richtig)" in report
+    assert "gegeben: 2,4 s (unsicher)" in report and "gegeben: rod = 0,994 m" in report
+    assert main(["lesson", "pendulum", "--language", "de", "--worksheet", str(page)]) == 0
+    text = page.read_text(encoding="utf-8")
+    assert '<html lang="de">' in text and "0,25 m bis 4 m" in text and "Vorwissen: Energie" in text
+    assert main(["lesson", "pendulum", "--language", "fr"]) == 2
+    assert "not there in fr" in capsys.readouterr().err
+
+
+def test_the_same_lesson_gives_the_same_bits() -> None:
+    lesson = find_lesson("projectile")
+    assert [*check_lesson(lesson)] == [*check_lesson(lesson)]
+
+
+def recorded(x: list[float]) -> Figures:
+    """Return the figures of a record of samples every second."""
+    record = Record(World(systems=()), ())
+    record.times = [float(i) for i in range(len(x))]
+    record.columns, record.dimensions, record.end = {"b.x": x}, {"b.x": (1, 0, 0, 0)}, len(x) - 1.0
+    return Figures(record, Parameters({"k": Quantity(2.0)}))
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("b.x", 16.0), ("start(b.x)", 1.0), ("greatest(b.x)", 16.0), ("least(b.x)", 0.0), ("time", 5.0),
+        ("at(0.5 s, b.x)", 0.25), ("when(b.x > 0.25 m)", 1.5), ("when(b.x < 0.25 m)", 0.5), ("k b.x", 32.0),
+        ("slope(b.x)", 3.0), ("mean(b.x)", 4.5), ("count(b.x > 2 m)", 1.0), ("peak(1, -b.x)", 0.0),
+        ("max(b.x, 20 m)", 20.0), ("period(sin(pi*time/(2 s)))", 4.0),
+    ],
+)  # fmt: skip
+def test_figures_of_a_run(text: str, value: float) -> None:
+    samples = 6 if "period" not in text else 12
+    figures = recorded([(t - 1.0) ** 2 for t in range(samples)])
+    assert Expression(text).value(figures).value == pytest.approx(value, abs=1e-9)
+
+
+@pytest.mark.parametrize("text", ["period(b.x)", "when(b.x > 99)", "peak(3, b.x)", "at(9 s, b.x)", "slope()"])
+def test_figures_that_a_run_does_not_have(text: str) -> None:
+    with pytest.raises(InvalidText):
+        Expression(text).value(recorded([(t - 1.0) ** 2 for t in range(6)]))
+
+
+def test_conditions_compare_quantities_of_one_dimension() -> None:
+    figures = recorded([0.0, 1.0, 2.0])
+    assert Condition("b.x = 200 cm and time >= 2 s").holds(figures)
+    assert not Condition("b.x != 2").holds(figures)
+    with pytest.raises(InvalidText, match="cannot be compared"):
+        Condition("b.x > 1 s").holds(figures)
+
+
+def test_a_theory_of_another_dimension_is_refused_with_its_line(tmp_path: Path) -> None:
+    text = (LIBRARY / "projectile.md").read_text()
+    path = tmp_path / "wrong.md"
+    path.write_text(text.replace("theory: v0*cos(th)", "theory: v0^2*cos(th)"))
+    assert main(["lesson", str(path), "--check"]) == 2
+
+
+def test_a_theory_that_does_not_hold_ends_the_check_with_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = (LIBRARY / "projectile.md").read_text()
+    path = tmp_path / "wrong.md"
+    path.write_text(text.replace("theory: v0*cos(th)", "theory: v0*sin(th)"))
+    assert main(["lesson", str(path), "--check"]) == 1
+    said = capsys.readouterr()
+    assert "**not as it should be**" in said.out and "sideways" in said.err
+
+
+def test_the_command_lists_and_describes(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert main(["lesson"]) == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == list(LESSONS)
+    assert main(["lesson", "pendulum", "--json", str(tmp_path / "a.json")]) == 0
+    assert "predict  mass" in capsys.readouterr().out
+    assert json.loads((tmp_path / "a.json").read_text())["lessons"][0]["checks"] == ["seconds", "factor"]
+    assert main(["lesson", "pendulm"]) == 2
+    assert 'did you mean "pendulum"?' in capsys.readouterr().err
+
+
+def test_a_check_as_json_has_null_where_there_is_no_number(tmp_path: Path) -> None:
+    assert main(["lesson", "terminal_velocity", "--check", "--json", str(tmp_path / "a.json")]) == 0
+    rows = json.loads((tmp_path / "a.json").read_text())["rows"]
+    drawn = [row for row in rows if row["block"] == "course_drawn"]
+    assert len(drawn) == 2 and all(row["passed"] and row["gap"] is None for row in drawn)
+
+
+def test_cases_change_parameters_and_fields() -> None:
+    runs = LessonRuns(find_lesson("projectile"))
+    compare = next(runs.lesson.compares())
+    by_field = runs.figures(compare.run, Case("x", (("ball.Drag.quadratic", "0.02 kg/m"),)))
+    by_name = runs.figures(compare.run, Case("x", (("air", "0.02 kg/m"),)))
+    assert by_field.named("ball.vx") == by_name.named("ball.vx")
+
+
+def test_the_lesson_of_the_guide_is_one(tmp_path: Path) -> None:
+    guide = Path(__file__).parent.parent / "docs" / "lessons.md"
+    path = tmp_path / "fall.md"
+    path.write_text(
+        guide.read_text(encoding="utf-8").partition("````markdown\n")[2].partition("````")[0],
+        encoding="utf-8",
+    )
+    lesson = read_lesson(path)
+    assert all(row.passed for row in check_lesson(lesson))
+    words = (guide.parent / "languages.md").read_text(encoding="utf-8")
+    (tmp_path / "de").mkdir()
+    (tmp_path / "de" / path.name).write_text(
+        words.partition("````markdown\n")[2].partition("````")[0], "utf-8"
+    )
+    german = read_lesson(path, "de")
+    assert german.title == "Wie lange fällt ein Ball?" and german.quantities == lesson.quantities
+
+
+def test_a_worksheet_has_the_questions_and_no_solutions(tmp_path: Path) -> None:
+    page = tmp_path / "sheet.html"
+    assert main(["lesson", "pendulum", "--worksheet", str(page)]) == 0
+    text = page.read_text(encoding="utf-8")
+    lesson = find_lesson("pendulum")
+    assert text == worksheet(lesson, find_lesson) and "http" not in text and "<script" not in text
+    for question in lesson.questions():
+        assert html.escape(question.prompt) in text
+        assert not question.right or html.escape(question.right) not in text
+        assert all(html.escape(reply.feedback) not in text for reply in question.replies)
+    assert main(["lesson", "--worksheet", str(page)]) == 2
+    own = tmp_path / "own.md"
+    own.write_text((LIBRARY / "pendulum.md").read_text())
+    assert main(["lesson", str(own), "--worksheet", str(own)]) == 2

@@ -1,0 +1,148 @@
+"""Pages of a scene from the window: chosen, made in a process of their own, given up, never lost."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from desk import SETTLED, Desk, bits, click, fill, tap
+
+from physicslab.components import Shape, Slider
+from physicslab.files.scene import load_scene
+from physicslab.view.controls import share_actions
+from physicslab.view.window.sharing import Sharing
+
+# Takes the place of the command: writes what it is given, or waits for ever, or fails.
+_WRITES = """
+import pathlib, sys
+given = sys.argv[1:]
+assert given[0] == "export" or given[0].endswith("scene.json"), given
+if "wait" in pathlib.Path(given[0]).name or "--wait" in given:
+    import time; time.sleep(600)
+pathlib.Path(given[given.index("--html") + 1]).write_text(" ".join(given[1:]))
+"""
+
+
+@pytest.fixture
+def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
+    monkeypatch.chdir(tmp_path)
+    desk = Desk(load_scene("drop"))
+    desk.window.sharing = Sharing((sys.executable, "-c", _WRITES))
+    desk.window.pace.paused = True
+    desk.frames(SETTLED)
+    yield desk
+    desk.window.sharing.stop()
+
+
+def wait(desk: Desk) -> None:
+    process = desk.window.sharing._process
+    assert process is not None
+    process.wait(60)
+    desk.frames(SETTLED)
+
+
+def test_a_page_is_made_of_the_scene_with_the_sliders_that_were_chosen(desk: Desk, tmp_path: Path) -> None:
+    before = bits(desk.world)
+    tap(desk, "f8")
+    assert desk.window.sharing.naming.text == "drop-1.html"
+    fill(desk, "Seconds of the page", "3")
+    desk.window.sharing.slid[0].path = "ball.Velocity.linear.x"
+    desk.frames(SETTLED)
+    click(desk, "Make the page")
+    assert desk.window.sharing.running and "Give it up" in desk.ui.places
+    wait(desk)
+    written = (tmp_path / "drop-1.html").read_text()
+    assert "--seconds 103 " in written or "--seconds 3 " in written
+    assert "--vary ball.Velocity.linear.x=1:5:9 --progress --html" in written
+    assert "Saved" in desk.window.notice and bits(desk.world) == before
+
+
+def test_esc_gives_a_page_up_and_leaves_nothing(desk: Desk, tmp_path: Path) -> None:
+    desk.window.sharing = Sharing((sys.executable, "-c", _WRITES.replace('"wait" in', "True or ")))
+    tap(desk, "f8")
+    click(desk, "Make the page")
+    begun = desk.window.sharing.running
+    tap(desk, "escape")
+    assert (begun, desk.window.sharing.running) == (True, False)
+    assert not desk.window.closing and not list(tmp_path.iterdir())
+
+
+def test_why_there_is_no_page_is_said_at_the_field(desk: Desk, tmp_path: Path) -> None:
+    desk.window.sharing = Sharing((sys.executable, "-c", "import sys; sys.exit('physicslab: --vary: no')"))
+    tap(desk, "f8")
+    click(desk, "Make the page")
+    wait(desk)
+    assert desk.window.sharing.choosing and desk.window.sharing.naming.refused == "--vary: no"
+    assert any("--vary: no" in words for words in desk.ui.words) and not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("field", ["name", "seconds", "folder", "there"])
+def test_what_cannot_be_made_is_refused_at_once(field: str, desk: Desk, tmp_path: Path) -> None:
+    sharing = desk.window.sharing
+    share_actions.toggle_sharing(desk.world, desk.window)
+    (tmp_path / "there.html").write_text("mine")
+    sharing.naming.text = {"name": " ", "folder": "none/x", "there": "there"}.get(field, "x")
+    sharing.seconds = "0" if field == "seconds" else "2"
+    share_actions.begin_sharing(desk.world, desk.window)
+    assert sharing.naming.refused and not sharing.running and sharing.choosing
+    assert (sharing.naming.replaces is not None) == (field == "there")
+    assert (tmp_path / "there.html").read_text() == "mine"
+    if field == "there":
+        desk.frames(SETTLED)
+        click(desk, "Replace it")
+        wait(desk)
+        assert "--seconds 2" in (tmp_path / "there.html").read_text()
+
+
+def test_what_values_of_a_slider_cannot_be_is_said_beside_them(desk: Desk, tmp_path: Path) -> None:
+    """And those that are offered can all be held."""
+    tap(desk, "f8")
+    first, second = desk.window.sharing.slid
+    share_actions.choose_slid(desk.world, first, "ball.Material.restitution")
+    share_actions.choose_slid(desk.world, second, "ball.Velocity.linear.x")
+    assert first.span == "0.4:1:9", "0.8 and a half more would be 1.2"
+    second.span = "1"
+    desk.frames(SETTLED)
+    click(desk, "Make the page")
+    assert second.refused.startswith("must be from : to") and not desk.window.sharing.running
+    second.span, first.span = "1:3:3", "0.4:1.2:9"
+    words = '--vary: entity "ball": Material.restitution = "0.4:1.2:9": 1.2: must be a number from 0 to 1'
+    desk.window.sharing = Sharing((sys.executable, "-c", f"import sys; sys.exit({words!r})"))
+    desk.window.sharing.slid, desk.window.sharing.choosing = [second, first], True
+    desk.window.sharing.naming.text = "a.html"
+    desk.frames(SETTLED)
+    click(desk, "Make the page")
+    wait(desk)
+    assert (first.refused, second.refused) == ("1.2: must be a number from 0 to 1", "")
+    assert first.refused in desk.ui.words and not desk.window.sharing.naming.refused
+
+
+def test_sliders_of_the_scene_become_those_of_the_page(desk: Desk) -> None:
+    ball = desk.world.entity("ball")
+    desk.world.spawn(Slider("Mass.mass", ball, 1.0, 9.0))
+    share_actions.toggle_sharing(desk.world, desk.window)
+    first, second = desk.window.sharing.slid
+    assert (first.path, first.span, second.path) == ("ball.Mass.mass", "1:9:9", "")
+    offered = share_actions.varying(desk.world)
+    assert offered["ball.Velocity.linear.x"] == "ball: velocity x"
+    assert "ball.Shape.radius" in offered and "ball.Shape.width" not in offered
+    assert desk.world.component(ball, Shape).kind == "circle"
+    share_actions.choose_slid(desk.world, second, "ball.Velocity.linear.x")
+    assert second.span == "0.5:1.5:9", "around the 1 m/s that it has"
+
+
+@pytest.mark.slow
+def test_the_page_of_the_program_itself(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    desk = Desk(load_scene("drop"))
+    desk.frames(60)
+    there = bits(desk.world)
+    desk.window.pace.paused = True
+    tap(desk, "f8")
+    desk.window.sharing.seconds = "0.5"
+    click(desk, "Make the page")
+    wait(desk)
+    page = (tmp_path / "drop-1.html").read_text()
+    assert '"start":0.0' in page and "A ball on a floor" in page and bits(desk.world) == there
