@@ -19,7 +19,7 @@ from physicslab.world import World
 
 FRAME = 1.0 / 60.0
 BUTTONS = {"left": 1, "middle": 2, "right": 3}
-MENUS = ("File", "Scenes", "Edit", "World", "Instruments", "View", "Help")
+MENUS = ("File", "Scenes", "Lessons", "Edit", "World", "Instruments", "View", "Help")
 SETTLED = 3
 """Frames after which panels show what an event has done, and what it was clicked for is done."""
 

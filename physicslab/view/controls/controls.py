@@ -111,7 +111,9 @@ ARROWS = {
 type State = Callable[[World, Window], bool]
 
 
-_OPEN_GROUPS = ("time", "view", "window", "help", "quit", "lesson")
+_LESSON = "lesson"
+"""The group of what is done to an open lesson."""
+_OPEN_GROUPS = ("time", "view", "window", "help", "quit", _LESSON)
 """The controls that lessons leave open: they change nothing of what is measured."""
 _OPEN_KEYS = ("return", "n", "delete", "ctrl+z", "ctrl+y", "f12", "ctrl+o")
 """Others: edits of what the lesson has shut are refused where they are made."""
@@ -173,14 +175,11 @@ class Control:
         return self.state is not None and self.state(world, window)
 
     def is_open(self, window: Window) -> bool:
-        """Whether it can be used now: a lesson shuts what it does not name."""
+        """Whether it can be used now: a lesson shuts what it does not name; without one, none is left."""
         lesson = window.lesson
-        if (
-            lesson is None
-            or self.group in _OPEN_GROUPS
-            or self.panel in _OPEN_PANELS
-            or self.key in _OPEN_KEYS
-        ):
+        if lesson is None:
+            return self.group != _LESSON
+        if self.group in _OPEN_GROUPS or self.panel in _OPEN_PANELS or self.key in _OPEN_KEYS:
             return True
         if self.tool is not None and self.group == "measure":
             return lesson.opens_tool(self.tool.name)
@@ -339,7 +338,7 @@ CONTROLS: tuple[Control, ...] = (
             tip="Fit everything into the window"),
     Control("Home", "first view", "home", actions.first_view, group="view",
             tip="The view at the start"),
-    Control("Shift+L", "leave the lesson", "shift+l", lesson_actions.leave_lesson, group="lesson",
+    Control("Shift+L", "leave the lesson", "shift+l", lesson_actions.leave_lesson, group=_LESSON,
             tip="Back to what was shown before; answers are kept in a file"),
     _switch("L", "scenes", "l", "scenes.shows_gallery", "file", "Choose a scene by its picture"),
     Control("Ctrl+N", "new scene", "ctrl+n", saving.begin_new, group="file",

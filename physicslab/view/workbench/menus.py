@@ -142,9 +142,8 @@ def _build_scenes(ui: Ui, world: World, window: Window) -> None:
 
 def _build_lessons(ui: Ui, world: World, window: Window) -> None:
     """Build a line for each lesson that comes with the program."""
-    if window.lesson is not None:
-        _build_controls(ui, ("lesson",), world, window)
-        ui.rule()
+    _build_controls(ui, ("lesson",), world, window)
+    ui.rule()
     with ui.menu("Language of lessons") as shown:
         for code in languages() if shown else ():
             ui.item(_LANGUAGES.get(code, code), choose_language, code, on=window.language == code)
