@@ -6,34 +6,24 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.ecs.text import printable
-from physicslab.files.checks import SceneError
 from physicslab.languages.language import language
 from physicslab.lessons.answers import Graded
-from physicslab.lessons.check import Row, row_of
 from physicslab.lessons.lesson import SURENESS, Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
-from physicslab.lessons.setup import AS_IT_IS, Case
-from physicslab.lessons.words import formula, sureness_words
-from physicslab.state.masses import Diverged
-from physicslab.view.canvas.quantities import percentage, quantity, written_unit
+from physicslab.lessons.words import sureness_words
+from physicslab.view.canvas.quantities import written_unit
 from physicslab.view.controls import lesson_actions
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lesson import OpenLesson
 from physicslab.view.window.window import Window
-from physicslab.view.workbench.lesson_plots import CurveField, factor_of, plot_compared, plot_run
+from physicslab.view.workbench.lesson_compare import RIGHT, RUN, WRONG, Rows, build_compare
+from physicslab.view.workbench.lesson_plots import CurveField, factor_of, plot_run
 
 _SHARE, _LEAST = 0.44, 22.0
 """How much of the world's room it takes, and its least width in heights of the text."""
 _SIZE = (26.0, 34.0)
 """Width and height where it is not docked, in heights of the text."""
-_PREDICT, _RUN, _COMPARE, _EXPLAIN, _CHECK, _RECALL = (
-    "\uf0eb",
-    "\uf04b",
-    "\uf24e",
-    "\uf075",
-    "\uf058",
-    "\uf1da",
-)
-_RIGHT, _WRONG, _LOCKED = "\uf00c", "\uf00d", "\uf023"
+_PREDICT, _COMPARE, _EXPLAIN, _CHECK, _RECALL = "\uf0eb", "\uf24e", "\uf075", "\uf058", "\uf1da"
+_LOCKED = "\uf023"
 _NUMBER = 8.0
 """Width of a field for a number, in heights of the text."""
 
@@ -52,7 +42,7 @@ class LessonPanel:
         self._refused: dict[str, str] = {}
         self._curves: dict[str, CurveField] = {}
         self._graded: dict[str, tuple[object, Graded]] = {}
-        self._rows: dict[tuple[str, object, int], Row | str] = {}
+        self._rows: Rows = {}
         self._parts, self._step = 0, -1
 
     def build(self, ui: Ui, window: Window, lesson: OpenLesson) -> None:
@@ -86,7 +76,7 @@ class LessonPanel:
         for n, step in enumerate(steps):
             if n:
                 imgui.same_line()
-            mark = _RIGHT if lesson.is_done(n) else f"{n + 1}"
+            mark = RIGHT if lesson.is_done(n) else f"{n + 1}"
             tip = step.heading or "The beginning"
             ui.button(f"Step {n + 1}", tip, lesson_actions.go_to_step, n, shown=mark, on=n == lesson.step,
                       size=(1.8 * ui.size, 0.0))  # fmt: skip
@@ -236,7 +226,7 @@ class LessonPanel:
         graded = self._grade(lesson, part, name, kind)
         ui.text(f"You predicted: {graded.given}" if kind == "predict" else graded.given, wrapped=True)
         colour = ui.theme.accent if graded.right else ui.theme.error
-        ui.text(f"{_RIGHT}  Right." if graded.right else f"{_WRONG}  Not so.", colour)
+        ui.text(f"{RIGHT}  Right." if graded.right else f"{WRONG}  Not so.", colour)
         if graded.feedback:
             ui.text(graded.feedback, wrapped=True)
         if graded.idea:
@@ -248,7 +238,7 @@ class LessonPanel:
         shown = next((one.shown_by for one in part.replies if one.feedback == graded.feedback), None)
         if shown is not None and part.run is not None and kind != "recall" and not graded.right:
             ui.button(f"Show {name}", "A run that shows it", lesson_actions.begin_run, part.run, shown,
-                      shown=f"{_RUN}  Show it: {shown.text}", enabled=not lesson.running)  # fmt: skip
+                      shown=f"{RUN}  Show it: {shown.text}", enabled=not lesson.running)  # fmt: skip
 
     def _grade(self, lesson: OpenLesson, part: Question, name: str, kind: str) -> Graded:
         answer, kept = lesson.given[name], self._graded.get(name)
@@ -262,11 +252,11 @@ class LessonPanel:
         ends = (
             f"for {part.seconds.text}" if part.seconds else f"until {part.until.text}" if part.until else ""
         )
-        _title(ui, _RUN, f"Run {ends}")
+        _title(ui, RUN, f"Run {ends}")
         trial, is_open = lesson.trial, lesson.open_to(part)
         mine = trial is not None and trial.run.line == part.line
         made = lesson.made(part)
-        words = f"{_RUN}  Run again" if made else f"{_RUN}  Run"
+        words = f"{RUN}  Run again" if made else f"{RUN}  Run"
         case = f" with {part.case.text}" if part.case.values else ""
         tip = "" if is_open else "Lock in your prediction first"
         ui.button(f"Run {part.name}", tip, lesson_actions.begin_run, part, shown=words + case,
@@ -315,7 +305,7 @@ class LessonPanel:
                 ui.text(f"{name} must be from {low} to {high}", ui.theme.error, wrapped=True)
                 ready = False
         case = lesson.own_case()
-        if ui.button(f"Run own {part.name}", "", shown=f"{_RUN}  Run with these values",
+        if ui.button(f"Run own {part.name}", "", shown=f"{RUN}  Run with these values",
                      enabled=ready and not lesson.running and lesson.open_to(run)):  # fmt: skip
             window.do_next(lesson_actions.begin_run, run, case)
         made = lesson.made(run, case)
@@ -327,80 +317,13 @@ class LessonPanel:
     # ---- compare, explain ----------------------------------------------------------------------------------
 
     def _build_compare(self, ui: Ui, window: Window, lesson: OpenLesson, part: Compare) -> None:
-        own = language(lesson.lesson.language)
-        _title(ui, _COMPARE, f"{own.say('Compare')}: {part.quantity}")
-        ui.text(f"Theory: {formula(own, part.theory.text)}", wrapped=True)
-        ui.faint(f"It holds for {formula(own, part.holds.text)}")
-        tried = lesson.own_cases(part.run)
-        cases = list(dict.fromkeys((AS_IT_IS, *part.cases, *part.fails, *tried)))
-        rows = [self._row(lesson, part, case) for case in cases]
-        predicted = _predicted(lesson, part)
-        flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
-        if imgui.begin_table(f"rows of {part.name}", 5 if predicted else 4, flags):
-            for n in range(5 if predicted else 4):
-                imgui.table_setup_column(f"{n}", imgui.TableColumnFlags_.width_stretch, 1.0 if n else 1.4)
-            heads = ("", *(["predicted"] if predicted else []), "theory", "measured", "gap")
-            imgui.table_next_row()
-            for head in heads:
-                imgui.table_next_column()
-                ui.faint(head, wrapped=False)
-            for n, (case, row) in enumerate(zip(cases, rows, strict=True), start=1):
-                self._build_row(ui, window, lesson, part, n, case, row, predicted)
-            imgui.end_table()
-        found = [(n, row) for n, row in enumerate(rows, start=1) if isinstance(row, Row)]
-        if not part.along and len(found) > 1:
-            plot_compared(ui, part, found, predicted)
+        compare = language(lesson.lesson.language).say("Compare")
+        _title(ui, _COMPARE, f"{compare}: {part.quantity}")
+        build_compare(ui, lesson, part, self._rows)
         if lesson.lesson.setup.opened and imgui.tree_node_ex(f"Your own values###own {part.name}"):
             self._build_values(ui, window, lesson, part)
             imgui.tree_pop()
         ui.note(f"Own values {part.name}")
-
-    def _row(self, lesson: OpenLesson, part: Compare, case: Case) -> Row | str | None:
-        """Return theory beside measurement of a case, why there is none, or ``None`` before its run."""
-        made = lesson.made(part.run, case)
-        if made is None:
-            return None
-        key = part.name, case.values, id(made)
-        if key not in self._rows:
-            try:
-                self._rows[key] = row_of(lesson.lesson, part, case, made.live.figures)
-            except (InvalidText, SceneError, Diverged) as error:
-                self._rows[key] = str(error)
-        return self._rows[key]
-
-    def _build_row(
-        self, ui: Ui, window: Window, lesson: OpenLesson, part: Compare, number: int, case: Case,
-        row: Row | str | None, predicted: float | None,
-    ) -> None:  # fmt: skip
-        values = ", ".join(f"{name} = {text}" for name, text in case.values)
-        imgui.table_next_row()
-        imgui.table_next_column()
-        words = f"{number}. {'as run' if case is AS_IT_IS else values}"
-        ui.text(f"{words}: {case.note}" if case.note else words, wrapped=True)
-        imgui.table_next_column()
-        if predicted is not None:
-            if case is AS_IT_IS and isinstance(row, Row):
-                ui.text(quantity(predicted, written_unit(row.unit)), wrapped=True)
-            imgui.table_next_column()
-        if row is None:
-            button, tip = f"Run {part.name} {number}", f"Run it with {values}"
-            ui.button(button, tip, lesson_actions.begin_run, part.run,
-                      case, shown=f"{_RUN}  Run", enabled=not lesson.running)  # fmt: skip
-            return
-        if isinstance(row, str):
-            ui.text(row, ui.theme.error, wrapped=True)
-            return
-        unit = written_unit(row.unit)
-        ui.text(quantity(row.theory, unit).strip(), wrapped=True)
-        imgui.table_next_column()
-        ui.text(quantity(row.measured, unit).strip(), wrapped=True)
-        imgui.table_next_column()
-        gap = (quantity(row.gap, unit) if row.absolute else percentage(row.gap)).replace(" ", "\u00a0")
-        near = row.gap <= row.tolerance
-        ui.text(
-            f"{_RIGHT if near else _WRONG} {gap}", ui.theme.accent if near else ui.theme.error, wrapped=True
-        )
-        ui.tip(_gap_words(row, near=near))
 
     def _build_explain(self, ui: Ui, lesson: OpenLesson, part: Explain) -> None:
         _title(ui, _EXPLAIN, "Explain")
@@ -435,28 +358,6 @@ def _given_words(part: Question, answer: dict[str, object]) -> str:
         text = str(answer["value"])
         return text if any(map(str.isalpha, text)) else f"{text} {written_unit(part.unit)}".strip()
     return "A curve, as drawn below"
-
-
-def _predicted(lesson: OpenLesson, part: Compare) -> float | None:
-    """Return the number that was predicted of what is compared [SI], if there is one."""
-    for one in lesson.predictions(part.run):
-        same = one.answer is not None and one.answer.text == part.measured.text
-        if one.form == "number" and same and one.name in lesson.given:
-            return factor_of(one.unit) * evaluate(str(lesson.given[one.name]["value"]), one.unit)
-    return None
-
-
-def _gap_words(row: Row, *, near: bool) -> str:
-    """Return in words what the gap between theory and measurement says."""
-    if row.holds:
-        return (
-            "Within the tolerance: the theory holds"
-            if near
-            else "Beyond the tolerance, though it should hold"
-        )
-    return (
-        "The theory need not hold here, and is near" if near else "The theory does not hold here, as it says"
-    )
 
 
 def _in_unit_of(value: float, text: str) -> str:

@@ -1,0 +1,118 @@
+"""Theory beside measurement in the panel of a lesson: a table of cases, and the gap in words."""
+
+from imgui_bundle import imgui
+
+from physicslab.ecs.quantity_text import InvalidText, evaluate
+from physicslab.files.checks import SceneError
+from physicslab.languages.language import language
+from physicslab.lessons.check import Row, row_of
+from physicslab.lessons.lesson import Compare
+from physicslab.lessons.setup import AS_IT_IS, Case
+from physicslab.lessons.words import formula
+from physicslab.state.masses import Diverged
+from physicslab.view.canvas.quantities import percentage, quantity, written_unit
+from physicslab.view.controls import lesson_actions
+from physicslab.view.toolkit.ui import Ui
+from physicslab.view.window.lesson import OpenLesson
+from physicslab.view.workbench.lesson_plots import factor_of, plot_compared
+
+RIGHT, WRONG, RUN = "\uf00c", "\uf00d", "\uf04b"
+"""Icons of a right answer, a wrong one, and of a run."""
+
+type Rows = dict[tuple[str, object, int], Row | str]
+"""Rows that were measured, or why they could not be, by comparison, values and run."""
+
+
+def build_compare(ui: Ui, lesson: OpenLesson, part: Compare, rows_of: Rows) -> None:
+    """Build theory beside the runs in a table, a row a case, and as a graph where there are several."""
+    own = language(lesson.lesson.language)
+    ui.text(f"Theory: {formula(own, part.theory.text)}", wrapped=True)
+    ui.faint(f"It holds for {formula(own, part.holds.text)}")
+    tried = lesson.own_cases(part.run)
+    cases = list(dict.fromkeys((AS_IT_IS, *part.cases, *part.fails, *tried)))
+    rows = [_row(rows_of, lesson, part, case) for case in cases]
+    predicted = _predicted(lesson, part)
+    flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
+    if imgui.begin_table(f"rows of {part.name}", 5 if predicted else 4, flags):
+        for n in range(5 if predicted else 4):
+            imgui.table_setup_column(f"{n}", imgui.TableColumnFlags_.width_stretch, 1.0 if n else 1.4)
+        heads = ("", *(["predicted"] if predicted else []), "theory", "measured", "gap")
+        imgui.table_next_row()
+        for head in heads:
+            imgui.table_next_column()
+            ui.faint(head, wrapped=False)
+        for n, (case, row) in enumerate(zip(cases, rows, strict=True), start=1):
+            _build_row(ui, lesson, part, n, case, row, predicted)
+        imgui.end_table()
+    found = [(n, row) for n, row in enumerate(rows, start=1) if isinstance(row, Row)]
+    if not part.along and len(found) > 1:
+        plot_compared(ui, part, found, predicted)
+
+
+def _row(rows_of: Rows, lesson: OpenLesson, part: Compare, case: Case) -> Row | str | None:
+    """Return theory beside measurement of a case, why there is none, or ``None`` before its run."""
+    made = lesson.made(part.run, case)
+    if made is None:
+        return None
+    key = part.name, case.values, id(made)
+    if key not in rows_of:
+        try:
+            rows_of[key] = row_of(lesson.lesson, part, case, made.live.figures)
+        except (InvalidText, SceneError, Diverged) as error:
+            rows_of[key] = str(error)
+    return rows_of[key]
+
+
+def _build_row(
+    ui: Ui, lesson: OpenLesson, part: Compare, number: int, case: Case,
+    row: Row | str | None, predicted: float | None,
+) -> None:  # fmt: skip
+    values = ", ".join(f"{name} = {text}" for name, text in case.values)
+    imgui.table_next_row()
+    imgui.table_next_column()
+    words = f"{number}. {'as run' if case is AS_IT_IS else values}"
+    ui.text(f"{words}: {case.note}" if case.note else words, wrapped=True)
+    imgui.table_next_column()
+    if predicted is not None:
+        if case is AS_IT_IS and isinstance(row, Row):
+            ui.text(quantity(predicted, written_unit(row.unit)), wrapped=True)
+        imgui.table_next_column()
+    if row is None:
+        button, tip = f"Run {part.name} {number}", f"Run it with {values}"
+        ui.button(button, tip, lesson_actions.begin_run, part.run,
+                  case, shown=f"{RUN}  Run", enabled=not lesson.running)  # fmt: skip
+        return
+    if isinstance(row, str):
+        ui.text(row, ui.theme.error, wrapped=True)
+        return
+    unit = written_unit(row.unit)
+    ui.text(quantity(row.theory, unit).strip(), wrapped=True)
+    imgui.table_next_column()
+    ui.text(quantity(row.measured, unit).strip(), wrapped=True)
+    imgui.table_next_column()
+    gap = (quantity(row.gap, unit) if row.absolute else percentage(row.gap)).replace(" ", "\u00a0")
+    near = row.gap <= row.tolerance
+    ui.text(f"{RIGHT if near else WRONG} {gap}", ui.theme.accent if near else ui.theme.error, wrapped=True)
+    ui.tip(_gap_words(row, near=near))
+
+
+def _predicted(lesson: OpenLesson, part: Compare) -> float | None:
+    """Return the number that was predicted of what is compared [SI], if there is one."""
+    for one in lesson.predictions(part.run):
+        same = one.answer is not None and one.answer.text == part.measured.text
+        if one.form == "number" and same and one.name in lesson.given:
+            return factor_of(one.unit) * evaluate(str(lesson.given[one.name]["value"]), one.unit)
+    return None
+
+
+def _gap_words(row: Row, *, near: bool) -> str:
+    """Return in words what the gap between theory and measurement says."""
+    if row.holds:
+        return (
+            "Within the tolerance: the theory holds"
+            if near
+            else "Beyond the tolerance, though it should hold"
+        )
+    return (
+        "The theory need not hold here, and is near" if near else "The theory does not hold here, as it says"
+    )
