@@ -142,7 +142,7 @@ def _build_scenes(ui: Ui, world: World, window: Window) -> None:
 
 def _build_lessons(ui: Ui, world: World, window: Window) -> None:
     """Build a line for each lesson that comes with the program."""
-    _build_controls(ui, ("lesson",), world, window)
+    _build_controls(ui, ("lesson", "teach"), world, window)
     ui.rule()
     with ui.menu("Language of lessons") as shown:
         for code in languages() if shown else ():
