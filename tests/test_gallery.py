@@ -59,6 +59,15 @@ def test_words_find_scenes_and_enter_opens_the_first(desk: Desk) -> None:
     assert len(cards(desk)) == len(SCENES) + len(LESSONS) + 2, "the next search begins anew"
 
 
+def test_words_are_found_from_their_beginnings(desk: Desk) -> None:
+    write(desk, "lock")
+    assert cards(desk) == [], "not within My clock"
+    for _ in range(4):
+        tap(desk, "backspace")
+    write(desk, "my-cl")
+    assert cards(desk) == ["My clock"]
+
+
 def test_enter_that_opens_nothing_leaves_the_search_its_letters(desk: Desk) -> None:
     write(desk, "no such")
     tap(desk, "return")

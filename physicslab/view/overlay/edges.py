@@ -139,13 +139,26 @@ def _out_of_sight(world: World, camera: Camera, room: Rect) -> NDArray[np.float6
     low, high = np.array(room[:2]), np.array(room[:2]) + room[2:]
     # Most bodies are in sight as a rule, by their middle alone: only the others are looked at closely.
     beyond = np.flatnonzero((across < low[0]) | (across > high[0]) | (down < low[1]) | (down > high[1]))
-    rows, place, shape = rows[beyond], place[beyond], world.table(Shape)
-    half, radius = lengths_of(shape, rows)
-    reach = radius + np.hypot(half[:, 0], half[:, 1])
-    margin = (reach * camera.scale)[:, None]
+    place, margin = place[beyond], _reach(world, camera, rows[beyond])
     out = ((place < low - margin) | (place > high + margin)).any(axis=1)
     found: NDArray[np.float64] = place[out & np.isfinite(place).all(axis=1)]
     return found
+
+
+def count_under(world: World, camera: Camera, rect: Rect) -> int:
+    """Return how many moving bodies a rectangle [px] lies over, by the discs around them."""
+    rows = world.batch(Transform, Velocity).rows
+    place = camera.project(world.table(Transform)["position"][rows])
+    low, high = np.array(rect[:2]), np.array(rect[:2]) + rect[2:]
+    margin = _reach(world, camera, rows)
+    return int(((place > low - margin) & (place < high + margin)).all(axis=1).sum())
+
+
+def _reach(world: World, camera: Camera, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return how far bodies reach from their middles (n, 1) [px]."""
+    half, radius = lengths_of(world.table(Shape), rows)
+    reach: NDArray[np.float64] = radius + np.hypot(half[:, 0], half[:, 1])
+    return (reach * camera.scale)[:, None]
 
 
 def _mean_way(offsets: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,5 +1,6 @@
 """The gallery: every scene as a card with its picture, one's own first, found by words and by tags."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -93,12 +94,12 @@ class Gallery:
                 ui.same_line_if_room(tag, end - imgui.get_window_pos().x)
             if ui.button(f"Tag: {tag or 'all'}", shown=tag or "all", on=tag == self._tag):
                 self._tag = tag
-        wanted = self._words.lower().split()
+        wanted = _plain(self._words).split()
         found = [
             (source, known)
             for source, known in every
             if (not self._tag or self._tag in known.tags)
-            and all(word in _text(source, known) for word in wanted)
+            and all(f" {word}" in _text(source, known) for word in wanted)
         ]
         self._keeps_focus = entered and not (found and wanted)  # the next letters are for the search, too
         if entered and found and wanted:
@@ -171,7 +172,12 @@ def _build_words(ui: Ui, source: Source, known: Known) -> None:
 
 def _text(source: Source, known: Known) -> str:
     name = source.name if isinstance(source, Path) else source
-    return " ".join((known.title, known.words, name, *known.tags)).lower()
+    return f" {_plain(' '.join((known.title, known.words, name, *known.tags)))}"
+
+
+def _plain(text: str) -> str:
+    """Return the words of a text in small letters, with single blanks between them."""
+    return " ".join(re.split(r"[\W_]+", text.lower()))
 
 
 def _visible() -> pygame.Rect:

@@ -11,7 +11,7 @@ from physicslab.view.controls.actions import has_gravity
 from physicslab.view.controls.share_actions import finish_sharing
 from physicslab.view.controls.tour import follow_tour
 from physicslab.view.overlay import banners
-from physicslab.view.overlay.edges import draw_axis_numbers, draw_edge_arrows, draw_scale_bar
+from physicslab.view.overlay.edges import count_under, draw_axis_numbers, draw_edge_arrows, draw_scale_bar
 from physicslab.view.overlay.legend import Legend, legends_of
 from physicslab.view.overlay.marks import draw_selection
 from physicslab.view.window.window import Window
@@ -55,6 +55,8 @@ class Hud:
         self._measures: list[figures.Line] = []
         self._details: list[figures.Line] = []
         self._windows: list[Rect] = []
+        self._said: object = None
+        self._beside = 0
         self.readings: dict[Callable[[World, float], None], float] = {
             self._follow: 0.0, self._read_figures: 0.2, self._read_costs: 0.2, self._read_advice: 0.25,
         }  # fmt: skip
@@ -142,7 +144,7 @@ class Hud:
         margin = round(0.6 * size)
         bar = draw_scale_bar(on, left + width, top + height - margin)
         numbers = draw_axis_numbers(on, room, bar[0]) if window.grid else 0
-        taken = [bar, *self._draw_messages(bar, numbers)]
+        taken = [bar, *self._draw_messages(world, bar, numbers)]
         bottom = min(rect[1] for rect in taken) - margin
         begin, wide, edge = self._free_strip(at_top=True)
         begin, across, first = begin + margin, wide - 2 * margin, edge + margin
@@ -202,10 +204,11 @@ class Hud:
             at = max(at, end)
         return widest
 
-    def _draw_messages(self, bar: Rect, numbers: int) -> list[Rect]:
+    def _draw_messages(self, world: World, bar: Rect, numbers: int) -> list[Rect]:
         """Draw what went wrong or was just done, beside the scale bar or above it; return where.
 
-        They lie above the ``numbers`` at the lower edge, which are so high [px].
+        They lie above the ``numbers`` at the lower edge, which are so high [px], in the middle; others than
+        before lie at one side where they would cover more bodies in the middle.
         """
         window, on, theme, size = self._window, self._window.drawing, self._window.theme, self._interface.text
         _, top, _, height = self._interface.visible
@@ -219,4 +222,15 @@ class Hud:
         if any(middle + message.width // 2 > bar[0] - size // 2 for message in messages):
             messages = banners.lay_out_messages(words, on, width - size)
             bottom = min(bottom, bar[1])
-        return banners.draw_messages(messages, middle, top + size // 2, bottom, on)
+        said = tuple(text for text, _ in words), left, width, bottom
+        if messages and said != self._said:
+            self._said, wide = said, max(message.width for message in messages)
+            high, aside = sum(message.height + size for message in messages), (wide + size) // 2
+            sides = middle, left + aside, min(left + width, bar[0]) - aside
+            self._beside = min(
+                (x - middle for x in sides if left + aside <= x <= left + width - aside or x == middle),
+                key=lambda way: count_under(
+                    world, on.camera, (middle + way - wide // 2, bottom - high, wide, high)
+                ),
+            )
+        return banners.draw_messages(messages, middle + self._beside, top + size // 2, bottom, on)
