@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from deadline import deadline
 from hostile_scenes import scenes
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 
 from physicslab.diagnostics.energy import Audit
 from physicslab.diagnostics.run_report import RunRecord, find_not_finite, run_report
@@ -66,8 +66,17 @@ def _refuse(word: str) -> None:
     raise AssertionError(f"{word} in JSON")
 
 
+def tiny(shape: dict[str, Any]) -> dict[str, Any]:
+    """Return a disc on a body of which a size is the smallest number there is."""
+    disc = {"Transform": {}, "Velocity": {}, "Mass": {}, "Shape": {"kind": "circle", "radius": 1.0}}
+    body = {"Transform": {}, "Mass": {}, "Drag": {}, "Shape": shape}
+    return {"format": "physicslab-scene/1", "entities": [disc, body]}
+
+
 @settings(suppress_health_check=list(HealthCheck))
 @given(scenes())
+@example(tiny({"kind": "box", "width": 5e-324, "height": 1.0}))
+@example(tiny({"kind": "circle", "radius": 5e-324}))
 def test_a_scene_is_refused_in_one_line_or_runs_with_finite_numbers(document: dict[str, Any]) -> None:
     with deadline(document):
         run_or_refuse(document)

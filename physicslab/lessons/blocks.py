@@ -34,7 +34,18 @@ _NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 
 class LessonError(SceneError):
-    """A lesson that cannot be read or checked; the message is one line: file, line, block and why."""
+    """A lesson that cannot be read or checked; the message is one line: file, line, block and why.
+
+    Attributes
+    ----------
+    entry : (str, str)
+        The kind of the block and the key that cannot be so; empty where it is not one entry.
+    why : str
+        What is said of it, without the place.
+    """
+
+    entry = ("", "")
+    why = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +89,9 @@ class Block:
 
     def refusal(self, entry: Entry, why: object) -> LessonError:
         """Return the error that a value cannot be."""
-        return self.error(f"{entry.key} = {shown(entry.value)}: {why}", entry.line)
+        error = self.error(f"{entry.key} = {shown(entry.value)}: {why}", entry.line)
+        error.entry, error.why = (self.kind, entry.key), str(why)
+        return error
 
     def all(self, *keys: str) -> Iterator[Entry]:
         """Yield the entries of some keys, in order."""
@@ -99,7 +112,9 @@ class Block:
         """Return the one entry of a key that a block must have."""
         entry = self.find(key)
         if entry is None or not entry.value:
-            raise self.error(f"{key} is missing: must be {allowed}", entry.line if entry else None)
+            error = self.error(f"{key} is missing: must be {allowed}", entry.line if entry else None)
+            error.entry, error.why = (self.kind, key), f"must be {allowed}"
+            raise error
         return entry
 
     def text(self, key: str, allowed: str) -> str:

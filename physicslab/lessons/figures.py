@@ -48,9 +48,15 @@ def quantity_of(name: str, ids: Iterable[str]) -> tuple[str | None, str]:
         raise InvalidText(f"'{name}' is no quantity: must begin with one of {', '.join(known)}")
     body = None if entity == "world" else 1
     if name != COLLISIONS and (column not in _NAMES or why_not_of(_NAMES[column], body) is not None):
-        some = [short for short, long in _NAMES.items() if why_not_of(long, body) is None and ":" not in long]
-        raise InvalidText(f"'{name}' is no quantity: {entity} has {', '.join(some)}")
+        raise InvalidText(f"'{name}' is no quantity: {entity} has {', '.join(columns(body))}")
     return (None if body is None else entity), _NAMES.get(column, column)
+
+
+def columns(body: int | None) -> dict[str, str]:
+    """Return the quantities of a body, or of the world for ``None``, by what expressions call them."""
+    return {
+        short: long for short, long in _NAMES.items() if why_not_of(long, body) is None and ":" not in long
+    }
 
 
 def unit_of(name: str) -> str:

@@ -1,6 +1,7 @@
 """A step of rigid contacts: from event to event, and by impulses where events accumulate."""
 
 import math
+import sys
 from dataclasses import dataclass
 from typing import Any
 
@@ -281,7 +282,8 @@ class RigidMotion:
         """
         q, v, deepest = self._ode.q, self._ode.v, 0.0
         largest = float(np.abs(q[: self._ode.layout.clock]).max(initial=0.0))
-        rounding = _ROUNDING * largest / float(scene[7][:, 2].min(initial=math.inf))
+        smallest = max(float(scene[7][:, 2].min(initial=math.inf)), sys.float_info.min)
+        rounding = _ROUNDING * largest / smallest
         before = None
         for _ in range(_SEPARATIONS):
             why, count, rest, deepest, _ = self._touch(scene, q, _NEAR * deepest)

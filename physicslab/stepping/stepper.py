@@ -126,4 +126,6 @@ def falls_far(state: State, h: float) -> int:
     if physics.gravity_mode != "linear":
         return 1
     fall, most = physics.gravity.magnitude * substep * substep, MAX_FALL * state.bodies.smallest
-    return 1 if fall <= most else min(MAX_FACTOR, math.ceil(math.sqrt(min(fall / most, 1e12))))
+    if fall <= most:
+        return 1
+    return MAX_FACTOR if fall >= MAX_FACTOR**2 * most else math.ceil(math.sqrt(fall / most))

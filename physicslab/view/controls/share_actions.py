@@ -1,11 +1,13 @@
 """Actions that make a page of a scene, for any browser."""
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from physicslab.components import Held, Shape, Slider, Velocity
 from physicslab.components.slider import GRAVITY
-from physicslab.ecs.component import COMPONENTS, Component
+from physicslab.ecs.component import COMPONENTS, Component, parse_path
 from physicslab.ecs.text import printable, unique_name
 from physicslab.export.page import field_words
 from physicslab.files.replace import create_file, reason_of, replace_file
@@ -92,9 +94,8 @@ def words_of(path: str) -> str:
     """
     if not path:
         return "nothing"
-    end = path[-1] if path[-2:] in (".x", ".y") else ""
-    name, _, field = (path[:-2] if end else path).rsplit(".", 2)
-    return f"{printable(name)}: {field_words(field, end)}"
+    name, _, spec, part = parse_path(path)
+    return f"{printable(name)}: {field_words(spec.name, part)}"
 
 
 def choose_slid(world: World, slid: Slid, path: str) -> None:
@@ -102,15 +103,18 @@ def choose_slid(world: World, slid: Slid, path: str) -> None:
     slid.path, slid.refused = path, ""
     if not path:
         return
-    end = path[-1] if path[-2:] in (".x", ".y") else ""
-    name, kind, field = (path[:-2] if end else path).rsplit(".", 2)
-    entity = next(entity for entity, known in _names(world).items() if known == name)
-    value = getattr(world.component(entity or 0, COMPONENTS[kind]), field)
-    now = getattr(value, end) if end else value
-    spec = next(spec for spec in COMPONENTS[kind].FIELDS if spec.name == field)
-    low, high = sorted((0.5 * now, 1.5 * now)) if now else (0.0, 5.0)
-    low, high = max(low, spec.lowest), min(high, spec.highest)
+    low, high, _ = span_around(world, path)
     slid.span = f"{low:.6g}:{high:.6g}:{_VALUES}"
+
+
+def span_around(world: World, path: str) -> tuple[float, float, str]:
+    """Return half and one and a half of the value of a field, as far as it may be so, and its unit."""
+    name, kind, spec, part = parse_path(path)
+    entity = next(entity for entity, known in _names(world).items() if known == name)
+    value = getattr(world.component(entity or 0, COMPONENTS[kind]), spec.name)
+    now = getattr(value, part) if part else value
+    low, high = sorted((0.5 * now, 1.5 * now)) if now else (0.0, 5.0)
+    return max(low, spec.lowest), min(high, spec.highest), spec.unit
 
 
 def begin_sharing(world: World, window: Window, over: Path | None = None) -> None:
@@ -127,19 +131,12 @@ def begin_sharing(world: World, window: Window, over: Path | None = None) -> Non
         slid.refused = "" if form else "must be from : to : how many values, as 1:5:9"
     if naming.refused or any(slid.refused for slid in sharing.slid):
         return
-    history = window.edits.history
-    here, begin = history.step_count, 0 if sharing.begins == FROM_START else history.step_count
     window.hand.drop(world)
     window.edits.keep()
 
     def write(scene: Path) -> None:
-        if begin != here:
-            history.seek(begin)
-        try:
+        with gone_back(window, sharing.begins):
             save_scene(world, scene)
-        finally:
-            if begin != here:
-                history.seek(here)
 
     try:
         sharing.make(write, path)
@@ -147,6 +144,21 @@ def begin_sharing(world: World, window: Window, over: Path | None = None) -> Non
         naming.refused = f"The page could not be made: {reason_of(error)}"
         return
     sharing.choosing = False
+
+
+@contextmanager
+def gone_back(window: Window, begins: str) -> Iterator[None]:
+    """Show the scene as it was at its start, if it is to begin there, and then as it is now again."""
+    history = window.edits.history
+    here = history.step_count
+    moved = begins == FROM_START and here > 0
+    if moved:
+        history.seek(0)
+    try:
+        yield
+    finally:
+        if moved:
+            history.seek(here)
 
 
 def _why_not(seconds: str, folder: Path) -> str:

@@ -31,6 +31,7 @@ from physicslab.view.window.handles import Handles
 from physicslab.view.window.impacts import ImpactList, Microscope
 from physicslab.view.window.lab_process import ErrorStudy
 from physicslab.view.window.lesson import OpenLesson
+from physicslab.view.window.making import Making
 from physicslab.view.window.measuring import Measuring
 from physicslab.view.window.motion import Glide, fading
 from physicslab.view.window.pace import Pace
@@ -50,6 +51,7 @@ _PATIENCE = 3.0
 """How long [s] after Esc a second one closes the window though there are unsaved edits."""
 OPENED: dict[str, object] = {
     "help": False, "scenes.shows_gallery": False, "filming.choosing": False, "sharing.choosing": False,
+    "making.choosing": False,
     "scenes.opening": None, "scenes.naming": None, "lists_history": False, "microscope.record": None,
     "impacts.shown": False, "error_study.shown": False, "search": None, "tour": None, "shows_cards": False,
     "shows_stopwatch": False, "copying": None,
@@ -181,8 +183,8 @@ class Window:
         The lesson that is open, which shuts what it does not name.
     language : str
         That of lessons and words, as "en".
-    error_study, sharing : ErrorStudy, Sharing
-        Error against run time of the scene, and the page that is made of it: each in a process of its own.
+    error_study, sharing, making : ErrorStudy, Sharing, Making
+        Error against run time of the scene, the page and the lesson that are made of it.
     trust : TrustWatch
         How many digits of what is shown can be relied on.
     notice_failed : bool
@@ -240,7 +242,7 @@ class Window:
         self.dashboard = Dashboard()
         self.closed_at = float("-inf")
         self.pending: list[Action] = []
-        self.error_study, self.sharing = ErrorStudy(), Sharing()
+        self.error_study, self.sharing, self.making = ErrorStudy(), Sharing(), Making()
         self.trust = TrustWatch()
         self.sketch = Sketch()
         self.lesson: OpenLesson | None = None

@@ -28,6 +28,7 @@ from physicslab.view.workbench.impact_panel import build_impacts
 from physicslab.view.workbench.inspector import build_inspector
 from physicslab.view.workbench.instrument_panels import NotePanel, build_stopwatch
 from physicslab.view.workbench.lesson_panel import LessonPanel
+from physicslab.view.workbench.maker_panel import build_maker
 from physicslab.view.workbench.menus import build_help, build_menu_bar, build_palette, palette_width
 from physicslab.view.workbench.microscope_panel import build_microscope
 from physicslab.view.workbench.number_field import NumberFields
@@ -94,7 +95,7 @@ _BESIDE = 12
 _WATCHED = attrgetter(
     "canvas.size", "context", "copying", "dashboard.state", "edits.history.branches", "error_study.shown",
     "figures", "filming.choosing", "filming.naming.refused", "help", "impacts.shown", "language", "level",
-    "lists_history",
+    "lists_history", "making.choosing", "making.naming.refused", "making.refused",
     "measured.number", "microscope.state", "pace.paused", "pace.speed", "scenes.recovery.offered",
     "scenes.shows_gallery", "search", "selection.entities", "sharing.choosing", "sharing.naming.refused",
     "shows_cards", "shows_stopwatch", "tool", "tour", "trust.state",
@@ -106,7 +107,7 @@ _BEFORE: dict[str, _Build] = {
 }  # fmt: skip
 _AFTER: dict[str, _Build] = {
     "scenes.naming": build_save, "filming.choosing": build_film,
-    "sharing.choosing": build_share,
+    "sharing.choosing": build_share, "making.choosing": build_maker,
     "lists_history": build_history, "help": build_help,
 }  # fmt: skip
 """The builders of the panels that are open: those below others at first, and those above them."""

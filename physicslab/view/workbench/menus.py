@@ -146,7 +146,7 @@ def _build_scenes(ui: Ui, world: World, window: Window) -> None:
 
 def _build_lessons(ui: Ui, world: World, window: Window) -> None:
     """Build a line for each lesson that comes with the program."""
-    _build_controls(ui, ("lesson",), world, window)
+    _build_controls(ui, ("lesson", "teach"), world, window)
     ui.rule()
     now = "" if window.lesson is None else window.lesson.lesson.name
     for name, title in titles(window.language).items():
