@@ -13,6 +13,9 @@ from pathlib import Path
 
 import physicslab
 from physicslab.components.quantities import QUANTITIES
+from physicslab.ecs.component import COMPONENTS
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.fields import Field
 from physicslab.languages.catalogue import sources
 from physicslab.languages.language import Language
 from physicslab.scenes import SCENES
@@ -52,7 +55,7 @@ def constants() -> frozenset[str]:
     """Return all texts of the package's source, whatever they are for."""
     trees = (ast.parse(path.read_text(encoding="utf-8")) for path in PACKAGE.rglob("*.py"))
     texts = (text for tree in trees for node in ast.walk(tree) if (text := template(node)))
-    return frozenset(line for text in texts for line in (text, *text.split("\n")))
+    return frozenset(part.strip() for text in texts for part in (text, *re.split(r"[\n|]", text)))
 
 
 @cache
@@ -83,8 +86,19 @@ def tables() -> dict[str, list[str]]:
         "scenes": [text for one in SCENES.values() for text in (one.title, one.description)],
         "quantities": list(QUANTITIES), "levels": [*LEVELS, *LEVELS.values()],
         "themes": [theme.name for theme in THEMES],
+        "fields": [text for one in fields() for text in (_label(one), one.meaning)],
     }  # fmt: skip
     return {name: [text for text in texts if not NEVER.search(text)] for name, texts in found.items()}
+
+
+def fields() -> list[Field]:
+    """Return the fields of all components, and those of a scene's physics and simulation."""
+    components = [field for kind in COMPONENTS.values() for field in kind.FIELDS]
+    return [*components, *PhysicsConfig.FIELDS, *SimulationConfig.FIELDS]
+
+
+def _label(field: Field) -> str:
+    return field.name.capitalize().replace("_", " ")
 
 
 class Marked(NullTranslations):

@@ -9,9 +9,12 @@ from physicslab.languages.catalogue import SOURCE, sources, translations
 
 _POINT = re.compile(r"(?<![\w.])(\d+)\.(\d+(?:e[+-]?\d+)?)(?!\w|\.\w)")
 """A number with a decimal point, which is no part of a name."""
-_GROUPS = re.compile(r"(?<=\d),(?=\d{3}(?!\d))")
 _BETWEEN = re.compile(r"(?<=\d), (?=[-\u2212]?\d)")
 _GAP = re.compile(r"\\\{([a-z_]+)\\\}")
+_MEASURED = re.compile(r"(\D+?) ([-\u2212]?\d.*)")
+"""Words and their number."""
+_KNOWN_BY = 4
+"""So many letters around its gaps tell a sentence that begins with one."""
 _KEPT = 4096
 """Texts whose translation is kept: panels write the same ones again and again."""
 
@@ -58,7 +61,6 @@ class Language:
         """
         if self._mark == ".":
             return text
-        text = _GROUPS.sub("\u00a0", text)
         text, numbers = _POINT.subn(rf"\g<1>{self._mark}\g<2>", text)
         return _BETWEEN.sub("; ", text) if numbers else text
 
@@ -88,7 +90,18 @@ class Language:
                 sentence = self._catalogue.gettext if len(source) == 1 else self._catalogue.ngettext
                 arguments = source if len(source) == 1 else (*source, number)
                 return str(sentence(*arguments)).format(**gaps)
-        return self.decimal(text)
+        return self._list(text) or self.decimal(text)
+
+    def _list(self, text: str) -> str:
+        """Return sentences in a row, a list, or words and a number, all known; empty where one is not."""
+        for between in (". ", "; ", ": ", ", "):
+            parts = text.split(between) if between in text else []
+            said = [self.reword(part) for part in parts]
+            if parts and all(one != self.decimal(own) for one, own in zip(said, parts, strict=True)):
+                return between.join(said)
+        measured = _MEASURED.fullmatch(text)
+        said = [self.reword(part) for part in measured.groups()] if measured else []
+        return " ".join(said) if measured and said[0] != measured[1] else ""
 
     def date(self, day: date) -> str:
         """Return a day with the month by its name.
@@ -121,5 +134,6 @@ def _sentences(code: str) -> dict[str, list[tuple[re.Pattern[str], tuple[str, ..
 
 
 def _is_sentence(text: str) -> bool:
-    """Whether a text has gaps, and words around them by which it is known."""
-    return "{" in text and any(map(str.isalpha, re.sub(r"\{[a-z_]+\}", "", text)))
+    """Whether a text has gaps, and words around them by which it is known: before them, or long enough."""
+    letters = sum(map(str.isalpha, re.sub(r"\{[a-z_]+\}", "", text)))
+    return "{" in text and (letters >= _KNOWN_BY or (letters > 0 and text[0] != "{"))
