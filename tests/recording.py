@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.languages.language import Language, language
 from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, Rounded, TextStyle
 from physicslab.view.canvas.theme import Colour
 
@@ -25,10 +26,13 @@ class RecordingCanvas:
         Width and height [px].
     calls : list of (str, dict)
         The name of each method called, and what it was given.
+    language : Language
+        That of the window.
     """
 
     size: tuple[int, int]
     calls: list[tuple[str, dict[str, Any]]] = field(default_factory=list)
+    language: Language = field(default_factory=language)
 
     def called(self, name: str) -> list[dict[str, Any]]:
         """Return what each call of a method was given."""

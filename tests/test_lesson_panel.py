@@ -316,8 +316,8 @@ def test_a_lesson_is_read_in_another_language_and_keeps_its_answers(desk: Desk) 
     lesson = opened(desk, "pendulum")
     lesson.given["mass"] = {"choice": 2, "sure": "sure"}
     lesson.write()
-    click(desk, "Lessons")
-    click(desk, "Language of lessons")
+    click(desk, "View")
+    click(desk, "Language")
     click(desk, "Deutsch")
     desk.frames(SETTLED)
     again = desk.window.lesson

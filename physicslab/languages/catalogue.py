@@ -4,6 +4,7 @@ import ast
 import gettext
 import io
 import struct
+from functools import cache
 from pathlib import Path
 
 FOLDER = Path(__file__).parent
@@ -19,10 +20,17 @@ def languages() -> list[str]:
 
 def translations(code: str) -> gettext.NullTranslations:
     """Return the translations of a language; without a catalogue texts stay as they are."""
+    found = sources(code)
+    return gettext.GNUTranslations(io.BytesIO(_compiled(found))) if found else gettext.NullTranslations()
+
+
+@cache
+def sources(code: str) -> dict[tuple[str, ...], list[str]]:
+    """Return the messages of a language; none without a catalogue."""
     path = FOLDER / f"{code}.po"
     if code == SOURCE or not path.is_file():
-        return gettext.NullTranslations()
-    return gettext.GNUTranslations(io.BytesIO(_compiled(messages(path.read_text("utf-8"), path.name))))
+        return {}
+    return messages(path.read_text("utf-8"), path.name)
 
 
 def messages(text: str, file: str) -> dict[tuple[str, ...], list[str]]:

@@ -2,12 +2,21 @@
 
 import re
 from datetime import date
-from functools import cache
+from functools import cache, lru_cache
 from gettext import NullTranslations
 
-from physicslab.languages.catalogue import SOURCE, translations
+from physicslab.languages.catalogue import SOURCE, sources, translations
 
-_POINT = re.compile(r"(?<=\d)\.(?=\d)")
+_POINT = re.compile(r"(?<![\w.])(\d+)\.(\d+(?:e[+-]?\d+)?)(?!\w|\.\w)")
+"""A number with a decimal point, which is no part of a name."""
+_BETWEEN = re.compile(r"(?<=\d), (?=[-\u2212]?\d)")
+_GAP = re.compile(r"\\\{([a-z_]+)\\\}")
+_MEASURED = re.compile(r"(\D+?) ([-\u2212]?\d.*)")
+"""Words and their number."""
+_KNOWN_BY = 4
+"""So many letters around its gaps tell a sentence that begins with one."""
+_KEPT = 4096
+"""Texts whose translation is kept: panels write the same ones again and again."""
 
 
 class Language:
@@ -25,6 +34,8 @@ class Language:
         self.code = code
         self._catalogue = translations(code) if catalogue is None else catalogue
         self._mark = self.say(".")
+        self._sentences = _sentences(code)
+        self._reworded = lru_cache(_KEPT)(self._found)
 
     def say(self, text: str, /, **gaps: object) -> str:
         """Return a text of the program in this language, its gaps filled: ``{name}``.
@@ -48,7 +59,49 @@ class Language:
         >>> language("de").decimal("rod = 0.25 m"), language("en").decimal("0.25 m")
         ('rod = 0,25 m', '0.25 m')
         """
-        return _POINT.sub(self._mark, text)
+        if self._mark == ".":
+            return text
+        text, numbers = _POINT.subn(rf"\g<1>{self._mark}\g<2>", text)
+        return _BETWEEN.sub("; ", text) if numbers else text
+
+    def reword(self, text: str) -> str:
+        """Return a finished text of the program in this language, also the numbers in it.
+
+        A sentence is known by what it has around its gaps, ``"Saved {file}"``, and what stands in these is
+        reworded as well; several lines are, each for itself. Any other text stays, but for its numbers.
+
+        >>> [language(code).reword("undo: 2.5 m") for code in ("de", "en")], language("de").reword("undo")
+        (['undo: 2,5 m', 'undo: 2.5 m'], 'Rückgängig')
+        """
+        has_words = any(map(str.isalpha, text))
+        return self._reworded(text) if has_words else self.decimal(text)
+
+    def _found(self, text: str) -> str:
+        for written in (text, text[0].swapcase() + text[1:]):  # as within a sentence, or where one begins
+            known = self._catalogue.gettext(written)
+            if known != written:
+                return known
+        if "\n" in text:
+            return "\n".join(map(self.reword, text.split("\n")))
+        for pattern, source in (*self._sentences.get(text[:1], ()), *self._sentences.get("", ())):
+            if match := pattern.fullmatch(text):
+                gaps = {name: self.reword(value) for name, value in match.groupdict().items()}
+                number = int(gaps["n"]) if gaps.get("n", "").isdecimal() else 2
+                sentence = self._catalogue.gettext if len(source) == 1 else self._catalogue.ngettext
+                arguments = source if len(source) == 1 else (*source, number)
+                return str(sentence(*arguments)).format(**gaps)
+        return self._list(text) or self.decimal(text)
+
+    def _list(self, text: str) -> str:
+        """Return sentences in a row, a list, or words and a number, all known; empty where one is not."""
+        for between in (". ", "; ", ": ", ", "):
+            parts = text.split(between) if between in text else []
+            said = [self.reword(part) for part in parts]
+            if parts and all(one != self.decimal(own) for one, own in zip(said, parts, strict=True)):
+                return between.join(said)
+        measured = _MEASURED.fullmatch(text)
+        said = [self.reword(part) for part in measured.groups()] if measured else []
+        return " ".join(said) if measured and said[0] != measured[1] else ""
 
     def date(self, day: date) -> str:
         """Return a day with the month by its name.
@@ -68,3 +121,19 @@ class Language:
 def language(code: str = SOURCE) -> Language:
     """Return a language by its code; one that has no catalogue has the program's own texts."""
     return Language(code)
+
+
+def _sentences(code: str) -> dict[str, list[tuple[re.Pattern[str], tuple[str, ...]]]]:
+    """Return what finds each text with gaps, by its first letter, the longest first; empty before a gap."""
+    found: dict[str, list[tuple[re.Pattern[str], tuple[str, ...]]]] = {}
+    texts = [(text, source) for source in sources(code) for text in source if _is_sentence(text)]
+    for text, source in sorted(texts, key=lambda one: len(one[0]), reverse=True):
+        pattern = re.compile(_GAP.sub(r"(?P<\1>.+?)", re.escape(text)))
+        found.setdefault("" if text[0] == "{" else text[0], []).append((pattern, source))
+    return found
+
+
+def _is_sentence(text: str) -> bool:
+    """Whether a text has gaps, and words around them by which it is known: before them, or long enough."""
+    letters = sum(map(str.isalpha, re.sub(r"\{[a-z_]+\}", "", text)))
+    return "{" in text and (letters >= _KNOWN_BY or (letters > 0 and text[0] != "{"))

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.languages.language import Language
 from physicslab.view.canvas.theme import Colour
 
 if TYPE_CHECKING:
@@ -115,6 +116,9 @@ class Canvas(Protocol):
     Angles are counter-clockwise as seen on the screen [rad]. Anything outside the picture is cut off, and
     nothing that is not finite may be passed.
     """
+
+    language: Language
+    """What words are written in."""
 
     @property
     def size(self) -> tuple[int, int]:

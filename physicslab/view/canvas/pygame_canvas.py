@@ -7,6 +7,7 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from physicslab.languages.language import language
 from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, Rounded, TextStyle
 from physicslab.view.canvas.plain_shapes import draw_boxes, draw_discs, draw_rounded, draw_strokes
 from physicslab.view.canvas.surface_cache import GLOW_LEVELS, SurfaceCache
@@ -31,7 +32,7 @@ class PygameCanvas:
     def __init__(self, surface: pygame.Surface) -> None:
         if surface.get_bytesize() != 4:
             raise ValueError(f"a canvas needs 32 bits a pixel; this surface has {surface.get_bitsize()}")
-        self.surface = surface
+        self.surface, self.language = surface, language()
         red, green, blue, _ = surface.get_shifts()
         self._shifts = np.array((red, green, blue), np.uint32)
         self._surfaces = SurfaceCache()
@@ -147,13 +148,13 @@ class PygameCanvas:
 
     def text(self, words: str, at: tuple[int, int], style: TextStyle, align: Align = "left") -> None:
         """Write one line; ``at`` is its top left, top middle or top right."""
-        line = self._surfaces.text(words, style)
+        line = self._surfaces.text(self.language.reword(words), style)
         left = at[0] - {"left": 0, "centre": line.get_width() // 2, "right": line.get_width()}[align]
         self.surface.blit(line, (left, at[1]))
 
     def text_size(self, words: str, style: TextStyle) -> tuple[int, int]:
         """Return the width and height of one line [px]."""
-        return self._surfaces.text_size(words, style)
+        return self._surfaces.text_size(self.language.reword(words), style)
 
     def paint(self, painter: Painter) -> None:
         """Let something else draw on the picture."""

@@ -50,7 +50,7 @@ def open_lesson(world: World, window: Window, name: str) -> str:
 
 
 def choose_language(world: World, window: Window, code: str) -> None:
-    """Take another language for lessons; one that is open is opened in it, at the step where it is."""
+    """Take another language; a lesson that is open is opened in it, at the step where it is."""
     window.language, lesson = code, window.lesson
     if lesson is not None:
         step = lesson.step

@@ -18,11 +18,19 @@ _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_di
 class Ui(Windows):
     """The widgets of one frame. Each is noted: where it is, by its words, and all that is written."""
 
+    def width(self, words: str) -> float:
+        """Return how wide words are in the language of the window [px]."""
+        return float(imgui.calc_text_size(self.said(words)).x)
+
+    def height(self, words: str, room: float) -> float:
+        """Return how high they are, broken to a width [px]."""
+        return float(imgui.calc_text_size(self.said(words), wrap_width=room).y)
+
     # ---- words ---------------------------------------------------------------------------------------------
 
     def text(self, words: str, colour: Colour | None = None, *, wrapped: bool = False) -> None:
         """Write words in a colour of the theme, broken to the panel's width if ``wrapped``."""
-        words = drawable(words)
+        words = self.said(words)
         self.words.append(words)
         imgui.push_style_color(imgui.Col_.text, packed(colour or self.theme.text))
         if wrapped:
@@ -54,8 +62,8 @@ class Ui(Windows):
 
     def row(self, label: str, value: str, tip: str = "", *, lesser: bool = False) -> None:
         """Write a label and its value, the value at the right."""
-        label, value = drawable(label), drawable(value)
-        self.rows.setdefault(label, value)
+        value = self.said(value)
+        self.rows.setdefault(drawable(label), value)
         colour = self.theme.faint
         if lesser:
             imgui.indent(0.8 * self.size)
@@ -101,7 +109,7 @@ class Ui(Windows):
     def tip(self, words: str) -> None:
         """Show words beside the cursor while it rests on what was drawn last."""
         if words and imgui.is_item_hovered(_TIP_FLAGS):
-            words = drawable(words)
+            words = self.said(words)
             self.words.append(words)
             self._place_tip()
             if imgui.begin_tooltip():
@@ -154,8 +162,8 @@ class Ui(Windows):
         on : bool
             Whether it is marked as what there is now.
         """
-        words = label if shown is None else shown
-        self.words.append(drawable(words))
+        words = self.said(label if shown is None else shown)
+        self.words.append(words)
         if on:
             imgui.push_style_color(imgui.Col_.button, packed(self.theme.accent))
             imgui.push_style_color(imgui.Col_.button_hovered, packed(self.theme.accent, 0.9))
@@ -185,9 +193,9 @@ class Ui(Windows):
 
         ``shown`` is written on it, where not the label; ``identity`` tells it from lines with the same one.
         """
-        words = label if shown is None else shown
-        self.words.append(drawable(words))
-        chosen, _ = imgui.menu_item(widget_label(words, identity or label), keys, on, enabled)
+        words = self.said(label if shown is None else shown)
+        self.words.append(words)
+        chosen, _ = imgui.menu_item(widget_label(words, identity or label), self.said(keys), on, enabled)
         self.note(label)
         self.tip(tip)
         return self._did(chosen, action)
@@ -195,8 +203,9 @@ class Ui(Windows):
     @contextmanager
     def menu(self, label: str, identity: str | None = None) -> Iterator[bool]:
         """Begin a menu; what is yielded says whether it is open. ``identity`` as in :meth:`item`."""
-        self.words.append(drawable(label))
-        shown = bool(imgui.begin_menu(widget_label(label, identity or label)))
+        words = self.said(label)
+        self.words.append(words)
+        shown = bool(imgui.begin_menu(widget_label(words, identity or label)))
         self.note(label)
         try:
             yield shown
@@ -222,7 +231,7 @@ class Ui(Windows):
     def same_line_if_room(self, label: str, end: float | None = None) -> None:
         """Go on in the same line where there is room for a button with such words, up to an ``end`` [px]."""
         imgui.same_line()
-        needed = imgui.calc_text_size(label).x + 2.0 * imgui.get_style().frame_padding.x
+        needed = self.width(label) + 2.0 * imgui.get_style().frame_padding.x
         room = imgui.get_content_region_avail().x if end is None else end - imgui.get_cursor_pos_x()
         if room < needed:
             imgui.new_line()
@@ -247,8 +256,9 @@ class Ui(Windows):
 
     def checkbox(self, label: str, on: bool, tip: str = "") -> bool:
         """Draw a box to tick, and return whether it was clicked."""
-        self.words.append(drawable(label))
-        changed, _ = imgui.checkbox(widget_label(label, label), on)
+        words = self.said(label)
+        self.words.append(words)
+        changed, _ = imgui.checkbox(widget_label(words, label), on)
         self.note(label)
         self.tip(tip)
         return bool(changed)
@@ -256,7 +266,7 @@ class Ui(Windows):
     def checkbox_width(self, label: str) -> float:
         """Return how wide a box to tick is with its words [px]."""
         gap = imgui.get_style().item_inner_spacing.x
-        return float(imgui.get_frame_height() + gap + imgui.calc_text_size(label).x)
+        return float(imgui.get_frame_height()) + gap + self.width(label)
 
     def choice[T](
         self, label: str, chosen: T, choices: Sequence[T] | Callable[[], Mapping[T, str]], tip: str = "",
@@ -271,7 +281,7 @@ class Ui(Windows):
         shown : str, optional
             The words of what is chosen, where it is no text.
         """
-        words = drawable(str(chosen) if shown is None else shown)
+        words = self.said(str(chosen) if shown is None else shown)
         self.words.append(words)
         imgui.set_next_item_width(width)
         unfolded = imgui.begin_combo(widget_label("", label), words)
@@ -280,8 +290,8 @@ class Ui(Windows):
         if unfolded:
             offered = choices() if callable(choices) else {one: str(one) for one in choices}
             for one, name in offered.items():
-                self.words.append(drawable(name))
-                clicked, _ = imgui.selectable(widget_label(name, repr(one)), one == chosen)
+                self.words.append(self.said(name))
+                clicked, _ = imgui.selectable(widget_label(self.words[-1], repr(one)), one == chosen)
                 self.note(f"{label}: {name}")
                 if clicked:
                     chosen = one
@@ -295,9 +305,10 @@ class Ui(Windows):
 
         ``identity`` as in :meth:`item`.
         """
-        self.words.append(drawable(label))
+        words = self.said(label)
+        self.words.append(words)
         imgui.push_style_color(imgui.Col_.text, packed(self.theme.faint if faint else self.theme.text))
-        clicked, _ = imgui.selectable(widget_label(label, identity or label), on)
+        clicked, _ = imgui.selectable(widget_label(words, identity or label), on)
         imgui.pop_style_color()
         self.note(label)
         return self._did(clicked, action)
@@ -305,7 +316,7 @@ class Ui(Windows):
     def option(self, label: str, words: str, *, on: bool) -> bool:
         """Draw a line of a choice, broken to the panel's width, and return whether it was clicked."""
         inset, room = 1.6 * self.size, imgui.get_content_region_avail().x
-        high = imgui.calc_text_size(words, wrap_width=room - inset).y
+        high = self.height(words, room - inset)
         corner = imgui.get_cursor_screen_pos()
         clicked, _ = imgui.selectable(widget_label("", label), on, 0, ImVec2(room, high + 0.4 * self.size))
         self.note(label)
@@ -325,7 +336,7 @@ class Ui(Windows):
         self, label: str, value: float, low: float, high: float, shown: str, width: float = -1.0
     ) -> float | None:
         """Draw a slider with words on it, and return the new value if it was moved."""
-        shown = drawable(shown)
+        shown = self.said(shown)
         self.words.append(shown)
         imgui.set_next_item_width(width)
         flags = imgui.SliderFlags_.no_input  # Ctrl-click would make a field of it, without units

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 import pygame
 from imgui_bundle import ImVec2, imgui
 
+from physicslab.languages.language import language
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.theme import Theme
@@ -30,6 +31,8 @@ _WIDE = 44.0
 """Width of the world's room from which on windows stand at its sides, not below, in heights of the text."""
 LEAST_WORLD = 17.0
 """Width, and height, that windows leave to the world if they can lie over each other instead."""
+NARROW = 6.0
+"""Padding of panels that hold buttons alone [px]."""
 _TITLE = 6.0
 """Height of what a floating window has above what fills it, at most, in heights of the text."""
 _UNSEEN = "\u200b"
@@ -74,6 +77,8 @@ class Windows:
         The widget that keys go to, by its words.
     room : Rect
         What of the window is left for the world; what opens lies within it [px].
+    language : Language
+        What all words are written in; widgets are found by the program's own words whatever it is.
     do_next : callable
         Has an action done next; further arguments are the action's.
     pictures : list of tuples
@@ -93,6 +98,7 @@ class Windows:
         self._raised: dict[str, object] = {}  # what each window showed when it was put in front
         self._put: set[str] = set()  # windows that were docked, as they stood nowhere before
         self.room: Rect = (0, 0, 1 << 20, 1 << 20)
+        self.language = language()
         self.do_next: Callable[..., object] = lambda action, *arguments: None
 
     def begin(self, theme: Theme, room: Rect = (0, 0, 1 << 20, 1 << 20), *, rearranged: bool = False) -> None:
@@ -100,6 +106,15 @@ class Windows:
         self.theme, self.room = theme, room
         self.once = imgui.Cond_.always if rearranged else imgui.Cond_.first_use_ever
         self.places, self.words, self.rows, self.pictures, self.focused = {}, [], {}, [], ""
+
+    def said(self, words: str) -> str:
+        """Return words in the language of the window, as they can be drawn."""
+        return drawable(self.language.reword(words))
+
+    def _titled(self, title: str) -> str:
+        """Return the name of a window whose title is shown in the language of the window."""
+        said = self.said(title)
+        return title if said == title else widget_label(said, title)
 
     @property
     def size(self) -> float:
@@ -115,7 +130,7 @@ class Windows:
         if not rounded:
             imgui.push_style_var(imgui.StyleVar_.window_rounding, 0.0)
         if not padded:
-            imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(6.0, 6.0))
+            imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(NARROW, NARROW))
         imgui.begin(name, None, _FIXED)
         try:
             yield
@@ -161,8 +176,9 @@ class Windows:
         """
         when = imgui.Cond_.always if again else self.once
         internal = imgui.internal
-        known = internal.find_window_by_name(name) or internal.find_window_settings_by_id(
-            internal.im_hash_str(name)
+        titled = self._titled(name)
+        known = internal.find_window_by_name(titled) or internal.find_window_settings_by_id(
+            internal.im_hash_str(titled)
         )
         if known is not None and when != imgui.Cond_.always:
             return
@@ -216,7 +232,8 @@ class Windows:
             when = self.once if docks else imgui.Cond_.appearing
             imgui.set_next_window_pos(ImVec2(*middle), when, ImVec2(0.5, 0.5))
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
-        _, stays = imgui.begin(title, True, (_FLOATING | _BESIDE) if docks else (_FLOATING | _APART))
+        name = self._titled(title)
+        _, stays = imgui.begin(name, True, (_FLOATING | _BESIDE) if docks else (_FLOATING | _APART))
         place, size = imgui.get_window_pos(), imgui.get_window_size()
         x, y = (
             max(min(place.x, low.x + room.x - size.x), low.x),
@@ -224,9 +241,9 @@ class Windows:
         )
         if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
             imgui.set_window_pos(ImVec2(x, y))
-        self.words.append(title)
+        self.words.append(self.said(title))
         if docks:
-            self.raise_tab(self._raised.get(title))
+            self.raise_tab(self._raised.get(name))
         try:
             yield
         finally:

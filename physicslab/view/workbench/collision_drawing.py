@@ -98,6 +98,7 @@ class Sketch:
 
     def words(self, place: Place, words: str, colour: Colour) -> None:
         """Write words with their middle at a place, or near it where others are; all within the sketch."""
+        words = self.ui.said(words)
         size = imgui.calc_text_size(words)
         x = min(max(place.x - 0.5 * size.x, 0.0), max(self.width - size.x, 0.0))
         y = min(max(place.y - 0.5 * size.y, 0.0), max(self.height - size.y, 0.0))

@@ -132,14 +132,14 @@ def build_recovery(ui: Ui, window: Window, free: Rect) -> int:
     style, words = imgui.get_style(), window.scenes.recovery.words
     room = width - 2 * _PAD
     gap, line = style.item_spacing, imgui.get_frame_height()
-    buttons = [imgui.calc_text_size(label).x + 2 * style.frame_padding.x for label in _OFFERS]
-    in_line = imgui.calc_text_size(words).x + sum(buttons) + len(buttons) * gap.x <= room
+    buttons = [ui.width(label) + 2 * style.frame_padding.x for label in _OFFERS]
+    in_line = ui.width(words) + sum(buttons) + len(buttons) * gap.x <= room
     beside = sum(buttons) + gap.x <= room
     if in_line:
         height = line
     else:
         rows = 1 if beside else len(buttons)
-        height = imgui.calc_text_size(words, wrap_width=room).y + rows * (line + gap.y)
+        height = ui.height(words, room) + rows * (line + gap.y)
     with ui.panel("recovery", (left, top, width, round(height) + 2 * _PAD), padded=False):
         if in_line:
             imgui.align_text_to_frame_padding()

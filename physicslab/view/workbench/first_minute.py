@@ -58,7 +58,7 @@ def build_cards(ui: Ui, window: Window, free: Rect) -> int:
     columns = 3 if inside >= 3 * _CARD * size + 2 * gap.x else 1
     card = (inside - (columns - 1) * gap.x) / columns
     rows, high = len(_CARDS) // columns, _CARD_HEIGHT * size if columns > 1 else line
-    words = imgui.calc_text_size(_SENTENCE, wrap_width=float(inside)).y
+    words = ui.height(_SENTENCE, float(inside))
     wide = columns > 1
     height = round(words + rows * (high + gap.y) + (1 if wide else 2) * (line + gap.y) + 2 * pad)
     with ui.panel("first steps", (left, top, width, height), rounded=True):
@@ -89,6 +89,7 @@ def _build_card(ui: Ui, title: str, kind: str, tip: str, action: Action, size: t
     for words, colour, font in (
         (title, ui.theme.heading, ui.fonts.bold), (kind, ui.theme.faint, ui.fonts.plain),
     ):  # fmt: skip
+        words = ui.said(words)
         ui.words.append(words)
         imgui.push_font(font, ui.size)
         left = low.x + 0.5 * (size[0] - imgui.calc_text_size(words).x)
@@ -107,7 +108,7 @@ def build_tour(ui: Ui, window: Window, free: Rect) -> int:
     left, top, width, _ = free
     gap, line = imgui.get_style().item_spacing, imgui.get_frame_height()
     pad, step = round(_PAD * ui.size), STEPS[tour.number]
-    high = imgui.calc_text_size(step.words, wrap_width=float(width - 2 * pad)).y
+    high = ui.height(step.words, float(width - 2 * pad))
     height = round(high + 2 * line + 2 * gap.y + 2 * pad)
     with ui.panel("tour", (left, top, width, height), rounded=True):
         imgui.set_cursor_pos(ImVec2(pad, pad))
@@ -179,7 +180,7 @@ class CommandSearch:
 
     def _build_line(self, ui: Ui, window: Window, command: commands.Command, on: bool, across: float) -> None:
         """Build a line: what it is called, and at the right the key for it."""
-        corner, keys = imgui.get_cursor_pos(), imgui.calc_text_size(command.keys).x
+        corner, keys = imgui.get_cursor_pos(), ui.width(command.keys)
         identity = f"{command.words} {command.keys} {command.tip}"
         clicked, _ = imgui.selectable(widget_label("", identity), on, 0, ImVec2(across, 0.0))
         ui.note(f"Found: {command.words}")

@@ -70,7 +70,7 @@ class GraphPlot:
         self, ui: Ui, world: World, graph: GraphShown, window: Window, height: float, *, follows: bool
     ) -> dict[Key, implot.ImAxis_]:
         """Set up an axis for each unit, three at most; return which axis each line has."""
-        across = "time [s]" if graph.across is None else _heading([graph.across])
+        across = ui.said("time [s]") if graph.across is None else _heading(ui, [graph.across])
         if graph.across is None and height < _LABELLED * ui.size:
             across = ""  # the moment is written beside the plot, with its unit
         keys = [line.key for line in graph.lines]
@@ -80,7 +80,7 @@ class GraphPlot:
         for n, axis in enumerate(_AXES[: max(len(units), 1)]):
             own = units[n:] if n == len(_AXES) - 1 else units[n : n + 1]
             mine = [key for key in keys if QUANTITIES[key[1]].unit in own]
-            self._set_up(ui, world, axis, _heading(mine, height), graph, window, mine, follows=follows)
+            self._set_up(ui, world, axis, _heading(ui, mine, height), graph, window, mine, follows=follows)
             axis_of |= dict.fromkeys(mine, axis)
         implot.setup_finish()
         return axis_of
@@ -282,11 +282,11 @@ def _draw_letter(ui: Ui, place: tuple[float, float], letter: str, colour: Colour
     paper.add_text(ImVec2(left, top), packed(ui.theme.background), letter)
 
 
-def _heading(keys: list[Key], room: float = math.inf) -> str:
+def _heading(ui: Ui, keys: list[Key], room: float = math.inf) -> str:
     """Return what is written along an axis: quantities with their unit, or units alone where that is long."""
     names = list(dict.fromkeys(key[1] for key in keys))
     units = ", ".join(dict.fromkeys(written_unit(QUANTITIES[name].unit) for name in names))
-    words = f"{', '.join(names)} [{units}]"
+    words = f"{', '.join(map(ui.said, names))} [{units}]"
     return words if names and imgui.calc_text_size(words).x <= room else units
 
 

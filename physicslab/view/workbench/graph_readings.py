@@ -154,8 +154,8 @@ def build_readings(ui: Ui, world: World, window: Window, graph: GraphShown) -> N
             continue
         value, usual = _value(world, window, key, row), f"{_VALUE} {unit_of(key)}"
         width = (_MARK + 0.4) * ui.size if colour is not None else 0.0
-        width += imgui.calc_text_size(f"{name} ").x
-        width += max(imgui.calc_text_size(usual).x, imgui.calc_text_size(value).x)
+        width += ui.width(f"{ui.said(name)} ")
+        width += max(ui.width(usual), ui.width(value))
         if used and used + width <= room:
             imgui.same_line(used + style.window_padding.x)
         else:
@@ -173,7 +173,7 @@ def build_moment(ui: Ui, world: World, window: Window) -> None:
     past = window.dashboard.past
     words = f"t {record.times[row]:.3f} s" if past is None else f"the past: {past.share:.0%}"
     imgui.same_line()
-    room = imgui.get_content_region_avail().x - imgui.calc_text_size(words).x
+    room = imgui.get_content_region_avail().x - ui.width(words)
     if room < 0.0:
         imgui.new_line()
     else:
@@ -199,7 +199,7 @@ def _entry(ui: Ui, colour: Colour | None, name: str, value: str, *, wrapped: boo
         imgui.same_line(0.0, 0.4 * ui.size)
     ui.faint(name, wrapped=False)
     imgui.same_line(0.0, imgui.calc_text_size(" ").x)
-    if wrapped and imgui.calc_text_size(value).x > imgui.get_content_region_avail().x:
+    if wrapped and ui.width(value) > imgui.get_content_region_avail().x:
         imgui.new_line()
     ui.text(value, wrapped=wrapped)
 

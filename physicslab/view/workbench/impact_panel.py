@@ -107,8 +107,9 @@ def _build_heading(ui: Ui, window: Window, n: int) -> None:
     """Build a heading; a click sorts by it, and a second one the other way round."""
     impacts, name = window.impacts, COLUMNS[n]
     mark = "" if impacts.sorted_by != name else " (falling)" if impacts.falling else " (rising)"
-    ui.words.append(_HEADS[n] + mark)
-    clicked, _ = imgui.selectable(f"{_HEADS[n]}##heading", impacts.sorted_by == name)
+    head = ui.said(_HEADS[n])
+    ui.words.append(head + ui.said(mark))
+    clicked, _ = imgui.selectable(f"{head}###{_HEADS[n]} heading", impacts.sorted_by == name)
     ui.note(f"Sort by {_HEADS[n].lower()}")
     if impacts.sorted_by == name:
         _draw_arrow(ui, upwards=not impacts.falling)

@@ -6,6 +6,7 @@ from operator import attrgetter
 import pygame
 from imgui_bundle import imgui
 
+from physicslab.languages.language import language
 from physicslab.view.canvas.canvas import Canvas, Rect
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.toolkit.style import bar_height
@@ -28,7 +29,7 @@ from physicslab.view.workbench.inspector import build_inspector
 from physicslab.view.workbench.instrument_panels import NotePanel, build_stopwatch
 from physicslab.view.workbench.lesson_panel import LessonPanel
 from physicslab.view.workbench.maker_panel import build_maker
-from physicslab.view.workbench.menus import build_help, build_menu_bar, build_palette
+from physicslab.view.workbench.menus import build_help, build_menu_bar, build_palette, palette_width
 from physicslab.view.workbench.microscope_panel import build_microscope
 from physicslab.view.workbench.number_field import NumberFields
 from physicslab.view.workbench.scene_panels import ScenePanels
@@ -55,10 +56,13 @@ class Layout:
         The menu bar, the tools, the transport, the panel at the right, and what is left for the world.
     """
 
-    def __init__(self, size: tuple[int, int], text: int, *, side: bool) -> None:
-        """Lay a window out for text of a height [px], with or without the panel at the right."""
+    def __init__(self, size: tuple[int, int], text: int, *, side: bool, palette: float = 0.0) -> None:
+        """Lay a window out for text of a height [px], with or without the panel at the right.
+
+        The tools are as wide as their names ask for, ``palette`` [px], and usually wider.
+        """
         width, height = size
-        top, foot, left = bar_height(text), round(_TRANSPORT * text), round(_PALETTE * text)
+        top, foot, left = bar_height(text), round(_TRANSPORT * text), round(max(_PALETTE * text, palette))
         right = round(_SIDE * text) if side else 0
         middle, across = max(height - top - foot, 1), width - left - right
         if across < _MIN_WORLD * width:
@@ -90,7 +94,7 @@ _BESIDE = 12
 """How near to a panel a press makes no body: it may have been meant for that [px]."""
 _WATCHED = attrgetter(
     "canvas.size", "context", "copying", "dashboard.state", "edits.history.branches", "error_study.shown",
-    "figures", "filming.choosing", "filming.naming.refused", "help", "impacts.shown", "level",
+    "figures", "filming.choosing", "filming.naming.refused", "help", "impacts.shown", "language", "level",
     "lists_history", "making.choosing", "making.naming.refused", "making.refused",
     "measured.number", "microscope.state", "pace.paused", "pace.speed", "scenes.recovery.offered",
     "scenes.shows_gallery", "search", "selection.entities", "sharing.choosing", "sharing.naming.refused",
@@ -139,7 +143,7 @@ class Interface:
         self._scene_panels = ScenePanels()
         self._copies, self._lesson = CopiesPanel(), LessonPanel()
         self._note, self._about = NotePanel(), AboutPanel()
-        self._next = 0.0
+        self._next = self._palette = 0.0
         self._offer_height = self._bar_height = (
             0  # of what is offered at the top of the room, and the first [px]
         )
@@ -163,7 +167,8 @@ class Interface:
     @property
     def layout(self) -> Layout:
         """The layout."""
-        return Layout(self._window.canvas.size, self.text, side=self._window.figures)
+        window = self._window
+        return Layout(window.canvas.size, self.text, side=window.figures, palette=self._palette)
 
     def room(self) -> Rect:
         """Return what is left for the world [px]."""
@@ -224,6 +229,7 @@ class Interface:
             Time [s] since the last frame.
         """
         window = self._window
+        self.ui.language = window.canvas.language = language(window.language)
         if self._is_cramped():
             window.arrangement = ""
         rearranged = window.arrangement != self._arrangement
@@ -289,6 +295,7 @@ class Interface:
         ui.room = self.visible
         self._begin_numbers()
         build_menu_bar(ui, world, window)
+        self._palette = palette_width(ui)
         build_palette(ui, layout.palette, window)
         build_transport(ui, layout.transport, world, window)
         if window.figures:

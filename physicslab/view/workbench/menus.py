@@ -22,7 +22,7 @@ from physicslab.view.controls.tool import ICONS, Tool
 from physicslab.view.controls.tools import DRAWING, MORE_TOOLS, PALETTE, key_of
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.toolkit.windows import widget_label
+from physicslab.view.toolkit.windows import NARROW, widget_label
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.file_panels import recent_label
 from physicslab.view.workbench.trust_badge import badge_width, build_badge
@@ -62,7 +62,7 @@ def build_menu_bar(ui: Ui, world: World, window: Window) -> None:
 
 def _build_right(ui: Ui, world: World, window: Window) -> None:
     """Build the badge at the right, and the title of the scene where there is room for both."""
-    title = shortened(printable(scene_words(world, window)), _MAX_TITLE)
+    title = shortened(ui.said(printable(scene_words(world, window))), _MAX_TITLE)
     room, width = imgui.get_content_region_avail().x, imgui.calc_text_size(title).x
     beside = room - width - ui.size
     is_titled = badge_width(ui, world, window) <= beside
@@ -93,6 +93,10 @@ def _build_controls(ui: Ui, groups: tuple[str, ...], world: World, window: Windo
             with ui.menu("Recent files") as shown:
                 if shown:
                     _build_recent(ui, window)
+        if group == "view":
+            with ui.menu("Language") as shown:
+                for code in languages() if shown else ():
+                    ui.item(_LANGUAGES.get(code, code), choose_language, code, on=window.language == code)
 
 
 def _build_recent(ui: Ui, window: Window) -> None:
@@ -112,7 +116,7 @@ def _build_tools(ui: Ui, world: World, window: Window) -> None:
             ui.rule()
         for tool in (DRAWING[drawn.name] for drawn in group):
             ui.item(
-                f"Draw {tool.title}", actions.choose_tool, tool, shown=_words(tool), keys=key_of(tool),
+                f"Draw {tool.title}", actions.choose_tool, tool, shown=_words(ui, tool), keys=key_of(tool),
                 on=window.tool == tool.name, tip=tool.usage, enabled=_is_open(window, tool),
             )  # fmt: skip
 
@@ -144,10 +148,6 @@ def _build_lessons(ui: Ui, world: World, window: Window) -> None:
     """Build a line for each lesson that comes with the program."""
     _build_controls(ui, ("lesson", "teach"), world, window)
     ui.rule()
-    with ui.menu("Language of lessons") as shown:
-        for code in languages() if shown else ():
-            ui.item(_LANGUAGES.get(code, code), choose_language, code, on=window.language == code)
-    ui.rule()
     now = "" if window.lesson is None else window.lesson.lesson.name
     for name, title in titles(window.language).items():
         ui.item(title, open_lesson, name, identity=name, on=name == now)
@@ -165,7 +165,7 @@ _GAP = "   "
 
 def build_help(ui: Ui, world: World, window: Window) -> None:
     """Build the window of keys, in columns."""
-    lines = [(_keys(control), f"{control.does}{_GAP}") for control in CONTROLS]
+    lines = [(ui.said(_keys(control)), f"{ui.said(control.does)}{_GAP}") for control in CONTROLS]
     room = _SHARE * window.canvas.size[0]
     columns = next((n for n in range(_MAX_COLUMNS, 1, -1) if _width(lines, n) <= room), 1)
     with ui.floating("Keys and buttons", window.framing.middle, window.closing_of("help"), docks=True):
@@ -206,6 +206,12 @@ _YIELDING = ("protractor", "note", "rope", "gate", "polygon", "block", "ruler")
 """Tools that are not in sight where there is little room, the first ones first."""
 
 
+def palette_width(ui: Ui) -> float:
+    """Return how wide the tools are with their names [px]."""
+    widest = max(ui.width(_words(ui, tool)) for tool in PALETTE)
+    return widest + imgui.get_style().frame_padding.x + 2.0 * NARROW
+
+
 def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
     """Build a button for each tool, with its icon and its name; the tool in hand is marked."""
     with ui.panel("palette", rect, padded=False):
@@ -219,13 +225,13 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
         size = room.x, height
         for tool in shown:
             ui.button(
-                tool.title, _tip(tool), actions.choose_tool, tool, shown=_words(tool),
+                tool.title, _tip(tool), actions.choose_tool, tool, shown=_words(ui, tool),
                 on=window.tool == tool.name, size=size,
             )  # fmt: skip
             if window.tool != tool.name:
                 _colour_icon(ui, tool)
         hidden = next((tool for tool in behind if tool.name == window.tool), None)
-        words = f"{ICONS['more']}  More" if hidden is None else _words(hidden)
+        words = f"{ICONS['more']}  {ui.said('More')}" if hidden is None else _words(ui, hidden)
         tip = "More to put into the world"
         if not behind:
             imgui.pop_style_var()
@@ -233,7 +239,7 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
         with ui.list("More", tip, shown=words, on=hidden is not None, size=size) as is_open:
             for tool in behind if is_open else ():
                 ui.item(
-                    tool.title, actions.choose_tool, tool, shown=_words(tool), keys=key_of(tool),
+                    tool.title, actions.choose_tool, tool, shown=_words(ui, tool), keys=key_of(tool),
                     on=window.tool == tool.name, tip=tool.usage,
                 )  # fmt: skip
         imgui.pop_style_var()
@@ -272,5 +278,5 @@ def _tip(tool: Tool) -> str:
     return f"{tool.usage}\nKey: {key_of(tool)}" if key_of(tool) else tool.usage
 
 
-def _words(tool: Tool) -> str:
-    return f"{ICONS[tool.name]}  {tool.title}"
+def _words(ui: Ui, tool: Tool) -> str:
+    return f"{ICONS[tool.name]}  {ui.said(tool.title)}"

@@ -176,6 +176,8 @@ class NumberFields:
         """Build one field, and return why what was written in it is refused; empty while it is not."""
         draft = self._drafts.get(key)
         shown = zero if zero and value == 0.0 else _shown(value, spec, width)
+        if not isinstance(value, str):
+            shown = ui.said(shown)  # of a text what is written is its own
         wrong, lines = bool(draft and draft.refusal), min(spec.lines, _LINES_SHOWN)
         text, active = ui.field(key, draft.text if draft else shown, width, wrong=wrong, lines=lines)
         if active:
@@ -221,6 +223,7 @@ class NumberFields:
         imgui.invisible_button(ui.held(f"drag {key}"), ImVec2(width, imgui.get_frame_height()))
         imgui.pop_item_flag()
         ui.note(f"label {key}")
+        words = ui.said(words)
         ui.words.append(words)
         drags = value is not None and commit is not None
         lit = drags and (imgui.is_item_hovered() or imgui.is_item_active())

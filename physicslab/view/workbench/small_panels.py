@@ -35,7 +35,7 @@ def size_of(ui: Ui, title: str, width: float, height: float) -> tuple[int, int]:
     """Return the width and height of a small panel [px] with a title above something so large."""
     style = imgui.get_style()
     button = imgui.calc_text_size(_MENU).x + 2.0 * style.frame_padding.x + style.item_spacing.x
-    inside = max(width, imgui.calc_text_size(_words(title)).x + button)
+    inside = max(width, ui.width(_words(title)) + button)
     high = imgui.get_frame_height() + style.item_spacing.y + height
     return round(inside + 2.0 * style.window_padding.x), round(high + 2.0 * style.window_padding.y)
 

@@ -42,6 +42,7 @@ def build_badge(ui: Ui, world: World, window: Window, room: float) -> None:
         return
     inset = room - _width(ui, words) + _INSET * ui.size
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + inset)
+    words = ui.said(words)
     ui.words.append(words)
     imgui.set_next_window_size_constraints(ImVec2(_OPENED * ui.size, 0.0), ImVec2(_OPENED * ui.size, 1e9))
     is_quiet = trust.finding(now) is None
@@ -59,7 +60,7 @@ def build_badge(ui: Ui, world: World, window: Window, room: float) -> None:
 
 def _width(ui: Ui, words: str) -> float:
     """Return how wide the badge is with some words and its frame [px]."""
-    return float(imgui.calc_text_size(words).x + 2.0 * _INSET * ui.size + imgui.get_style().item_spacing.x)
+    return float(ui.width(words) + 2.0 * _INSET * ui.size + imgui.get_style().item_spacing.x)
 
 
 def build_body_digits(ui: Ui, world: World, window: Window, entity: int) -> None:

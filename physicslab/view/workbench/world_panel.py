@@ -181,8 +181,8 @@ def _write_names(ui: Ui, parts: Sequence[Part]) -> None:
     imgui.push_font(None, _LABEL * ui.size)
     radius = _SPOT * ui.size
     for n, part in enumerate(parts):
-        words = part.name if part.energy >= 0.0 else f"-{part.name}"
-        needed = imgui.calc_text_size(words).x + 3.5 * radius
+        words = ui.said(part.name) if part.energy >= 0.0 else f"-{ui.said(part.name)}"
+        needed = ui.width(words) + 3.5 * radius
         if n:
             imgui.same_line(spacing=0.7 * ui.size)
             if imgui.get_content_region_avail().x < needed:
