@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from typing import Any
 
 import pygame
 import pytest
 from desk import SETTLED, Desk, empty_world, fill, sized, tap
 from imgui_bundle import imgui
 
+from physicslab.components import Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
+from physicslab.view.canvas.canvas import Rect
+from physicslab.view.overlay import banners
 
 SIZES = [(800, 600), (1280, 720), (1920, 1080)]
 
@@ -74,3 +78,27 @@ def test_a_size_of_zero_is_written_as_what_it_means() -> None:
     assert desk.window.recipe.size == 0.0 and "in turn" in desk.ui.words
     fill(desk, "new friction", "0")
     assert desk.window.recipe.friction == 0.0 and desk.ui.words.count("in turn") == 1
+
+
+@pytest.mark.parametrize(("x", "aside"), [(0.0, True), (3.0, False)])
+def test_a_notice_covers_no_moving_body(x: float, aside: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It lies in the middle, and beside it where a body is there."""
+    drawn: list[list[pygame.Rect]] = []
+    draw = banners.draw_messages
+
+    def spy(*arguments: Any) -> list[Rect]:
+        rects = draw(*arguments)
+        drawn.append([pygame.Rect(rect) for rect in rects])
+        return rects
+
+    monkeypatch.setattr(banners, "draw_messages", spy)
+    desk = sized((1280, 720), empty_world(gravity=(0, 0)))
+    desk.window.pace.paused = True
+    left, top, width, height = desk.sandbox.interface.visible
+    foot = desk.window.camera.to_world((left + width // 2, top + height - 25))
+    body = circle(desk.world, (foot.x + x, foot.y), radius=0.2)
+    desk.frames(SETTLED)
+    (pause,) = drawn[-1]
+    place = desk.window.camera.to_screen(desk.world.component(body, Transform).position)
+    assert not pause.inflate(20, 20).collidepoint(place)
+    assert (abs(pause.centerx - (left + width // 2)) > 20) == aside
