@@ -127,6 +127,7 @@ def test_a_finished_sentence_is_said_in_another_language_with_what_is_in_its_gap
         "Kreis: von der Mitte aus ziehen, oder klicken.\nTaste: Entf"
     )
     assert german.reword("new box") == german.reword("New box") == "Neuer Kasten"
+    assert german.reword("pause") == german.reword("Pause") == "Pause"
     said = german.reword("pendulum-0.5.json (0.5, -1.25) 1.013 m")
     assert said == german.reword(said) == "pendulum-0.5.json (0,5; -1,25) 1,013 m"
     assert [german.reword(words) for words in ("", ".", "ball", "v1.2.3")] == ["", ".", "ball", "v1.2.3"]
