@@ -13,18 +13,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from physicslab.diagnostics.description import describe
     from physicslab.ecs.fields import InvalidValue
     from physicslab.ecs.vector import Vector2
     from physicslab.files.scene import SceneError, load_scene, save_scene
     from physicslab.world import World
 
-__all__ = ["InvalidValue", "SceneError", "Vector2", "World", "load_scene", "save_scene"]
+__all__ = ["InvalidValue", "SceneError", "Vector2", "World", "describe", "load_scene", "save_scene"]
 
 _HOMES = {
     "InvalidValue": "ecs.fields",
     "SceneError": "files.checks",
     "Vector2": "ecs.vector",
     "World": "world",
+    "describe": "diagnostics.description",
     "load_scene": "files.scene",
     "save_scene": "files.scene",
 }

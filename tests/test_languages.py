@@ -5,15 +5,17 @@ import re
 from dataclasses import replace
 from gettext import NullTranslations
 
+import pygame
 import pytest
-from desk import SETTLED, click, sized
-from window_texts import is_known, tables, without_translation
+from desk import SETTLED, click, sized, tap
+from window_texts import is_known, tables, without_translation, written
 
 from physicslab.files.scene import load_scene
 from physicslab.languages.catalogue import FOLDER, SOURCE, languages, messages, translations
 from physicslab.languages.language import Language, language
 from physicslab.lessons.catalogue import find_lesson
 from physicslab.lessons.worksheet import worksheet
+from physicslab.view.controls.tools import PALETTE
 
 PACKAGE = FOLDER.parent
 SAYING = {"say": 1, "say_count": 2}
@@ -76,6 +78,41 @@ def test_every_text_of_a_table_of_the_window_has_a_translation(code: str, table:
 
 
 @pytest.mark.parametrize("code", languages()[1:])
+def test_hardly_a_text_that_the_view_writes_is_without_translation(code: str) -> None:
+    """Those left are identities of widgets, and sentences that are put together of parts."""
+    texts = written()
+    assert len(without_translation(code, texts)) <= 0.03 * len(texts)
+
+
+class Pseudo(Doubled):
+    """The same, for texts of which some are doubled already: those stay."""
+
+    def gettext(self, message: str) -> str:
+        words = re.findall(r"[^\W\d]+", message)
+        return message if all(word[::2] == word[1::2] for word in words) else super().gettext(message)
+
+
+@pytest.mark.parametrize("keys", [(), ("f1",), ("f3",), ("z",), ("ctrl+k",)])
+def test_texts_twice_as_long_keep_widgets_apart_and_within_the_window(
+    keys: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pseudo = Language("qps", Pseudo())
+    monkeypatch.setattr("physicslab.view.workbench.interface.language", lambda code: pseudo)
+    desk = sized((1280, 720), load_scene("drop"))
+    for key in keys:
+        tap(desk, key.removeprefix("ctrl+"), pygame.KMOD_CTRL if "ctrl+" in key else 0)
+    desk.frames(SETTLED)
+    assert "FFiillee" in desk.ui.words
+    rects = {label: pygame.Rect(place) for label, place in desk.ui.places.items()}
+    assert not [label for label, one in rects.items() if one.left < 0 or one.right > 1280]
+    fixed = [
+        rects[label] for label in ("File", "Help", "Select", "Box", "Note", "Erase", "Speed", "Time line")
+    ]
+    assert all(one.inflate(-2, -2).collidelist([two for two in fixed if two is not one]) < 0 for one in fixed)
+    assert all(desk.ui.places[tool.title][2] > 100 for tool in PALETTE)
+
+
+@pytest.mark.parametrize("code", languages()[1:])
 def test_no_translation_is_another_text_of_the_program(code: str) -> None:
     """Or it would be translated once more, where words that are said already are written."""
     again = language(code)
@@ -90,6 +127,7 @@ def test_a_finished_sentence_is_said_in_another_language_with_what_is_in_its_gap
         "Kreis: von der Mitte aus ziehen, oder klicken.\nTaste: Entf"
     )
     assert german.reword("new box") == german.reword("New box") == "Neuer Kasten"
+    assert german.reword("pause") == german.reword("Pause") == "Pause"
     said = german.reword("pendulum-0.5.json (0.5, -1.25) 1.013 m")
     assert said == german.reword(said) == "pendulum-0.5.json (0,5; -1,25) 1,013 m"
     assert [german.reword(words) for words in ("", ".", "ball", "v1.2.3")] == ["", ".", "ball", "v1.2.3"]

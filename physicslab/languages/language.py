@@ -79,7 +79,7 @@ class Language:
     def _found(self, text: str) -> str:
         for written in (text, text[0].swapcase() + text[1:]):  # as within a sentence, or where one begins
             known = self._catalogue.gettext(written)
-            if known != written:
+            if known != written or (written,) in sources(self.code):
                 return known
         if "\n" in text:
             return "\n".join(map(self.reword, text.split("\n")))

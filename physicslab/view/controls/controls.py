@@ -385,6 +385,8 @@ CONTROLS: tuple[Control, ...] = (
     Control("Ctrl+F1", "tour", "ctrl+f1", actions.toggle_tour, group="help", panel="tour",
             state=lambda _, window: window.tour is not None,
             tip="Eight acts, each shown until you have done it"),
+    _switch("F3", "scene in words", "f3", "shows_words", "help",
+            "The scene in words, to be read out or copied: what is there, where, how it moves, its energies"),
     _switch("F1", "all keys", "f1", "help", "help", "All keys"),
     Control("Esc", "quit", "escape", actions.leave, group="quit", tip="Quit",
             click=lambda world, window: window.ask_to_close(world)),

@@ -54,12 +54,12 @@ OPENED: dict[str, object] = {
     "making.choosing": False,
     "scenes.opening": None, "scenes.naming": None, "lists_history": False, "microscope.record": None,
     "impacts.shown": False, "error_study.shown": False, "search": None, "tour": None, "shows_cards": False,
-    "shows_stopwatch": False, "copying": None,
+    "shows_stopwatch": False, "shows_words": False, "copying": None,
 }  # fmt: skip
 """Panels that can be closed: what of the window says that they are open, and its value when they are not."""
 BESIDE = (
     "copying", "lists_history", "microscope.record", "impacts.shown", "tour", "shows_cards",
-    "shows_stopwatch",
+    "shows_stopwatch", "shows_words",
 )  # fmt: skip
 """Those that lie beside the world; the others lie over it, and keys are for them."""
 
@@ -157,8 +157,9 @@ class Window:
         What is given the body that is clicked next, or none where there is none.
     impacts, microscope : ImpactList, Microscope
         The table of impacts; the impact that is looked at closely, and what waits for the next one.
-    measuring, shows_stopwatch : Measuring, bool
-        What is being placed, dragged or written of instruments; whether times between gates are shown.
+    measuring, shows_stopwatch, shows_words : Measuring, bool, bool
+        What is being placed, dragged or written of instruments; whether times between gates are shown, and
+        the scene in words.
     scenes : Scenes
         The scene that is shown, its file, and other scenes.
     filming : Filming
@@ -231,7 +232,7 @@ class Window:
         self.pins = Pins()
         self.snapping = Snapping()
         self.picking: Picking | None = None
-        self.measuring, self.shows_stopwatch = Measuring(), False
+        self.measuring, self.shows_stopwatch, self.shows_words = Measuring(), False, False
         self.impacts, self.microscope = ImpactList(), Microscope()
         self.scenes = Scenes()
         self.filming = Filming(lambda words, failed: self.notify(words, 6.0, failed=failed))

@@ -36,6 +36,7 @@ from physicslab.view.workbench.scene_panels import ScenePanels
 from physicslab.view.workbench.share_panel import build_share, build_sharing
 from physicslab.view.workbench.thumbnails import Thumbnails
 from physicslab.view.workbench.transport import build_history, build_transport
+from physicslab.view.workbench.words_panel import build_words
 from physicslab.world import World
 
 # ---- the layout: the world first, panels around it ---------------------------------------------------------
@@ -98,7 +99,7 @@ _WATCHED = attrgetter(
     "lists_history", "making.choosing", "making.naming.refused", "making.refused",
     "measured.number", "microscope.state", "pace.paused", "pace.speed", "scenes.recovery.offered",
     "scenes.shows_gallery", "search", "selection.entities", "sharing.choosing", "sharing.naming.refused",
-    "shows_cards", "shows_stopwatch", "tool", "tour", "trust.state",
+    "shows_cards", "shows_stopwatch", "shows_words", "tool", "tour", "trust.state",
 )  # fmt: skip
 """The state of a window that panels show beside figures."""
 type _Build = Callable[[Ui, World, Window], None]
@@ -108,7 +109,7 @@ _BEFORE: dict[str, _Build] = {
 _AFTER: dict[str, _Build] = {
     "scenes.naming": build_save, "filming.choosing": build_film,
     "sharing.choosing": build_share, "making.choosing": build_maker,
-    "lists_history": build_history, "help": build_help,
+    "lists_history": build_history, "shows_words": build_words, "help": build_help,
 }  # fmt: skip
 """The builders of the panels that are open: those below others at first, and those above them."""
 _BUTTONS = (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP)

@@ -1,0 +1,68 @@
+"""A world in words: what they say is so, in every language, and the same each time."""
+
+import pygame
+import pytest
+from desk import SETTLED, bits, click, sized, tap
+
+from physicslab import describe, load_scene
+from physicslab.components import Mass, Rod, Shape, Transform, Velocity
+from physicslab.scenes import SCENES
+from physicslab.world import World
+
+
+def test_a_world_is_told_with_its_figures() -> None:
+    world = load_scene("drop")
+    assert describe(world).splitlines() == [
+        "A ball on a floor",
+        "t = 0 s. 1 body can move, 1 is fixed.",
+        "Gravity is 9.81 m/s² downwards.",
+        "floor: box of 20 m by 1 m, fixed, at x = 0 m, y = -0.5 m.",
+        "ball: circle of radius 0.25 m, 1 kg, at x = -3 m, y = 4 m; it moves at 1 m/s to the right.",
+        "Kinetic energy 0.5 J, potential energy 39.24 J, together 39.74 J.",
+        "Total momentum 1 kg m/s along x, 0 kg m/s along y.",
+    ]
+    german = describe(world, "de")
+    assert (
+        "ball: Kreis vom Radius 0,25 m, 1 kg, bei x = -3 m, y = 4 m; bewegt sich mit 1 m/s nach rechts."
+        in german
+    )
+
+
+def test_what_moves_how_and_what_holds_it_is_told() -> None:
+    world = World()
+    one = world.spawn(Transform((0, 1)), Velocity((-1, -1), -2.0), Mass(2.0), Shape.box(1, 2))
+    other = world.spawn(Transform((0, 3)), Velocity((0, 0), 1.0))
+    world.spawn(Rod(a=one, b=other, length=2.0))
+    world.spawn(Rod(a=one, anchor_b=(0, 4), length=3.0))
+    words = describe(world)
+    assert "it moves at 1.414 m/s to the lower left and turns at 2 rad/s clockwise." in words
+    assert (
+        "point without outline, infinitely heavy" in words and "turns at 1 rad/s counter-clockwise" in words
+    )
+    assert f"Rod between {world.label(one)} and {world.label(other)}." in words
+    assert f"Rod between {world.label(one)} and a fixed point." in words
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_every_scene_is_told_in_the_same_words_and_stays_as_it_is(name: str) -> None:
+    world = load_scene(name)
+    before = bits(world)
+    words = describe(world)
+    assert words == describe(load_scene(name)) and bits(world) == before
+    moving = len(world.batch(Velocity))
+    assert f"{moving} {'body' if moving == 1 else 'bodies'} can move" in words
+    assert len(describe(world, "de").splitlines()) == len(words.splitlines()) < 70
+
+
+def test_f3_shows_the_words_and_they_can_be_copied(monkeypatch: pytest.MonkeyPatch) -> None:
+    copied: list[str] = []
+    monkeypatch.setattr(pygame.scrap, "put_text", copied.append)
+    desk = sized((1280, 720), load_scene("drop"))
+    desk.window.pace.paused = True
+    tap(desk, "f3")
+    assert set(describe(desk.world).splitlines()) <= set(desk.ui.words)
+    click(desk, "Copy the words")
+    desk.frames(SETTLED)
+    assert copied == [describe(desk.world)] and desk.window.notice == "Copied to the clipboard"
+    tap(desk, "f3")
+    assert not desk.window.shows_words
