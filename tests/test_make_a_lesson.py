@@ -34,7 +34,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
 
 
 def drop(**chosen: object) -> Draft:
-    draft = Draft("Down", "0.5", "ball.speed", "speed", "m/s", "How fast?", opened=[])
+    draft = Draft("Down", "en", "0.5", "ball.speed", "speed", "m/s", "How fast?", opened=[])
     for name, value in chosen.items():
         setattr(draft, name, value)
     return draft

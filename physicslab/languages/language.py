@@ -93,12 +93,17 @@ class Language:
         return self._list(text) or self.decimal(text)
 
     def _list(self, text: str) -> str:
-        """Return sentences in a row, a list, or words and a number, all known; empty where one is not."""
+        """Return sentences in a row, a list, or words and a number, all known; empty where one is not.
+
+        >>> language("de").reword("cart 1: mass"), language("de").reword("cart 1: what it is")
+        ('cart 1: Masse', 'cart 1: what it is')
+        """
         for between in (". ", "; ", ": ", ", "):
             parts = text.split(between) if between in text else []
             said = [self.reword(part) for part in parts]
-            if parts and all(one != self.decimal(own) for one, own in zip(said, parts, strict=True)):
-                return between.join(said)
+            known = [one != self.decimal(own) for one, own in zip(said, parts, strict=True)]
+            if parts and (all(known) or (between == ": " and len(parts) == 2 and known[1])):
+                return between.join(said)  # what is before a colon may be the name of a body
         measured = _MEASURED.fullmatch(text)
         said = [self.reword(part) for part in measured.groups()] if measured else []
         return " ".join(said) if measured and said[0] != measured[1] else ""

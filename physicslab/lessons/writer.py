@@ -49,8 +49,8 @@ class Draft:
 
     Attributes
     ----------
-    title : str
-        Its title.
+    title, language : str
+        Its title, and the code of the language in which it is written.
     seconds : str
         How long the run is [s].
     measured, quantity, unit : str
@@ -69,6 +69,7 @@ class Draft:
     """
 
     title: str
+    language: str = "en"
     seconds: str = "10"
     measured: str = ""
     quantity: str = ""
@@ -134,7 +135,10 @@ def lesson_text(world: World, draft: Draft) -> str:
     if world.physics.gravity_mode == "linear" and not gravity.x and gravity.y < 0.0:
         document["physics"] = {**document.get("physics", {}), "gravity": [0, f"-{_GRAVITY}"]}
         lets.insert(0, ("let", f"{_GRAVITY} = {-gravity.y!r} m/s^2 | field strength"))
-    head = (("format", FORMAT), ("title", draft.title), ("level", "1"), ("minutes", "20"))
+    head = (
+        ("format", FORMAT), ("title", draft.title), ("language", draft.language), ("level", "1"),
+        ("minutes", "20"),
+    )  # fmt: skip
     scene = _lines((*lets, ("tools", "hand, stopwatch"))) + json_text(document).rstrip("\n")
     parts = [
         f"---\n{_lines(head)}---", f"```scene\n{scene}\n```", f"## Level 1: {_plain(draft.question)}",

@@ -11,6 +11,7 @@ from physicslab.export.page import field_words
 from physicslab.files.checks import SceneError
 from physicslab.files.replace import create_file, reason_of, replace_file
 from physicslab.files.scene import file_stem
+from physicslab.languages.language import language
 from physicslab.lessons.blocks import LessonError
 from physicslab.lessons.check import row_of
 from physicslab.lessons.figures import LiveRun, columns, unit_of
@@ -48,7 +49,9 @@ def toggle_making(world: World, window: Window) -> None:
         stem = file_stem(name_of(world, window))
         making.naming = Naming(free_name(new_paths(Path.cwd(), stem, ".md")))
         if making.quantity not in measurable(world):
-            making.draft, making.refused = Draft(world.title or "What happens?"), {}
+            own = language(window.language)
+            title = own.reword(world.title or "What happens?")
+            making.draft, making.refused = Draft(title, window.language, why=own.say("Why?")), {}
             bodies = [name for name in measurable(world) if name.endswith(".speed")]
             choose_measured(making, (bodies or ["world.kinetic"])[0], next(iter(READINGS)))
 
@@ -75,13 +78,16 @@ def choose_measured(making: Making, name: str, reading: str) -> None:
     body, _, short = name.partition(".")
     long = columns(None if body == "world" else 1)[short]
     last = reading == next(iter(READINGS))
-    draft.quantity = f"{long} of {body}" if last else f"{reading.split()[-1]} of the {long} of {body}"
+    own = language(draft.language)
+    draft.quantity = f"{body}: {own.reword(long)}"
+    if not last:
+        draft.quantity = f"{draft.quantity}, {own.reword(reading)}"
     if draft.question in ("", before):
         draft.question = _question(draft)
 
 
 def _question(draft: Draft) -> str:
-    return f"What is the {draft.quantity} in this run?"
+    return language(draft.language).say("What comes out in this run: {quantity}?", quantity=draft.quantity)
 
 
 def choose_opened(world: World, draft: Draft, opened: Opened, path: str) -> None:

@@ -60,7 +60,8 @@ def build_maker(ui: Ui, world: World, window: Window) -> None:
             )
         names = ["gravity" if world.physics.gravity.y < 0.0 else "", "time"]
         names += [one.name for one in draft.opened if one.path]
-        ui.faint(f"Formulas may have {', '.join(filter(None, names))}, and all that is measured")
+        quoted = ", ".join(f"'{name}'" for name in names if name)  # so that they stay as they are
+        ui.faint(f"Formulas may have {quoted}, and all that is measured")
         _build_field(ui, making, refused, "To explain", "why")
         _build_field(ui, making, refused, "Answer", "answer", "A model answer, shown after the learner's own")
         for entry, why in refused.items():

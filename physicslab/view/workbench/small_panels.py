@@ -121,6 +121,7 @@ def _figures_of(reading: Reading, key: Key, scales: dict[str, float]) -> str:
 
 
 def _build_number(ui: Ui, words: str, unit: str) -> None:
+    words = ui.said(words)
     ui.words.append(f"{words} {unit}")
     imgui.push_font(ui.fonts.bold, _LARGE * ui.size)
     top, height = imgui.get_cursor_pos_y(), imgui.get_text_line_height()
