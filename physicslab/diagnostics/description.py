@@ -44,6 +44,7 @@ def _lines(world: World, own: Language) -> Iterator[str]:
     if world.title:
         yield own.reword(world.title)
     bodies = world.batch(Transform).entities.tolist()
+    bodies.sort(key=lambda body: not world.has(body, Velocity))  # what moves comes first
     moving = sum(world.has(body, Velocity) for body in bodies)
     can_move = own.say_count("{n} body can move", "{n} bodies can move", moving)
     fixed = own.say_count("{n} is fixed", "{n} are fixed", len(bodies) - moving)
