@@ -16,8 +16,8 @@ def test_a_world_is_told_with_its_figures() -> None:
         "A ball on a floor",
         "t = 0 s. 1 body can move, 1 is fixed.",
         "Gravity is 9.81 m/s² downwards.",
-        "floor: box of 20 m by 1 m, fixed, at x = 0 m, y = -0.5 m.",
         "ball: circle of radius 0.25 m, 1 kg, at x = -3 m, y = 4 m; it moves at 1 m/s to the right.",
+        "floor: box of 20 m by 1 m, fixed, at x = 0 m, y = -0.5 m.",
         "Kinetic energy 0.5 J, potential energy 39.24 J, together 39.74 J.",
         "Total momentum 1 kg m/s along x, 0 kg m/s along y.",
     ]
