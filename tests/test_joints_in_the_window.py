@@ -102,8 +102,9 @@ def test_a_pin_that_could_hold_nothing_is_not_made() -> None:
     desk = Desk(empty_world())
     rock = desk.world.spawn(Transform(), Shape.circle(1.0))
     desk.frames()
-    attachments(desk.world, (rock,))["Pin"][1](desk.world, desk.window)
-    assert not len(desk.world.batch(Pin))
+    assert attachments(desk.world, (rock,)) == {}
+    other = desk.world.spawn(Transform((3, 0)), Shape.circle(1.0))
+    assert attachments(desk.world, (rock, other)) == {}
     pygame.display.quit()
 
 

@@ -211,8 +211,12 @@ _LISTED = {
 
 
 def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, Action]]:
-    """Return how the selection can be joined: the words of a line, its tip, and what it does."""
-    if not entities or len(entities) > 2 or not all(world.has(entity, Transform) for entity in entities):
+    """Return how the selection can be joined: the words of a line, its tip, and what it does.
+
+    Nothing of it is joined if none of it can move.
+    """
+    can_move = any(world.has(entity, Velocity) for entity in entities)
+    if len(entities) > 2 or not can_move or not all(world.has(entity, Transform) for entity in entities):
         return {}
     chosen = tuple(entities)
     return {
