@@ -10,6 +10,7 @@ from desk import SETTLED, Desk, click, sized, tap, write
 
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.desktop.preferences import load_preferences, save_preferences
+from physicslab.languages.language import language
 from physicslab.view.controls import commands
 from physicslab.view.controls.tour import STEPS
 from physicslab.view.window.tour import Tour
@@ -151,7 +152,24 @@ def test_the_tour_waits_in_another_scene_for_what_is_done_there() -> None:
      ("kinetic", "Graph: kinetic energy"), ("BALL floor", "A ball on a floor"), ("gear", "Gear")],
 )  # fmt: skip
 def test_a_few_letters_find_a_command(text: str, best: str) -> None:
-    assert commands.find(text, list(commands.commands()))[0].words == best
+    for code in ("en", "de"):
+        assert commands.find(text, list(commands.commands()), language(code))[0].words == best
+
+
+@pytest.mark.parametrize(
+    ("text", "best"),
+    [("rückgängig", "Undo"), ("ruckgangig", "Undo"), ("RUECKGAENGIG", "Undo"), ("kasten", "Box"),
+     ("bewegungs", "Graph: kinetic energy"), ("löschen", "Erase"), ("loeschen", "Erase")],
+)  # fmt: skip
+def test_words_of_the_language_that_is_shown_find_a_command(text: str, best: str) -> None:
+    every = list(commands.commands())
+    assert commands.find(text, every, language("de"))[0].words == best
+    assert best not in [one.words for one in commands.find(text, every, language("en"))]
+
+
+def test_a_sharp_s_is_found_by_two() -> None:
+    sharp = [commands.Command("Schließen", "", "", lambda world, window: None)]
+    assert all(commands.find(text, sharp, language("de")) == sharp for text in ("schliess", "schließ"))
 
 
 def test_what_is_nowhere_is_not_found_and_half_input_changes_nothing() -> None:

@@ -1,5 +1,6 @@
 """All that can be done, opened or plotted, as one list that is searched by a few letters."""
 
+import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -8,6 +9,7 @@ from pathlib import Path
 from physicslab.components.quantities import QUANTITIES
 from physicslab.ecs.text import printable
 from physicslab.files.listing import scene_files
+from physicslab.languages.language import Language
 from physicslab.lessons.catalogue import titles
 from physicslab.scenes import SCENES
 from physicslab.view.controls import actions, dashboard_actions
@@ -85,22 +87,47 @@ def _choose_level(world: World, window: Window, level: str) -> None:
     window.level, window.figures = level, True
 
 
-def find(text: str, among: list[Command]) -> list[Command]:
+def find(text: str, among: list[Command], said: Language) -> list[Command]:
     """Return what fits a text best, the best first: all its words are in the name, or in the tip.
 
-    The letters of a word stand there in this order, with others between them.
+    The letters of a word stand there in this order, with others between them. Names and tips are searched as
+    they are said in a language, and as the program has them.
     """
-    wanted = text.lower().split()
+    wanted = _plain(text).split()
     rated = []
     for command in among:
+        names, tips = _spellings(command.words, said), _spellings(command.tip, said)
         parts = [
-            max(rate(word, command.words.lower()), _OF_TIP * _rate_whole(word, command.tip.lower()))
+            max(
+                *(rate(word, name) for name in names),
+                *(_OF_TIP * _rate_whole(word, tip) for tip in tips),
+            )
             for word in wanted
         ]
         if all(parts):
             rated.append((sum(parts) - 0.01 * len(command.words), command))
     rated.sort(key=lambda one: -one[0])
     return [command for _, command in rated[:SHOWN]]
+
+
+_UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue"})
+
+
+def _spellings(text: str, said: Language) -> set[str]:
+    """Return how people may write a text, in English and as it is said: an umlaut by one letter or two."""
+    shown = said.reword(text).casefold()
+    return {_plain(text), _plain(shown), shown.translate(_UMLAUTS)}
+
+
+def _plain(text: str) -> str:
+    """Return a text in small letters, without the marks above them.
+
+    >>> _plain("Löschen"), _plain("Größe")
+    ('loschen', 'grosse')
+    """
+    return "".join(
+        one for one in unicodedata.normalize("NFD", text.casefold()) if not unicodedata.combining(one)
+    )
 
 
 def rate(word: str, within: str) -> float:

@@ -170,7 +170,7 @@ class CommandSearch:
             text, _ = ui.field("Search", search.text, across)
             if text != self._text:
                 row = 0 if self._text is not None else search.row
-                self._text, self._found = text, commands.find(text, self._all)
+                self._text, self._found = text, commands.find(text, self._all, ui.language)
                 window.search = search = Search(text, row)
             for n, command in enumerate(self._found):
                 self._build_line(ui, window, command, n == search.row, across)
