@@ -101,6 +101,7 @@ def fill_page(
     """
     own = language(code)
     words = {text: own.reword(text) for text in player_texts()}
+    shown = {text: said for text, said in {**words, **document.get("words", {})}.items() if said != text}
     scripts, styles = (_SCRIPTS, ("style.css", "lesson.css")) if article else (_SCRIPTS[:-1], ("style.css",))
     texts = {
         "CODE": html.escape(code),
@@ -109,7 +110,7 @@ def fill_page(
         "STYLE": "".join(map(_part, styles)),
         "ARTICLE": article,
         "PLAYER": "".join(map(_part, scripts)),
-        "RUN": _json({**document, "words": {**words, **document.get("words", {})}, "mark": own.say(".")}),
+        "RUN": _json({**document, "words": shown, "mark": own.say(".")}),
     }
     texts |= {f"say:{text}": html.escape(said) for text, said in words.items()}
     head, *rest = _part("page.html").split("{{")

@@ -1,10 +1,10 @@
 """A lesson as one page for a browser without a network.
 
 Every run is made here, for each value of its sliders and each case that the lesson names; their pictures and
-figures go into books, which the player of shared pages plays. Questions become forms, and what the engine knows
-of them (right numbers, foreseen mistakes, theory beside measurement) stands beside the books in the page's JSON.
-The page asks, keeps each run shut until all is predicted of it, says what the lesson says to an answer, and saves
-``physicslab-answers/1``, which :mod:`physicslab.lessons.answers` grades.
+figures go into books, which the player of shared pages plays. Questions become forms, and what the engine
+knows of them (right numbers, foreseen mistakes, theory beside measurement) stands beside the books in the
+page's JSON. The page asks, keeps each run shut until all is predicted of it, says what the lesson says to an
+answer, and saves ``physicslab-answers/1``, which :mod:`physicslab.lessons.answers` grades.
 """
 
 import itertools

@@ -320,8 +320,9 @@ $("open").onchange = async event => {
   $("learner").value = found.learner ?? "";
   for (const [name, answer] of Object.entries(found.answers)) {
     const form = name in questions && partOf(name);
-    if (!form || !restore(form, questions[name], answer)) continue;
-    answers[name] = answer;
+    try {
+      if (form && restore(form, questions[name], answer)) answers[name] = answer;
+    } catch { /* an answer that is none is left out */ }
   }
   refresh();
   for (const form of document.querySelectorAll("form.part")) tell(form, form.dataset.name);
@@ -333,6 +334,7 @@ function restore(form, one, answer) {
     else input.checked = Number(input.value) === answer.choice;
   }
   if (one.form === "choice") return one.replies[answer.choice - 1] !== undefined;
+  if (typeof answer.value === "string") answer.value = typed(answer.value.replace(one.unit, ""));
   if (one.form === "number") form.querySelector(".number").value = marked(String(answer.value));
   if (one.form === "text") form.querySelector("textarea").value = answer.text ?? "";
   if (one.form === "curve") form.setCurve(answer.curve);
