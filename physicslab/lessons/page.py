@@ -363,7 +363,7 @@ class _Page:
         }  # fmt: skip
 
     def _percent(self, share: float) -> str:
-        words = "< 0.001 %" if 0.0 < share < 1e-5 else f"{100.0 * share:.2g} %"
+        words = "< 0.001 %" if 0.0 < share < 1e-5 else f"{100.0 * share:.{2 if share < 1.0 else 3}g} %"
         return self.own.decimal(words) if share < np.inf else "∞"
 
     def _prediction(self, compare: Compare) -> dict[str, Any] | None:

@@ -267,6 +267,7 @@ function fillCompare(name) {
     line.append(...cells.map((cell, k) => make("td", cell, { className: k === 2 && row ? row.near ? "right" : "wrong" : "" })));
     return line;
   }));
+  part.classList.toggle("unpredicted", predicted === null);
   if (!one.along) plotCompare(part.querySelector(".plot"), one, rows.map(each => each.row), predicted);
 }
 const placeOf = () => sliders.reduce((sum, slider, n) => sum * slider.values.length + chosen[n], 0);
