@@ -260,7 +260,13 @@ def test_by_keyboard_alone_from_prediction_to_grade(page: Path, browser: Browser
     assert graded["long"].feedback == "The two is missing." and graded["way"].sure == "guess"
     assert graded["course"].feedback == "It begins at rest."
     assert main(["grade", str(page.with_suffix(".md")), str(file)]) == 0
-    assert browser.complaints == [] and browser.requests == [page.as_uri()]
+    browser.open(page, still=True)
+    field = browser.call("Runtime.evaluate", expression="document.getElementById('open')")["result"]
+    browser.call("DOM.setFileInputFiles", files=[str(file)], objectId=field["objectId"])
+    browser.until("document.getElementById('learner').value === 'Ada'")
+    assert browser.value("lesson.answers") == answers.given
+    assert shown(browser) == ["way", "long", "course", "fall"], "predictions are locked, the run is open"
+    assert browser.complaints == [] and set(browser.requests) == {page.as_uri()}
 
 
 def test_every_control_has_a_name_and_the_focus_is_seen(page: Path, browser: Browser) -> None:
