@@ -23,6 +23,8 @@ _FLAGS = (
     "--no-proxy-server", "--host-resolver-rules=MAP * ~NOTFOUND", "--remote-debugging-pipe",
 )  # fmt: skip
 _PATIENCE_S = 60.0
+_CODES = {"Tab": 9, "Enter": 13, " ": 32, "End": 35, "ArrowUp": 38, "ArrowDown": 40}
+"""Keys that act only by their codes."""
 
 
 class Browser:
@@ -150,8 +152,19 @@ class Browser:
     def key(self, key: str, *, shift: bool = False) -> None:
         """Press a key and let it go."""
         for kind in ("keyDown", "keyUp"):
-            text = {"text": key} if kind == "keyDown" and len(key) == 1 else {}
-            self.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=8 if shift else 0, **text)
+            letter = "\r" if key == "Enter" else key
+            more: dict[str, Any] = {"text": letter} if kind == "keyDown" and len(letter) == 1 else {}
+            if key in _CODES:
+                more |= {"windowsVirtualKeyCode": _CODES[key], "code": key.replace(" ", "Space")}
+            self.call("Input.dispatchKeyEvent", type=kind, key=key, modifiers=8 if shift else 0, **more)
+
+    def tab_to(self, expression: str) -> None:
+        """Press Tab until an expression is true of ``it``, the element that has the focus."""
+        for _ in range(200):
+            self.key("Tab")
+            if self.value(f"(it => {expression})(document.activeElement)"):
+                return
+        raise AssertionError(f"the focus never comes to {expression}")
 
     def click(self, x: float, y: float) -> None:
         """Press the left mouse button at a place of the page [px], and let it go."""

@@ -16,6 +16,7 @@ from physicslab.components.quantities import QUANTITIES
 from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
+from physicslab.export.page import player_texts
 from physicslab.languages.catalogue import sources
 from physicslab.languages.language import Language
 from physicslab.scenes import SCENES
@@ -84,7 +85,7 @@ def tables() -> dict[str, list[str]]:
         "controls": [text for one in CONTROLS for text in (one.title, one.tip, one.label) if text],
         "tools": [text for texts in tools for text in texts],
         "scenes": [text for one in SCENES.values() for text in (one.title, one.description)],
-        "quantities": list(QUANTITIES), "levels": [*LEVELS, *LEVELS.values()],
+        "player": player_texts(), "quantities": list(QUANTITIES), "levels": [*LEVELS, *LEVELS.values()],
         "themes": [theme.name for theme in THEMES],
         "fields": [text for one in fields() for text in (_label(one), one.meaning)],
     }  # fmt: skip

@@ -7,12 +7,14 @@ from functools import partial
 
 from physicslab.commands import FAILED, CommandError
 from physicslab.commands.output import Output
+from physicslab.ecs.text import printable
 from physicslab.files.json_text import json_bytes
 from physicslab.kernels.tiers import Tiers
 from physicslab.languages.language import Language, language
 from physicslab.lessons.catalogue import LESSONS, find_lesson, lesson_in
 from physicslab.lessons.check import Row, check_lesson
 from physicslab.lessons.lesson import Lesson, Prose
+from physicslab.lessons.page import lesson_page
 from physicslab.lessons.worksheet import worksheet
 
 
@@ -24,22 +26,35 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--check", action="store_true", help="compare every theory with the engine: a table")
     parser.add_argument("--language", metavar="CODE", default="", help="of a lesson that has it, as de")
     parser.add_argument("--worksheet", metavar="FILE", help="write a page to print, without solutions")
+    words = "write one page for a browser without a network: with its runs, and with its solutions in it"
+    parser.add_argument("--page", metavar="FILE", help=words)
     parser.add_argument("--json", metavar="FILE", help="write what was found as JSON (- for stdout)")
 
 
 def execute(arguments: Namespace) -> int:
     """Print what was asked for; exit 1 where a theory does not hold, or holds where it must not."""
     output = None if arguments.json is None else Output("--json", arguments.json)
-    sheet = None if arguments.worksheet is None else Output("--worksheet", arguments.worksheet)
-    if sheet is not None and (arguments.lesson is None or arguments.check or output is not None):
-        raise CommandError("--worksheet: must stand beside one lesson, and without --check and --json")
+    option = "--worksheet" if arguments.page is None else "--page"
+    path = arguments.worksheet if arguments.page is None else arguments.page
+    sheet = None if path is None else Output(option, path)
+    both = arguments.worksheet is not None and arguments.page is not None
+    if sheet is not None and (arguments.lesson is None or arguments.check or output is not None or both):
+        others = "--check and --json" if not both else "--worksheet, --check and --json"
+        raise CommandError(f"{option}: must stand beside one lesson, and without {others}")
     names = LESSONS if arguments.lesson is None else (arguments.lesson,)
     lessons = [lesson_in(name, arguments.language) for name in names]
     if sheet is not None:
         if arguments.lesson not in LESSONS:
             sheet.refuse_same(arguments.lesson, "the lesson")
         find = partial(find_lesson, language=lessons[0].language)
-        sheet.write(worksheet(lessons[0], find).encode())
+        if arguments.page is None:
+            sheet.write(worksheet(lessons[0], find).encode())
+            return 0
+        with Tiers(True):
+            content = lesson_page(lessons[0], find)
+        sheet.write(content)
+        if not sheet.to_stdout:
+            print(f"{printable(sheet.path)}: {lessons[0].title}, {len(content) / 1000:,.0f} kB")
         return 0
     if arguments.check:
         return _check(lessons, output)

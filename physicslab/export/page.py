@@ -2,6 +2,7 @@
 
 import html
 import json
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
@@ -19,10 +20,14 @@ from physicslab.export.parts import (
     thrusts_of,
 )
 from physicslab.export.recording import RunRecorder, extent_of_run
+from physicslab.languages.catalogue import SOURCE
+from physicslab.languages.language import language
 from physicslab.world import World
 
-_SCRIPTS = ("run.js", "picture.js", "figures.js", "controls.js")
-"""The player, in order: one script, whose parts see the names of those before."""
+_SCRIPTS = ("run.js", "picture.js", "figures.js", "controls.js", "lesson.js")
+"""The player, in order: one script, whose parts see the names of those before; the last is for lessons."""
+_SAID = re.compile(r'\bsay\("([^"]+)"\)|\{\{say:([^}]+)\}\}')
+"""A text of the player in its scripts, and in its page."""
 
 
 _WORDS = {"linear": "velocity", "angular": "angular velocity"}
@@ -67,7 +72,6 @@ def page(
     varied : sequence of Varied
         What differs between the runs.
     """
-    title = printable(world.title or name)
     views = [run["view"] for run in runs if "view" in run]
     low, high = (
         [best(view[k] for view in views) for k in ends] for best, ends in ((min, (0, 1)), (max, (2, 3)))
@@ -76,20 +80,51 @@ def page(
         "view": [*low, *high], "runs": runs,
         "sliders": [{"label": one.label, "unit": one.unit, "values": one.values} for one in varied],
     }  # fmt: skip
+    return fill_page(world.title or name, world.description.replace("\n", " "), document)
+
+
+def fill_page(
+    title: str, description: str, document: Mapping[str, Any], article: str = "", code: str = SOURCE
+) -> bytes:
+    """Return the page of the player with what it plays, in UTF-8.
+
+    Parameters
+    ----------
+    title, description : str
+        What stands above it.
+    document : dict
+        What the player is given, as JSON.
+    article : str
+        HTML of a lesson, in which the player stands where a run is made; none where it is empty.
+    code : str
+        The language of the page.
+    """
+    own = language(code)
+    words = {text: own.reword(text) for text in player_texts()}
+    shown = {text: said for text, said in {**words, **document.get("words", {})}.items() if said != text}
+    scripts, styles = (_SCRIPTS, ("style.css", "lesson.css")) if article else (_SCRIPTS[:-1], ("style.css",))
     texts = {
-        "TITLE": html.escape(title),
-        "DESCRIPTION": html.escape(printable(world.description.replace("\n", " "))),
-        "STYLE": _part("style.css"),
-        "PLAYER": "".join(map(_part, _SCRIPTS)),
-        "RUN": _json(document),
+        "CODE": html.escape(code),
+        "TITLE": html.escape(printable(title)),
+        "DESCRIPTION": html.escape(printable(description)),
+        "STYLE": "".join(map(_part, styles)),
+        "ARTICLE": article,
+        "PLAYER": "".join(map(_part, scripts)),
+        "RUN": _json({**document, "words": shown, "mark": own.say(".")}),
     }
-    filled = _part("page.html")
-    head, *rest = filled.split("{{")
+    texts |= {f"say:{text}": html.escape(said) for text, said in words.items()}
+    head, *rest = _part("page.html").split("{{")
     pieces = [head]
     for piece in rest:
         key, _, after = piece.partition("}}")
         pieces += [texts[key], after]
     return "".join(pieces).encode()
+
+
+def player_texts() -> list[str]:
+    """Return the player's own texts, which a page has in its language."""
+    sources = map(_part, (*_SCRIPTS, "page.html"))
+    return list(dict.fromkeys(one or other for source in sources for one, other in _SAID.findall(source)))
 
 
 def run_document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> dict[str, Any]:

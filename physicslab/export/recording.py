@@ -100,6 +100,10 @@ class RunRecorder:
         """How many instants were kept."""
         return len(self._instants)
 
+    def keep(self, instants: Sequence[int]) -> None:
+        """Forget all instants but those of these numbers, from 0."""
+        self._instants = [self._instants[number] for number in instants]
+
     @property
     def columns(self) -> Columns:
         """Time since the start [s], energies [J], quantities and bodies: float32 (instants, columns).

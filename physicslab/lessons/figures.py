@@ -349,8 +349,11 @@ class LiveRun:
         return True
 
 
-def record_run(setup: Setup, run: Run, names: Iterable[str], case: Case = AS_IT_IS) -> Figures:
-    """Make a run of a lesson, and return its figures.
+def record_run(
+    setup: Setup, run: Run, names: Iterable[str], case: Case = AS_IT_IS,
+    watch: Callable[[World], object] = lambda world: None,
+) -> Figures:  # fmt: skip
+    """Make a run of a lesson, and return its figures; ``watch`` is given the world at every sample.
 
     Raises
     ------
@@ -358,11 +361,15 @@ def record_run(setup: Setup, run: Run, names: Iterable[str], case: Case = AS_IT_
         If it does not end in time, or a case is not of the scene.
     """
     live = LiveRun(setup, run, names, case)
+    watch(live.world)
     if run.seconds is not None:
         for _ in live.world.stepping(seconds=live.limit):
             live.record.add()
-    else:
+            watch(live.world)
+        return live.figures
+    ended = False
+    while not ended:
         live.world.step()
-        while not live.sample():
-            live.world.step()
+        ended = live.sample()
+        watch(live.world)
     return live.figures

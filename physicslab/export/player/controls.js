@@ -83,7 +83,7 @@ const keys = {
 SPEEDS.forEach((value, i) => { keys[i + 1] = () => setSpeed(value); });
 document.addEventListener("keydown", event => {
   const on = event.target.tagName, key = event.key.toLowerCase();
-  const own = on === "SELECT" || on === "INPUT" && /^(arrow|home|end)/.test(key)
+  const own = given.lesson && !event.target.closest("#player") || on === "SELECT" || on === "INPUT" && /^(arrow|home|end)/.test(key)
     || key === " " && (on === "BUTTON" || on === "SUMMARY");
   if (own || event.ctrlKey || event.metaKey || event.altKey || !keys[key]) return;
   event.preventDefault();
@@ -103,8 +103,8 @@ $("speed").onchange = event => setSpeed(Number(event.target.value));
 $("body").onchange = event => select(run.bodies[event.target.value] ?? null);
 
 // What differs from run to run; runs are in order, those of the last slider next to each other.
-const chosen = book.sliders.map(slider => Math.floor((slider.values.length - 1) / 2));
-const sliders = book.sliders.map((slider, n) => {
+let chosen, sliders;
+const makeSlider = (slider, n) => {
   const row = document.createElement("label"), words = document.createElement("span");
   const input = Object.assign(document.createElement("input"), {
     type: "range", id: `slider-${n}`, min: 0, max: slider.values.length - 1, step: 1, value: chosen[n],
@@ -115,7 +115,17 @@ const sliders = book.sliders.map((slider, n) => {
   row.append(words, input, output);
   $("sliders").append(row);
   return { ...slider, input, output };
-});
+};
+// Play another book of runs, from the middle of its sliders, or where it says.
+function openBook(next) {
+  book = next;
+  $("sliders").replaceChildren();
+  chosen = book.sliders.map(slider => slider.start ?? Math.floor((slider.values.length - 1) / 2));
+  sliders = book.sliders.map(makeSlider);
+  const aspect = (book.view[2] - book.view[0]) / (book.view[3] - book.view[1]);
+  $("stage").style.setProperty("--aspect", Math.min(Math.max(aspect, 0.9), 2));
+  showChosen();
+}
 function showChosen() {
   let place = 0;
   sliders.forEach(({ values, unit, input, output }, n) => {
@@ -125,7 +135,7 @@ function showChosen() {
     input.setAttribute("aria-valuetext", written);
   });
   const next = book.runs[place], failed = "failure" in next;
-  $("failure").textContent = failed ? `This run has no picture: ${next.failure}` : "";
+  $("failure").textContent = failed ? `${say("This run has no picture:")} ${next.failure}` : "";
   document.body.classList.toggle("failed", failed);
   load(failed ? book.runs.find(one => !("failure" in one)) : next);
 }
@@ -138,13 +148,12 @@ loaders.push(() => {
   decimals = Math.min(Math.max(2 - Math.floor(Math.log10(end / COUNT * 10 || 1)), 0), 9);
   $("speed").replaceChildren(...SPEEDS.map(value => new Option(`${short(value * natural, 3)}\u00d7`, value)));
   $("speed").value = speed;
-  $("body").replaceChildren(new Option("none (click a body)", ""),
+  $("body").replaceChildren(new Option(say("none (click a body)"), ""),
     ...drawn.map(body => new Option(body.name, run.bodies.indexOf(body))));
   $("body").value = selected ? run.bodies.indexOf(selected) : "";
   const notes = [
     ...run.notes,
-    `${COUNT} instants, positions to 7 digits (float32). While it plays, bodies move straight from one to ` +
-    "the next; paused, the figures are those computed.",
+    `${COUNT} ${say("instants, positions to 7 digits (float32). While it plays, bodies move straight from one to the next; paused, the figures are those computed.")}`,
   ];
   $("notes").replaceChildren(...notes.map(text => Object.assign(document.createElement("li"), { textContent: text })));
 });
@@ -167,7 +176,7 @@ function tick(now) {
     for (const one of charts) drawChart(one, frame);
     showFigures(frame);
     $("time").value = frame;
-    $("clock").textContent = `${(run.start + time).toFixed(decimals)} / ${short(run.start + end, 4)} s`;
+    $("clock").textContent = `${marked((run.start + time).toFixed(decimals))} / ${short(run.start + end, 4)} s`;
     $("time").setAttribute("aria-valuetext", $("clock").textContent);
   }
   requestAnimationFrame(tick);
@@ -175,21 +184,20 @@ function tick(now) {
 
 // For a console, and for tests.
 window.player = {
-  book, seek, play, get run() { return run; }, get times() { return times; }, get lines() { return lines; },
+  get book() { return book; }, seek, play, get run() { return run; }, get times() { return times; }, get lines() { return lines; },
   get quantities() { return quantities; }, get chosen() { return [...chosen]; }, get time() { return time; }, get playing() { return playing; },
   get selected() { return selected?.name ?? null; },
   at: (name, frame) => run.bodies.find(body => body.name === name).at(frame),
   pixel: (x, y) => [world.getBoundingClientRect().x + toX(x), world.getBoundingClientRect().y + toY(y)],
 };
-const aspect = (book.view[2] - book.view[0]) / (book.view[3] - book.view[1]);
-$("stage").style.setProperty("--aspect", Math.min(Math.max(aspect, 0.9), 2));
-showChosen();
+show.loop = !given.lesson;
+openBook(book);
 show.trails = movers.length <= 12 || movers.some(body => body.trail);
 show.names = named > 0 && named <= 12;
-for (const name of ["trails", "names"]) $(name).setAttribute("aria-pressed", show[name]);
+for (const name of ["loop", "trails", "names"]) $(name).setAttribute("aria-pressed", show[name]);
 readColours();
 fit();
 setSpeed(1);
 select(movers.length === 1 ? movers[0] : null);
-play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
+play(!given.lesson && !matchMedia("(prefers-reduced-motion: reduce)").matches);
 requestAnimationFrame(now => { last = now; tick(now); });

@@ -48,7 +48,7 @@ loaders.push(() => {
     const part = document.createElement("section"), canvas = document.createElement("canvas");
     const title = Object.assign(document.createElement("h2"), { id: `graph-${n}` });
     const units = [...new Set(shown.map(line => line.unit))].join(", ");
-    title.textContent = `Graph ${n + 1} (${units})${across ? ` against ${across.name} (${across.unit})` : ""}`;
+    title.textContent = `${say("Graph")} ${n + 1} (${units})${across ? ` ${say("against")} ${across.name} (${across.unit})` : ""}`;
     canvas.className = "chart";
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-labelledby", title.id);
@@ -130,8 +130,8 @@ function sample(line) {
 function showFigures(frame) {
   const digits = playing ? 4 : 7;
   const value = (amount, unit) => `${number(amount, digits)} ${unit.replace("^2", "\u00b2")}`;
-  fill($("legend"), lines.map(line => [line.name, value(line.values[frame], "J"), line]));
-  fill($("momenta"), quantities.slice(0, 3).map(one => [one.name, value(one.values[frame], one.unit)]));
+  fill($("legend"), lines.map(line => [say(line.name), value(line.values[frame], "J"), line]));
+  fill($("momenta"), quantities.slice(0, 3).map(one => [say(one.name), value(one.values[frame], one.unit)]));
   for (const { table, shown } of charts.slice(1)) {
     fill(table, shown.map(line => [line.name, value(line.values[frame], line.unit), line]));
   }
@@ -139,20 +139,20 @@ function showFigures(frame) {
   const past = crossed.filter(([t]) => t <= times[frame]).sort((a, b) => a[0] - b[0]).slice(-6);
   $("gates").hidden = !run.gates.length;
   fill($("crossings"), past.length ? past.map(([t, gate, body, speed]) =>
-    [`${body} through ${gate}, ${number(speed, 4)} m/s`, `${number(run.start + t, 7)} s`]) : [["nothing yet", ""]]);
+    [`${body} ${say("through")} ${gate}, ${number(speed, 4)} m/s`, `${number(run.start + t, 7)} s`]) : [[say("nothing yet"), ""]]);
   const rows = [];
   if (selected) {
     const [x, y, angle, vx, vy, spin] = selected.at(frame), { mass, inertia } = selected;
-    rows.push(["position x", value(x, "m")], ["position y", value(y, "m")], ["angle", value(angle, "rad")]);
+    rows.push([say("position x"), value(x, "m")], [say("position y"), value(y, "m")], [say("angle"), value(angle, "rad")]);
     if (selected.columns) {
-      rows.push(["velocity x", value(vx, "m/s")], ["velocity y", value(vy, "m/s")],
-        ["speed", value(Math.hypot(vx, vy), "m/s")], ["angular velocity", value(spin, "rad/s")]);
+      rows.push([say("velocity x"), value(vx, "m/s")], [say("velocity y"), value(vy, "m/s")],
+        [say("speed"), value(Math.hypot(vx, vy), "m/s")], [say("angular velocity"), value(spin, "rad/s")]);
     }
     if (selected.columns && mass) {
       const kinetic = (mass * (vx * vx + vy * vy) + inertia * spin * spin) / 2;
-      rows.push(["mass", `${short(mass, 7)} kg`], ["kinetic energy", value(kinetic, "J")]);
+      rows.push([say("mass"), `${short(mass, 7)} kg`], [say("kinetic energy"), value(kinetic, "J")]);
       const potential = run.gravity && -mass * (run.gravity[0] * x + run.gravity[1] * y);
-      if (run.gravity) rows.push(["potential, 0 at the origin", value(potential, "J")]);
+      if (run.gravity) rows.push([say("potential, 0 at the origin"), value(potential, "J")]);
     }
   }
   fill($("values"), rows);

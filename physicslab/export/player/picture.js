@@ -385,6 +385,6 @@ function drawWorld(frame, share) {
   pen.font = "13px system-ui, sans-serif";
   drawInstruments(now);
   drawNames(now);
-  const scale = [show.grid && "axes in metres", show.arrows && `arrows: path in ${short(arrowSeconds, 1)} s`];
+  const scale = [show.grid && say("axes in metres"), show.arrows && `${say("arrows: path in")} ${short(arrowSeconds, 1)} s`];
   $("scale").textContent = scale.filter(Boolean).join("; ");
 }

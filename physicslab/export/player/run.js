@@ -1,7 +1,10 @@
 // What was recorded, and the state of the player.
 
 const $ = id => document.getElementById(id);
-const book = JSON.parse($("run").textContent);
+const given = JSON.parse($("run").textContent);  // in a lesson several books of runs, else one
+for (const one of given.books ?? []) one.runs = one.runs.map(number => given.runs[number]);
+let book = given.books?.[0] ?? given;
+const say = text => given.words[text] ?? text;
 let run, COUNT, HEAD, movers, times, end, drawn, named, lines, quantities;
 const loaders = [];  // what is to be done for every run that is shown, in order
 const PARTS = [0, 1, 2, 3, 4, 5];  // x, y, angle and their rates
@@ -86,9 +89,11 @@ function pose(body, frame, share) {
   return now;
 }
 
+const ended = [];  // what is to be done when a run is at its end
 function seek(t) {
   time = Math.min(Math.max(t, 0), end);
   stale = true;
+  if (time >= end) for (const each of ended) each();
 }
 
 function step(count) {
@@ -102,20 +107,21 @@ function play(on) {
   playing = on && end > 0;
   const icon = playing ? "M3 2h4v14H3zM11 2h4v14h-4z" : "M4 2l12 7-12 7z";
   $("play").innerHTML = `<svg width="18" height="18" aria-hidden="true"><path d="${icon}"/></svg>`;
-  $("play").setAttribute("aria-label", playing ? "Pause" : "Play");
+  $("play").setAttribute("aria-label", playing ? say("Pause") : say("Play"));
   stale = true;
 }
 
-// A number to so many digits, and without the zeros at its end.
-function number(value, digits) {
+// A number to so many digits, and without the zeros at its end, with the decimal mark of the page.
+const marked = text => text.replace(".", given.mark);
+const number = (value, digits) => marked(plain(value, digits));
+function plain(value, digits) {
   if (value === 0) return "0";
   const power = Math.floor(Math.log10(Math.abs(value)));
-  const plain = power >= -3 && power <= 6;
-  const text = plain ? value.toFixed(Math.max(digits - 1 - power, 0)) : value.toExponential(digits - 1);
+  const text = power >= -3 && power <= 6 ? value.toFixed(Math.max(digits - 1 - power, 0)) : value.toExponential(digits - 1);
   return text.replace(/e\+?(-?)(\d+)$/, "\u00b710^$1$2").replaceAll("-", "\u2212");
 }
 function short(value, digits) {
-  return number(value, digits).replace(/(\.\d*?)0+(?=\u00b7|$)/, "$1").replace(/\.(?=\u00b7|$)/, "");
+  return marked(plain(value, digits).replace(/(\.\d*?)0+(?=\u00b7|$)/, "$1").replace(/\.(?=\u00b7|$)/, ""));
 }
 function nice(value) {
   const power = Math.pow(10, Math.floor(Math.log10(value))), digit = value / power;
