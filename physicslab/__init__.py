@@ -14,20 +14,35 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from physicslab.diagnostics.description import describe
+    from physicslab.ecs.config import PhysicsConfig, SimulationConfig
     from physicslab.ecs.fields import InvalidValue
     from physicslab.ecs.vector import Vector2
     from physicslab.files.scene import SceneError, load_scene, save_scene
+    from physicslab.prefabs import box, capsule, chain, circle, pendulum, polygon
+    from physicslab.state.masses import Diverged
     from physicslab.world import World
 
-__all__ = ["InvalidValue", "SceneError", "Vector2", "World", "describe", "load_scene", "save_scene"]
+__all__ = [
+    "Diverged", "InvalidValue", "PhysicsConfig", "SceneError", "SimulationConfig", "Vector2", "World", "box",
+    "capsule", "chain", "circle", "describe", "load_scene", "pendulum", "polygon", "save_scene",
+]  # fmt: skip
 
 _HOMES = {
+    "Diverged": "state.masses",
     "InvalidValue": "ecs.fields",
+    "PhysicsConfig": "ecs.config",
     "SceneError": "files.checks",
+    "SimulationConfig": "ecs.config",
     "Vector2": "ecs.vector",
     "World": "world",
+    "box": "prefabs",
+    "capsule": "prefabs",
+    "chain": "prefabs",
+    "circle": "prefabs",
     "describe": "diagnostics.description",
     "load_scene": "files.scene",
+    "pendulum": "prefabs",
+    "polygon": "prefabs",
     "save_scene": "files.scene",
 }
 

@@ -108,6 +108,10 @@ class World(State):
         self.islands = Islands(self.schedule, _island_world)
         self._motion = motion_of(self)
 
+    def __repr__(self) -> str:
+        title = self.title or self.name or "without a title"
+        return f"<World {title!r}: entities: {len(self.entities())}, t = {self.time:g} s>"
+
     # ---- time ----------------------------------------------------------------------------------------------
 
     @quiet

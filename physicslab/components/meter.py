@@ -3,7 +3,7 @@
 from typing import ClassVar
 
 from physicslab.components.quantities import QUANTITIES, carrier_of, check_quantity
-from physicslab.ecs.component import Component, component, field
+from physicslab.ecs.component import Component, Entity, component, field
 
 CORNERS = ("bottom left", "top left", "bottom right", "top right")
 """The corners of the window for a small panel."""
@@ -15,7 +15,7 @@ class Meter(Component):
 
     physical: ClassVar[bool] = False
     quantity: str = field(choices=tuple(QUANTITIES), meaning="what is shown")
-    body: int | None = field(default=None, meaning="whose quantity it is; the world's where absent")
+    body: Entity = field(default=None, meaning="whose quantity it is; the world's where absent")
     corner: str = field(default=CORNERS[0], choices=CORNERS, meaning="where in the window it is")
 
     def references(self) -> dict[str, str]:
