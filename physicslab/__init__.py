@@ -10,7 +10,11 @@ Examples
 """
 
 from importlib import import_module
+from importlib.metadata import version
 from typing import TYPE_CHECKING
+
+__version__: str
+"""The version that is installed; asking where none is raises ``PackageNotFoundError``."""
 
 if TYPE_CHECKING:
     from physicslab.diagnostics.description import describe
@@ -53,6 +57,8 @@ def __getattr__(name: str) -> object:
     A world brings numba with it, which takes as long to import as all else together; on the first launch,
     before Python has kept its bytecode, seconds. The window must not wait for that.
     """
+    if name == "__version__":
+        return version(__name__)
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     try:

@@ -2,6 +2,9 @@
 
 import math
 import pickle
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +21,7 @@ from physicslab import (
     Vector2,
     World,
     circle,
+    cli,
     load_scene,
     save_scene,
 )
@@ -110,3 +114,16 @@ def test_what_is_saved_is_such_a_dict(tmp_path: object) -> None:
     with open(path, encoding="utf-8") as file:
         document = parse_json(file.read(), "drop")
     assert isinstance(document, dict) and load_scene(document).title == load_scene(path).title
+
+
+def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["--version"]) == 0
+    assert capsys.readouterr().out == f"physicslab {physicslab.__version__}\n"
+    root = Path(__file__).parents[1]
+    for name in ("pyproject.toml", "CITATION.cff", "CHANGELOG.md"):
+        assert physicslab.__version__ in (root / name).read_text("utf-8"), name
+
+
+def test_the_package_is_a_command() -> None:
+    done = subprocess.run([sys.executable, "-m", "physicslab", "--version"], capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (0, f"physicslab {physicslab.__version__}\n")
