@@ -52,22 +52,13 @@ class Entities:
     # ---- contexts ------------------------------------------------------------------------------------------
 
     def activate(self) -> None:
-        """Make this the world that plain esper calls act on, until another is activated.
-
-        Raises
-        ------
-        RuntimeError
-            If a world is active in another thread.
-        """
+        """Make this the world that plain esper calls act on, until another is activated."""
         switch(self.context)
 
     def active(self) -> Active[Self]:
         """Make this the world that plain esper calls act on, within a ``with`` block.
 
-        Raises
-        ------
-        RuntimeError
-            At the start of the block, if a world is active in another thread.
+        At its start it waits until no world is active in another thread.
         """
         return Active(self, self.context)
 
