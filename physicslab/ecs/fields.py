@@ -30,8 +30,8 @@ POINTS: Interned[tuple[Vector2, ...]] = Interned(())
 """The lists of points in columns."""
 REQUIRED: Any = object()
 """The default of a field that has none."""
-MEASURED: frozenset[Kind] = frozenset({"number", "whole", "vector", "points"})
-"""Kinds of fields that may be given as texts with units, as ``"2 kg"``, but in files."""
+MEASURED: frozenset[Kind] = frozenset({"number", "vector", "points"})
+"""Kinds of fields that may be given as texts with units, as ``"2 kg"``, but in files. Counts have none."""
 
 
 class InvalidValue(ValueError):
