@@ -10,6 +10,7 @@ from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import BODY_QUANTITIES, QUANTITIES, WORLD_QUANTITIES
 from physicslab.diagnostics.quantities import why_undefined
 from physicslab.diagnostics.scales import scales_of
+from physicslab.theme import Colour, Theme, mixed
 from physicslab.view.canvas.quantities import (
     product,
     quantity,
@@ -18,7 +19,6 @@ from physicslab.view.canvas.quantities import (
     without_rounding,
     written_unit,
 )
-from physicslab.view.canvas.theme import Colour, Theme, mixed
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.picture.bodies import named_colour
 from physicslab.view.toolkit.style import packed
