@@ -2,7 +2,7 @@
 
 from typing import ClassVar
 
-from physicslab.components.quantities import QUANTITIES, check_quantity
+from physicslab.components.quantities import QUANTITIES, carrier_of, check_quantity
 from physicslab.ecs.component import Component, component, field
 
 CORNERS = ("bottom left", "top left", "bottom right", "top right")
@@ -11,7 +11,7 @@ CORNERS = ("bottom left", "top left", "bottom right", "top right")
 
 @component
 class Meter(Component):
-    """Shows a quantity of a body, or of the world, in a small panel of the window."""
+    """Shows a quantity of a body, a joint, a spring or the world in a small panel of the window."""
 
     physical: ClassVar[bool] = False
     quantity: str = field(choices=tuple(QUANTITIES), meaning="what is shown")
@@ -20,7 +20,7 @@ class Meter(Component):
 
     def references(self) -> dict[str, str]:
         """Return which component the body must have."""
-        return {"body": "Transform"}
+        return {"body": carrier_of(self.quantity)}
 
     def validate(self) -> None:
         """Check that the body, or the world, has the quantity."""

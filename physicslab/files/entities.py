@@ -38,7 +38,7 @@ from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
 from physicslab.ecs.text import suggestion
 from physicslab.files import checks
 from physicslab.state.attached import INSTRUMENTS
-from physicslab.state.joint_rows import KINDS
+from physicslab.state.joint_rows import KINDS, kinds_of
 
 UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""
@@ -254,7 +254,7 @@ def _check_references(component: Component, entities: Sequence[Mapping[str, Any]
         references = {"a": "Transform", "b": "Transform"}
     for name, needed in references.items():
         other = getattr(component, name)
-        if other is not None and needed not in entities[other - 1]:
+        if other is not None and not any(kind in entities[other - 1] for kind in kinds_of(needed)):
             place = f"{where}: {type(component).__name__}.{name}"
             raise checks.refusal(place, entities[other - 1].get("id"), f"the id of an entity with a {needed}")
 
