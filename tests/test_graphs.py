@@ -13,7 +13,7 @@ from physicslab.components import Graph, GraphLine, Name, Rod, Spring, Transform
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.history import SetField
 from physicslab.prefabs import circle
-from physicslab.view.canvas.theme import DARK
+from physicslab.theme import DARK
 from physicslab.view.controls import actions, dashboard_actions, file_actions
 from physicslab.view.window.dashboard import GraphShown, LineShown
 from physicslab.view.workbench.graph_readings import colours_of

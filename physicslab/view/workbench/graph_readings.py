@@ -17,6 +17,7 @@ from physicslab.components.quantities import (
 from physicslab.diagnostics.quantities import why_undefined
 from physicslab.diagnostics.scales import scales_of
 from physicslab.state.joint_rows import KINDS
+from physicslab.theme import Colour, Theme, mixed
 from physicslab.view.canvas.quantities import (
     product,
     quantity,
@@ -25,7 +26,6 @@ from physicslab.view.canvas.quantities import (
     without_rounding,
     written_unit,
 )
-from physicslab.view.canvas.theme import Colour, Theme, mixed
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.picture.bodies import named_colour
 from physicslab.view.toolkit.style import packed
