@@ -10,24 +10,43 @@ Examples
 """
 
 from importlib import import_module
+from importlib.metadata import version
 from typing import TYPE_CHECKING
+
+__version__: str
+"""The version that is installed; asking where none is raises ``PackageNotFoundError``."""
 
 if TYPE_CHECKING:
     from physicslab.diagnostics.description import describe
+    from physicslab.ecs.config import PhysicsConfig, SimulationConfig
     from physicslab.ecs.fields import InvalidValue
     from physicslab.ecs.vector import Vector2
     from physicslab.files.scene import SceneError, load_scene, save_scene
+    from physicslab.prefabs import box, capsule, chain, circle, pendulum, polygon
+    from physicslab.state.masses import Diverged
     from physicslab.world import World
 
-__all__ = ["InvalidValue", "SceneError", "Vector2", "World", "describe", "load_scene", "save_scene"]
+__all__ = [
+    "Diverged", "InvalidValue", "PhysicsConfig", "SceneError", "SimulationConfig", "Vector2", "World", "box",
+    "capsule", "chain", "circle", "describe", "load_scene", "pendulum", "polygon", "save_scene",
+]  # fmt: skip
 
 _HOMES = {
+    "Diverged": "state.masses",
     "InvalidValue": "ecs.fields",
+    "PhysicsConfig": "ecs.config",
     "SceneError": "files.checks",
+    "SimulationConfig": "ecs.config",
     "Vector2": "ecs.vector",
     "World": "world",
+    "box": "prefabs",
+    "capsule": "prefabs",
+    "chain": "prefabs",
+    "circle": "prefabs",
     "describe": "diagnostics.description",
     "load_scene": "files.scene",
+    "pendulum": "prefabs",
+    "polygon": "prefabs",
     "save_scene": "files.scene",
 }
 
@@ -38,6 +57,8 @@ def __getattr__(name: str) -> object:
     A world brings numba with it, which takes as long to import as all else together; on the first launch,
     before Python has kept its bytecode, seconds. The window must not wait for that.
     """
+    if name == "__version__":
+        return version(__name__)
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     try:

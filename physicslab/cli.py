@@ -5,8 +5,10 @@ import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from importlib.metadata import PackageNotFoundError
 from typing import NoReturn
 
+import physicslab
 from physicslab.commands import COMMANDS, FAILED, USAGE, CommandError, command
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
@@ -95,6 +97,7 @@ def _open(arguments: list[str]) -> int:
     parser = _WindowParser("physicslab", "Open the desktop sandbox, or do one of the commands.")
     words = "a built-in scene's name, or a path; or that of a lesson, which ends in .md"
     parser.add_argument("scene", metavar="SCENE", nargs="?", help=words)
+    parser.add_argument("--version", action="version", version=_version())
     scene = parser.parse_args(arguments).scene
     if scene is not None and scene.endswith(".md"):
         from physicslab.lessons.reader import read_lesson
@@ -110,6 +113,13 @@ def _open(arguments: list[str]) -> int:
         return open_window(scene)
     except NoScreen as error:
         raise CommandError(str(error), USAGE) from error
+
+
+def _version() -> str:
+    try:
+        return f"physicslab {physicslab.__version__}"
+    except PackageNotFoundError:
+        return "physicslab from a folder, which is not installed and has no version"
 
 
 def _complain(message: str, status: int) -> int:

@@ -74,8 +74,8 @@ class World(State):
     -----
     Each world lives in an esper context of its own, so worlds never mix. A new world is esper's active one
     until another is made or activated; every method enters its own context and leaves the one before. That
-    context is one for the whole process: one thread at a time can work with worlds, another gets a
-    ``RuntimeError``. Worlds that are to run at the same time need a process each.
+    context is one for the whole process: one thread at a time works with worlds, and others wait. So a system
+    must not wait for a thread that uses a world. Worlds that are to run at the same time need a process each.
 
     Examples
     --------
@@ -107,6 +107,10 @@ class World(State):
         self.stepper: Advancer | None = None
         self.islands = Islands(self.schedule, _island_world)
         self._motion = motion_of(self)
+
+    def __repr__(self) -> str:
+        title = self.title or self.name or "without a title"
+        return f"<World {title!r}: entities: {len(self.entities())}, t = {self.time:g} s>"
 
     # ---- time ----------------------------------------------------------------------------------------------
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.languages.language import Language, language
+from physicslab.theme import Colour
 from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, Rounded, TextStyle
-from physicslab.view.canvas.theme import Colour
 
 __all__ = ["RecordingCanvas"]
 

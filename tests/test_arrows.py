@@ -16,8 +16,8 @@ from physicslab.diagnostics.free_body import applied_forces
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
+from physicslab.theme import DARK, Colour
 from physicslab.view.canvas.camera import Camera, Drawing
-from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.view.overlay.arrows import (
     CONTACT_NORMAL,
     FORCE,

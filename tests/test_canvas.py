@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from recording import RecordingCanvas
 
 from physicslab.kernels import finishes
+from physicslab.theme import Colour
 from physicslab.view.canvas.canvas import Canvas, Finish, Look, Rounded, TextStyle
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.canvas.theme import Colour
 
 BLACK, WHITE, RED = (0, 0, 0), (255, 255, 255), (255, 0, 0)
 

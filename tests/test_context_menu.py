@@ -111,6 +111,17 @@ def test_springs_have_a_menu_and_the_key_opens_it(desk: Desk) -> None:
     assert not desk.world.has(spring, Spring) and desk.world.has(ball, Transform)
 
 
+def test_the_force_of_a_spring_is_plotted_from_its_menu(desk: Desk) -> None:
+    (ball,) = desk.world.entities()
+    spring = desk.world.spawn(Spring(ball, None, anchor_b=(0.0, 2.0), rest_length=2.0))
+    desk.move(0.0, 1.0)
+    desk.frames()
+    tap(desk, "f10", pygame.KMOD_SHIFT)
+    click(desk, "Plot its force")
+    ((line,),) = (graph.lines for graph in desk.window.dashboard.graphs)
+    assert line.key == (spring, "spring force")
+
+
 def test_a_joint_has_a_motor_limits_and_a_strength_in_its_menu(desk: Desk) -> None:
     world = desk.world
     (ball,) = world.entities()

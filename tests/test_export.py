@@ -17,12 +17,15 @@ from numpy.typing import NDArray
 
 from physicslab import World, cli, load_scene, save_scene
 from physicslab.components import Drag, Mass, Shape, Spring, Trail, Transform, Velocity
+from physicslab.components.colour import rgb_of
 from physicslab.ecs.config import PhysicsConfig
+from physicslab.export.look import style
 from physicslab.export.packing import pack
 from physicslab.export.parts import springs_of
 from physicslab.export.recording import RunRecorder, frame_run
 from physicslab.prefabs import gas
 from physicslab.systems.standard import standard_systems
+from physicslab.theme import contrast
 
 
 def unpack(text: str, rows: int) -> NDArray[np.float32]:
@@ -134,7 +137,8 @@ def test_bodies_springs_and_laws_are_described() -> None:
         {"name": "mark", "kind": "none", "entity": 3, "pose": [5.0, 5.0, 0.0]},
         {"name": "lift", "kind": "point", "entity": 4, "moves": 1},
     ]  # fmt: skip
-    assert springs_of(world) == [{"a": 1, "b": None, "anchor_a": [0.0, 0.0], "anchor_b": [0.0, 9.0]}]
+    held = {"a": 1, "b": None, "anchor_a": [0.0, 0.0], "anchor_b": [0.0, 9.0], "rest": 1.0}
+    assert springs_of(world) == [held]
     assert recorder.energies == ("kinetic", "gravity", "spring", "total")
 
 
@@ -342,29 +346,18 @@ def test_the_page_goes_to_stdout_alone(capfdbinary: pytest.CaptureFixture[bytes]
 # ---- colours -----------------------------------------------------------------------------------------------
 
 
-def luminance(colour: str) -> float:
-    """Return the relative luminance of #rgb or #rrggbb, as WCAG 2 defines it."""
-    digits = colour.removeprefix("#")
-    digits = digits if len(digits) == 6 else "".join(2 * digit for digit in digits)
-    parts = [int(digits[i : i + 2], 16) / 255 for i in (0, 2, 4)]
-    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
-    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
-
-
 @pytest.mark.parametrize("scheme", ["dark", "light"])
 def test_contrast(scheme: str) -> None:
-    style = (Path(cli.__file__).parent / "export" / "player" / "style.css").read_text()
-    dark, light = (dict(re.findall(r"--([\w-]+): ([^;]+);", block)) for block in style.split("@media", 2)[:2])
+    dark, light = (dict(re.findall(r"--([\w-]+): ([^;]+);", block)) for block in style().split("@media"))
     colours = dark if scheme == "dark" else {**dark, **light}
 
     def ratio(one: str, other: str) -> float:
-        bright, dim = sorted((luminance(colours[one]), luminance(colours[other])), reverse=True)
-        return (bright + 0.05) / (dim + 0.05)
+        return contrast(rgb_of(colours[one]), rgb_of(colours[other]))
 
     for text in ("text", "faint"):
         assert min(ratio(text, "background"), ratio(text, "panel")) >= 4.5
     assert ratio("on-accent", "accent") >= 4.5
     for line in ("accent", "arrow", *(f"b{k}" for k in range(7))):
-        assert ratio(line, "background") >= 4.5, line
-    for line in ("static", "bounds", "spring"):
+        assert min(ratio(line, sky) for sky in ("background", "sky_top", "sky_bottom")) >= 4.5, line
+    for line in ("static", "spring", "rod", "rope"):
         assert ratio(line, "background") >= 3.0, line

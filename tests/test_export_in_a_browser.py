@@ -1,11 +1,13 @@
 """Exported pages in a real browser, without a window and without a network."""
 
+import io
 import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+import pygame
 import pytest
 from browser import CHROMIUM, Browser
 from exporting import exported, recorded
@@ -33,6 +35,10 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
 from physicslab.systems.standard import standard_systems
+from physicslab.theme import DARK, LIGHT, Theme
+from physicslab.view.canvas.camera import Camera
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.picture.picture import draw_world
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="not installed: chromium")
 SIZES = [(1280, 720), (390, 844)]
@@ -155,8 +161,39 @@ def test_nothing_is_cut_off_and_the_scheme_is_followed(
     )
     assert small == []
     background = browser.value("getComputedStyle(document.body).backgroundColor")
-    assert background == ("rgb(15, 17, 23)" if dark else "rgb(255, 255, 255)")
+    assert background == f"rgb{(DARK if dark else LIGHT).background}"
     assert browser.complaints == []
+
+
+@pytest.mark.parametrize("theme", [DARK, LIGHT], ids=lambda theme: theme.name)
+def test_bodies_have_the_colours_and_the_light_of_the_window(
+    theme: Theme, tmp_path: Path, browser: Browser
+) -> None:
+    world = World(physics=PhysicsConfig(bounds=(-6.0, 0.0, 6.0, 6.0)))
+    ball = circle(world, (-3.0, 1.0), radius=1.0)
+    chosen = circle(world, (3.0, 1.0), radius=1.0)
+    world.add(chosen, Colour("#b05030"))
+    box(world, (0.0, 1.0), width=2.0, height=2.0)
+    box(world, (0.0, 4.5), width=2.0, height=1.0, static=True)
+    save_scene(world, tmp_path / "bodies.json")
+    exported(tmp_path / "page.html", str(tmp_path / "bodies.json"), "--seconds", "0.1")
+    browser.open(tmp_path / "page.html", dark=theme is DARK, still=True)
+    browser.value("(document.getElementById('grid').click(), player.seek(0))")
+    shown = pygame.image.load(io.BytesIO(browser.picture()), "page.png")
+    width, height = browser.value("[world.clientWidth, world.clientHeight]")
+    at = browser.value("world.getBoundingClientRect().toJSON()")
+    extent = tuple(browser.value("player.book.view"))
+    painted, camera = pygame.Surface((width, height), 0, 32), Camera((width, height))
+    camera.look_at(extent, camera.fitting_scale(extent, margin=0.0))
+    draw_world(world, camera, theme, PygameCanvas(painted), grid=False)
+    # Above, at the middle and below in bodies, beside them, in the sky, in the ground.
+    reach = world.component(ball, Shape).radius
+    places = [(x, 1.0 + up * reach) for x in (-3.15, 3.15, 0.7) for up in (0.8, 0.1, -0.8)]
+    for x, y in [*places, (-5.5, 5.5), (5.5, 1.0), (0.3, 4.7)]:
+        u, v = camera.project(np.array([(x, y)]))[0]
+        window = np.array(painted.get_at((int(u), int(v)))[:3], float)
+        page = np.array(shown.get_at((int(at["x"] + u), int(at["y"] + v)))[:3], float)
+        assert np.abs(window - page).max() <= 8 + theme.grain, (x, y, window, page)
 
 
 def test_a_finger_drags_and_two_zoom(page: Path, browser: Browser) -> None:

@@ -16,8 +16,8 @@ from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
+from physicslab.theme import DARK, Colour
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.world import World
 
 

@@ -10,8 +10,8 @@ from physicslab import World, load_scene
 from physicslab.components import Charge, Mass, Thrust, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.theme import DARK
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.theme import DARK
 from physicslab.view.picture.fields import draw_fields, draw_flames
 
 CAMERA = Camera((640, 480), scale=100.0)

@@ -16,8 +16,8 @@ from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle, pendulum
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
+from physicslab.theme import DARK
 from physicslab.view.canvas.quantities import percentage, quantity, round_quantity, vector_quantity
-from physicslab.view.canvas.theme import DARK
 from physicslab.view.overlay.edges import draw_scale_bar
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.workbench.figures import EnergyWatch, WorldFigures

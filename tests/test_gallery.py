@@ -12,7 +12,7 @@ from desk import SETTLED, Desk, click, empty_world, sized, tap, write
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.lessons.catalogue import LESSONS, titles
 from physicslab.scenes import SCENES
-from physicslab.view.canvas.theme import DARK
+from physicslab.theme import DARK
 from physicslab.view.workbench import thumbnails
 from physicslab.view.workbench.thumbnails import Thumbnails, tags_of
 

@@ -9,11 +9,11 @@ from desk import SETTLED, Desk, click, click_at, empty_world, point, sized, tap
 from plotting import CTRL, SHIFT, ball_of, drawn_lines, graph_of, in_plot, pause
 
 from physicslab import World
-from physicslab.components import Graph, GraphLine, Transform
+from physicslab.components import Graph, GraphLine, Name, Rod, Spring, Transform
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.history import SetField
 from physicslab.prefabs import circle
-from physicslab.view.canvas.theme import DARK
+from physicslab.theme import DARK
 from physicslab.view.controls import actions, dashboard_actions, file_actions
 from physicslab.view.window.dashboard import GraphShown, LineShown
 from physicslab.view.workbench.graph_readings import colours_of
@@ -106,6 +106,33 @@ def test_lines_of_the_world_and_of_bodies_are_chosen_in_a_menu(desk: Desk) -> No
     click(desk, "speed [m/s]")
     assert (ball, "speed") not in graph_of(desk).keys
     assert desk.window.edits.history.entries[-1].words.startswith(("took speed of ball", "ran"))
+
+
+def test_the_force_of_a_joint_and_of_a_spring_is_plotted_from_the_first_step() -> None:
+    """A bob of 2 kg at rest on a rod, and one on a spring, each pulled by its weight of 20 N."""
+    world = empty_world(gravity=(0.0, -10.0))
+    bobs = [circle(world, (x, 0.0), mass=2.0) for x in (-1.0, 1.0)]
+    rod = world.spawn(Rod(b=bobs[0], anchor_a=(-1.0, 2.0)), Name("rod"))
+    spring = world.spawn(
+        Spring(bobs[1], None, anchor_b=(1.0, 2.0), rest_length=1.5, stiffness=40.0), Name("spring")
+    )
+    desk = sized((1280, 720), world)
+    desk.frames(30)
+    pause(desk)
+    desk.window.selection.take(rod)
+    desk.window.selection.take(spring, add=True)
+    tap(desk, "m")
+    desk.frames(SETTLED)
+    graph, record = graph_of(desk), desk.window.dashboard.record
+    assert [line.key for line in graph.lines] == [(rod, "joint force"), (spring, "spring force")]
+    for line in graph.lines:
+        values = record.values(line.key)
+        assert len(values) > 20 and np.allclose(values, 20.0, atol=1e-6), "the past too"
+    assert {"rod: joint force", "spring: spring force"} <= set(desk.ui.words)
+    click(desk, "Lines of graph 1")
+    click(desk, "rod")
+    click(desk, "joint torque [N m]")
+    assert (rod, "joint torque") in graph_of(desk).keys
 
 
 def test_any_quantity_can_stand_across(desk: Desk) -> None:

@@ -33,8 +33,8 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.history import AddComponent
 from physicslab.prefabs import box, capsule, circle
+from physicslab.theme import DARK
 from physicslab.view.canvas.quantities import quantity, vector_quantity
-from physicslab.view.canvas.theme import DARK
 from physicslab.view.workbench.collision_drawing import colours_of
 
 REST = Motion(Vector2(), 0.0)

@@ -23,8 +23,8 @@ from physicslab.history import History
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.state.attached import INSTRUMENTS, place_of
 from physicslab.systems.gate import Crossing
+from physicslab.theme import THEMES
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.canvas.theme import THEMES
 from physicslab.view.controls.measuring import MEASURING_TOOLS
 from physicslab.view.overlay.instruments import angle_between, instrument_of
 from physicslab.view.workbench.instrument_panels import arrow_of, crossings_csv

@@ -12,8 +12,8 @@ from recording import RecordingCanvas
 from physicslab.components import Gear, Pin, Pulley, Rod, Rope, Slot, Spring, Weld
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, circle
+from physicslab.theme import DARK, THEMES, Colour
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.theme import DARK, THEMES, Colour
 from physicslab.view.picture.joints import joint_at, joint_lines
 from physicslab.view.picture.links import pulley_path, rope_paths
 from physicslab.view.picture.picture import draw_world

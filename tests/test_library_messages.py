@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import physicslab
-from physicslab import InvalidValue, World, load_scene, save_scene
+from physicslab import InvalidValue, SceneError, World, load_scene, save_scene
 from physicslab import world as world_module
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import COMPONENTS
@@ -64,14 +64,19 @@ WRONG: dict[str, tuple[Callable[[World], object], type[Exception], str]] = {
     "end, without springs": (
         lambda world: World(GravitySystem()).spawn(Transform(), Spring(b=5)), InvalidValue, "Spring.b = 5"
     ),
-    "id for an end": (lambda world: Spring(a="ball"), InvalidValue, "world.entity('ball')"),  # type: ignore[arg-type]
+    "unknown id for an end": (
+        lambda world: world.spawn(Spring(a="bal")), InvalidValue,
+        "Spring.a = 'bal': must be the id of an entity of this world: no entity has the id 'bal'; did you",
+    ),
+    "unit of something else": (lambda world: Mass("2 m"), InvalidValue, "'2 m' is in m; this is in kg"),
+    "text that is no number": (lambda world: Mass("heavy"), InvalidValue, "Mass.mass = 'heavy': must be"),
     "run": (lambda world: world.run(3.0), TypeError, "say run(seconds=3.0)"),  # type: ignore[arg-type]
     "stepping": (lambda world: world.stepping(3.0), TypeError, "say stepping(seconds=3.0)"),  # type: ignore[arg-type]
     "name of a component": (lambda world: world.component("ball", "Shape"), TypeError, "by its type"),  # type: ignore[arg-type]
     "has": (lambda world: world.has("ball", "Shape"), TypeError, "by its type"),  # type: ignore[arg-type]
     "misspelt id": (lambda world: world.entity("balll"), KeyError, 'did you mean "ball"?'),
     "misspelt id of a part": (lambda world: world.component("bal", Mass), KeyError, 'did you mean "ball"?'),
-    "document": (lambda world: load_scene({"a": 1}), TypeError, "read_scene(document"),  # type: ignore[arg-type]
+    "document": (lambda world: load_scene({"a": 1}), SceneError, "the scene"),
     "path": (lambda world: save_scene(world, 3), TypeError, "a scene has a name or a path; got 3"),  # type: ignore[arg-type]
     "both": (lambda world: World(GravitySystem(), systems=()), TypeError, "not both"),
 }  # fmt: skip

@@ -15,8 +15,8 @@ from physicslab.ecs.component import InvalidValue
 from physicslab.files.reader import read_scene
 from physicslab.files.writer import write_scene
 from physicslab.prefabs import box, capsule, circle
+from physicslab.theme import mixed
 from physicslab.view.canvas.canvas import Finish
-from physicslab.view.canvas.theme import mixed
 from physicslab.view.picture.bodies import body_colour
 from physicslab.view.window.materials import choose_material, materials
 

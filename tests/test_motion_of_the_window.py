@@ -8,8 +8,8 @@ from recording import RecordingCanvas
 from physicslab.components import Pin
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle
+from physicslab.theme import DARK
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.theme import DARK
 from physicslab.view.window.motion import GLIDE, Glide
 
 

@@ -13,9 +13,9 @@ from physicslab.components import Mass, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
+from physicslab.theme import DARK, Colour
 from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.quantities import quantity
-from physicslab.view.canvas.theme import DARK, Colour
 from physicslab.view.overlay.contact_samples import SHOWN, resting_of
 from physicslab.view.overlay.impulses import CROWD, LABELLED, LABELLED_IN_CROWD
 from physicslab.view.overlay.labels import Label, Labels

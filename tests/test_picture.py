@@ -12,7 +12,7 @@ from desk import bits, empty_world
 
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle
-from physicslab.view.canvas.theme import DARK
+from physicslab.theme import DARK
 from physicslab.view.picture.picture import save_png
 
 

@@ -12,8 +12,8 @@ from recording import RecordingCanvas
 from physicslab.components import MadeOf, Velocity
 from physicslab.contacts.report import ImpactReader
 from physicslab.prefabs import box, circle
+from physicslab.theme import DARK
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.theme import DARK
 from physicslab.view.overlay.dust import Dust
 from physicslab.view.picture.bodies import draw_bodies
 from physicslab.view.picture.squash import Squash

@@ -8,7 +8,7 @@ from deadline import deadline
 from recording import RecordingCanvas
 
 from physicslab.desktop.preferences import load_preferences, save_preferences
-from physicslab.view.canvas.theme import DARK, PROJECTOR
+from physicslab.theme import DARK, PROJECTOR
 from physicslab.view.window.window import Window
 
 

@@ -8,13 +8,14 @@ from desk import empty_world
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.components import GraphLine, Mass, Pin, Rod, Spring, Transform, Velocity
 from physicslab.components.quantities import BODY_QUANTITIES, QUANTITIES, WORLD_QUANTITIES, why_not_of
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
-from physicslab.diagnostics.quantities import Reading, why_undefined
+from physicslab.diagnostics.quantities import NOT_YET, Reading, why_undefined
 from physicslab.diagnostics.trajectory import BODY_HEADER
 from physicslab.ecs.quantity_text import evaluate
-from physicslab.files.scene import load_scene
+from physicslab.files.checks import SceneError
+from physicslab.files.scene import load_scene, read_scene
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.view.canvas.quantities import product, quotient
 
@@ -79,6 +80,77 @@ def test_what_has_no_value_is_nan_with_a_reason() -> None:
     world.remove(a)
     world.synchronise()
     assert why_undefined(world, "x", a) == "gone" and math.isnan(Reading(world).value("x", a))
+
+
+@given(st.floats(0.0, 1.5), st.floats(0.2, 5.0), st.floats(0.1, 20.0))
+def test_the_rod_of_a_pendulum_pulls_as_weight_and_turning_ask(
+    angle: float, length: float, mass: float
+) -> None:
+    world = empty_world(gravity=(0, -9.81))
+    place = (length * math.sin(angle), -length * math.cos(angle))
+    bob = world.spawn(Transform(place), Velocity((0.0, 0.0)), Mass(mass))
+    rod = world.spawn(Rod(b=bob, length=length))
+    world.run(seconds=0.3)
+    reading = Reading(world)
+    x, y = reading.value("x", bob), reading.value("y", bob)
+    pull = mass * (reading.value("speed", bob) ** 2 - 9.81 * y) / length
+    assert reading.value("joint force", rod) == pytest.approx(pull, rel=1e-6)
+    assert reading.value("joint force x", rod) == pytest.approx(-pull * x / length, rel=1e-6, abs=1e-9 * pull)
+    assert reading.value("joint torque", rod) == 0.0
+
+
+def test_a_spring_pulls_by_its_extension_and_pushes_where_it_is_short() -> None:
+    world = empty_world()
+    a, b = circle(world, (0, 0)), circle(world, (3, 0))
+    long, short = (world.spawn(Spring(a, b, rest_length=rest, stiffness=10.0)) for rest in (2.0, 3.5))
+    reading = Reading(world)
+    assert reading.value("spring force", long) == pytest.approx(10.0)
+    assert reading.value("spring force", short) == pytest.approx(-5.0)
+
+
+def test_what_carries_no_joint_or_several_has_no_force_of_one() -> None:
+    world = empty_world()
+    a, b = circle(world, (0, 0)), circle(world, (3, 0))
+    spring = world.spawn(Spring(a, b))
+    world.run(steps=1)
+    world.add(a, Rod(b=b))
+    assert why_undefined(world, "joint force", a) == "" and math.isfinite(
+        Reading(world).value("joint force", a)
+    )
+    assert (
+        why_undefined(world, "joint force", spring)
+        == why_undefined(world, "joint force", b)
+        == "has no joint"
+    )
+    assert why_undefined(world, "spring force", b) == "has no spring"
+    world.add(a, Pin(b=b, anchor_b=(-3.0, 0.0)))
+    assert why_undefined(world, "joint force", a) == "has several joints"
+    assert math.isnan(Reading(world).value("joint force", a))
+
+
+def _with_line(quantity: str, of: str) -> dict[str, object]:
+    return {
+        "format": "physicslab-scene/1",
+        "entities": [
+            {"id": "bob", "Transform": {"position": [0, -1]}, "Velocity": {}, "Mass": {"mass": 1}},
+            {"id": "rod", "Rod": {"b": "bob"}},
+            {"id": "graph", "Graph": {}},
+            {"GraphLine": {"graph": "graph", "quantity": quantity, "body": of}},
+        ],
+    }
+
+
+def test_a_line_of_a_scene_is_of_what_has_its_quantity() -> None:
+    world = read_scene(_with_line("joint force", "rod"), "lines")
+    (line,) = (world.component(one, GraphLine) for one in world.batch(GraphLine).entities.tolist())
+    assert line.body == (rod := world.entity("rod"))
+    assert why_undefined(world, "joint force", rod) == NOT_YET
+    world.run(steps=1)
+    assert why_undefined(world, "joint force", rod) == ""
+    with pytest.raises(SceneError, match=r'GraphLine.body = "bob".*the id of an entity with a joint'):
+        read_scene(_with_line("joint force", "bob"), "lines")
+    with pytest.raises(SceneError, match=r'GraphLine.body = "rod".*the id of an entity with a Transform'):
+        read_scene(_with_line("speed", "rod"), "lines")
 
 
 def test_attracting_bodies_have_no_potential_energy_of_their_own() -> None:

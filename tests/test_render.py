@@ -17,10 +17,10 @@ from physicslab.scenes import SCENES
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage
+from physicslab.theme import DARK
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Finish
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.canvas.theme import DARK
 from physicslab.view.picture.backdrop import grid_spacing
 from physicslab.view.picture.bodies import body_rows, point_radii
 from physicslab.view.picture.extent import extent_of

@@ -12,7 +12,7 @@ from physicslab import World, load_scene
 from physicslab.components import Colour, Material, Name, Shape, Transform
 from physicslab.history import SetField
 from physicslab.prefabs import box
-from physicslab.view.canvas.theme import DARK
+from physicslab.theme import DARK
 from physicslab.view.picture.bodies import named_colour
 
 

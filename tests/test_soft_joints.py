@@ -5,13 +5,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from physicslab import World
 from physicslab.components import (
     Gear,
+    Layer,
     Mass,
     Pin,
     Pulley,
@@ -23,6 +24,7 @@ from physicslab.components import (
     Velocity,
     Weld,
 )
+from physicslab.components.layer import NONE
 from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.diagnostics.joints import JointState, joint_states
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
@@ -204,12 +206,18 @@ def balance(world: World) -> NDArray[np.float64]:
     speeds=st.lists(st.floats(-3.0, 3.0), min_size=6, max_size=6),
     mass=st.floats(1e-3, 1e3), fixed=st.booleans(),
 )  # fmt: skip
+@example(kind=Rod, speeds=[0.0, 0.0, 0.0, -3.0, 0.0, 1.0], mass=1.0, fixed=True)
 def test_every_change_of_energy_and_momentum_is_booked(
     kind: type[Any], speeds: list[float], mass: float, fixed: bool
 ) -> None:
+    # They do not touch: a soft contact changes the angular momentum of the two (docs/physics-and-error.md).
     world = bench(gravity=0.0 if fixed else G)
     one = world.spawn(
-        Transform(), Velocity((speeds[0], speeds[1]), speeds[2]), Mass(1.0), Shape.box(1.0, 0.4)
+        Transform(),
+        Velocity((speeds[0], speeds[1]), speeds[2]),
+        Mass(1.0),
+        Shape.box(1.0, 0.4),
+        Layer(touches=NONE),
     )
     other = world.spawn(
         Transform((2.0, 0.0)), Velocity((speeds[3], speeds[4]), speeds[5]), Mass(mass), Shape.box(0.5, 0.5)

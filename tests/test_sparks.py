@@ -10,8 +10,8 @@ from recording import RecordingCanvas
 from physicslab.components import Velocity
 from physicslab.contacts.report import ImpactReader
 from physicslab.prefabs import box, circle, stack
+from physicslab.theme import DARK, PROJECTOR
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.theme import DARK, PROJECTOR
 from physicslab.view.picture.sparks import Sparks
 from physicslab.world import World
 

@@ -11,9 +11,9 @@ import pygame
 import pytest
 
 import physicslab
+from physicslab.theme import DARK, LEGIBLE, LIGHT, THEMES, Colour, Theme, contrast
 from physicslab.view.canvas.canvas import Finish, Look
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.canvas.theme import DARK, LEGIBLE, LIGHT, THEMES, Colour, Theme, contrast
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.overlay.arrows import (
     CONTACT_NORMAL,

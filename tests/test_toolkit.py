@@ -14,7 +14,7 @@ from imgui_bundle import imgui, implot
 from numpy.typing import NDArray
 
 from physicslab.prefabs import circle
-from physicslab.view.canvas.theme import DARK, THEMES, Theme
+from physicslab.theme import DARK, THEMES, Theme
 from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
 

@@ -15,7 +15,7 @@ from physicslab.prefabs import box, circle
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
 from physicslab.systems.trail import TrailSystem
-from physicslab.view.canvas.theme import DARK, mixed
+from physicslab.theme import DARK, mixed
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.world_view import WorldView
 from physicslab.world import World

@@ -19,8 +19,8 @@ from physicslab.desktop.progress import draw_progress
 from physicslab.ecs.config import WindowConfig
 from physicslab.kernels import cache, keys, motion, warm
 from physicslab.kernels.warm import Progress, Warmup, is_warm, load_all, mark_warm, name_of
+from physicslab.theme import DARK
 from physicslab.view.canvas.display import Display, forget_clicks, wants_to_leave
-from physicslab.view.canvas.theme import DARK
 
 ECHO = (sys.executable, "-c", "import sys\nfor line in sys.stdin: print(line.strip(), flush=True)")
 _SLOWLY = "import sys, time\nfor line in sys.stdin: time.sleep(0.02); print(line, end='', flush=True)"

@@ -20,9 +20,9 @@ from physicslab.integrators import INTEGRATORS
 from physicslab.prefabs import box, circle, stack
 from physicslab.scenes import SCENES
 from physicslab.systems.standard import standard_systems
+from physicslab.theme import THEMES
 from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import TextStyle
-from physicslab.view.canvas.theme import THEMES
 from physicslab.view.overlay.banners import draw_advice
 from physicslab.world import World
 

@@ -8,7 +8,7 @@ from recording import RecordingCanvas
 
 from physicslab.components import Velocity
 from physicslab.prefabs import box, circle
-from physicslab.view.canvas.theme import DARK
+from physicslab.theme import DARK
 
 
 def two() -> tuple[Desk, RecordingCanvas, list[int]]:

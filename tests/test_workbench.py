@@ -31,7 +31,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
-from physicslab.view.canvas.theme import THEMES
+from physicslab.theme import THEMES
 from physicslab.view.controls import lesson_actions
 from physicslab.view.controls.controls import CONTROLS, Control
 from physicslab.view.controls.spawning import BODIES, GROUPS

@@ -20,7 +20,7 @@ from physicslab.export.page import player_texts
 from physicslab.languages.catalogue import sources
 from physicslab.languages.language import Language
 from physicslab.scenes import SCENES
-from physicslab.view.canvas.theme import THEMES
+from physicslab.theme import THEMES
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.tools import TOOLS
 from physicslab.view.window.desk import LEVELS

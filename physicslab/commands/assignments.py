@@ -8,7 +8,7 @@ from typing import Any
 
 from physicslab.commands import CommandError
 from physicslab.ecs.component import COMPONENTS, Component, Field, InvalidValue
-from physicslab.ecs.quantity_text import InvalidText, evaluate, evaluate_pair, evaluate_points
+from physicslab.ecs.quantity_text import InvalidText, evaluate_as
 from physicslab.ecs.text import suggestion, unique_name
 from physicslab.files.checks import shown
 from physicslab.files.entities import UNSAVED
@@ -128,15 +128,8 @@ def _value(spec: Field, text: str, names: Mapping[str, int], where: str) -> Any:
         return None
     try:
         match spec.kind:
-            case "number":
-                return evaluate(text, spec.unit)
-            case "whole":
-                number = evaluate(text, spec.unit)
-                return int(number) if number.is_integer() else number
-            case "vector":
-                return evaluate_pair(text, spec.unit)
-            case "points":
-                return evaluate_points(text, spec.unit)
+            case "number" | "whole" | "vector" | "points":
+                return evaluate_as(spec.kind, text, spec.unit)
             case "flag":
                 return _WORDS.get(text, text)
             case "entity":

@@ -1,6 +1,6 @@
 """The electric charge of a body."""
 
-from physicslab.ecs.component import Component, component, field
+from physicslab.ecs.component import Component, Number, component, field
 
 
 @component
@@ -10,4 +10,4 @@ class Charge(Component):
     The laws are those of a scene: ``coulomb_constant``, ``electric_field`` and ``magnetic_field``.
     """
 
-    charge: float = field(default=1.0, unit="C", meaning="electric charge")
+    charge: Number = field(default=1.0, unit="C", meaning="electric charge")

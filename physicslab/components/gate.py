@@ -3,7 +3,7 @@
 from typing import ClassVar
 
 from physicslab.components.lengths import point
-from physicslab.ecs.component import Component, Vector, component, field
+from physicslab.ecs.component import Component, Entity, Vector, component, field
 
 
 @component
@@ -14,5 +14,5 @@ class Gate(Component):
     POINTS: ClassVar[tuple[str, ...]] = ("start", "end")
     start: Vector = point(0.0, 0.0, "one end, in its body's frame")
     end: Vector = point(0.0, 1.0, "the other end, in its body's frame")
-    start_body: int | None = field(default=None, meaning="the body that one end is attached to")
-    end_body: int | None = field(default=None, meaning="the body that the other end is attached to")
+    start_body: Entity = field(default=None, meaning="the body that one end is attached to")
+    end_body: Entity = field(default=None, meaning="the body that the other end is attached to")

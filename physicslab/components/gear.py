@@ -1,7 +1,7 @@
 """A gear, which couples two joints."""
 
 from physicslab.components import joint_ends as ends
-from physicslab.ecs.component import Component, Derived, InvalidValue, component, field
+from physicslab.ecs.component import Component, Derived, Entity, InvalidValue, Number, component, field
 
 COUPLED = "an entity with a Pin or a Slot, and not both"
 """The allowed ends."""
@@ -16,9 +16,9 @@ class Gear(Component):
     That of the second changes by ``ratio`` times as much as that of the first: the other way below zero.
     """
 
-    first: int | None = field(fixed=True, meaning="entity with the first Pin or Slot")
-    second: int | None = field(fixed=True, meaning="entity with the second Pin or Slot")
-    ratio: float = field(default=-1.0, meaning="change of the second coordinate by that of the first")
+    first: Entity = field(fixed=True, meaning="entity with the first Pin or Slot")
+    second: Entity = field(fixed=True, meaning="entity with the second Pin or Slot")
+    ratio: Number = field(default=-1.0, meaning="change of the second coordinate by that of the first")
     offset: Derived = ends.as_placed("1", "the second coordinate less ratio times the first")
     collide: bool = ends.collides()
     breaks: Derived = ends.breaks_at()

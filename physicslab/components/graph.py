@@ -2,8 +2,8 @@
 
 from typing import ClassVar
 
-from physicslab.components.quantities import QUANTITIES, check_quantity, why_not_of
-from physicslab.ecs.component import Component, InvalidValue, component, field
+from physicslab.components.quantities import QUANTITIES, carrier_of, check_quantity, why_not_of
+from physicslab.ecs.component import Component, Entity, InvalidValue, component, field
 
 TIME = "time"
 """The quantity on the horizontal axis of most graphs."""
@@ -17,12 +17,14 @@ class Graph(Component):
     across: str = field(
         default=TIME, choices=(TIME, *QUANTITIES), meaning="what stands on the horizontal axis"
     )
-    body: int | None = field(default=None, meaning="body of what stands there; the world where absent")
+    body: Entity = field(
+        default=None, meaning="body, joint or spring of what stands there; the world where absent"
+    )
     side: str = field(default="right", choices=("left", "right"), meaning="where in the window it is")
 
     def references(self) -> dict[str, str]:
         """Return which component the body must have."""
-        return {"body": "Transform"}
+        return {"body": carrier_of(self.across)}
 
     def validate(self) -> None:
         """Check that the body, or the world, has the quantity."""
@@ -33,16 +35,16 @@ class Graph(Component):
 
 @component
 class GraphLine(Component):
-    """A quantity of a body, or of the world, in a graph. It lives on an entity of its own."""
+    """A quantity of a body, a joint, a spring or the world in a graph, on an entity of its own."""
 
     physical: ClassVar[bool] = False
-    graph: int | None = field(meaning="the entity with the Graph")
+    graph: Entity = field(meaning="the entity with the Graph")
     quantity: str = field(choices=tuple(QUANTITIES), meaning="what is plotted")
-    body: int | None = field(default=None, meaning="whose quantity it is; the world's where absent")
+    body: Entity = field(default=None, meaning="whose quantity it is; the world's where absent")
 
     def references(self) -> dict[str, str]:
         """Return which component the graph and the body must have."""
-        return {"graph": "Graph", "body": "Transform"}
+        return {"graph": "Graph", "body": carrier_of(self.quantity)}
 
     def validate(self) -> None:
         """Check that there is a graph, and that the body, or the world, has the quantity."""

@@ -1,6 +1,6 @@
 """How a body resists forces and torques."""
 
-from physicslab.ecs.component import Component, Derived, component, field
+from physicslab.ecs.component import Component, Derived, Number, component, field
 
 MIN_MASS = 1e-300
 """The smallest mass [kg] and moment of inertia [kg m^2]: of much smaller ones the inverse is infinite."""
@@ -10,7 +10,7 @@ MIN_MASS = 1e-300
 class Mass(Component):
     """How a body resists forces and torques. A moving entity without it is kinematic: infinitely heavy."""
 
-    mass: float = field(default=1.0, unit="kg", minimum=MIN_MASS, meaning="resistance to force")
+    mass: Number = field(default=1.0, unit="kg", minimum=MIN_MASS, meaning="resistance to force")
     inertia: Derived = field(
         default=None,
         unit="kg m^2",

@@ -1,13 +1,13 @@
 """The surface of a body: restitution and friction."""
 
-from physicslab.ecs.component import Component, component, field
+from physicslab.ecs.component import Component, Number, component, field
 
 
 @component
 class Material(Component):
     """The properties of a surface in contact: a pair uses e = min(e_a, e_b) and mu = sqrt(mu_a mu_b)."""
 
-    restitution: float = field(
+    restitution: Number = field(
         default=0.0, minimum=0.0, maximum=1.0, meaning="share of the approach speed given back"
     )
-    friction: float = field(default=0.5, minimum=0.0, meaning="Coulomb friction coefficient")
+    friction: Number = field(default=0.5, minimum=0.0, meaning="Coulomb friction coefficient")

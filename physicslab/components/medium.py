@@ -1,6 +1,6 @@
 """A region that is filled with a fluid."""
 
-from physicslab.ecs.component import Component, Vector, component, field
+from physicslab.ecs.component import Component, Number, Vector, component, field
 
 
 @component
@@ -12,11 +12,11 @@ class Medium(Component):
     against the outline.
     """
 
-    density: float = field(default=1.0, unit="kg/m^2", minimum=0.0, meaning="mass of a square metre")
-    viscosity: float = field(
+    density: Number = field(default=1.0, unit="kg/m^2", minimum=0.0, meaning="mass of a square metre")
+    viscosity: Number = field(
         default=0.0, unit="kg/(m s)", minimum=0.0, meaning="drag per speed and metre of outline"
     )
-    quadratic: float = field(
+    quadratic: Number = field(
         default=0.0, unit="kg/m^2", minimum=0.0, meaning="drag per speed squared and metre of outline"
     )
     flow: Vector = field(default=(0.0, 0.0), unit="m/s", meaning="velocity of the fluid: a current, a wind")

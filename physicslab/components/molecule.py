@@ -1,6 +1,6 @@
 """What lets bodies attract each other at short distances, and repel each other at shorter ones."""
 
-from physicslab.ecs.component import Component, component, field
+from physicslab.ecs.component import Component, Number, component, field
 from physicslab.ecs.fields import LENGTH_LIMIT
 
 
@@ -12,7 +12,7 @@ class Molecule(Component):
     Of unlike ones the depth is the geometric mean of both, the distance the arithmetic one.
     """
 
-    depth: float = field(default=1.0, unit="J", minimum=0.0, meaning="energy that parts two that rest")
-    distance: float = field(
+    depth: Number = field(default=1.0, unit="J", minimum=0.0, meaning="energy that parts two that rest")
+    distance: Number = field(
         default=0.3, unit="m", above=0.0, limit=LENGTH_LIMIT, meaning="at which two of them rest"
     )

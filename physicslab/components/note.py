@@ -7,7 +7,7 @@ Instruments have points. Each is two fields: where it is, and the body that it i
 from typing import ClassVar
 
 from physicslab.components.lengths import point
-from physicslab.ecs.component import Component, Vector, component, field
+from physicslab.ecs.component import Component, Entity, Vector, component, field
 
 
 @component
@@ -20,4 +20,4 @@ class Note(Component):
     place: Vector = point(
         0.0, 0.0, "where it is, in the frame of the body that it is attached to, or a point of the world"
     )
-    place_body: int | None = field(default=None, meaning="the body that it is attached to; none: it stays")
+    place_body: Entity = field(default=None, meaning="the body that it is attached to; none: it stays")

@@ -1,7 +1,7 @@
 """A pin, about which two bodies turn, with limits and a motor."""
 
 from physicslab.components import joint_ends as ends
-from physicslab.ecs.component import Component, Derived, Vector, component
+from physicslab.ecs.component import Component, Derived, Entity, Vector, component
 
 
 @component
@@ -12,8 +12,8 @@ class Pin(Component):
     of A.
     """
 
-    a: int | None = ends.first_end()
-    b: int | None = ends.second_end()
+    a: Entity = ends.first_end()
+    b: Entity = ends.second_end()
     anchor_a: Vector = ends.anchor_of_first()
     anchor_b: Vector = ends.anchor_of_second()
     lower: Derived = ends.optional("rad", "the smallest angle of B less that of A; any where absent")

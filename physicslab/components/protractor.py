@@ -3,7 +3,7 @@
 from typing import ClassVar
 
 from physicslab.components.lengths import point
-from physicslab.ecs.component import Component, Vector, component, field
+from physicslab.ecs.component import Component, Entity, Vector, component, field
 
 
 @component
@@ -15,6 +15,6 @@ class Protractor(Component):
     vertex: Vector = point(0.0, 0.0, "where the arms meet, in its body's frame")
     first: Vector = point(1.0, 0.0, "end of the first arm, in its body's frame")
     second: Vector = point(0.0, 1.0, "end of the second arm, in its body's frame")
-    vertex_body: int | None = field(default=None, meaning="the body that the vertex is attached to")
-    first_body: int | None = field(default=None, meaning="the body that the first arm's end is attached to")
-    second_body: int | None = field(default=None, meaning="the body that the second arm's end is attached to")
+    vertex_body: Entity = field(default=None, meaning="the body that the vertex is attached to")
+    first_body: Entity = field(default=None, meaning="the body that the first arm's end is attached to")
+    second_body: Entity = field(default=None, meaning="the body that the second arm's end is attached to")

@@ -2,7 +2,7 @@
 
 from physicslab.components import joint_ends as ends
 from physicslab.components.lengths import point
-from physicslab.ecs.component import Component, Derived, Vector, component, field
+from physicslab.ecs.component import Component, Derived, Entity, Number, Vector, component, field
 
 
 @component
@@ -12,13 +12,13 @@ class Pulley(Component):
     l_a + ratio l_b is at most its length, with the distances of the anchors from the wheels.
     """
 
-    a: int | None = ends.first_end()
-    b: int | None = ends.second_end()
+    a: Entity = ends.first_end()
+    b: Entity = ends.second_end()
     anchor_a: Vector = ends.anchor_of_first()
     anchor_b: Vector = ends.anchor_of_second()
     wheel_a: Vector = point(0.0, 0.0, "the point of the world over which A hangs")
     wheel_b: Vector = point(0.0, 0.0, "the point of the world over which B hangs")
-    ratio: float = field(default=1.0, above=0.0, meaning="how often the rope goes to B")
+    ratio: Number = field(default=1.0, above=0.0, meaning="how often the rope goes to B")
     length: Derived = ends.as_placed("m", "the largest l_a + ratio l_b", above=0.0)
     collide: bool = ends.collides()
     breaks: Derived = ends.breaks_at()

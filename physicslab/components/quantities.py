@@ -1,9 +1,12 @@
-"""Quantities of a body and of the world: names and units, the one list of them."""
+"""Quantities of bodies, joints, springs and the world: names and units, the one list of them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from physicslab.ecs.fields import InvalidValue
+
+JOINT = "joint"
+"""Stands for a component of any kind of joint."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +23,8 @@ class Quantity:
         What it is called in the table of ``run --csv``.
     of_body, of_world : bool
         Whether a body has it, and whether the world has.
+    carrier : str
+        What an entity must have that has it: ``"Transform"``, ``"Spring"``, or ``JOINT``.
     group : str
         The part of a menu in which it stands; empty for the menu itself.
     """
@@ -30,6 +35,12 @@ class Quantity:
     of_body: bool = True
     of_world: bool = False
     group: str = ""
+    carrier: str = "Transform"
+
+    @property
+    def of_entity(self) -> bool:
+        """Whether a body, a joint or a spring has it."""
+        return self.of_body or self.carrier != "Transform"
 
     @property
     def heading(self) -> str:
@@ -92,12 +103,21 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity("energy of gravity", "J", "potential gravity", of_body=False, of_world=True),
         Quantity("energy of springs", "J", "potential spring", of_body=False, of_world=True),
         Quantity("total energy", "J", "energy", of_world=True),
+        Quantity("joint force x", "N", "joint fx", of_body=False, carrier=JOINT),
+        Quantity("joint force y", "N", "joint fy", of_body=False, carrier=JOINT),
+        Quantity("joint force", "N", "joint force", of_body=False, carrier=JOINT),
+        Quantity("joint torque", "N m", "joint torque", of_body=False, carrier=JOINT),
+        Quantity("spring force", "N", "spring force", of_body=False, carrier="Spring"),
         *_accounts(),
     )
 }
 """All of them by name. Scene files hold the names."""
 BODY_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.of_body)
 """The names of those that a body has."""
+JOINT_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.carrier == JOINT)
+"""The names of those that a joint has."""
+SPRING_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.carrier == "Spring")
+"""The names of those that a spring has."""
 WORLD_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.of_world)
 """The names of those that the world has."""
 
@@ -109,14 +129,19 @@ def check_quantity(owner: str, field: str, name: str, body: int | None) -> None:
         raise InvalidValue(owner, field, name, allowed)
 
 
+def carrier_of(name: str) -> str:
+    """Return what an entity must have that has a quantity; of the time, which all have, a place."""
+    return QUANTITIES[name].carrier if name in QUANTITIES else "Transform"
+
+
 def why_not_of(name: str, body: int | None) -> str | None:
-    """Return what the name of a quantity must be, if a body, or the world for ``None``, has none such.
+    """Return what the name of a quantity must be, if no entity, or the world for ``None``, has one such.
 
     >>> why_not_of("x", 1) is None, "kinetic energy" in (why_not_of("x", None) or "")
     (True, True)
     """
     allowed = WORLD_QUANTITIES if body is None else BODY_QUANTITIES
-    if name in allowed:
+    if name in allowed or (body is not None and name in JOINT_QUANTITIES + SPRING_QUANTITIES):
         return None
     words = ", ".join(f'"{other}"' for other in allowed if not QUANTITIES[other].group)
     more = ', or an account such as "account: friction",' if body is None else ""

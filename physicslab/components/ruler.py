@@ -3,7 +3,7 @@
 from typing import ClassVar
 
 from physicslab.components.lengths import point
-from physicslab.ecs.component import Component, Vector, component, field
+from physicslab.ecs.component import Component, Entity, Vector, component, field
 
 
 @component
@@ -18,5 +18,5 @@ class Ruler(Component):
     end: Vector = point(
         1.0, 0.0, "where it ends, in the frame of the body that this end is attached to, or of the world"
     )
-    start_body: int | None = field(default=None, meaning="the body that its beginning is attached to")
-    end_body: int | None = field(default=None, meaning="the body that its end is attached to")
+    start_body: Entity = field(default=None, meaning="the body that its beginning is attached to")
+    end_body: Entity = field(default=None, meaning="the body that its end is attached to")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from physicslab.components.lengths import extent
 from physicslab.components.vertices import centred, plain, why_no_chain, why_not_convex, why_off_centre
-from physicslab.ecs.component import Component, InvalidValue, Points, component, field
+from physicslab.ecs.component import Component, InvalidValue, Number, Points, component, field
 from physicslab.ecs.fields import LENGTH_LIMIT
 from physicslab.ecs.vector import Vector2
 
@@ -66,10 +66,10 @@ class Shape(Component):
     """The outline of a body, centred on its Transform. An entity without it cannot touch anything."""
 
     kind: str = field(choices=tuple(KINDS), fixed=True, meaning="what sort of outline")
-    radius: float = extent(0.0, "radius of a circle, of a capsule's round ends, or of a polygon's corners")
-    width: float = extent(0.0, "extent of a box along its own x axis")
-    height: float = extent(0.0, "extent of a box along its own y axis")
-    length: float = extent(0.0, "distance of the centres of a capsule's round ends, along its own x axis")
+    radius: Number = extent(0.0, "radius of a circle, of a capsule's round ends, or of a polygon's corners")
+    width: Number = extent(0.0, "extent of a box along its own x axis")
+    height: Number = extent(0.0, "extent of a box along its own y axis")
+    length: Number = extent(0.0, "distance of the centres of a capsule's round ends, along its own x axis")
     vertices: Points = field(
         default=(),
         unit="m",

@@ -12,7 +12,7 @@ from physicslab.components.spring import Spring
 from physicslab.components.thrust import Thrust
 from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
-from physicslab.ecs.component import Component, InvalidValue, component, field
+from physicslab.ecs.component import Component, Entity, InvalidValue, Number, component, field
 from physicslab.ecs.fields import Field
 
 GRAVITY = "gravity"
@@ -33,9 +33,9 @@ class Slider(Component):
 
     physical: ClassVar[bool] = False
     changes: str = field(choices=(GRAVITY, *SLIDER_FIELDS), meaning="what is changed")
-    entity: int | None = field(default=None, meaning="whose number it is; absent for gravity")
-    low: float = field(default=0.0, meaning="the value at the left end")
-    high: float = field(default=20.0, meaning="the value at the right end")
+    entity: Entity = field(default=None, meaning="whose number it is; absent for gravity")
+    low: Number = field(default=0.0, meaning="the value at the left end")
+    high: Number = field(default=20.0, meaning="the value at the right end")
     corner: str = field(default=CORNERS[0], choices=CORNERS, meaning="where in the window it is")
 
     @property

@@ -1,7 +1,7 @@
 """A straight slot, along which a body slides, with limits and a motor."""
 
 from physicslab.components import joint_ends as ends
-from physicslab.ecs.component import Component, Derived, InvalidValue, Vector, component, field
+from physicslab.ecs.component import Component, Derived, Entity, InvalidValue, Vector, component, field
 from physicslab.ecs.fields import LENGTH_LIMIT
 
 _SHORTEST = 1e-300
@@ -15,8 +15,8 @@ class Slot(Component):
     Limits and motor are of the way along the axis from A's anchor to B's.
     """
 
-    a: int | None = ends.first_end()
-    b: int | None = ends.second_end()
+    a: Entity = ends.first_end()
+    b: Entity = ends.second_end()
     anchor_a: Vector = ends.anchor_of_first()
     anchor_b: Vector = ends.anchor_of_second()
     axis: Vector = field(default=(1.0, 0.0), limit=LENGTH_LIMIT, meaning="its direction in A's own frame")

@@ -1,7 +1,7 @@
 """A spring, which pulls two points together."""
 
 from physicslab.components.lengths import extent, point
-from physicslab.ecs.component import Component, Vector, component, field
+from physicslab.ecs.component import Component, Entity, Number, Vector, component, field
 
 OTHER_END = "another entity than a"
 """The allowed ``b``: a pull between two points of one body moves nothing."""
@@ -15,14 +15,14 @@ class Spring(Component):
     pulling the ends together where positive. It lives on an entity of its own or on the body it holds.
     """
 
-    a: int | None = field(
+    a: Entity = field(
         default=None, fixed=True, meaning="first body; the entity that carries the spring where absent"
     )
-    b: int | None = field(
+    b: Entity = field(
         default=None, fixed=True, meaning="second body; a fixed point of the world where absent"
     )
     anchor_a: Vector = point(0.0, 0.0, "where it holds A, in A's own frame")
     anchor_b: Vector = point(0.0, 0.0, "where it holds B, in B's own frame, or a point of the world")
-    rest_length: float = extent(1.0, "length without force")
-    stiffness: float = field(default=100.0, unit="N/m", minimum=0.0, meaning="force per metre of extension")
-    damping: float = field(default=0.0, unit="N s/m", minimum=0.0, meaning="force per speed of lengthening")
+    rest_length: Number = extent(1.0, "length without force")
+    stiffness: Number = field(default=100.0, unit="N/m", minimum=0.0, meaning="force per metre of extension")
+    damping: Number = field(default=0.0, unit="N s/m", minimum=0.0, meaning="force per speed of lengthening")

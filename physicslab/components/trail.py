@@ -2,7 +2,7 @@
 
 from typing import ClassVar
 
-from physicslab.ecs.component import Component, component, field
+from physicslab.ecs.component import Component, Number, component, field
 
 
 @component
@@ -10,4 +10,4 @@ class Trail(Component):
     """Makes the world record where the body has been."""
 
     physical: ClassVar[bool] = False
-    length: float = field(default=2.0, unit="s", above=0.0, meaning="how far back the record goes")
+    length: Number = field(default=2.0, unit="s", above=0.0, meaning="how far back the record goes")

@@ -1,6 +1,6 @@
 """The position and angle of a body."""
 
-from physicslab.ecs.component import Component, Vector, component, field
+from physicslab.ecs.component import Component, Number, Vector, component, field
 from physicslab.ecs.fields import COORDINATE_LIMIT
 
 
@@ -11,4 +11,4 @@ class Transform(Component):
     position: Vector = field(
         default=(0.0, 0.0), unit="m", limit=COORDINATE_LIMIT, meaning="centre of mass; y points up"
     )
-    angle: float = field(default=0.0, unit="rad", meaning="orientation, counter-clockwise")
+    angle: Number = field(default=0.0, unit="rad", meaning="orientation, counter-clockwise")

@@ -1,7 +1,7 @@
 """A rigid connection."""
 
 from physicslab.components import joint_ends as ends
-from physicslab.ecs.component import Component, Derived, Vector, component
+from physicslab.ecs.component import Component, Derived, Entity, Vector, component
 
 
 @component
@@ -11,8 +11,8 @@ class Weld(Component):
     Bodies that welds make one thing of do not touch each other, unless these ``collide``.
     """
 
-    a: int | None = ends.first_end()
-    b: int | None = ends.second_end()
+    a: Entity = ends.first_end()
+    b: Entity = ends.second_end()
     anchor_a: Vector = ends.anchor_of_first()
     anchor_b: Vector = ends.anchor_of_second()
     angle: Derived = ends.as_placed("rad", "angle of B less that of A")

@@ -7,8 +7,8 @@ from importlib import import_module
 from physicslab.desktop.garbage import loading
 from physicslab.desktop.progress import PAUSE, draw_loading
 from physicslab.ecs.config import WindowConfig
+from physicslab.theme import DARK
 from physicslab.view.canvas.display import Display, NoScreen, wants_to_leave
-from physicslab.view.canvas.theme import DARK
 
 __all__ = ["NoScreen", "open_window"]
 

@@ -12,8 +12,8 @@ from physicslab.kernels import KERNELS, ask_before_compiling, interpreter, load
 from physicslab.kernels.solver import soft
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
 from physicslab.stepping.small import is_small
+from physicslab.theme import DARK, Theme
 from physicslab.view.canvas.display import Display, wants_to_leave
-from physicslab.view.canvas.theme import DARK, Theme
 
 if TYPE_CHECKING:
     from physicslab.world import World

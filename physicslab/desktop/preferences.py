@@ -10,8 +10,8 @@ from physicslab.files.checks import SceneError
 from physicslab.files.replace import replace_file
 from physicslab.files.scene import read_bytes
 from physicslab.languages.catalogue import languages
+from physicslab.theme import THEMES
 from physicslab.view.canvas.drawable_text import encodable
-from physicslab.view.canvas.theme import THEMES
 from physicslab.view.window.desk import LEVELS
 from physicslab.view.window.recent import RecentFiles
 from physicslab.view.window.window import Window

@@ -1,7 +1,7 @@
 """The window while it loads, and while kernels are compiled."""
 
+from physicslab.theme import Theme
 from physicslab.view.canvas.canvas import Canvas, TextStyle
-from physicslab.view.canvas.theme import Theme
 
 PAUSE = 0.05
 """Time [s] between two looks at whether what is shown here has changed, or the user has done anything."""

@@ -1,4 +1,4 @@
-"""Quantities of bodies and of the world at one moment, by name: what graphs and meters show.
+"""Quantities of bodies, joints, springs and the world at one moment, by name: what graphs and meters show.
 
 The names and units are in :mod:`physicslab.components.quantities`; sums over the world are those of
 :mod:`physicslab.diagnostics.energy`.
@@ -11,16 +11,27 @@ from functools import cached_property
 import numpy as np
 
 from physicslab.components import Mass, Spring, Transform, Velocity
-from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES, UNMEASURED_MOMENTA
+from physicslab.components.quantities import (
+    ENERGY_CAUSES,
+    JOINT,
+    MOMENTUM_CAUSES,
+    UNMEASURED_MOMENTA,
+    carrier_of,
+)
 from physicslab.diagnostics.energy import Accounts, Energy, Momentum, measure_account
 from physicslab.diagnostics.free_body import forces_on, net_force
+from physicslab.diagnostics.joints import JointState, joint_states
+from physicslab.diagnostics.period import spring_state
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.forces import springs
+from physicslab.state.joint_rows import KINDS
 from physicslab.state.masses import quiet
 from physicslab.state.packed import spring_ends
 from physicslab.world import World
 
 _NAN = math.nan
+NOT_YET = "known after the first step"
+"""Why what only a step reckons has no value."""
 
 
 class Reading:
@@ -50,14 +61,14 @@ class Reading:
         self._nets: dict[int, Vector2] = {}
 
     def value(self, name: str, body: int | None = None) -> float:
-        """Return a quantity in its SI unit, of a body, or of the world for ``None``.
+        """Return a quantity in its SI unit, of a body, a joint or a spring, or of the world for ``None``.
 
         It is NaN where it is not defined (:func:`why_undefined`).
 
         Raises
         ------
         KeyError
-            If a body, or the world, has no such quantity at all.
+            If no entity, or the world, has such a quantity at all.
         """
         if body is None:
             return float(_OF_WORLD[name](self))
@@ -147,6 +158,24 @@ class Reading:
             )  # fmt: skip
         return total
 
+    # ---- of a joint or a spring ----------------------------------------------------------------------------
+
+    @cached_property
+    def _joints(self) -> dict[int, JointState]:
+        return {joint.entity: joint for joint in joint_states(self._world)}
+
+    def _joint_force(self, entity: int) -> Vector2:
+        """Return the force of a joint on its B [N]."""
+        return self._joints[entity].force
+
+    def _joint_torque(self, entity: int) -> float:
+        return self._joints[entity].torque
+
+    def _spring_force(self, entity: int) -> float:
+        """Return the force of a spring [N], positive where it pulls its ends together."""
+        spring = spring_state(self._world, entity)
+        return _NAN if spring is None else spring.force
+
 
 def why_undefined(world: World, name: str, body: int | None) -> str:
     """Return in a few words why a quantity has no value now; empty where it has one."""
@@ -160,6 +189,8 @@ def _why_undefined(world: World, name: str, body: int | None) -> str:
         return "not measured by itself: it is part of that of contacts" if unmeasured else ""
     if body not in world.entity_index.row_of:
         return "gone"
+    if carrier_of(name) != "Transform":
+        return _why_not_carried(world, carrier_of(name), body)
     if not world.has(body, Transform):
         return "has no place"
     if name in ("x", "y", "angle"):
@@ -171,6 +202,16 @@ def _why_undefined(world: World, name: str, body: int | None) -> str:
     if not world.has(body, Mass):
         return "has no mass"
     return _why_no_potential(world, body) if name in ("potential energy", "total energy") else ""
+
+
+def _why_not_carried(world: World, carrier: str, entity: int) -> str:
+    """Return why an entity has not the one joint or the spring of which a quantity is."""
+    if carrier != JOINT:
+        return "" if world.has(entity, Spring) else "has no spring"
+    count = sum(world.has(entity, kind) for kind in KINDS)
+    if count != 1:
+        return "has several joints" if count else "has no joint"
+    return "" if world.steps else NOT_YET
 
 
 def _why_no_potential(world: World, body: int) -> str:
@@ -245,4 +286,7 @@ _OF_BODY: dict[str, Callable[[Reading, int], float]] = {
     "kinetic energy of rotation": Reading._rotation,
     "potential energy": Reading._potential,
     "total energy": lambda now, body: now._kinetic(body) + now._potential(body),
+    **_parts("joint force", "joint force", Reading._joint_force),
+    "joint torque": Reading._joint_torque,
+    "spring force": Reading._spring_force,
 }

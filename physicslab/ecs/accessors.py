@@ -22,8 +22,35 @@ class Vector:
         """Return the vector stored in the handle's row."""
         raise NotImplementedError  # the decorator puts a property in this place
 
-    def __set__(self, handle: object, value: Vector2 | Sequence[float] | NDArray[Any]) -> None:
+    def __set__(self, handle: object, value: Vector2 | Sequence[float | str] | NDArray[Any] | str) -> None:
         """Store a pair of numbers in the handle's row."""
+        raise NotImplementedError
+
+
+class Number:
+    """The type of a number: reads as ``float``, takes a text with a unit as well."""
+
+    def __get__(self, handle: object, owner: type | None = None) -> float:
+        """Return the number in the handle's row."""
+        raise NotImplementedError  # the decorator puts a property in this place
+
+    def __set__(self, handle: object, value: float | str) -> None:
+        """Store a number in the handle's row."""
+        raise NotImplementedError
+
+
+class Entity:
+    """The type of a field that refers to an entity: reads as its number, takes its id as well.
+
+    It is an id until a world spawns the component, which then must have an entity of that id.
+    """
+
+    def __get__(self, handle: object, owner: type | None = None) -> int | None:
+        """Return the number of the entity, or ``None``."""
+        raise NotImplementedError  # the decorator puts a property in this place
+
+    def __set__(self, handle: object, value: int | str | None) -> None:
+        """Store the number of an entity in the handle's row."""
         raise NotImplementedError
 
 
@@ -34,7 +61,7 @@ class Derived:
         """Return the number in the handle's row; 0 while it is not given and no world has computed it."""
         raise NotImplementedError  # the decorator puts a property in this place
 
-    def __set__(self, handle: object, value: float | None) -> None:
+    def __set__(self, handle: object, value: float | str | None) -> None:
         """Give the number explicitly, or leave it to the world with ``None``."""
         raise NotImplementedError
 
@@ -74,10 +101,13 @@ def maker(spec: Field) -> Maker:
         value = converted(value)
         return [[0.0], [False]] if value is None else [[check(value)], [True]]
 
+    def entity(value: object) -> list[list[Any]]:
+        return [[value]] if isinstance(value, str) else other(value)
+
     def other(value: object) -> list[list[Any]]:
         return [[check(converted(value))]]
 
-    makers: dict[Kind, Maker] = {"number": number, "vector": vector}
+    makers: dict[Kind, Maker] = {"number": number, "vector": vector, "entity": entity}
     return derived if spec.derived else makers.get(spec.kind, other)
 
 

@@ -15,12 +15,12 @@ from inspect import Parameter, Signature
 from itertools import pairwise
 from typing import Any, ClassVar, cast, dataclass_transform, get_origin, get_type_hints
 
-from physicslab.ecs.accessors import ABSENT, Derived, Maker, Points, Vector, accessor, maker
+from physicslab.ecs.accessors import ABSENT, Derived, Entity, Maker, Number, Points, Vector, accessor, maker
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue, Kind, field
 
 __all__ = [
-    "COMPONENTS", "Component", "Derived", "Field", "InvalidValue", "Points", "Vector", "component", "field",
-    "local_components",
+    "COMPONENTS", "Component", "Derived", "Entity", "Field", "InvalidValue", "Number", "Points", "Vector",
+    "component", "field", "local_components",
 ]  # fmt: skip
 
 COMPONENTS: dict[str, type[Component]] = {}
@@ -104,10 +104,20 @@ class Component:
 
     def is_given(self, name: str) -> bool:
         """Whether a derived field was given explicitly (``True`` for every other field)."""
+        spec, column = self._placed(name)
+        return bool(self._views[column + 1][self._row]) if spec.derived else True
+
+    def name_entity(self, name: str, entity: int) -> None:
+        """Put the number of an entity in place of its id, in a component that no world has yet."""
+        self._views[self._placed(name)[1]][self._row] = entity
+
+    @classmethod
+    def _placed(cls, name: str) -> tuple[Field, int]:
+        """Return a field and its column."""
         column = 0
-        for spec in self.FIELDS:
+        for spec in cls.FIELDS:
             if spec.name == name:
-                return bool(self._views[column + 1][self._row]) if spec.derived else True
+                return spec, column
             column += 2 if spec.derived else 1
         raise KeyError(name)
 
@@ -129,19 +139,21 @@ def component[T](cls: type[T]) -> type[T]:
     ======================  =========================================  ===============================
     annotation              holds                                      column
     ======================  =========================================  ===============================
-    ``float``               a finite number, within its range          float64 (n,)
+    ``float``, ``Number``   a finite number, within its range          float64 (n,)
     ``int``                 a whole number, within its range           int64 (n,)
     ``Vector``              two finite numbers, read as ``Vector2``    float64 (n, 2)
     ``Derived``             a number the world can compute             float64 (n,) and a bool (n,)
     ``bool``                a flag                                     bool (n,)
-    ``int | None``          an entity, or none                         int64 (n,), 0 for none
+    ``int | None``          an entity, or none; so does ``Entity``     int64 (n,), 0 for none
     ``str`` with choices    one word of a fixed list                   int64 (n,), 1 + index in the list
     ``str``                 a text, empty or to be seen                int64 (n,), a code, 0 for empty
     ``Points``              a list of points, read as ``Vector2``      int64 (n,), a code, 0 for empty
     ======================  =========================================  ===============================
 
-    A row whose entity lacks the component is all zeros. Reading gives plain Python values; writing checks the
-    value and raises :class:`InvalidValue` with the component, the field, the value and what is allowed.
+    ``Number`` and ``Entity`` tell type checkers that texts are taken: a number with its unit, ``"2 kg"``, and
+    the id of an entity. A row whose entity lacks the component is all zeros. Reading gives plain Python
+    values; writing checks the value and raises :class:`InvalidValue` with the component, the field, the value
+    and what is allowed.
     Scene files identify a component by the name of its class, so no two classes have the same; a class that
     is defined again, as by a notebook's cell, replaces itself. Examples and tests use
     :func:`local_components`.
@@ -283,12 +295,12 @@ def _documented(cls: type, specs: tuple[Field, ...]) -> str:
 
 def _kind_of(hint: Any, described: Field) -> Kind:
     kinds: dict[Any, Kind] = {
-        float: "number", Derived: "number", int: "whole", Vector: "vector", bool: "flag",
-        int | None: "entity", str: "text", Points: "points",
+        float: "number", Number: "number", Derived: "number", int: "whole", Vector: "vector", bool: "flag",
+        int | None: "entity", Entity: "entity", str: "text", Points: "points",
     }  # fmt: skip
     if described.choices:
         return "choice"
     if hint not in kinds:
-        allowed = "float, int, bool, Vector, Points, Derived, int | None, or str"
+        allowed = "float, Number, int, bool, Vector, Points, Derived, int | None, Entity, or str"
         raise TypeError(f"no column holds {hint!r}; use {allowed}")
     return kinds[hint]

@@ -8,12 +8,11 @@ from typing import Any
 
 import esper
 
-_OTHER_THREAD = (
-    "another thread is working with a world: esper's context is one for the whole process, so worlds must be "
-    "used by one thread at a time, or in a process each"
-)
 _turn = threading.RLock()
-"""Held by the thread in which a context is active; that thread may take it any number of times."""
+"""Held by the thread in which a context is active, which may take it any number of times; others wait.
+
+esper's context is one for the whole process, so threads work with worlds in turn.
+"""
 
 
 class Active[W]:
@@ -36,9 +35,8 @@ class Active[W]:
         self._before = ""
 
     def __enter__(self) -> W:
-        """Switch to the context; raise ``RuntimeError`` if one is active in another thread."""
-        if not _turn.acquire(False):
-            raise RuntimeError(_OTHER_THREAD)
+        """Switch to the context, once none is active in another thread."""
+        _turn.acquire()
         self._before = before = esper.current_world
         if before != self._context:
             try:
@@ -61,19 +59,9 @@ class Active[W]:
 
 
 def switch(context: str) -> None:
-    """Make a context esper's active one from here on.
-
-    Raises
-    ------
-    RuntimeError
-        If a world is active in another thread.
-    """
-    if not _turn.acquire(False):
-        raise RuntimeError(_OTHER_THREAD)
-    try:
+    """Make a context esper's active one from here on, once none is active in another thread."""
+    with _turn:
         esper.switch_world(context)
-    finally:
-        _turn.release()
 
 
 def next_number() -> int:

@@ -10,6 +10,7 @@ from typing import Any, Concatenate, Literal
 import numpy as np
 
 from physicslab.ecs.interned import Interned
+from physicslab.ecs.quantity_text import InvalidText, evaluate_as, is_written
 from physicslab.ecs.text import code_of, has_width, is_line
 from physicslab.ecs.vector import Vector2
 
@@ -29,6 +30,8 @@ POINTS: Interned[tuple[Vector2, ...]] = Interned(())
 """The lists of points in columns."""
 REQUIRED: Any = object()
 """The default of a field that has none."""
+MEASURED: frozenset[Kind] = frozenset({"number", "vector", "points"})
+"""Kinds of fields that may be given as texts with units, as ``"2 kg"``, but in files. Counts have none."""
 
 
 class InvalidValue(ValueError):
@@ -156,13 +159,20 @@ class Field:
         """Return ``value`` as a column stores it, or raise :class:`InvalidValue`.
 
         Vectors come back as a pair of floats, choices as their code (1, 2, ...), no entity as 0,
-        texts and lists of points as their codes (:mod:`physicslab.ecs.interned`).
+        texts and lists of points as their codes (:mod:`physicslab.ecs.interned`). Numbers may be texts with
+        units, as ``"30 deg"``.
         """
-        stored = _CONVERSIONS[self.kind](self, value)
+        convert, allowed = _CONVERSIONS[self.kind], ""
+        stored = convert(self, value)
+        if stored is None and self.kind in MEASURED and is_written(value):
+            try:
+                stored = convert(self, evaluate_as(self.kind, value, self.unit))
+            except InvalidText as error:
+                allowed = f": {error}"
         if stored is None:
-            by_id = self.kind == "entity" and isinstance(value, str)
-            allowed = f"{self.allowed}: world.entity({value!r}) is that of an id" if by_id else self.allowed
-            raise InvalidValue(self.owner, self.name, value, allowed)
+            if self.kind == "entity" and isinstance(value, str):
+                allowed = f": world.entity({value!r}) is that of an id"
+            raise InvalidValue(self.owner, self.name, value, self.allowed + allowed)
         return stored
 
 

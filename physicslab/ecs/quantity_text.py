@@ -7,7 +7,7 @@ import re
 import warnings
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 from physicslab.ecs.text import printable, shortened
 from physicslab.ecs.vector import Vector2
@@ -292,6 +292,46 @@ def evaluate_points(text: str, unit: str = "1") -> list[tuple[float, float]]:
         raise InvalidText(f"'{shown}' is no list of points [[x, y], ...]")
     own = points["unit"]
     return [evaluate_pair(f"[{one}]{own}", unit) for one in re.findall(r"\[([^][]*)\]", points["points"])]
+
+
+def is_written(value: object) -> bool:
+    """Whether a value is a text, or a list or tuple with one in it."""
+    return isinstance(value, str) or (
+        isinstance(value, list | tuple) and any(isinstance(part, str) for part in value)
+    )
+
+
+def evaluate_as(kind: str, value: Any, unit: str = "1") -> Any:
+    """Return what is written as a kind of field takes it, in an SI unit.
+
+    Parameters
+    ----------
+    kind : str
+        ``"number"``, ``"whole"``, ``"vector"`` or ``"points"``.
+    value : str, or pair
+        What :func:`evaluate`, :func:`evaluate_pair` and :func:`evaluate_points` take; a pair of texts and
+        numbers too.
+    unit : str
+        What a number without a unit is in.
+
+    Raises
+    ------
+    InvalidText
+        If it cannot be read, or has another dimension.
+
+    Examples
+    --------
+    >>> evaluate_as("vector", ("20 cm", 1), "m"), evaluate_as("whole", "2*8")
+    ((0.2, 1), 16)
+    """
+    if kind == "points":
+        return evaluate_points(value, unit) if isinstance(value, str) else value
+    if kind == "vector":
+        if isinstance(value, str):
+            return evaluate_pair(value, unit)
+        return tuple(evaluate(part, unit) if isinstance(part, str) else part for part in value)
+    number = evaluate(value, unit) if isinstance(value, str) else value
+    return int(number) if kind == "whole" and isinstance(number, float) and number.is_integer() else number
 
 
 def points_text(points: Iterable[Vector2]) -> str:

@@ -9,6 +9,7 @@ from importlib.resources import files
 from typing import Any
 
 from physicslab.ecs.text import printable
+from physicslab.export.look import look, style
 from physicslab.export.packing import pack
 from physicslab.export.parts import (
     fields_of,
@@ -24,7 +25,7 @@ from physicslab.languages.catalogue import SOURCE
 from physicslab.languages.language import language
 from physicslab.world import World
 
-_SCRIPTS = ("run.js", "picture.js", "figures.js", "controls.js", "lesson.js")
+_SCRIPTS = ("run.js", "bodies.js", "picture.js", "figures.js", "controls.js", "lesson.js")
 """The player, in order: one script, whose parts see the names of those before; the last is for lessons."""
 _SAID = re.compile(r'\bsay\("([^"]+)"\)|\{\{say:([^}]+)\}\}')
 """A text of the player in its scripts, and in its page."""
@@ -107,10 +108,10 @@ def fill_page(
         "CODE": html.escape(code),
         "TITLE": html.escape(printable(title)),
         "DESCRIPTION": html.escape(printable(description)),
-        "STYLE": "".join(map(_part, styles)),
+        "STYLE": style() + "".join(map(_part, styles)),
         "ARTICLE": article,
         "PLAYER": "".join(map(_part, scripts)),
-        "RUN": _json({**document, "words": shown, "mark": own.say(".")}),
+        "RUN": _json({**document, "look": look(), "words": shown, "mark": own.say(".")}),
     }
     texts |= {f"say:{text}": html.escape(said) for text, said in words.items()}
     head, *rest = _part("page.html").split("{{")
@@ -151,6 +152,7 @@ def run_document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> d
         "thrusts": thrusts_of(world),
         "texts": notes_of(world),
         "gates": gates_of(world, recorder.start),
+        "space": physics.gravity_mode == "planet",
         "gravity": list(physics.gravity) if uniform else None,
         "bounds": None if physics.bounds is None else list(physics.bounds),
         "notes": notes,

@@ -39,7 +39,7 @@ def springs_of(world: World) -> list[dict[str, Any]]:
         found.append(
             {
                 "a": place[spring.a or own], "b": None if spring.b is None else place.get(spring.b),
-                "anchor_a": [*spring.anchor_a], "anchor_b": [*spring.anchor_b],
+                "anchor_a": [*spring.anchor_a], "anchor_b": [*spring.anchor_b], "rest": spring.rest_length,
             }
         )  # fmt: skip
     return found

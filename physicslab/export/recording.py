@@ -12,6 +12,7 @@ from physicslab.components.shape import KINDS
 from physicslab.diagnostics.energy import Accounts
 from physicslab.diagnostics.quantities import Reading
 from physicslab.diagnostics.run_report import body_names
+from physicslab.export.look import edges_of
 from physicslab.export.parts import Key, graphs_of, springs_of
 from physicslab.state.shapes import cores_of
 from physicslab.world import World
@@ -142,7 +143,8 @@ class RunRecorder:
             if mass.present[row]:
                 body["mass"], body["inertia"] = float(mass["mass"][row]), float(mass["inertia"][row])
             if colour.present[row]:
-                body["colour"] = world.component(entity, Colour).colour
+                own = world.component(entity, Colour)
+                body["colour"], body["edges"] = own.colour, edges_of(own.rgb)
             if medium.present[row]:
                 body["fluid"] = True
             if charge.present[row] and charge["charge"][row]:

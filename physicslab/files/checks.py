@@ -8,6 +8,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from physicslab.ecs.fields import MEASURED, Field
+from physicslab.ecs.quantity_text import is_written
 from physicslab.ecs.text import SHORT, has_width, is_line, printable, shortened, suggestion
 
 _BREAKS = dict.fromkeys(map(ord, "\n\t"), " ")
@@ -110,6 +112,13 @@ def checked_keys(given: Mapping[str, Any], where: str, noun: str, known: Sequenc
             raise SceneError(
                 f"{where}{name} = {shown(value)}: unknown {noun}; must be one of {allowed}{likely}"
             )
+
+
+def refuse_written(given: Mapping[str, Any], fields: Mapping[str, Field], where: str) -> None:
+    """Refuse numbers that are texts: a file has SI numbers, whatever reads it."""
+    for name, value in given.items():
+        if is_written(value) and fields[name].kind in MEASURED:
+            raise refusal(f"{where}{name}", value, fields[name].allowed)
 
 
 def checked_text(value: object, where: str, *, lines: bool = False) -> str:

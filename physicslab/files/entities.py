@@ -34,16 +34,16 @@ from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.components.name import why_no_id
 from physicslab.components.shape import STAYS
 from physicslab.components.spring import OTHER_END
-from physicslab.ecs.component import COMPONENTS, Component, InvalidValue
+from physicslab.ecs.component import COMPONENTS, Component, Field, InvalidValue
 from physicslab.ecs.text import suggestion
 from physicslab.files import checks
 from physicslab.state.attached import INSTRUMENTS
-from physicslab.state.joint_rows import KINDS
+from physicslab.state.joint_rows import KINDS, kinds_of
 
 UNSAVED: frozenset[type[Any]] = frozenset({Held})
 """Components that scene files do not hold: no hand reaches into a file."""
 
-type _Expected = tuple[tuple[str, ...], tuple[str, ...], str]
+type _Expected = tuple[dict[str, Field], tuple[str, ...], str]
 _NEED_TRANSFORM = (
     Velocity, Mass, Shape, Material, Drag, Thrust, Charge, Molecule, Medium, Trail, Layer, MadeOf, Colour,
 )  # fmt: skip
@@ -173,19 +173,20 @@ def _label(number: int, entity: object, source: str) -> str:
 
 
 def _expected(kind: type[Component]) -> _Expected:
-    """Return the names of a component's fields, of those that are entities, and what it must look like."""
-    names = tuple(spec.name for spec in kind.FIELDS)
+    """Return a component's fields by name, the names of entities, and what it must look like."""
+    fields = {spec.name: spec for spec in kind.FIELDS}
     ends = tuple(spec.name for spec in kind.FIELDS if spec.kind == "entity")
-    return names, ends, "an object {" + ", ".join(f'"{name}": ...' for name in names) + "}"
+    return fields, ends, "an object {" + ", ".join(f'"{name}": ...' for name in fields) + "}"
 
 
 def _component(
     kind: type[Component], expected: _Expected, value: object, ids: Mapping[str, int], where: str
 ) -> Component:
     place = f"{where}: {kind.__name__}"
-    names, ends, allowed = expected
+    fields, ends, allowed = expected
     given = checks.checked_object(value, place, allowed)
-    checks.checked_keys(given, f"{place}.", "field", names)
+    checks.checked_keys(given, f"{place}.", "field", tuple(fields))
+    checks.refuse_written(given, fields, f"{place}.")
     values = dict(given) if ends else given
     for name in ends:
         if given.get(name) is not None:
@@ -254,7 +255,7 @@ def _check_references(component: Component, entities: Sequence[Mapping[str, Any]
         references = {"a": "Transform", "b": "Transform"}
     for name, needed in references.items():
         other = getattr(component, name)
-        if other is not None and needed not in entities[other - 1]:
+        if other is not None and not any(kind in entities[other - 1] for kind in kinds_of(needed)):
             place = f"{where}: {type(component).__name__}.{name}"
             raise checks.refusal(place, entities[other - 1].get("id"), f"the id of an entity with a {needed}")
 

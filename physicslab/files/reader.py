@@ -317,6 +317,7 @@ def _config[C: (PhysicsConfig, SimulationConfig)](config: type[C], value: object
     where = f"{source}: {config.section}"
     given = checks.checked_object(value, where, "an object of settings")
     checks.checked_keys(given, f"{where}.", "setting", field_names(config))
+    checks.refuse_written(given, {spec.name: spec for spec in config.FIELDS}, f"{where}.")
     try:
         return config(**given)
     except InvalidValue as error:

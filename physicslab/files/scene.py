@@ -7,10 +7,10 @@ import math
 import os
 import re
 import stat
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened, suggestion
@@ -35,14 +35,17 @@ VALUE_LIMIT = 8_000_000
 """Values that it may hold, counted by the brackets and commas before them, those within texts included."""
 
 
-def load_scene(name_or_path: str | bytes | os.PathLike[str], losses: list[str] | None = None) -> World:
+def load_scene(
+    scene: str | bytes | os.PathLike[str] | Mapping[str, Any], losses: list[str] | None = None
+) -> World:
     """Return a new world: a built-in scene, or one from a file, with the systems that it needs.
 
     Parameters
     ----------
-    name_or_path : str or path
+    scene : str, path or dict
         A built-in scene's name, or a path, as text or bytes. Where there is a file of that name too,
-        ``./drop`` is the file. One that ends in ``.step`` is a world of KDE Step.
+        ``./drop`` is the file. One that ends in ``.step`` is a world of KDE Step. A dict is what such a file
+        holds.
     losses : list of str, optional
         Gets what of such a world has no place in a scene, a line each.
 
@@ -62,9 +65,11 @@ def load_scene(name_or_path: str | bytes | os.PathLike[str], losses: list[str] |
     >>> world.title
     'A ball on a floor'
     """
-    if isinstance(name_or_path, str) and name_or_path in SCENES:
-        return SCENES[name_or_path].build()
-    path = _path(name_or_path)
+    if isinstance(scene, Mapping):
+        return read_scene(scene, "the scene")
+    if isinstance(scene, str) and scene in SCENES:
+        return SCENES[scene].build()
+    path = _path(scene)
     source = printable(path)
     try:
         if is_step(path):
@@ -106,11 +111,6 @@ def save_scene(world: World, path: str | bytes | os.PathLike[str]) -> None:
 
 def _path(given: object) -> str:
     """Return a path as text; any other value is a TypeError that names the function for documents."""
-    if isinstance(given, dict):
-        raise TypeError(
-            "a scene is opened by its name or its path; physicslab.files.scene.read_scene(document, source) "
-            "makes a world of a dict"
-        )
     try:
         return os.fsdecode(given)  # type: ignore[arg-type]
     except TypeError:

@@ -26,6 +26,7 @@ from physicslab.files.numbers import export_numbers
 from physicslab.files.reader import FORMAT, SCENE_TEXTS
 from physicslab.files.remainders import export_remainders
 from physicslab.state.contacts import Contacts
+from physicslab.state.joint_rows import kinds_of
 from physicslab.state.state import State
 from physicslab.stepping.island import KeptIsland
 from physicslab.stepping.plan import outlived
@@ -277,7 +278,10 @@ def _is_lost(component: Component, snapshot: WorldSnapshot) -> bool:
         return False
     return any(
         (entity := getattr(component, name)) is not None
-        and (entity not in snapshot.living or snapshot.component(entity, COMPONENTS[needed]) is None)
+        and (
+            entity not in snapshot.living
+            or all(snapshot.component(entity, COMPONENTS[kind]) is None for kind in kinds_of(needed))
+        )
         for name, needed in component.references().items()
     )
 

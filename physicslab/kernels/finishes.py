@@ -10,12 +10,22 @@ from physicslab.kernels import inlined
 _EVERY_OTHER = 0x00FF00FF
 """Two channels of a pixel, with room between them for products."""
 WHITE, BLACK = 0xFFFFFFFF, 0
-_HATCH_SPACING = 10.0
+HATCH_SPACING = 10.0
 """Distance between the lines that mark what cannot move [px]."""
-_HATCH = 0.12
+HATCH = 0.12
 """Share of the rim's colour in these lines."""
-_BRIGHT, _DIM = 0.2, 0.24
-"""Share of white where light falls on a body, and of black on the side away from it."""
+BRIGHT, DIM, DIM_DEEP = 0.2, 0.24, 0.432
+"""Share of white where light falls on a body, and of black on its other side and deep in the ground."""
+WEDGE_FROM = 3.0
+"""Radius [px] from which a disc shows how far it has turned."""
+WEDGE, WEDGE_REACH, WEDGE_SHARE = 0.3, 0.8, 0.4
+"""Half the angle of the wedge that shows it [rad], its length as a share of the radius, its opacity."""
+LIGHT_X, LIGHT_Y, LIGHT_REACH = 0.3, 0.5, 2.5
+"""How far left of and above the middle of a disc it is lit most [radii]; squared distance of the dim side."""
+DEEP = 260.0
+"""Depth below its top in which ground is dim [px]."""
+SHADOW_DOWN, SHADOW_SOFT, SHADOW_FROM = 3.0, 3.5, 5.0
+"""How far below a body its shadow lies, half the width of its edge, least half extent with one [px]."""
 FINISHES = ("FLAT", "POINT", "LIT", "RUBBER", "GROUND", "WOOD", "STEEL", "STONE", "ICE", "GLASS")
 """How the inside of a body is painted, by number: :class:`physicslab.view.canvas.canvas.Finish`."""
 FLAT, _POINT, LIT, _RUBBER, GROUND, _WOOD, _STEEL, _STONE, _ICE, _GLASS = range(len(FINISHES))
@@ -55,8 +65,8 @@ def _speck(i: int, j: int) -> float:
 def textured(finish: int, u: float, v: float, colour: int, edge: int, under: int) -> int:
     """Return the colour of a material at a place in the body's own frame [px], before what is under it."""
     if finish == GROUND:
-        across = _HATCH_SPACING * abs(_share_of((u + v) * 0.7071067811865476, _HATCH_SPACING) - 0.5)
-        return mixed(colour, edge, _HATCH * unit(1.25 - across))
+        across = HATCH_SPACING * abs(_share_of((u + v) * 0.7071067811865476, HATCH_SPACING) - 0.5)
+        return mixed(colour, edge, HATCH * unit(1.25 - across))
     if finish == _WOOD:
         wave = _share_of(u, 90.0)
         grain = abs(_share_of(v + 7.0 * wave * (1.0 - wave), 6.0) - 0.5)
@@ -80,7 +90,7 @@ def lit(fill: int, finish: int) -> int:
     """Return the colour of a body where light falls on it."""
     if finish in (FLAT, GROUND):
         return fill
-    return mixed(fill, WHITE, 0.3 * _BRIGHT if finish == _RUBBER else _BRIGHT)
+    return mixed(fill, WHITE, 0.3 * BRIGHT if finish == _RUBBER else BRIGHT)
 
 
 @inlined
@@ -88,4 +98,4 @@ def shaded(fill: int, finish: int) -> int:
     """Return the colour of a body on the side away from the light."""
     if finish == FLAT:
         return fill
-    return mixed(fill, BLACK, 1.8 * _DIM if finish == GROUND else _DIM)
+    return mixed(fill, BLACK, DIM_DEEP if finish == GROUND else DIM)

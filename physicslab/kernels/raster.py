@@ -17,23 +17,34 @@ from numba import uint32
 from numpy.typing import NDArray
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.finishes import BLACK, FLAT, GROUND, LIT, WHITE, lit, mixed, shaded, textured, unit
+from physicslab.kernels.finishes import (
+    BLACK,
+    DEEP,
+    FLAT,
+    GROUND,
+    LIGHT_REACH,
+    LIGHT_X,
+    LIGHT_Y,
+    LIT,
+    SHADOW_DOWN,
+    SHADOW_FROM,
+    SHADOW_SOFT,
+    WEDGE,
+    WEDGE_FROM,
+    WEDGE_REACH,
+    WEDGE_SHARE,
+    WHITE,
+    lit,
+    mixed,
+    shaded,
+    textured,
+    unit,
+)  # fmt: skip
 
 Pixels = Annotated[NDArray[np.uint32], uint32[:, ::1]]
 """A uint32 array (height, width): a picture."""
 Colours = Annotated[NDArray[np.uint32], uint32[::1]]
 """A uint32 array (n,): packed colours."""
-
-_WEDGE_FROM = 3.0
-"""Radius [px] from which a disc shows how far it has turned."""
-_WEDGE, _WEDGE_REACH, _WEDGE_SHARE = 0.3, 0.8, 0.4
-"""Half the angle of the wedge that shows it [rad], its length as a share of the radius, its opacity."""
-_LIGHT_X, _LIGHT_Y, _LIGHT_REACH = 0.3, 0.5, 2.5
-"""How far left of and above the middle of a disc it is lit most [radii]; squared distance of the dim side."""
-_DEEP = 260.0
-"""Depth below its top in which ground is dim [px]."""
-_SHADOW_DOWN, _SHADOW_SOFT, _SHADOW_FROM = 3.0, 3.5, 5.0
-"""How far below a body its shadow lies, half the width of its edge, least half extent with one [px]."""
 
 
 @inlined
@@ -102,7 +113,7 @@ def _disc_edge(
 def _shadow_of_disc(pixels: Pixels, x: float, y: float, r: float, opacity: float) -> None:
     """Paint what is seen of a disc's shadow around it."""
     height, width = pixels.shape
-    outer, own, middle = r + _SHADOW_SOFT, r - 0.5, y + _SHADOW_DOWN
+    outer, own, middle = r + SHADOW_SOFT, r - 0.5, y + SHADOW_DOWN
     for row in range(_pixel(middle - outer, height), _pixel(middle + outer, height)):
         dy, from_own = row + 0.5 - middle, row + 0.5 - y
         reach = math.sqrt(max(outer * outer - dy * dy, 0.0))
@@ -113,7 +124,7 @@ def _shadow_of_disc(pixels: Pixels, x: float, y: float, r: float, opacity: float
             for column in range(first, end):
                 dx = column + 0.5 - x
                 away = math.sqrt(dx * dx + dy * dy) - r
-                share = opacity * unit(0.5 - 0.5 * away / _SHADOW_SOFT)
+                share = opacity * unit(0.5 - 0.5 * away / SHADOW_SOFT)
                 pixels[row, column] = mixed(int(pixels[row, column]), BLACK, share)
 
 
@@ -121,7 +132,7 @@ def _shadow_of_disc(pixels: Pixels, x: float, y: float, r: float, opacity: float
 def _wedge(pixels: Pixels, x: float, y: float, r: float, angle: float) -> None:
     """Paint a bright sector from the middle of a disc towards its angle."""
     height, width = pixels.shape
-    half, reach = _WEDGE * (1.0 + 3.0 / r), _WEDGE_REACH * r
+    half, reach = WEDGE * (1.0 + 3.0 / r), WEDGE_REACH * r
     low_x, low_y = math.cos(angle - half), -math.sin(angle - half)
     high_x, high_y = math.cos(angle + half), -math.sin(angle + half)
     tip_x, tip_y = math.cos(angle), -math.sin(angle)
@@ -134,7 +145,7 @@ def _wedge(pixels: Pixels, x: float, y: float, r: float, angle: float) -> None:
             cover = unit(0.5 + dx * low_y - dy * low_x)
             cover *= unit(0.5 + dy * high_x - dx * high_y)
             cover *= unit(0.5 + reach - math.sqrt(dx * dx + dy * dy))
-            pixels[row, column] = mixed(int(pixels[row, column]), WHITE, _WEDGE_SHARE * cover)
+            pixels[row, column] = mixed(int(pixels[row, column]), WHITE, WEDGE_SHARE * cover)
 
 
 @kernel
@@ -149,7 +160,7 @@ def paint_discs(
     """
     height, width = pixels.shape
     for i in range(len(radius) if shadow > 0.0 else 0):
-        if radius[i] >= _SHADOW_FROM:
+        if radius[i] >= SHADOW_FROM:
             _shadow_of_disc(pixels, centre[i, 0], centre[i, 1], radius[i], shadow)
     for i in range(len(radius)):
         x, y, r, kind = centre[i, 0], centre[i, 1], radius[i], finish[i]
@@ -158,14 +169,14 @@ def paint_discs(
         c, s = math.cos(angle[i]), math.sin(angle[i])
         band = min(rim_width, 0.35 * r)
         outer, inner = r + 0.5, max(r - band - 0.5, 0.0)
-        per_square = 1.0 / (_LIGHT_REACH * r * r)
+        per_square = 1.0 / (LIGHT_REACH * r * r)
         for row in range(_pixel(y - outer, height), _pixel(y + outer, height)):
             dy = row + 0.5 - y
             reach = math.sqrt(max(outer * outer - dy * dy, 0.0))
             core = math.sqrt(max(inner * inner - dy * dy, 0.0))
             left, right = _pixel(x - reach, width), _pixel(x + reach, width)
             core_left, core_right = _pixel(x - core, width), _pixel(x + core, width)
-            below = dy + _LIGHT_Y * r
+            below = dy + LIGHT_Y * r
             level = mixed(bright, dim, unit((below * below + 0.5 * r * r) * per_square))
             _disc_edge(pixels, row, left, core_left, x, dy, r, band, level, edge)
             if kind == FLAT:
@@ -174,14 +185,14 @@ def paint_discs(
             else:
                 for column in range(core_left, core_right):
                     dx = column + 0.5 - x
-                    away = dx + _LIGHT_X * r
+                    away = dx + LIGHT_X * r
                     colour = mixed(bright, dim, unit((away * away + below * below) * per_square))
                     if kind >= GROUND:
                         u, v = c * dx - s * dy, s * dx + c * dy
                         colour = textured(kind, u, v, colour, edge, int(pixels[row, column]))
                     pixels[row, column] = colour
             _disc_edge(pixels, row, core_right, right, x, dy, r, band, level, edge)
-        if r >= _WEDGE_FROM and kind >= LIT and kind != GROUND:
+        if r >= WEDGE_FROM and kind >= LIT and kind != GROUND:
             _wedge(pixels, x, y, r, angle[i])
 
 
@@ -229,7 +240,7 @@ def _shadow_of_box(
 ) -> None:
     """Paint what is seen of a box's shadow around it."""
     height, width = pixels.shape
-    middle, out = y + _SHADOW_DOWN, _SHADOW_SOFT
+    middle, out = y + SHADOW_DOWN, SHADOW_SOFT
     extent = abs(s) * (a + out) + abs(c) * (b + out)
     for row in range(_pixel(middle - extent, height), _pixel(middle + extent, height)):
         dy = row + 0.5 - middle
@@ -261,7 +272,7 @@ def paint_boxes(
     height, width = pixels.shape
     for i in range(len(angle) if shadow > 0.0 else 0):
         a, b = half[i, 0], half[i, 1]
-        if min(a, b) >= _SHADOW_FROM:
+        if min(a, b) >= SHADOW_FROM:
             c, s = math.cos(angle[i]), math.sin(angle[i])
             _shadow_of_box(pixels, centre[i, 0], centre[i, 1], a, b, c, s, shadow)
     for i in range(len(angle)):
@@ -272,7 +283,7 @@ def paint_boxes(
         band = min(rim_width, 0.35 * min(a, b))
         core = band + 0.5
         extent = abs(s) * a + abs(c) * b + 0.75
-        depth = max(_DEEP, 2.0 * extent) if kind == GROUND else 2.0 * extent
+        depth = max(DEEP, 2.0 * extent) if kind == GROUND else 2.0 * extent
         for row in range(_pixel(y - extent, height), _pixel(y + extent, height)):
             dy = row + 0.5 - y
             left, right = _box_run(c, s, dy, a + 0.5, b + 0.5, x, width)
@@ -329,10 +340,10 @@ def paint_rounded(
             left, right, top, bottom = min(left, at_x), max(right, at_x), min(top, at_y), max(bottom, at_y)
             x, y = x + at_x / count, y + at_y / count
         extent = bottom - top + 2.0 * radius[i]
-        casts = shadow > 0.0 and min(extent, right - left + 2.0 * radius[i]) >= 2.0 * _SHADOW_FROM
-        down, soft = (_SHADOW_DOWN, _SHADOW_SOFT) if casts else (0.0, 0.5)
+        casts = shadow > 0.0 and min(extent, right - left + 2.0 * radius[i]) >= 2.0 * SHADOW_FROM
+        down, soft = (SHADOW_DOWN, SHADOW_SOFT) if casts else (0.0, 0.5)
         reach = radius[i] + soft
-        depth_of_light = max(_DEEP, extent) if kind == GROUND else extent
+        depth_of_light = max(DEEP, extent) if kind == GROUND else extent
         along_x, along_y = corners[i, 0] - x, corners[i, 1] - y
         length = max(math.sqrt(along_x * along_x + along_y * along_y), 1e-9)
         c, s = along_x / length, along_y / length

@@ -12,7 +12,7 @@ import itertools
 import math
 from collections.abc import Callable, Iterable, Sequence
 
-from physicslab.components.quantities import QUANTITIES, why_not_of
+from physicslab.components.quantities import QUANTITIES, carrier_of, why_not_of
 from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.quantity_text import Dimension, Expression, InvalidText, Quantity
 from physicslab.files.checks import SceneError
@@ -55,7 +55,9 @@ def quantity_of(name: str, ids: Iterable[str]) -> tuple[str | None, str]:
 def columns(body: int | None) -> dict[str, str]:
     """Return the quantities of a body, or of the world for ``None``, by what expressions call them."""
     return {
-        short: long for short, long in _NAMES.items() if why_not_of(long, body) is None and ":" not in long
+        short: long
+        for short, long in _NAMES.items()
+        if why_not_of(long, body) is None and ":" not in long and carrier_of(long) == "Transform"
     }
 
 

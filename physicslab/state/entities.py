@@ -52,22 +52,13 @@ class Entities:
     # ---- contexts ------------------------------------------------------------------------------------------
 
     def activate(self) -> None:
-        """Make this the world that plain esper calls act on, until another is activated.
-
-        Raises
-        ------
-        RuntimeError
-            If a world is active in another thread.
-        """
+        """Make this the world that plain esper calls act on, until another is activated."""
         switch(self.context)
 
     def active(self) -> Active[Self]:
         """Make this the world that plain esper calls act on, within a ``with`` block.
 
-        Raises
-        ------
-        RuntimeError
-            At the start of the block, if a world is active in another thread.
+        At its start it waits until no world is active in another thread.
         """
         return Active(self, self.context)
 
@@ -98,10 +89,9 @@ class Entities:
         with self.active():
             for component in components:
                 self._check_name(component)
+                self._find_ends(component, may_come=entity is not None)
             if entity is not None:
                 return create_numbered(entity, components)
-            for component in components:
-                _check_ends(component)
             return esper.create_entity(*components)
 
     @property
@@ -135,7 +125,7 @@ class Entities:
             entity = self._found(entity)
             _kind(component)
             self._check_name(component, entity)
-            _check_ends(component, entity)
+            self._find_ends(component, entity)
             esper.add_component(entity, component)
 
     def discard[C](self, entity: int | str, component: type[C]) -> C | None:
@@ -190,6 +180,10 @@ class Entities:
             known = [named.id for one, named in esper.get_component(Name) if esper.entity_exists(one)]
         raise KeyError(f"no entity has the id {name!r}{suggestion(str(name), known)}")
 
+    def __getitem__(self, name: str) -> int:
+        """Return the entity with this id, or raise ``KeyError``."""
+        return self.entity(name)
+
     def label(self, entity: int | str) -> str:
         """Return the entity's id if it has one, else what it is and its number: ``circle 3``."""
         with self.active():
@@ -218,6 +212,27 @@ class Entities:
             if named.id == name and esper.entity_exists(entity):
                 return entity
         return None
+
+    def _find_ends(self, component: Any, own: int | None = None, *, may_come: bool = False) -> None:
+        """Put the numbers of entities in place of ids; refuse what is not there where the motion needs it.
+
+        ``own`` is the number of the entity that gets the component, which it may refer to: the next where
+        there is none yet. What has a number ``may_come`` later.
+        """
+        if not isinstance(component, Component):
+            return
+        for spec in component.FIELDS:
+            end: Any = getattr(component, spec.name) if spec.kind == "entity" else None
+            if isinstance(end, str):
+                try:
+                    component.name_entity(spec.name, self.entity(end))
+                except KeyError as error:
+                    allowed = f"the id of an entity of this world: {error.args[0]}"
+                    raise InvalidValue(spec.owner, spec.name, end, allowed) from error
+            elif end is None or may_come or not component.physical or esper.entity_exists(end):
+                continue
+            elif end != (own or next_number()):
+                raise InvalidValue(spec.owner, spec.name, end, "an entity of this world or null")
 
     def _found(self, entity: int | str) -> int:
         """Return the number of an entity that is given by it, or by its id."""
@@ -264,16 +279,6 @@ def _checked(component: Any) -> Any:
         words = shortened(printable(repr(component)))
         raise TypeError(f"a component is asked for by its type, as Mass is one; {words} is none")
     return component
-
-
-def _check_ends(component: Any, own: int | None = None) -> None:
-    """Refuse a component of the motion that refers to an entity that is not there, nor its own (the next)."""
-    if not isinstance(component, Component) or not component.physical:
-        return
-    for spec in component.FIELDS:
-        end = getattr(component, spec.name) if spec.kind == "entity" else None
-        if end is not None and not esper.entity_exists(end) and end != (own or next_number()):
-            raise InvalidValue(spec.owner, spec.name, end, "an entity of this world or null")
 
 
 def _forget(context: str) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Gear, Pin, Pulley, Rod, Rope, Slot, Transform, Weld
+from physicslab.components.quantities import JOINT
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.table import Table
 from physicslab.kernels.joints import soft, terms
@@ -183,6 +184,11 @@ KINDS: dict[type[Any], Callable[[Joined], Sequence[Row]]] = {
 
 The component has the fields of :mod:`physicslab.components.joint_ends`.
 """
+
+
+def kinds_of(needed: str) -> tuple[str, ...]:
+    """Return the components of which an entity must have one: the one that is named, or any joint."""
+    return tuple(kind.__name__ for kind in KINDS) if needed == JOINT else (needed,)
 
 
 def measured(term: Term, index: EntityIndex) -> MeasuredTerm:

@@ -158,7 +158,7 @@ loaders.push(() => {
   $("notes").replaceChildren(...notes.map(text => Object.assign(document.createElement("li"), { textContent: text })));
 });
 new ResizeObserver(() => { if (camera.fitted) fit(); stale = true; }).observe(world);
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", readColours);
+darkly.addEventListener("change", readColours);
 
 let last = 0;
 function tick(now) {
@@ -191,11 +191,12 @@ window.player = {
   pixel: (x, y) => [world.getBoundingClientRect().x + toX(x), world.getBoundingClientRect().y + toY(y)],
 };
 show.loop = !given.lesson;
+readColours();
 openBook(book);
 show.trails = movers.length <= 12 || movers.some(body => body.trail);
+show.grid = !run.space;
 show.names = named > 0 && named <= 12;
-for (const name of ["loop", "trails", "names"]) $(name).setAttribute("aria-pressed", show[name]);
-readColours();
+for (const name of ["loop", "trails", "names", "grid"]) $(name).setAttribute("aria-pressed", show[name]);
 fit();
 setSpeed(1);
 select(movers.length === 1 ? movers[0] : null);

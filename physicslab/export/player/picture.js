@@ -1,38 +1,6 @@
 // The world as it is drawn.
 
-const COLOURS = [
-  "background", "panel", "line", "text", "faint", "accent", "grid", "axis", "static", "static-fill", "spring",
-  "bounds", "arrow", "fill", "b0", "b1", "b2", "b3", "b4", "b5", "b6",
-];
-const world = $("world"), pen = world.getContext("2d");
-let colours = {}, marks = [];
-
-function readColours() {
-  const style = getComputedStyle(document.documentElement);
-  colours = Object.fromEntries(COLOURS.map(name => [name, style.getPropertyValue(`--${name}`).trim()]));
-  const tile = document.createElement("canvas"), line = tile.getContext("2d");
-  tile.width = tile.height = 10;
-  line.fillStyle = colours["static-fill"];
-  line.fillRect(0, 0, 10, 10);
-  line.strokeStyle = colours.static;
-  line.globalAlpha = 0.6;
-  for (const shift of [-10, 0, 10]) {
-    line.beginPath(); line.moveTo(shift - 1, 11); line.lineTo(shift + 11, -1); line.stroke();
-  }
-  colours.hatch = pen.createPattern(tile, "repeat");
-  paintBodies();
-  stale = true;
-}
-
-// A body has a colour of its own, or that of its number, as in the window.
-function paintBodies() {
-  for (const body of run.bodies) {
-    const own = "mass" in body ? colours[`b${body.entity % 7}`] : colours.text;
-    body.paint = body.colour ?? (body.fluid ? colours.b0 : body.columns ? own : colours.static);
-  }
-}
-loaders.push(paintBodies);
-
+let marks = [];
 // As many pixels as the screen has; returns the size in pixels of the page.
 function sized(canvas, context) {
   const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
@@ -79,6 +47,19 @@ function written(text, x, y, align, colour) {
   pen.fillText(text, x, y);
 }
 
+// Faint stars, which are so far away that no camera moves them.
+function drawStars(width, height) {
+  let number = 3;
+  const chance = () => (number = number * 16807 % 2147483647) / 2147483647;
+  pen.fillStyle = colours.text;
+  for (let n = 0; n < 3000; n++) {
+    const x = 4096 * chance(), y = 2048 * chance(), bright = 0.1 + 0.4 * chance() ** 2;
+    pen.globalAlpha = bright;
+    if (x < width && y < height) { pen.beginPath(); pen.arc(x, y, bright < 0.3 ? 0.6 : 0.95, 0, 7); pen.fill(); }
+  }
+  pen.globalAlpha = 1;
+}
+
 function drawGrid(width, height) {
   const metres = nice(160 / camera.scale), pixels = metres * camera.scale;
   pen.lineWidth = 1;
@@ -94,56 +75,6 @@ function drawGrid(width, height) {
     path([0, y], [width, y]); pen.stroke();
     if (y > 18 && y < height - 22) marks.push([short(k * metres, 7), 7, y - 5, "left"]);
   }
-}
-
-// A core of vertices, counter-clockwise, rounded by a radius: an arc around each, between the normals of two faces.
-function outline({ core, radius, reach, kind }, [x, y, angle], grow = 0) {
-  const c = Math.cos(angle), s = Math.sin(angle);
-  pen.beginPath();
-  if (core.length === 1 || reach * camera.scale < 1) {
-    pen.arc(toX(x), toY(y), (kind === "point" ? 5 : Math.max(reach * camera.scale, 1)) + grow, 0, 2 * Math.PI);
-    return;
-  }
-  const normal = k => {
-    const [u, v] = core[k], [p, q] = core[(k + 1) % core.length];
-    return -angle - Math.atan2(u - p, q - v);
-  };
-  core.forEach(([u, v], k) => {
-    const before = normal((k + core.length - 1) % core.length);
-    pen.arc(toX(x + c * u - s * v), toY(y + s * u + c * v), radius * camera.scale + grow, before, normal(k), true);
-  });
-  pen.closePath();
-}
-
-function drawBody(body, at) {
-  const x = toX(at[0]), y = toY(at[1]), reach = body.reach * camera.scale + 9;
-  const seen = x > -reach && x < world.clientWidth + reach && y > -reach && y < world.clientHeight + reach;
-  if (!seen) return;
-  outline(body, at);
-  pen.lineWidth = 1.8;
-  pen.strokeStyle = body.paint;
-  if (body.fluid) {
-    pen.globalAlpha = 0.22;
-    pen.fillStyle = body.paint;
-    pen.fill();
-    pen.globalAlpha = 1;
-    return;
-  }
-  if (!body.columns && body.kind !== "point" && !body.colour) {
-    pen.fillStyle = colours.hatch;
-    pen.fill(); pen.stroke();
-    return;
-  }
-  pen.fillStyle = colours.background;
-  pen.fill();
-  pen.globalAlpha = body.kind === "point" ? 1 : Number(colours.fill);
-  pen.fillStyle = body.paint;
-  pen.fill();
-  pen.globalAlpha = 1;
-  pen.stroke();
-  const mark = (Math.max(...body.core.map(corner => corner[0])) + body.radius) * camera.scale;
-  if (body.charge) written(body.charge > 0 ? "+" : "\u2212", x, y + 5, "center", colours.text);
-  else if (mark > 7) { path([x, y], [x + mark * Math.cos(at[2]), y - mark * Math.sin(at[2])]); pen.stroke(); }
 }
 
 // Where a point of a body is, or of the world where there is no body.
@@ -167,22 +98,38 @@ loaders.push(() => {
   }
 });
 
+// A coil, whose wire keeps its length: it grows slender where it is stretched; its back is darker.
 function drawSpring(spring, now) {
-  const [a, b] = ends(spring, now).map(onScreen);
-  const dx = b[0] - a[0], dy = b[1] - a[1], length = Math.hypot(dx, dy), points = [a];
-  if (!spring.straight && length > 14) {
-    const half = 2 * Math.round(Math.min(Math.max(spring.longest * camera.scale / 18, 4), 14));
-    const along = (share, side) => [a[0] + share * dx - side * dy, a[1] + share * dy + side * dx];
-    points.push(along(0.1, 0));
-    const coil = k => along(0.1 + 0.8 * (k + 0.5) / half, (k % 2 ? 6 : -6) / length);
-    for (let k = 0; k < half; k++) points.push(coil(k));
-    points.push(along(0.9, 0));
+  const [a, b] = ends(spring, now).map(onScreen), length = Math.hypot(b[0] - a[0], b[1] - a[1]), unit = pixel();
+  if (spring.b === null) bracket(b, 1);
+  if (spring.straight || length < 26) stroke(colours.spring, 1.6 * unit, a, b);
+  else {
+    const rest = Math.max((spring.rest || spring.longest) * camera.scale, 26), ahead = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
+    const turns = Math.round(Math.min(Math.max(rest / (11 * unit), 4), 16)), part = 0.8 / turns;
+    const around = Math.sqrt(Math.max((part * rest) ** 2 + (2 * Math.PI * Math.min(7 * unit, 0.1 * rest)) ** 2 - (part * length) ** 2, 0));
+    const radius = Math.min(Math.max(around / (2 * Math.PI), 0.8 * unit), 14 * unit), points = [a];
+    for (let k = 0; k <= 14 * turns; k++) {
+      const turn = k * Math.PI / 7, aside = radius * Math.sin(turn);
+      const along = (0.1 + part * k / 14) * length + 0.3 * radius * (1 - Math.cos(turn));
+      points.push([a[0] + along * ahead[0] - aside * ahead[1], a[1] + along * ahead[1] + aside * ahead[0]]);
+    }
+    points.push(b);
+    const wire = 2.1 * unit * Math.min(Math.max(Math.sqrt(rest / length), 0.6), 1.25);
+    const isFront = k => k < 1 || k > 14 * turns || Math.cos((k - 0.5) * Math.PI / 7) > -0.2;
+    for (const front of [false, true]) {
+      pen.beginPath();
+      for (let k = 0; k + 1 < points.length; k++) {
+        if (isFront(k) === front) { pen.moveTo(...points[k]); pen.lineTo(...points[k + 1]); }
+      }
+      pen.strokeStyle = front ? colours.spring : dark(colours.spring);
+      pen.lineWidth = wire;
+      pen.lineCap = "round";
+      pen.stroke();
+    }
+    pen.lineCap = "butt";
   }
-  pen.strokeStyle = pen.fillStyle = colours.spring;
-  pen.lineWidth = 1.6;
-  pen.lineJoin = "round";
-  path(...points, b); pen.stroke();
-  if (spring.b === null) { pen.beginPath(); pen.arc(...b, 4, 0, 2 * Math.PI); pen.fill(); }
+  disc(a, 2.6 * unit, colours.spring);
+  if (spring.b === null) screw(b, 0.7);
 }
 
 function stroke(colour, width, ...points) {
@@ -192,49 +139,76 @@ function stroke(colour, width, ...points) {
   path(...points); pen.stroke();
   pen.lineCap = "butt";
 }
-function knob([x, y], radius, width = 2) {
-  pen.strokeStyle = colours.spring;
-  pen.lineWidth = width;
-  pen.fillStyle = colours.background;
-  pen.beginPath(); pen.arc(x, y, radius, 0, 2 * Math.PI); pen.fill(); pen.stroke();
+// Things that hold bodies grow with the root of the scale.
+const pixel = () => Math.min(Math.max(Math.sqrt(camera.scale / 100), 0.6), 1.7);
+const dark = (colour, share = 0.55) => mixed(colour, colours.background, share);
+function disc([x, y], radius, colour) {
+  pen.fillStyle = colour;
+  pen.beginPath(); pen.arc(x, y, radius, 0, 2 * Math.PI); pen.fill();
 }
-function bracket([x, y]) {
-  pen.strokeStyle = colours.spring;
-  pen.lineWidth = 2;
-  pen.fillStyle = colours.background;
-  pen.beginPath(); pen.rect(x - 9, y - 9, 18, 18); pen.fill(); pen.stroke();
+function ring(at, radius, edge, inside, width = 1) {
+  disc(at, radius * pixel(), edge);
+  disc(at, (radius - width) * pixel(), inside);
+}
+function screw(at, angle) {
+  const c = 3.2 * pixel() * Math.cos(angle), s = 3.2 * pixel() * Math.sin(angle);
+  ring(at, 5.2, dark(colours.pin), colours.pin, 1.2);
+  stroke(dark(colours.pin, 0.8), 1.7 * pixel(), [at[0] - c, at[1] + s], [at[0] + c, at[1] - s]);
+}
+// What fixes a screw to the world: above it (1) or below (-1).
+function bracket([x, y], side) {
+  const unit = pixel(), reach = y - 11 * side * unit;
+  for (const across of [-6.3, -3.15, 0, 3.15, 6.3]) stroke(dark(colours.static, 0.25), 4.2 * unit, [x, y], [x + across * unit, reach]);
+  stroke(colours.static, 3.4 * unit, [x - 9 * unit, reach], [x + 9 * unit, reach]);
+}
+function woven(points) {
+  stroke(dark(colours.rope, 0.6), 6.2 * pixel(), ...points);
+  stroke(colours.rope, 4.4 * pixel(), ...points);
+  pen.setLineDash([1.1 * pixel(), 3.4 * pixel()]);
+  pen.strokeStyle = dark(colours.rope, 0.45);
+  path(...points); pen.stroke(); pen.setLineDash([]);
+}
+function held(joint, points, draw) {
+  const fixed = points.filter((_, k) => (k ? joint.b : joint.a) === null);
+  for (const point of fixed) bracket(point, 1);
+  draw();
+  for (const point of fixed) screw(point, 0.7);
 }
 
 const drawJoint = {
   Rod(joint, now) {
-    const points = ends(joint, now).map(onScreen);
-    stroke(colours.spring, 5, ...points);
-    for (const [point, body] of [[points[0], joint.a], [points[1], joint.b]]) {
-      if (body === null) bracket(point);
-      knob(point, 4, 1.5);
-    }
+    const points = ends(joint, now).map(onScreen), [[x, y], [u, v]] = points, unit = pixel(), colour = colours.rod;
+    const up = (u < x ? -unit : unit) / (Math.hypot(u - x, v - y) || 1);  // the light comes from above
+    held(joint, points, () => {
+      stroke(dark(colour), 7 * unit, ...points);
+      stroke(colour, 5 * unit, ...points);
+      stroke(mixed(colour, colours.shine, 0.5), 1.3 * unit, ...points.map(([px, py]) => [px + up * (v - y), py - up * (u - x)]));
+      for (const point of points) { ring(point, 4.4, dark(colour), colour); disc(point, 1.5 * unit, dark(colour, 0.8)); }
+    });
   },
   Rope(joint, now) {  // slack hangs as a parabola of the rope's length, nearly
     const [a, b] = ends(joint, now), span = Math.hypot(b[0] - a[0], b[1] - a[1]);
     const [p, q] = [a, b].map(onScreen), slack = Math.max(joint.length - span, 0);
     const sag = Math.sqrt(3 / 8 * slack * Math.max(span, 0.2 * joint.length)) * camera.scale;
-    stroke(colours.spring, 2.5, ...Array.from({ length: 25 }, (_, i) => {
-      const t = i / 24;
-      return [p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1]) + 4 * sag * t * (1 - t)];
-    }));
-    for (const point of [p, q]) knob(point, 3, 1.5);
+    held(joint, [p, q], () => {
+      woven(Array.from({ length: 25 }, (_, i) => {
+        const t = i / 24;
+        return [p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1]) + 4 * sag * t * (1 - t)];
+      }));
+      for (const point of [p, q]) ring(point, 3.6, dark(colours.rope), colours.rope);
+    });
   },
   Pulley(joint, now) {
-    const [a, b] = ends(joint, now), points = [a, ...joint.wheels, b].map(onScreen);
-    stroke(colours.spring, 2.5, ...points);
-    for (const wheel of points.slice(1, 3)) { knob(wheel, 11); knob(wheel, 3); }
+    const [a, b] = ends(joint, now), points = [a, ...joint.wheels, b].map(onScreen), wheels = points.slice(1, 3);
+    for (const wheel of wheels) { bracket(wheel, 1); ring(wheel, 11, dark(colours.rod), dark(colours.rod, 0.2), 1.6); }
+    woven(points);
+    for (const end of [points[0], points[3]]) ring(end, 3.6, dark(colours.rope), colours.rope);
+    for (const wheel of wheels) screw(wheel, 0.7);
   },
   Pin(joint, now) {  // the head of a screw, whose slot turns; on a bracket where it is fixed
     const at = onScreen(ends(joint, now)[0]), turns = joint.b ?? joint.a;
-    const angle = turns === null ? 0 : now(run.bodies[turns])[2], c = 3.4 * Math.cos(angle), s = 3.4 * Math.sin(angle);
-    if (joint.a === null || joint.b === null) bracket(at);
-    knob(at, 5);
-    stroke(colours.spring, 2, [at[0] - c, at[1] + s], [at[0] + c, at[1] - s]);
+    if (joint.a === null || joint.b === null) bracket(at, -1);
+    screw(at, turns === null ? 0 : now(run.bodies[turns])[2]);
   },
   Slot(joint, now) {
     const [a, b] = ends(joint, now), turn = joint.a === null ? 0 : now(run.bodies[joint.a])[2];
@@ -243,11 +217,11 @@ const drawJoint = {
     const along = (b[0] - a[0]) * axis[0] + (b[1] - a[1]) * axis[1];
     const rail = [joint.lower ?? Math.min(along, 0) - 0.6, joint.upper ?? Math.max(along, 0) + 0.6]
       .map(way => onScreen([a[0] + way * axis[0], a[1] + way * axis[1]]));
-    stroke(colours.spring, 7, ...rail);
-    stroke(colours.background, 4, ...rail);
-    knob(onScreen(b), 6);
+    stroke(colours.rod, 13 * pixel(), ...rail);
+    stroke(dark(colours.rod, 0.8), 9 * pixel(), ...rail);
+    ring(onScreen(b), 7, dark(colours.pin), dark(colours.pin, 0.15), 1.2);
   },
-  Weld(joint, now) { knob(onScreen(ends(joint, now)[0]), 3.5, 1.5); },
+  Weld(joint, now) { ring(onScreen(ends(joint, now)[0]), 3.8, dark(colours.pin, 0.6), dark(colours.pin, 0.2)); },
 };
 
 // Marks that stay where they are in the world: dots out of the plane, crosses into it, arrows along a field.
@@ -275,7 +249,7 @@ function drawFlames(now) {
     const [u, v] = [swing * (c * fx - s * fy), -swing * (s * fx + c * fy)];
     for (const [share, width] of [[1, 3], [0.65, 6], [0.35, 9]]) {
       pen.globalAlpha = 0.5;
-      stroke(colours.arrow, width, [x, y], [x + share * u, y + share * v]);
+      stroke(colours.spark, width, [x, y], [x + share * u, y + share * v]);
     }
   }
   pen.globalAlpha = 1;
@@ -341,7 +315,7 @@ function drawNames(now) {
   const wanted = show.names ? movers.filter(body => body.named || !named) : [];
   for (const body of new Set([...(selected ? [selected] : []), ...wanted])) {
     if (body.kind === "none") continue;
-    const at = now(body), above = body.columns ? body.half * camera.scale + 9 : 0;
+    const at = now(body), above = body.columns ? Math.max(body.half * camera.scale, body.size) + 9 : 0;
     const wide = pen.measureText(body.name).width / 2 + 4;
     const label = { x: toX(at[0]), y: Math.max(toY(at[1]) - above, 16), half: wide };
     for (let i = 0; i < 3 && taken.some(other => overlaps(label, other)); i++) label.y -= 16;
@@ -353,25 +327,25 @@ function drawNames(now) {
 function drawWorld(frame, share) {
   const [width, height] = sized(world, pen), poses = new Map();
   const now = body => poses.get(body) ?? poses.set(body, pose(body, frame, share)).get(body);
-  pen.fillStyle = colours.background;
+  const sky = pen.createLinearGradient(0, 0, 0, height);
+  sky.addColorStop(0, colours.sky_top);
+  sky.addColorStop(1, run.space && darkly.matches ? colours.sky_top : colours.sky_bottom);
+  pen.fillStyle = sky;
   pen.fillRect(0, 0, width, height);
+  if (run.space && darkly.matches) drawStars(width, height);
   marks = [];
   if (show.grid) drawGrid(width, height);
-  if (run.bounds) {
-    const [x0, y0, x1, y1] = run.bounds;
-    pen.strokeStyle = colours.bounds;
-    pen.lineWidth = 2;
-    pen.strokeRect(toX(x0), toY(y1), (x1 - x0) * camera.scale, (y1 - y0) * camera.scale);
-  }
-  colours.hatch.setTransform(new DOMMatrix().translate(toX(0) % 10, toY(0) % 10));
+  if (run.bounds) drawBounds(run.bounds);
   drawFields(width, height);
-  for (const body of drawn) if (!body.columns && !body.fluid) drawBody(body, now(body));
   const trailed = body => show.trails && (movers.length <= 200 || body === selected);
   for (const body of movers) if (trailed(body)) drawTrail(body, frame, now(body));
-  for (const spring of run.springs) drawSpring(spring, now);
   drawFlames(now);
-  for (const body of drawn) if (body.columns) drawBody(body, now(body));
-  for (const body of drawn) if (body.fluid) drawBody(body, now(body));
+  for (const layer of [body => body.fluid, body => !body.fluid && !body.columns, body => !body.fluid && body.columns]) {
+    const bodies = drawn.filter(layer);
+    drawShadows(bodies, now);
+    for (const body of bodies) drawBody(body, now(body));
+  }
+  for (const spring of run.springs) drawSpring(spring, now);
   for (const joint of run.joints) drawJoint[joint.kind]?.(joint, now);
   if (show.arrows) for (const body of movers) drawArrow(now(body));
   if (selected) {

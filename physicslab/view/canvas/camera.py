@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ecs.vector import Vector2
+from physicslab.theme import Theme
 from physicslab.view.canvas.canvas import Canvas, Rect
-from physicslab.view.canvas.theme import Theme
 
 type Extent = tuple[float, float, float, float]
 """A part of the world: ``(xmin, ymin, xmax, ymax)`` [m]."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.languages.language import Language
-from physicslab.view.canvas.theme import Colour
+from physicslab.theme import Colour
 
 if TYPE_CHECKING:
     import pygame

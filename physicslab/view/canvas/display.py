@@ -17,9 +17,9 @@ import pygame
 
 from physicslab.ecs.config import WindowConfig
 from physicslab.files.replace import create_file
+from physicslab.theme import DARK, Theme
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.canvas.theme import DARK, Theme
 
 _INVISIBLE = ("dummy", "offscreen")
 """Drivers of SDL without a window."""

@@ -8,13 +8,10 @@ import pygame
 from numpy.typing import NDArray
 
 from physicslab.languages.language import language
+from physicslab.theme import RIM, Colour
 from physicslab.view.canvas.canvas import Align, Look, Numbers, Painter, Points, Rect, Rounded, TextStyle
 from physicslab.view.canvas.plain_shapes import draw_boxes, draw_discs, draw_rounded, draw_strokes
 from physicslab.view.canvas.surface_cache import GLOW_LEVELS, SurfaceCache
-from physicslab.view.canvas.theme import Colour
-
-_RIM = 2.0
-"""Width of the rims [px]."""
 
 
 class PygameCanvas:
@@ -87,32 +84,32 @@ class PygameCanvas:
         """Draw discs, each with a rim, and a wedge that shows its angle where it is not flat."""
         paint_discs = _painter("paint_discs")
         if paint_discs is None:
-            draw_discs(self.surface, centre, radius, angle, look, _RIM)
+            draw_discs(self.surface, centre, radius, angle, look, RIM)
             return
         fill, rim = self._packed(look.fill), self._packed(look.rim)
         centre, radius, angle = _plain(centre), _plain(radius), _plain(angle)
-        paint_discs(self._pixels(), centre, radius, angle, fill, rim, look.finish, _RIM, look.shadow)
+        paint_discs(self._pixels(), centre, radius, angle, fill, rim, look.finish, RIM, look.shadow)
 
     def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
         """Draw boxes of the given widths and heights, each with a rim."""
         paint_boxes = _painter("paint_boxes")
         if paint_boxes is None:
-            draw_boxes(self.surface, centre, 0.5 * extent, angle, look, _RIM)
+            draw_boxes(self.surface, centre, 0.5 * extent, angle, look, RIM)
             return
         fill, rim = self._packed(look.fill), self._packed(look.rim)
         centre, half, angle = _plain(centre), _plain(0.5 * extent), _plain(angle)
-        paint_boxes(self._pixels(), centre, half, angle, fill, rim, look.finish, _RIM, look.shadow)
+        paint_boxes(self._pixels(), centre, half, angle, fill, rim, look.finish, RIM, look.shadow)
 
     def rounded(self, shapes: Rounded, look: Look) -> None:
         """Draw rounded polygons, each with a rim."""
         paint_rounded = _painter("paint_rounded")
         if paint_rounded is None:
-            draw_rounded(self.surface, shapes, look, _RIM)
+            draw_rounded(self.surface, shapes, look, RIM)
             return
         fill, rim = self._packed(look.fill), self._packed(look.rim)
         corners, radius = _plain(shapes.corners.reshape(len(fill), -1)), _plain(shapes.radius)
         paint_rounded(
-            self._pixels(), corners, shapes.vertices, radius, fill, rim, look.finish, _RIM, look.shadow
+            self._pixels(), corners, shapes.vertices, radius, fill, rim, look.finish, RIM, look.shadow
         )
 
     def lines(

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pygame
 
+from physicslab.theme import NOTHING, Colour
 from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.canvas.drawable_text import drawable
-from physicslab.view.canvas.theme import NOTHING, Colour
 
 _RAISED = re.compile("([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 _PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")

@@ -12,7 +12,7 @@ from physicslab.files.replace import reason_of
 from physicslab.files.scene import SceneError, file_stem
 from physicslab.history import Branch, Command, Remove, SetField, SetPhysics, SetText
 from physicslab.systems.gravity import GravitySystem
-from physicslab.view.canvas.theme import THEMES
+from physicslab.theme import THEMES
 from physicslab.view.controls.lesson_actions import begin_run, leave_lesson
 from physicslab.view.controls.measuring import nudged
 from physicslab.view.controls.saving import name_of

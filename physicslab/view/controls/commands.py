@@ -71,7 +71,7 @@ def commands() -> Iterator[Command]:
     for path in _own_scenes():
         yield Command(printable(path.name), "file", str(path), partial(open_from_list, source=path))
     for name, quantity in QUANTITIES.items():
-        of = "of the selection" if quantity.of_body else "of the world"
+        of = "of the selection" if quantity.of_entity else "of the world"
         yield Command(f"Graph: {name}", "graph", of, partial(dashboard_actions.plot_quantity, name=name))
 
 

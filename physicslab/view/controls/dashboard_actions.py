@@ -10,7 +10,7 @@ import numpy as np
 from physicslab.components import Graph, GraphLine, Mass, Meter, Shape, Slider, Spring, Transform, Velocity
 from physicslab.components.quantities import QUANTITIES
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
-from physicslab.diagnostics.quantities import why_undefined
+from physicslab.diagnostics.quantities import NOT_YET, why_undefined
 from physicslab.ecs.component import Component
 from physicslab.ecs.text import table_cell
 from physicslab.ecs.vector import Vector2
@@ -38,10 +38,12 @@ _USUAL = {
 
 
 def plot_selected(world: World, window: Window) -> None:
-    """Plot the selection against time; without one, the energies of the world."""
+    """Plot the selection against time, of joints and springs their force; else the world's energies."""
     bodies = window.selection.bodies(world)
     if not bodies:
-        _plot(window, "plotted energies", Graph(), [(None, name) for name in _ENERGIES])
+        pulls = _pulls(world, window)
+        energies: list[Key] = [(None, name) for name in _ENERGIES]
+        _plot(window, "plotted forces" if pulls else "plotted energies", Graph(), pulls or energies)
         return
     names: tuple[str, ...] = ("x", "y")
     if len(bodies) > 1:
@@ -53,16 +55,32 @@ def plot_selected(world: World, window: Window) -> None:
 
 
 def plot_quantity(world: World, window: Window, name: str) -> None:
-    """Plot a quantity against time: of each selected body that has it, or else of the world."""
+    """Plot a quantity against time: of all selected that has it, or else of the world."""
     quantity = QUANTITIES[name]
-    bodies = [body for body in window.selection.bodies(world) if not why_undefined(world, name, body)]
-    keys: list[Key] = [(body, name) for body in bodies[:_LIMIT]] if quantity.of_body else []
+    chosen = window.selection.entities if quantity.of_entity else ()
+    owners = [entity for entity in chosen if _has(world, name, entity)]
+    keys: list[Key] = [(entity, name) for entity in owners[:_LIMIT]]
     if not keys and quantity.of_world:
         keys = [(None, name)]
     if keys:
         _plot(window, f"plotted {name}", Graph(), keys)
     else:
-        window.notify(f"Select a body that has it: {name} is of a body")
+        of = {"Transform": "a body", "Spring": "a spring"}.get(quantity.carrier, "a joint")
+        window.notify(f"Select {of} that has it: {name} is of {of}")
+
+
+def _pulls(world: World, window: Window) -> list[Key]:
+    """Return the forces of the joints and springs that are selected."""
+    return [
+        (entity, name)
+        for entity in window.selection.entities[:_LIMIT]
+        for name in ("joint force", "spring force")
+        if _has(world, name, entity)
+    ]
+
+
+def _has(world: World, name: str, entity: int) -> bool:
+    return why_undefined(world, name, entity) in ("", NOT_YET)
 
 
 def plot_phase(world: World, window: Window) -> None:

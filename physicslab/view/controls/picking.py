@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from physicslab.components import Note, Spring, Transform
 from physicslab.contacts.outlines import outlines_of
 from physicslab.ecs.vector import Vector2
+from physicslab.theme import POINT_RADIUS
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Rect, is_within
 from physicslab.view.overlay.instruments import Instrument, instruments_of
-from physicslab.view.picture.bodies import POINT_RADIUS, body_rows, point_radii
+from physicslab.view.picture.bodies import body_rows, point_radii
 from physicslab.view.picture.joints import gaps_to, joint_at
 from physicslab.view.picture.springs import ends_of
 from physicslab.world import World

@@ -6,9 +6,9 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.theme import Colour, Theme
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
-from physicslab.view.canvas.theme import Colour, Theme
 
 MIN_LENGTH = 3.0
 """Arrows shorter than this are left out [px]."""

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from physicslab.diagnostics.warnings import ModelWarning
+from physicslab.theme import Colour
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
 from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
-from physicslab.view.canvas.theme import Colour
 
 
 def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str]:

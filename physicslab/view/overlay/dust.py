@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from physicslab.theme import Theme
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas
-from physicslab.view.canvas.theme import Theme
 from physicslab.view.overlay.contact_samples import resting_of
 from physicslab.world import World
 

@@ -13,11 +13,11 @@ from physicslab.components import Gate, Note, Protractor, Ruler, Shape, Transfor
 from physicslab.ecs.vector import Vector2
 from physicslab.state.attached import INSTRUMENTS, place_of
 from physicslab.systems.gate import GateSystem
+from physicslab.theme import Colour, Theme
 from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import Look, Rect, TextStyle
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.quantities import quantity, rounded_up
-from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.overlay.arrows import even_dashes
 from physicslab.view.overlay.labels import Label, Labels
 from physicslab.world import World

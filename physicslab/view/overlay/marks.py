@@ -10,11 +10,11 @@ from physicslab.components.shape import CIRCLE
 from physicslab.contacts.outlines import Outlines
 from physicslab.diagnostics.period import spring_state
 from physicslab.ecs.vector import Vector2
+from physicslab.theme import Colour
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Look, Numbers, Points, Rect, TextStyle
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.canvas.rim import rim_of
-from physicslab.view.canvas.theme import Colour
 from physicslab.view.overlay.arrows import VELOCITY, draw_arrows, even_dashes
 from physicslab.view.picture.bodies import point_radius
 from physicslab.view.picture.joints import joint_lines

@@ -6,10 +6,10 @@ import numpy as np
 import pygame
 from numpy.typing import NDArray
 
+from physicslab.theme import DARK, Theme
 from physicslab.view.canvas.camera import Camera, Drawing, Extent
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.overlay.instruments import draw_instruments, instruments_of
 from physicslab.view.overlay.labels import Labels
 from physicslab.view.picture.picture import draw_world

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
+from physicslab.theme import FLOOR, WALL, Theme
 from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas, Finish, Look, Numbers, Points
 from physicslab.view.canvas.quantities import rounded_up
-from physicslab.view.canvas.theme import Theme
 from physicslab.world import World
 
 _MIN_SPACING = 45.0
@@ -91,8 +91,8 @@ def _draw_stars(theme: Theme, canvas: Canvas) -> None:
         canvas.lines(place[part], place[part], theme.text, width, opacity[part])
 
 
-_FLOOR, _WALL, _FAR = 40.0, 7.0, 1e6
-"""Thickness of the ground and of the walls at the end of the world, and the farthest place drawn [px]."""
+_FAR = 1e6
+"""The farthest place drawn [px]."""
 
 
 def _draw_bounds(
@@ -105,11 +105,11 @@ def _draw_bounds(
     (left, bottom), (right, top) = np.clip(
         camera.project(np.array([(xmin, ymin), (xmax, ymax)])), -_FAR, _FAR
     )
-    floor = _FLOOR if has_floor else _WALL
+    floor = FLOOR if has_floor else WALL
     sides = np.array([
-        (left - _WALL, top, left, bottom), (right, top, right + _WALL, bottom),
-        (left - _WALL, top - _WALL, right + _WALL, top),
-        (left - _WALL, bottom, right + _WALL, bottom + floor),
+        (left - WALL, top, left, bottom), (right, top, right + WALL, bottom),
+        (left - WALL, top - WALL, right + WALL, top),
+        (left - WALL, bottom, right + WALL, bottom + floor),
     ])  # fmt: skip
     shown = (sides[:, 2] > sides[:, 0]) & (sides[:, 3] > sides[:, 1])
     low, high = sides[shown, :2], sides[shown, 2:]

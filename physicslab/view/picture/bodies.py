@@ -13,32 +13,22 @@ from physicslab.components.shape import BOX, CHAIN, CIRCLE
 from physicslab.contacts.outlines import Outlines, outlines_of
 from physicslab.ecs.text import text_of
 from physicslab.state.shapes import line_of
+from physicslab.theme import GLOW, GLOWS, LEAST_PLANET, MAX_SHADOWS, PLANET, POINT_RADIUS, STAR, Theme
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Finish, Look, Rounded
-from physicslab.view.canvas.theme import Theme, mixed
 from physicslab.view.picture.squash import Squash
 from physicslab.world import World
 
 type Rows = NDArray[np.int64]
 """Row numbers (n,)."""
 
-POINT_RADIUS = 5.0
-"""How large a body without a Shape appears [px]."""
-_PLANET, _LEAST_PLANET = 14.0, 3.5
-"""Radius of the heaviest of the bodies without a Shape that attract each other, and least one [px]."""
-_STAR, _GLOW = 10.0, 5.0
-"""A body that has so many times the mass of all others is a star; how far it shines, in its radii."""
 _CHAIN, _SHADE = 2.5, 4.0
 """Width of a chain, and half of that of the shade on its solid side [px]."""
-_FAINT = 0.5
-"""Share of its colour in the rim of a medium: bodies within it are to stand out."""
 _FINISHES = {
     "grain": Finish.WOOD, "metal": Finish.STEEL, "frost": Finish.ICE, "matt": Finish.RUBBER,
     "clear": Finish.GLASS, "speckle": Finish.STONE,
 }  # fmt: skip
 """How materials look that are not plain."""
-_MAX_SHADOWS = 400
-"""Number of bodies of a shape above which none has a shadow."""
 _MIN_HALF = 0.9
 """Half extent of a body on the screen [px] below which it is drawn larger: it is still seen from far away."""
 
@@ -80,8 +70,7 @@ def body_rows(world: World) -> BodyRows:
 @lru_cache(maxsize=8)
 def _palette(theme: Theme) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
     """Return rims and fills: of static, kinematic and held bodies, of media, then of all others in turn."""
-    fluid = mixed(theme.background, theme.bodies[0], _FAINT)
-    rims = (theme.kinematic, theme.held, fluid, *theme.bodies)
+    rims = (theme.kinematic, theme.held, theme.fluid, *theme.bodies)
     fills = [theme.earth, *(theme.fill(rim) for rim in rims)]
     return np.array((theme.static, *rims), np.uint8), np.array(fills, np.uint8)
 
@@ -142,7 +131,7 @@ def _look(world: World, theme: Theme, rows: Rows, *, held: bool = True) -> Look:
     for code in np.unique(made[made > 0]).tolist():
         if (look := look_of(text_of(code))) in _FINISHES:
             finish[made == code] = _FINISHES[look]
-    shadow = theme.shadow if len(rows) <= _MAX_SHADOWS and not fluid.any() else 0.0
+    shadow = theme.shadow if len(rows) <= MAX_SHADOWS and not fluid.any() else 0.0
     return Look(fill, rim, finish, shadow)
 
 
@@ -191,7 +180,7 @@ def point_radii(world: World, rows: Rows) -> NDArray[np.float64]:
         size = np.cbrt(np.maximum(world.table(Mass)["mass"][rows], 0.0))
         largest = size.max()
         if largest > 0.0:
-            radius = np.maximum(_PLANET * size / largest, _LEAST_PLANET)
+            radius = np.maximum(PLANET * size / largest, LEAST_PLANET)
     return radius
 
 
@@ -205,7 +194,7 @@ def point_radius(world: World, entity: int) -> float:
 def _draw_points(world: World, rows: Rows, camera: Camera, theme: Theme, canvas: Canvas) -> None:
     """Draw bodies without a Shape; among planets one that outweighs all others shines."""
     centre, radius = camera.project(world.table(Transform)["position"][rows]), point_radii(world, rows)
-    seen = _on_screen(centre, _GLOW * radius, camera.size)
+    seen = _on_screen(centre, GLOW * radius, camera.size)
     if not seen.any():
         return
     look = _marker_look(world, theme, rows[seen])
@@ -213,12 +202,13 @@ def _draw_points(world: World, rows: Rows, camera: Camera, theme: Theme, canvas:
     if world.physics.gravity_mode == "planet":
         star = int(np.argmax(mass))
         look.finish[:] = Finish.POINT
-        if mass[star] > _STAR * (mass.sum() - mass[star]) and seen[star]:
+        if mass[star] > STAR * (mass.sum() - mass[star]) and seen[star]:
             at = int(np.count_nonzero(seen[:star]))
             look.finish[at], look.fill[at], look.rim[at] = Finish.FLAT, theme.spark, theme.spark
             if theme.is_dark:
-                for reach, strength in ((_GLOW, 0.35), (0.45 * _GLOW, 0.6)):
-                    canvas.glows(centre[[star]], reach * radius[[star]], theme.spark, np.array([strength]))
+                reach = GLOW * radius[[star]]
+                for share, strength in GLOWS:
+                    canvas.glows(centre[[star]], share * reach, theme.spark, np.array([strength]))
     canvas.discs(centre[seen], radius[seen], np.zeros(len(look.rim)), look)
 
 

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from physicslab.components import Charge, Thrust, Transform
 from physicslab.components.thrust import FRAMES
 from physicslab.ecs.vector import rotated
+from physicslab.theme import Theme, mixed
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look, Points
-from physicslab.view.canvas.theme import Theme, mixed
 from physicslab.world import World
 
 _APART = 80.0

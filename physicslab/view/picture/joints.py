@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from physicslab.components import Gear, Pin, Pulley, Rod, Rope, Slot, Transform, Weld
 from physicslab.state.joint_rows import ends_of
+from physicslab.theme import Theme
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Points
-from physicslab.view.canvas.theme import Theme
 from physicslab.view.picture.links import draw_pulleys, draw_rods, draw_ropes, line_ends, link_ends
 from physicslab.view.picture.pen import Pen
 from physicslab.world import World

@@ -4,9 +4,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from physicslab.theme import Colour, Theme, mixed
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
-from physicslab.view.canvas.theme import Colour, Theme, mixed
 
 _FAR = 1e6
 """What lies farther out of the picture than this is not drawn [px]."""

@@ -6,10 +6,10 @@ from typing import BinaryIO
 import pygame
 
 from physicslab.ecs.config import WindowConfig
+from physicslab.theme import DARK, Theme
 from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
-from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.picture.backdrop import draw_backdrop, is_in_space
 from physicslab.view.picture.bodies import draw_bodies
 from physicslab.view.picture.extent import extent_of

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.diagnostics.ledger import read_impacts
+from physicslab.theme import Theme
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
-from physicslab.view.canvas.theme import Theme
 
 _MAX_SPARKS = 400
 """The oldest sparks make room for new ones beyond that number."""

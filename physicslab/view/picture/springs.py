@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Spring, Transform
+from physicslab.theme import Theme
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
-from physicslab.view.canvas.theme import Theme
 from physicslab.view.picture.pen import Pen
 from physicslab.world import World
 

@@ -9,10 +9,10 @@ from physicslab.contacts.outlines import outlines_at
 from physicslab.state.shapes import lengths_of
 from physicslab.systems.strobe import StrobeSystem
 from physicslab.systems.trail import SAMPLES, TrailSystem
+from physicslab.theme import POINT_RADIUS, Theme
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look, Points
-from physicslab.view.canvas.theme import Theme
-from physicslab.view.picture.bodies import POINT_RADIUS, on_canvas, own_colours, point_radii
+from physicslab.view.picture.bodies import on_canvas, own_colours, point_radii
 from physicslab.world import World
 
 _SHADES = 16

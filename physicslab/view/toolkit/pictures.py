@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import compile_kernels
 from physicslab.kernels.triangles import paint_triangles
-from physicslab.view.canvas.theme import Colour
+from physicslab.theme import Colour
 
 _VERTEX_BYTES = 20
 """Place, place in the texture and colour: what ``ImDrawVert`` takes."""

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
-from physicslab.view.canvas.theme import Colour, Theme, mixed
+from physicslab.theme import Colour, Theme, mixed
 
 
 @dataclass(frozen=True, slots=True)

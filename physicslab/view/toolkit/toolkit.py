@@ -6,8 +6,8 @@ from collections.abc import Callable
 import pygame
 from imgui_bundle import ImVec2, imgui, implot
 
+from physicslab.theme import Theme
 from physicslab.view.canvas.canvas import Rect, is_within
-from physicslab.view.canvas.theme import Theme
 from physicslab.view.toolkit.pictures import Pictures
 from physicslab.view.toolkit.style import Fonts, add_fonts, apply_theme
 

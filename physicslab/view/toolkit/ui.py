@@ -6,9 +6,9 @@ from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
+from physicslab.theme import Colour
 from physicslab.view.canvas.drawable_text import drawable, encodable
 from physicslab.view.canvas.surface_cache import RAISED_SIZE, raised_parts
-from physicslab.view.canvas.theme import Colour
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.windows import Windows, widget_label
 

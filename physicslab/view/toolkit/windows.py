@@ -8,9 +8,9 @@ import pygame
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.languages.language import language
+from physicslab.theme import Theme
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
-from physicslab.view.canvas.theme import Theme
 from physicslab.view.toolkit.style import Fonts
 
 _FLAGS = imgui.WindowFlags_

@@ -10,9 +10,9 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.history import History
+from physicslab.theme import DARK, Theme
 from physicslab.view.canvas.camera import Camera, Drawing
 from physicslab.view.canvas.canvas import Canvas
-from physicslab.view.canvas.theme import DARK, Theme
 from physicslab.view.overlay.dust import Dust
 from physicslab.view.overlay.forces import Measured
 from physicslab.view.overlay.legend import Overlays

@@ -11,10 +11,10 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.components import Shape
 from physicslab.diagnostics.collision import Body, Collision
 from physicslab.ecs.vector import Vector2
+from physicslab.theme import Colour, Theme, mixed
 from physicslab.view.canvas.canvas import overlap
 from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.canvas.rim import rim_of
-from physicslab.view.canvas.theme import Colour, Theme, mixed
 from physicslab.view.picture.bodies import named_colour
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui

@@ -6,7 +6,7 @@ from functools import partial
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from physicslab.components import Colour, Layer, Pin, Transform, Velocity, Weld
+from physicslab.components import Colour, Layer, Pin, Spring, Transform, Velocity, Weld
 from physicslab.components.colour import COLOURS, rgb_of
 from physicslab.components.layer import NONE
 from physicslab.components.made_of import SUBSTANCES
@@ -102,6 +102,8 @@ def _of_bodies(ui: Ui, world: World, window: Window) -> None:
 def _of_joint(ui: Ui, world: World, entity: int) -> None:
     """Build the motor, the limits and the strength of a joint, as far as it has them."""
     kind = next((kind for kind in KINDS if world.has(entity, kind)), None)
+    if kind is not None or world.has(entity, Spring):
+        ui.item("Plot its force", plot_selected, keys="M", tip="Against time, in a graph")
     if kind is None:
         return
     joint, name = world.component(entity, kind), kind.__name__

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from physicslab.components.quantities import QUANTITIES
 from physicslab.diagnostics.scales import scales_of
+from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import ROUNDING, written_unit
-from physicslab.view.canvas.theme import Colour
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.style import as_vector, packed
 from physicslab.view.toolkit.ui import Ui

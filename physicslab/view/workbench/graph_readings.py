@@ -6,10 +6,18 @@ from contextlib import nullcontext
 import numpy as np
 from imgui_bundle import ImVec2, imgui
 
-from physicslab.components import Transform, Velocity
-from physicslab.components.quantities import BODY_QUANTITIES, QUANTITIES, WORLD_QUANTITIES
+from physicslab.components import Spring, Transform, Velocity
+from physicslab.components.quantities import (
+    BODY_QUANTITIES,
+    JOINT_QUANTITIES,
+    QUANTITIES,
+    SPRING_QUANTITIES,
+    WORLD_QUANTITIES,
+)
 from physicslab.diagnostics.quantities import why_undefined
 from physicslab.diagnostics.scales import scales_of
+from physicslab.state.joint_rows import KINDS
+from physicslab.theme import Colour, Theme, mixed
 from physicslab.view.canvas.quantities import (
     product,
     quantity,
@@ -18,7 +26,6 @@ from physicslab.view.canvas.quantities import (
     without_rounding,
     written_unit,
 )
-from physicslab.view.canvas.theme import Colour, Theme, mixed
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.picture.bodies import named_colour
 from physicslab.view.toolkit.style import packed
@@ -43,7 +50,13 @@ def _grouped(names: Iterable[str]) -> dict[str, list[str]]:
     return groups
 
 
-_OF_WORLD, _OF_BODY = _grouped(WORLD_QUANTITIES), _grouped(BODY_QUANTITIES)
+def _quantities(world: World, entity: int | None) -> dict[str, list[str]]:
+    """Return the quantities of an entity, or of the world for ``None``, by group."""
+    if entity is None:
+        return _grouped(WORLD_QUANTITIES)
+    names = BODY_QUANTITIES if world.has(entity, Transform) else ()
+    names += JOINT_QUANTITIES if any(world.has(entity, kind) for kind in KINDS) else ()
+    return _grouped(names + (SPRING_QUANTITIES if world.has(entity, Spring) else ()))
 
 
 def unit_of(key: Key) -> str:
@@ -65,7 +78,7 @@ def named_key(key: Key, window: Window) -> str:
 def build_quantities(
     ui: Ui, world: World, window: Window, shown: Iterable[Key], choose: Callable[[Key], None]
 ) -> None:
-    """Build a menu for the world and for each body, with a line for each of its quantities.
+    """Build a menu for the world and for each body, joint and spring, a line for each of its quantities.
 
     Parameters
     ----------
@@ -80,7 +93,7 @@ def build_quantities(
         with ui.menu(name, f"quantities of {body}") as is_open:
             if not is_open:
                 continue
-            for group, quantities in (_OF_WORLD if body is None else _OF_BODY).items():
+            for group, quantities in _quantities(world, body).items():
                 with ui.menu(group) if group else nullcontext(True) as is_unfolded:
                     for quantity in quantities if is_unfolded else ():
                         key = (body, quantity)
@@ -89,12 +102,14 @@ def build_quantities(
 
 
 def _offered(world: World, window: Window, marked: set[Key]) -> list[int]:
-    """Return the bodies of a menu: those that are shown or selected, those that move, and others."""
+    """Return what a menu offers: what is shown or selected, what moves, other bodies, joints and springs."""
     chosen = [*(body for body, _ in sorted(marked, key=str)), *window.selection.entities]
     moving, placed = world.batch(Transform, Velocity), world.batch(Transform)
     offered = [*moving.entities[:_OFFERED].tolist(), *placed.entities[:_OFFERED].tolist()]
-    there = set(placed.entities.tolist())
-    bodies = dict.fromkeys(body for body in (*chosen, *offered[:_OFFERED]) if body in there)
+    holding = [entity for kind in (*KINDS, Spring) for entity in world.batch(kind).entities.tolist()]
+    there = {*placed.entities.tolist(), *holding}
+    every = *chosen, *offered[:_OFFERED], *holding[:_OFFERED]
+    bodies = dict.fromkeys(body for body in every if body in there)
     return [body for body in bodies if body is not None]
 
 

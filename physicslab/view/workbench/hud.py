@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterable
 from itertools import product
 
 from physicslab.diagnostics.warnings import ModelWarning, find_warnings
+from physicslab.theme import Colour, mixed
 from physicslab.view.canvas.canvas import Rect, overlap
-from physicslab.view.canvas.theme import Colour, mixed
 from physicslab.view.controls.actions import has_gravity
 from physicslab.view.controls.share_actions import finish_sharing
 from physicslab.view.controls.tour import follow_tour

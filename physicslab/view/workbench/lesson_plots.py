@@ -11,8 +11,8 @@ from physicslab.ecs.quantity_text import Expression, InvalidText, evaluate
 from physicslab.lessons.check import Row, si_unit
 from physicslab.lessons.figures import quantity_of
 from physicslab.lessons.lesson import Compare, Question
+from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import rounded_up, written_unit
-from physicslab.view.canvas.theme import Colour
 from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lesson import Curve, OpenLesson, Trial

@@ -12,7 +12,7 @@ from physicslab.files.scene import SceneError, load_scene
 from physicslab.lessons.catalogue import find_lesson, titles
 from physicslab.scenes import SCENES
 from physicslab.state.masses import Diverged
-from physicslab.view.canvas.theme import Theme
+from physicslab.theme import Theme
 from physicslab.view.picture.picture import picture_of
 from physicslab.world import World
 

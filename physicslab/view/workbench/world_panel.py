@@ -15,8 +15,8 @@ from physicslab.ecs.fields import Field
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetPhysics, SetSimulation
 from physicslab.integrators import Integrator
+from physicslab.theme import Colour, Theme
 from physicslab.view.canvas.quantities import quantity, round_quantity, without_rounding
-from physicslab.view.canvas.theme import Colour, Theme
 from physicslab.view.controls.actions import gravity_in_words, has_gravity
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui

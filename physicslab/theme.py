@@ -1,4 +1,4 @@
-"""Every colour there is."""
+"""Every colour there is, and the sizes on the screen that the window and the pages of runs have in common."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +14,21 @@ NOTHING = (0, 0, 0, 0)
 
 LEGIBLE = 4.5
 """Least contrast of a body's rim to what is behind: its fill is lit on one side, and dim on the other."""
+FLUID = 0.5
+"""Share of its colour in the rim of a medium: bodies within it are to stand out."""
+RIM = 2.0
+"""Width of the rims of bodies [px]."""
+FLOOR, WALL = 40.0, 7.0
+"""Thickness of the ground and of the walls at the end of the world [px]."""
+POINT_RADIUS = 5.0
+"""How large a body without a Shape appears [px]."""
+PLANET, LEAST_PLANET = 14.0, 3.5
+"""Radius of the heaviest of the bodies without a Shape that attract each other, and least one [px]."""
+STAR, GLOW, GLOWS = 10.0, 5.0, ((1.0, 0.35), (0.45, 0.6))
+"""A body that has so many times the mass of all others is a star; how far it shines, in its radii; shares of
+that, and how bright."""
+MAX_SHADOWS = 400
+"""Number of bodies above which none has a shadow."""
 _EDGES = (0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 """Shares of what is brightest, or darkest on paper, that rims of bodies with a Colour may have."""
 
@@ -149,6 +164,11 @@ class Theme:
     def fill(self, rim: Colour) -> Colour:
         """Return the colour inside a body with this rim."""
         return mixed(self.background, rim, self.fill_share)
+
+    @property
+    def fluid(self) -> Colour:
+        """The rim of a medium."""
+        return mixed(self.background, self.bodies[0], FLUID)
 
     def edge(self, fill: Colour) -> Colour:
         """Return the rim of a body with this fill: it is seen all around on any of the theme's skies."""
