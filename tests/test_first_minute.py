@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pygame
 import pytest
-from desk import SETTLED, Desk, click, sized, tap, write
+from desk import SETTLED, Desk, click, empty_world, sized, tap, write
 
-from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.components import Mass, Shape, Spring, Transform, Velocity
 from physicslab.desktop.preferences import load_preferences, save_preferences
 from physicslab.languages.language import language
 from physicslab.view.controls import commands
@@ -100,32 +100,57 @@ def shown(desk: Desk) -> str:
     return "" if desk.window.tour is None else STEPS[desk.window.tour.number].title
 
 
+def pull(desk: Desk, start: tuple[float, float], end: tuple[float, float]) -> None:
+    """Drag with the left button from one place of the world to another [m]."""
+    desk.press(*start)
+    for share in (0.3, 0.7, 1.0):
+        desk.move(*(a + share * (b - a) for a, b in zip(start, end, strict=True)))
+        desk.frames()
+    desk.release(*end)
+    desk.frames(SETTLED)
+
+
 def test_the_tour_goes_on_by_acts_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    desk = sized(SIZE)
-    desk.world.spawn(Transform((0.0, 0.0)), Velocity(), Mass(1.0), Shape(kind="circle", radius=0.5))
+    desk = sized(SIZE, empty_world(bounds=(-8.0, -3.0, 8.0, 5.0)))
+    ball = desk.world.spawn(Transform((0.0, 2.0)), Velocity(), Mass(1.0), Shape(kind="circle", radius=0.5))
     desk.frames(SETTLED)
+
+    def place() -> tuple[float, float]:
+        at = desk.world.component(ball, Transform).position
+        return at.x, at.y
+
+    def waits(title: str) -> None:
+        """See that a step is shown, and that neither time nor a key of no other act ends it."""
+        assert shown(desk) == title
+        desk.frames(30)
+        tap(desk, "t")
+        tap(desk, "t")
+        assert shown(desk) == title, "neither time nor another key is its act"
+
     tap(desk, "f1", CTRL)
-    assert shown(desk) == "Throw"
-    desk.frames(60)
-    assert shown(desk) == "Throw", "time alone is no act"
-    place = desk.world.component(desk.world.batch(Shape).entities[0], Transform).position
-    desk.drag((place.x, place.y), (2.0, 0.0), 8)
-    assert shown(desk) == "Pause"
+    waits("Throw")
+    desk.drag(place(), (2.0, 0.0), 8)
+    waits("Pause")
     tap(desk, "space")
-    assert shown(desk) == "Draw"
-    desk.press(-3.0, 1.0, "right")
-    desk.frames()
-    desk.release(-3.0, 1.0, "right")
-    assert shown(desk) == "Spring"
-    click(desk, "Skip this step")
-    assert shown(desk) == "Gravity"
+    waits("Draw")
+    click(desk, "Box")
+    pull(desk, (-4.0, 1.0), (-3.0, 2.0))
+    assert len(desk.world.batch(Shape)) == 2
+    waits("Spring")
+    click(desk, "Spring")
+    pull(desk, (-3.5, 1.5), (-3.5, 4.0))
+    assert len(desk.world.batch(Spring)) == 1
+    waits("Gravity")
     tap(desk, "g")
-    assert shown(desk) == "Microscope"
-    click(desk, "Skip this step")
-    assert shown(desk) == "Undo"
+    waits("Microscope")
+    tap(desk, "z")
+    assert shown(desk) == "Microscope", "the list alone is not its act"
+    click(desk, next(label for label in desk.ui.places if label.startswith("Impact ")))
+    assert desk.window.microscope.is_open
+    waits("Undo")
     tap(desk, "z", CTRL)
-    assert shown(desk) == "Save"
+    waits("Save")
     tap(desk, "s", CTRL)
     assert shown(desk) == "Save", "a name is not a file yet"
     tap(desk, "return")
