@@ -12,7 +12,8 @@ from desk import SETTLED, Desk, bits, click, fill, tap
 from physicslab.components import Shape, Slider
 from physicslab.files.scene import load_scene
 from physicslab.view.controls import share_actions
-from physicslab.view.window.sharing import Sharing
+from physicslab.view.controls.lesson_actions import open_lesson
+from physicslab.view.window.sharing import FROM_START, WHOLE_LESSON, Sharing
 
 # Takes the place of the command: writes what it is given, or waits for ever, or fails.
 _WRITES = """
@@ -59,6 +60,29 @@ def test_a_page_is_made_of_the_scene_with_the_sliders_that_were_chosen(desk: Des
     assert "--seconds 103 " in written or "--seconds 3 " in written
     assert "--vary ball.Velocity.linear.x=1:5:9 --progress --html" in written
     assert "Saved" in desk.window.notice and bits(desk.world) == before
+
+
+def test_of_a_lesson_the_whole_lesson_is_offered_first(desk: Desk, tmp_path: Path) -> None:
+    desk.window.sharing = Sharing()
+    open_lesson(desk.world, desk.window, "incline")
+    desk.frames(SETTLED)
+    tap(desk, "f8")
+    assert desk.window.sharing.naming.text == "incline-1.html"
+    assert "Page begins: The whole lesson" in desk.ui.words or "The whole lesson" in desk.ui.words
+    assert "Seconds of the page" not in desk.ui.places
+    click(desk, "Make the page")
+    process = desk.window.sharing._process
+    assert process is not None and process.wait(600) == 0
+    desk.frames(SETTLED)
+    page = (tmp_path / "incline-1.html").read_text("utf-8")
+    assert '<article id="lesson">' in page
+    assert "Saved" in desk.window.notice and desk.window.lesson is not None
+
+
+def test_without_a_lesson_a_page_has_a_run(desk: Desk) -> None:
+    desk.window.sharing.begins = WHOLE_LESSON
+    tap(desk, "f8")
+    assert desk.window.sharing.begins == FROM_START and "Seconds of the page" in desk.ui.places
 
 
 def test_esc_gives_a_page_up_and_leaves_nothing(desk: Desk, tmp_path: Path) -> None:

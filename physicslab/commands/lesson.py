@@ -1,5 +1,6 @@
 """Say what a lesson is, check its theories against the engine, or print it for pupils to write on."""
 
+import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator
 from dataclasses import asdict
@@ -7,6 +8,7 @@ from functools import partial
 
 from physicslab.commands import FAILED, CommandError
 from physicslab.commands.output import Output
+from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable
 from physicslab.files.json_text import json_bytes
 from physicslab.kernels.tiers import Tiers
@@ -28,6 +30,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--worksheet", metavar="FILE", help="write a page to print, without solutions")
     words = "write one page for a browser without a network: with its runs, and with its solutions in it"
     parser.add_argument("--page", metavar="FILE", help=words)
+    words = "say on stderr how far the page is, though that is no terminal"
+    parser.add_argument("--progress", action="store_true", help=words)
     parser.add_argument("--json", metavar="FILE", help="write what was found as JSON (- for stdout)")
 
 
@@ -50,8 +54,12 @@ def execute(arguments: Namespace) -> int:
         if arguments.page is None:
             sheet.write(worksheet(lessons[0], find).encode())
             return 0
-        with Tiers(True):
-            content = lesson_page(lessons[0], find)
+        progress = Progress(f"lesson {lessons[0].name}", sys.stderr, always=arguments.progress)
+        try:
+            with Tiers(True):
+                content = lesson_page(lessons[0], find, progress.show)
+        finally:
+            progress.clear()
         sheet.write(content)
         if not sheet.to_stdout:
             print(f"{printable(sheet.path)}: {lessons[0].title}, {len(content) / 1000:,.0f} kB")

@@ -49,9 +49,14 @@ _FAILURES = (InvalidText, SceneError, Diverged, NotShown)
 _UNIT = re.compile(r"\s*[-+\d.e]+\s*(.*)")
 
 
-def lesson_page(lesson: Lesson, find: Callable[[str], Lesson]) -> bytes:
-    """Return the page in UTF-8, which needs nothing beside itself; ``find`` returns earlier lessons."""
-    made = _Page(lesson, find)
+def lesson_page(
+    lesson: Lesson, find: Callable[[str], Lesson], tell: Callable[[float], object] = lambda share: None
+) -> bytes:
+    """Return the page in UTF-8, which needs nothing beside itself.
+
+    ``find`` returns earlier lessons; ``tell`` is told what share of the lesson is done.
+    """
+    made = _Page(lesson, find, tell)
     article = "\n".join(made.article())
     document = {"lesson": made.told, "runs": made.pictures, "books": made.books, "words": made.words}
     return fill_page(lesson.title, made.about, document, article, lesson.language)
@@ -60,7 +65,10 @@ def lesson_page(lesson: Lesson, find: Callable[[str], Lesson]) -> bytes:
 class _Page:
     """What is gathered while the article is written: runs, books of them, and what is known of questions."""
 
-    def __init__(self, lesson: Lesson, find: Callable[[str], Lesson]) -> None:
+    def __init__(
+        self, lesson: Lesson, find: Callable[[str], Lesson], tell: Callable[[float], object]
+    ) -> None:
+        self._report, self._parts, self._done = tell, sum(len(step.parts) for step in lesson.steps), 0
         self.lesson, self.own = lesson, language(lesson.language)
         self.pictures: list[dict[str, Any]] = []
         self.books: list[dict[str, Any]] = []
@@ -89,7 +97,10 @@ class _Page:
 
     def book(self, runs: LessonRuns, run: Run, cases: Sequence[Case], sliders: Sequence[Any] = ()) -> int:
         """Add a book of a run in some cases, and return its number."""
-        found = [self._picture(runs, run, case) for case in cases]
+        found = []
+        for n, case in enumerate(cases):
+            found.append(self._picture(runs, run, case))
+            self._report((self._done + (n + 1) / len(cases)) / self._parts)
         compares = [one for one in runs.lesson.compares() if one.run.line == run.line]
         rows = [
             {one.name: self._row(one, case, figures) for one in compares} if figures else {}
@@ -231,6 +242,7 @@ class _Page:
                 yield f"<h2>{step.depth} · {escape(step.heading)}</h2>"
             for part in step.parts:
                 yield from self._part(part)
+                self._done += 1
             yield "</section>"
         if self.lesson.sources:
             yield f"<details><summary>{escape(own.say('Sources'))}</summary><ul>"

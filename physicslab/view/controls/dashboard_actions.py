@@ -65,8 +65,13 @@ def plot_quantity(world: World, window: Window, name: str) -> None:
     if keys:
         _plot(window, f"plotted {name}", Graph(), keys)
     else:
-        of = {"Transform": "a body", "Spring": "a spring"}.get(quantity.carrier, "a joint")
-        window.notify(f"Select {of} that has it: {name} is of {of}")
+        match quantity.carrier:
+            case "Spring":
+                window.notify(f"Select a spring: {name} is of a spring")
+            case "Transform":
+                window.notify(f"Select a body that has it: {name} is of a body")
+            case _:
+                window.notify(f"Select a joint: {name} is of a joint")
 
 
 def _pulls(world: World, window: Window) -> list[Key]:

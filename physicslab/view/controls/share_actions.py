@@ -14,7 +14,7 @@ from physicslab.files.replace import create_file, reason_of, replace_file
 from physicslab.files.scene import SceneError, file_stem, save_scene
 from physicslab.view.controls.saving import name_of
 from physicslab.view.window.naming import Naming, free_name, new_paths
-from physicslab.view.window.sharing import FROM_START, Sharing, Slid
+from physicslab.view.window.sharing import FROM_START, WHOLE_LESSON, Sharing, Slid
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -34,7 +34,10 @@ def toggle_sharing(world: World, window: Window) -> None:
         return
     sharing.choosing = not sharing.choosing
     if sharing.choosing:
-        stem = file_stem(name_of(world, window))
+        lesson = None if window.lesson is None else window.lesson.lesson
+        stem = file_stem(name_of(world, window) if lesson is None else lesson.name)
+        begins = FROM_START if sharing.begins == WHOLE_LESSON else sharing.begins
+        sharing.begins = begins if lesson is None else WHOLE_LESSON
         sharing.naming = Naming(free_name(new_paths(Path.cwd(), stem, ".html")))
         _take_sliders(world, window)
 
@@ -124,6 +127,12 @@ def begin_sharing(world: World, window: Window, over: Path | None = None) -> Non
         (".html", ".htm"), over, lambda there: "" if there.is_file() else ": another name is needed"
     )
     if path is None:
+        return
+    if sharing.begins == WHOLE_LESSON and window.lesson is not None:
+        naming.refused = _why_not("1", path.parent)
+        if not naming.refused:
+            sharing.make_lesson(window.lesson.source, window.lesson.lesson.language, path)
+            sharing.choosing = False
         return
     naming.refused = _why_not(sharing.seconds, path.parent)
     for slid in sharing.slid:

@@ -11,13 +11,13 @@ from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
 
 
 def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str]:
-    """Break words into lines no wider than ``width`` px; a word that is too long by itself is cut.
+    """Break words, in the canvas's language, into lines no wider than ``width`` px; one too long is cut.
 
     Text beyond ``MAX_LETTERS`` is left out.
     """
     lines: list[str] = []
     line = ""
-    for word in shortened(words, MAX_LETTERS).split():
+    for word in shortened(canvas.language.reword(words), MAX_LETTERS).split():
         longer = f"{line} {word}" if line else word
         if canvas.text_size(longer, style)[0] <= width:
             line = longer

@@ -58,11 +58,17 @@ class LabProcess:
         OSError
             If the scene cannot be written or the process not started.
         """
+        scene = self._empty() / "scene.json"
+        write(scene)
+        self._run(*self._command, str(scene), *arguments, "--progress", self.option, str(self._report))
+
+    def _empty(self) -> Path:
+        """Stop what is under way, and return a new folder for what comes."""
         self.stop()
         self._place = tempfile.TemporaryDirectory(prefix="physicslab-")
-        scene = Path(self._place.name) / "scene.json"
-        write(scene)
-        command = (*self._command, str(scene), *arguments, "--progress", self.option, str(self._report))
+        return Path(self._place.name)
+
+    def _run(self, *command: str) -> None:
         with self._log.open("wb") as log:
             self._process = subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=log

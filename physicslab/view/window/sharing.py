@@ -10,8 +10,9 @@ from physicslab.view.window.lab_process import LabProcess
 from physicslab.view.window.naming import Naming
 
 _COMMAND = (sys.executable, "-m", "physicslab.cli", "export")
-FROM_START, FROM_NOW = "From the start", "From now on"
-"""What a page begins with."""
+_LESSON = (sys.executable, "-m", "physicslab.cli", "lesson")
+FROM_START, FROM_NOW, WHOLE_LESSON = "From the start", "From now on", "The whole lesson"
+"""What a page begins with, or holds."""
 SLIDERS = 2
 """How many quantities the sliders of a page may change."""
 
@@ -47,7 +48,7 @@ class Sharing(LabProcess):
     seconds : str
         How long the run is to be [s].
     begins : str
-        ``FROM_START`` or ``FROM_NOW``.
+        ``FROM_START`` or ``FROM_NOW``, or ``WHOLE_LESSON``.
     slid : list of Slid
         What its sliders are to change.
     path : path
@@ -68,6 +69,12 @@ class Sharing(LabProcess):
         self.path = path
         vary = [text for one in self.slid if one.path for text in ("--vary", f"{one.path}={one.span}")]
         self.begin(write, "--seconds", self.seconds, *vary)
+
+    def make_lesson(self, lesson: str, code: str, path: Path) -> None:
+        """Begin to make the page of a lesson, of a name or a file, in one of its languages."""
+        self.path = path
+        self._empty()
+        self._run(*_LESSON, lesson, "--language", code, "--progress", "--page", str(self._report))
 
     @staticmethod
     def read(report: Path) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from imgui_bundle import imgui
 from physicslab.ecs.text import printable
 from physicslab.view.controls import share_actions
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.sharing import FROM_NOW, FROM_START
+from physicslab.view.window.sharing import FROM_NOW, FROM_START, WHOLE_LESSON
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.file_panels import build_answers, build_name
 from physicslab.world import World
@@ -22,37 +22,43 @@ def build_share(ui: Ui, world: World, window: Window) -> None:
     with ui.floating("Share as a page", window.framing.middle, close):
         ui.faint("One file that plays the run in any browser, without a network", wrapped=False)
         entered = build_name(ui, "Page name", sharing.naming, _NAME, close)
+        holds = (FROM_START, FROM_NOW) if window.lesson is None else (WHOLE_LESSON, FROM_START, FROM_NOW)
         sharing.begins = ui.choice(
-            "Page begins", sharing.begins, (FROM_START, FROM_NOW), width=(_NAME - _SECONDS - 4.0) * size
+            "Page begins", sharing.begins, holds, width=(_NAME - _SECONDS - 4.0) * size
         )
-        imgui.same_line()
-        sharing.seconds, _ = ui.field("Seconds of the page", sharing.seconds, _SECONDS * size)
-        imgui.same_line()
-        ui.faint("seconds", wrapped=False)
-        ui.gap(0.2)
-        ui.faint(
-            "Sliders of the page: a quantity, and from : to : how many values, 40 at most", wrapped=False
-        )
-        for n, slid in enumerate(sharing.slid, start=1):
-            tip = "The run is made for each value, and the slider chooses between them"
-            path = ui.choice(
-                f"Slider {n} of the page", slid.path, partial(share_actions.varying, world), tip,
-                width=_QUANTITY * size, shown=share_actions.words_of(slid.path),
-            )  # fmt: skip
-            if path != slid.path:
-                share_actions.choose_slid(world, slid, path)
-            if slid.path:
-                imgui.same_line()
-                before = slid.span
-                slid.span, _ = ui.field(
-                    f"Values of slider {n}", before, _SPAN * size, wrong=bool(slid.refused)
-                )
-                if slid.span != before:
-                    slid.refused = ""
-                if slid.refused:
-                    ui.text(slid.refused, ui.theme.error, wrapped=True)
+        if sharing.begins == WHOLE_LESSON:
+            ui.faint("Predict, run, compare and answer in the browser; its solutions are in the page")
+        else:
+            _build_run(ui, world, window)
         make, labels = share_actions.begin_sharing, ("Make the page", "No page")
         build_answers(ui, sharing.naming, labels, entered, make, close)
+
+
+def _build_run(ui: Ui, world: World, window: Window) -> None:
+    """Build how long the run of the page is, and what its sliders change."""
+    sharing, size = window.sharing, ui.size
+    imgui.same_line()
+    sharing.seconds, _ = ui.field("Seconds of the page", sharing.seconds, _SECONDS * size)
+    imgui.same_line()
+    ui.faint("seconds", wrapped=False)
+    ui.gap(0.2)
+    ui.faint("Sliders of the page: a quantity, and from : to : how many values, 40 at most", wrapped=False)
+    for n, slid in enumerate(sharing.slid, start=1):
+        tip = "The run is made for each value, and the slider chooses between them"
+        path = ui.choice(
+            f"Slider {n} of the page", slid.path, partial(share_actions.varying, world), tip,
+            width=_QUANTITY * size, shown=share_actions.words_of(slid.path),
+        )  # fmt: skip
+        if path != slid.path:
+            share_actions.choose_slid(world, slid, path)
+        if slid.path:
+            imgui.same_line()
+            before = slid.span
+            slid.span, _ = ui.field(f"Values of slider {n}", before, _SPAN * size, wrong=bool(slid.refused))
+            if slid.span != before:
+                slid.refused = ""
+            if slid.refused:
+                ui.text(slid.refused, ui.theme.error, wrapped=True)
 
 
 def build_sharing(ui: Ui, window: Window) -> None:
