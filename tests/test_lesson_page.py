@@ -245,11 +245,13 @@ def test_by_keyboard_alone_from_prediction_to_grade(page: Path, browser: Browser
     browser.tab_to(f"it.className === 'main' && {within('aim')}")
     browser.key("Enter")
     assert "Not yet." in browser.value("document.querySelector('[data-name=aim]').innerText")
+    assert browser.value(_ASKS), "answers would be lost"
     browser.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
     browser.tab_to("it.id === 'save'")
     browser.key("Enter")
     file = tmp_path / "fall-answers.json"
     browser._wait(file.exists, "the file of answers")
+    assert not browser.value(_ASKS), "they are saved"
     lesson = find_lesson(str(page.with_suffix(".md")))
     answers = read_answers(file, lesson, find_lesson)
     assert answers.learner == "Ada" and not answers.other_text
@@ -267,6 +269,36 @@ def test_by_keyboard_alone_from_prediction_to_grade(page: Path, browser: Browser
     assert browser.value("lesson.answers") == answers.given
     assert shown(browser) == ["way", "long", "course", "fall"], "predictions are locked, the run is open"
     assert browser.complaints == [] and set(browser.requests) == {page.as_uri()}
+
+
+def test_answers_of_a_file_that_cannot_be_read_are_named(
+    page: Path, browser: Browser, tmp_path: Path
+) -> None:
+    head = document(page)["lesson"]["head"]
+    browser.open(page, still=True)
+    answers: dict[str, Any] = {
+        "way": {"choice": 2, "sure": "sure"}, "long": {"value": "long"}, "course": {"curve": 3},
+        "aim": {"values": {"height": "a mile"}}, "none": {"choice": 1}, "twice": {"value": 20.0},
+    }  # fmt: skip
+    field = browser.call("Runtime.evaluate", expression="document.getElementById('open')")["result"]
+    for name, given, said in (
+        ("some", answers, "These could not be read: long, course, aim, none"),
+        ("none", [], "This file holds no answers to this lesson."),
+    ):
+        file = tmp_path / f"{name}.json"
+        file.write_text(json.dumps({**head, "learner": "Ada", "answers": given} if given else given))
+        browser.call("DOM.setFileInputFiles", files=[str(file)], objectId=field["objectId"])
+        browser.until(f"document.getElementById('kept').textContent.endsWith({said!r})")
+        assert sorted(browser.value("lesson.answers")) == ["twice", "way"]
+    assert browser.complaints == []
+
+
+_ASKS = """(() => {
+  const leaving = new Event("beforeunload", { cancelable: true });
+  dispatchEvent(leaving);
+  return leaving.defaultPrevented;
+})()"""
+"""Whether the browser asks before the page is left."""
 
 
 def test_every_control_has_a_name_and_the_focus_is_seen(page: Path, browser: Browser) -> None:

@@ -2,7 +2,7 @@
 
 const { head, questions, compares, runs: made } = given.lesson;
 const answers = {}, seen = new Set(), player = $("player");  // runs by their lines
-let shownBook = -1;
+let shownBook = -1, unsaved = false;
 const POINTS = 9, WIDE = 560, HIGH = 220, EDGE = [52, 10, 10, 26];  // left, top, right, bottom
 
 const make = (tag, words, rest) => Object.assign(document.createElement(tag), { textContent: words }, rest);
@@ -148,6 +148,7 @@ for (const form of document.querySelectorAll("form.part")) {
     const found = read(form);
     if (!found) return;
     answers[name] = found;
+    unsaved = true;
     refresh();
     tell(form, name);
     let next = form.nextElementSibling;
@@ -307,7 +308,9 @@ $("save").onclick = () => {
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
   $("kept").textContent = `${say("Saved as")} ${link.download}`;
+  unsaved = false;
 };
+addEventListener("beforeunload", event => { if (unsaved) event.preventDefault(); });  // the browser asks
 const answersFile = () => ({ ...head, learner: $("learner").value.trim().slice(0, 200), answers });
 $("open").onchange = async event => {
   const [file] = event.target.files;
@@ -319,16 +322,21 @@ $("open").onchange = async event => {
     return;
   }
   $("learner").value = found.learner ?? "";
-  for (const [name, answer] of Object.entries(found.answers)) {
-    const form = name in questions && partOf(name);
-    try {
-      if (form && restore(form, questions[name], answer)) answers[name] = answer;
-    } catch { /* an answer that is none is left out */ }
-  }
+  const unread = Object.entries(found.answers ?? {}).filter(([name, answer]) => !taken(name, answer));
   refresh();
   for (const form of document.querySelectorAll("form.part")) tell(form, form.dataset.name);
-  $("kept").textContent = say("The answers of the file are in the page.");
+  const left = unread.length ? ` ${say("These could not be read:")} ${unread.map(([name]) => name).join(", ")}` : "";
+  $("kept").textContent = say("The answers of the file are in the page.") + left;
 };
+// Whether an answer of a file is one to a question of this lesson; it then stands in the page.
+function taken(name, answer) {
+  const form = name in questions && partOf(name);
+  try {
+    if (!form || !restore(form, questions[name], answer)) return false;
+  } catch { return false; }
+  answers[name] = answer;
+  return true;
+}
 function restore(form, one, answer) {
   for (const input of form.querySelectorAll("input[type=radio]")) {
     if (input.name === "sure") input.checked = input.value === answer.sure;
@@ -339,6 +347,9 @@ function restore(form, one, answer) {
   if (one.form === "number") form.querySelector(".number").value = marked(String(answer.value));
   if (one.form === "text") form.querySelector("textarea").value = answer.text ?? "";
   if (one.form === "curve") form.setCurve(answer.curve);
+  if (one.form === "goal") {
+    return given.books[one.book].sliders.every(slider => slider.texts.includes(answer.values[slider.name]));
+  }
   return one.form !== "number" || Number.isFinite(answer.value);
 }
 

@@ -34,7 +34,13 @@ def build_transport(ui: Ui, rect: Rect, world: World, window: Window) -> None:
         for label, tip, action, shown, width in (
             ("Restart", "Restart this scene (Ctrl+R)", file_actions.restart, icons["restart"], _NARROW),
             ("Step back", "Pause, and go back by one step (B)", actions.step_back, icons["back"], _NARROW),
-            (play[0], f"{play[0]} (Space)", actions.toggle_pause, f"{icons[play[1]]}  {play[0]}", _WIDE),
+            (
+                play[0],
+                f"{play[0]} (Space)",
+                actions.toggle_pause,
+                f"{icons[play[1]]}  {ui.said(play[0])}",
+                _WIDE,
+            ),
             (
                 "Step",
                 "Pause, and make one step (.)",
