@@ -5,7 +5,8 @@ import math
 import sys
 import time
 from collections.abc import Iterable, Iterator
-from typing import Never
+from importlib import import_module
+from typing import Any, Never
 
 import numpy as np
 
@@ -21,9 +22,10 @@ from physicslab.stepping.breaks import Overloaded, time_of_break
 from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.forces import add_up_forces
 from physicslab.stepping.islands import Islands
+from physicslab.stepping.keyframe import Keyframe
 from physicslab.stepping.plan import StepPlan, default_plan, plan_for_jumps
 from physicslab.stepping.run import run_length, strides
-from physicslab.stepping.select import Steppers, choose, remake, resume
+from physicslab.stepping.select import Steppers, choose, remake, restart, resume
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Advance, Advancer
 from physicslab.stepping.undo import Undoing, go_back
@@ -88,7 +90,7 @@ class World(State):
     -0.0981
     """
 
-    __slots__ = ("_motion", "islands", "plan", "schedule", "stepper", "steppers")
+    __slots__ = ("_mark", "_motion", "islands", "plan", "schedule", "stepper", "steppers")
 
     def __init__(
         self,
@@ -107,6 +109,7 @@ class World(State):
         self.stepper: Advancer | None = None
         self.islands = Islands(self.schedule, _island_world)
         self._motion = motion_of(self)
+        self._mark: Keyframe | None = None
 
     def __repr__(self) -> str:
         title = self.title or self.name or "without a title"
@@ -138,6 +141,8 @@ class World(State):
         The clock is the caller's. Where that fails or is broken off, the world goes back to before the step.
         A step in which a joint breaks is two: until then, and without it.
         """
+        if not self.steps and self._mark is None and self.islands.divides:
+            self.mark()
         try:
             return self._attempt(h, steps, 1.0)
         except Overloaded as found:
@@ -207,6 +212,7 @@ class World(State):
     def _make(self, h: float, steps: int) -> Advance:
         """Make steps with the best stepper for the coming one, with its kernels compiled."""
         self.stepper = stepper = self.stepper_for(h)
+        self.steppers.use(stepper)
         self.compile(stepper.kernels)
         if not (stepper.keeps_balance or self.account.is_open):
             open_account(self, self.schedule.forces)
@@ -269,6 +275,39 @@ class World(State):
         """
         _refuse_unnamed("stepping", wrong)
         return strides(self, seconds, steps, stride, patience)
+
+    # ---- moments -------------------------------------------------------------------------------------------
+
+    def mark(self) -> None:
+        """Keep the present moment, to which :meth:`reset` goes back."""
+        self._mark = Keyframe(self, self._mark)
+
+    def reset(self) -> None:
+        """Go back to the moment of :meth:`mark`, or to that before the first step.
+
+        Everything is as it was then, entities, laws and clock, and goes on with the same bits.
+        """
+        if self._mark is not None:
+            self._mark.restore(self)
+
+    def copy(self) -> "World":
+        """Return another world at this moment, with the same entities, which goes on with the same bits."""
+        with self.active():  # a new world is the active one until the end of the block
+            _, *systems = self.schedule.systems
+            other = World(systems=[system.fresh() for system in systems])
+            Keyframe(self).fill(other)
+        other.view, other.desk = self.view, self.desk
+        return other
+
+    __copy__ = copy
+
+    def __deepcopy__(self, memo: object) -> "World":
+        return self.copy()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # What a scene file keeps goes to another process; what writes files stands above worlds.
+        scene = import_module("physicslab.files.scene")
+        return scene.load_scene, (scene.write_scene(self),)
 
     # ---- structure -----------------------------------------------------------------------------------------
 
@@ -355,10 +394,16 @@ class World(State):
         """Go on with what was chosen before this world was saved (:attr:`StepPlan.kept`), where possible."""
         self.plan, self.steppers = resume(self, self.schedule, (collisions, method, steps))
 
-    def adopt(self, plan: StepPlan) -> None:
-        """Go on by a plan of an earlier moment, with steppers that keep nothing of the steps made since."""
+    def adopt(self, plan: StepPlan, remade: int) -> None:
+        """Go on by a plan of an earlier moment, with steppers that keep nothing of the steps made since.
+
+        Systems are chosen again unless that was not done since they were ``remade`` so often.
+        """
         with self.active():
-            self.plan, self.steppers = remake(self, self.schedule, plan)
+            if self.schedule.remade == remade and self.plan is plan:
+                self.steppers = restart(self, self.schedule, plan, self.steppers)
+            else:
+                self.plan, self.steppers = remake(self, self.schedule, plan)
 
     def edited(self) -> None:
         """Note that columns or components were changed from outside: measurements over time begin again."""

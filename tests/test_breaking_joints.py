@@ -14,8 +14,8 @@ from physicslab.diagnostics.energy import measure_account
 from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import SimulationConfig
-from physicslab.history.keyframe import Keyframe
 from physicslab.prefabs import box
+from physicslab.stepping.keyframe import Keyframe
 from physicslab.systems.breaking import breaks_of
 
 

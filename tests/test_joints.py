@@ -20,9 +20,9 @@ from physicslab.ecs.vector import Vector2, rotated
 from physicslab.files.checks import SceneError
 from physicslab.files.reader import FORMAT, read_scene
 from physicslab.files.writer import write_scene
-from physicslab.history.keyframe import Keyframe
 from physicslab.kernels.accounts import DAMPING, ENERGY, HAND, JOINTS
 from physicslab.prefabs import box
+from physicslab.stepping.keyframe import Keyframe
 
 LENGTH = 0.5
 

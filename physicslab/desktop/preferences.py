@@ -12,6 +12,7 @@ from physicslab.files.scene import read_bytes
 from physicslab.languages.catalogue import languages
 from physicslab.theme import THEMES
 from physicslab.view.canvas.drawable_text import encodable
+from physicslab.view.controls.choosing_keys import read_choice
 from physicslab.view.window.desk import LEVELS
 from physicslab.view.window.recent import RecentFiles
 from physicslab.view.window.window import Window
@@ -51,6 +52,9 @@ def load_preferences(path: Path, window: Window) -> None:
     window.reduced_motion = found.get("reduced motion") is True
     window.sounds.on = found.get("sound") is True
     window.language = next((code for code in languages() if code == found.get("language")), window.language)
+    window.keys.chosen, wrong = read_choice(found.get("keys", {}))
+    if wrong:
+        window.notify(f"Preferences: {printable(wrong)}. The usual key is taken", 8.0, failed=True)
     recent = found.get("recent")
     if isinstance(recent, list):
         window.scenes.recent = RecentFiles(Path(path) for path in recent if isinstance(path, str) and path)
@@ -82,7 +86,7 @@ def save_preferences(path: Path, window: Window) -> None:
         "colours": window.theme.name, "text": window.text_scale, "level": window.level,
         "reduced motion": window.reduced_motion, "sound": window.sounds.on,
         "recent": [os.fspath(path) for path in window.scenes.recent.paths],
-        "language": window.language,
+        "language": window.language, "keys": window.keys.chosen,
         "panels": window.arrangement, "welcomed": window.welcomed,
     }  # fmt: skip
     path.parent.mkdir(parents=True, exist_ok=True)

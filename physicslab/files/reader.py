@@ -30,7 +30,7 @@ from physicslab.files.remainders import check_remainders
 from physicslab.integrators import SPLIT_METHODS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.state.remainders import Remainders
-from physicslab.state.state import LEVELS, SHOWN, Desk, View
+from physicslab.state.state import LEVELS, SCENE_TEXTS, SHOWN, Desk, View
 from physicslab.stepping.island import KeptIsland
 from physicslab.stepping.plan import MAX_STEPS
 from physicslab.systems.standard import standard_systems
@@ -38,14 +38,6 @@ from physicslab.world import World
 
 FORMAT = "physicslab-scene/1"
 """The value of the key ``format`` of a scene."""
-
-NAME_LIMIT = 1_000
-"""Characters that the name of a scene may have."""
-TITLE_LIMIT = 200
-"""Characters that its title may have: it stands over the window, and on a line of the menu."""
-
-SCENE_TEXTS: Mapping[str, int | None] = {"name": NAME_LIMIT, "title": TITLE_LIMIT, "description": None}
-"""The texts of a scene, and the characters that those on one line may have."""
 
 _MOST_STEPS = 2.0**48
 """Steps after which the clock still tells a sixteenth of a step from none."""

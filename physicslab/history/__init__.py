@@ -1,7 +1,7 @@
 """The time machine: one history of edits and runs, taken back and gone through, to the bit.
 
 Every edit is a command (:mod:`physicslab.history.commands`), whichever tool makes it. The line of edits and
-runs is data (:mod:`physicslab.history.line`). Between key frames (:mod:`physicslab.history.keyframe`), steps
+runs is data (:mod:`physicslab.history.line`). Between key frames (:mod:`physicslab.stepping.keyframe`), steps
 are made again. A recording is a line in a file (:mod:`physicslab.history.recording`).
 """
 

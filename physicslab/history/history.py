@@ -11,11 +11,11 @@ from typing import Self
 
 from physicslab.history.branches import Branch, Branches
 from physicslab.history.commands import Command, Group, Spawn
-from physicslab.history.keyframe import Keyframe
 from physicslab.history.line import Edit, Run, Steps, run_in_words
 from physicslab.history.places import Places
 from physicslab.history.recording import load, save
 from physicslab.history.replay import Played, edit, play, write
+from physicslab.stepping.keyframe import Keyframe
 from physicslab.world import World
 
 _LATE = 1e-6
@@ -319,7 +319,8 @@ class History:
         Its impacts are logged. The world of the history is not touched, and what is done to it meanwhile is
         not made again.
         """
-        line, world = self._places.line.head(self._end), self._places.beginning.replica()
+        line, world = self._places.line.head(self._end), World()
+        self._places.beginning.fill(world)
         world.contacts.read = True
         return ((world, played) for played in play(world, line, world.name))
 

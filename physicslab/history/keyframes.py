@@ -3,7 +3,7 @@
 from bisect import bisect_left, bisect_right, insort
 from typing import Any
 
-from physicslab.history.keyframe import Keyframe
+from physicslab.stepping.keyframe import Keyframe
 
 _OBJECT = 120
 """Bytes that an array takes besides its contents."""

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from physicslab.history.digest import Digester, differing
-from physicslab.history.keyframe import Keyframe
 from physicslab.history.keyframes import Keyframes
 from physicslab.history.line import Line, Steps
 from physicslab.history.replay import Played, make_again
+from physicslab.stepping.keyframe import Keyframe
 from physicslab.world import World
 
 _RARELY, _OFTEN, _SEEKING = 100.0, 16.0, 5.0

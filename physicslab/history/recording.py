@@ -21,12 +21,13 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files import checks
 from physicslab.files.json_text import json_bytes
 from physicslab.files.numbers import LARGEST
-from physicslab.files.reader import SCENE_TEXTS, check_scene, checked_scene_text, read_scene
+from physicslab.files.reader import check_scene, checked_scene_text, read_scene
 from physicslab.files.replace import replace_file
 from physicslab.files.scene import parse_json, read_text
 from physicslab.files.writer import write_scene
 from physicslab.history import commands
 from physicslab.history.line import Edit, Line, Run, Steps
+from physicslab.state.state import SCENE_TEXTS
 from physicslab.world import World
 
 _GROUP_DEPTH = 20

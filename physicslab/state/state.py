@@ -1,6 +1,6 @@
 """What a world holds: entities, columns, laws, clock and arrays. It depends on no system and no stepper."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +15,8 @@ from physicslab.state.joints import Joints
 from physicslab.state.remainders import NO_REMAINDERS, Remainders
 from physicslab.state.sleep import Sleep
 
+SCENE_TEXTS: Mapping[str, int | None] = {"name": 1_000, "title": 200, "description": None}
+"""The texts of a scene, and the characters that those on one line may have."""
 type View = tuple[float, float, float, float]
 LEVELS = ("Explore", "Measure", "Engineer")
 """How much a window may show beside the world, the least first."""

@@ -423,6 +423,11 @@ class Islands:
             state.remainders = Remainders.joined([island.state.remainders for island in self.members])
         state.contacts.source, self.members, self._left = None, (), b""
 
+    @property
+    def divides(self) -> bool:
+        """Whether the world may be divided: that of an island is not."""
+        return self._make is not None
+
     def find_again(self) -> None:
         """Let all islands be found before the next step."""
         self.due = self._make is not None

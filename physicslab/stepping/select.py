@@ -1,6 +1,6 @@
 """Which steppers there are, in one list, and which of them can advance a world."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from physicslab.state.state import State
 from physicslab.stepping.asleep import Asleep
@@ -18,10 +18,14 @@ STEPPERS: tuple[type[Stepper], ...] = (Asleep, Flow, EventDriven, Rigid, Soft)
 
 @dataclass(frozen=True, slots=True)
 class Steppers:
-    """The steppers that can advance a world as it is made now, the best first, and why not the others."""
+    """The steppers that can advance a world as it is made now, the best first, and why not the others.
+
+    Those that were ``used`` may keep what they go on from.
+    """
 
     usable: tuple[Stepper, ...]
     left_out: tuple[LeftOut, ...]
+    used: set[int] = field(default_factory=set)
 
     def ready(self, state: State, h: float) -> Stepper:
         """Return the best of them that can make the coming step."""
@@ -45,6 +49,10 @@ class Steppers:
             return steps
         first = next(one for one in self.usable if not isinstance(one, Asleep))
         return steps if stepper is first or isinstance(stepper, Asleep) else 1
+
+    def use(self, stepper: Advancer) -> None:
+        """Note that a stepper is about to advance the world."""
+        self.used.add(id(stepper))
 
     def hold(self, state: State) -> bool:
         """Whether the numbers that they were made from are still the same."""
@@ -89,6 +97,15 @@ def choose(state: State, schedule: Schedule, plan: StepPlan | None = None) -> tu
 def resume(state: State, schedule: Schedule, kept: tuple[str, str, int]) -> tuple[StepPlan, Steppers]:
     """Choose what was ``kept`` of an earlier plan (:attr:`StepPlan.kept`), where possible."""
     return choose(state, schedule, resumed_plan(state, schedule, kept))
+
+
+def restart(state: State, schedule: Schedule, plan: StepPlan, steppers: Steppers) -> Steppers:
+    """Return steppers of the same kinds that keep nothing of the steps made: those that made some are new."""
+    state.contacts.stale |= state.event_driven
+    usable = (
+        type(one)(state, schedule, plan) if id(one) in steppers.used else one for one in steppers.usable
+    )
+    return Steppers(tuple(usable), steppers.left_out)
 
 
 def remake(state: State, schedule: Schedule, plan: StepPlan | None) -> tuple[StepPlan, Steppers]:

@@ -53,6 +53,8 @@ class Schedule:
         The names of those that no kernel computes, and Python does.
     observer : System, optional
         The first of them that looks at every step.
+    remade : int
+        How often it was made.
     """
 
     def __init__(self, systems: Iterable[System]) -> None:
@@ -65,6 +67,7 @@ class Schedule:
         self.smooth_forces: tuple[ForceSystem, ...] = ()
         self.interpreted: tuple[str, ...] = ()
         self.observer: System | None = None
+        self.remade = 0
         self._timings: dict[str, Timing] = {}
         self._settle: Callable[[], None] | None = None
         self._calls: dict[Stage, list[tuple[Callable[[State, float], None], Timing]]] = {}
@@ -99,6 +102,7 @@ class Schedule:
 
     def remake(self, state: State) -> None:
         """Choose the systems that the world needs now."""
+        self.remade += 1
         running: list[System] = []
         left_out: list[LeftOut] = []
         for system in self.systems:

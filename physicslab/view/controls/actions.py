@@ -7,10 +7,10 @@ from physicslab.components import Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
-from physicslab.files.reader import SCENE_TEXTS
 from physicslab.files.replace import reason_of
 from physicslab.files.scene import SceneError, file_stem
 from physicslab.history import Branch, Command, Remove, SetField, SetPhysics, SetText
+from physicslab.state.state import SCENE_TEXTS
 from physicslab.systems.gravity import GravitySystem
 from physicslab.theme import THEMES
 from physicslab.view.controls.lesson_actions import begin_run, leave_lesson

@@ -13,6 +13,7 @@ from physicslab.languages.language import Language
 from physicslab.lessons.catalogue import titles
 from physicslab.scenes import SCENES
 from physicslab.view.controls import actions, dashboard_actions
+from physicslab.view.controls.choosing_keys import label_of
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.file_actions import open_from_list
 from physicslab.view.controls.lesson_actions import opener
@@ -51,11 +52,15 @@ class Command:
     action: Action
 
 
-def commands() -> Iterator[Command]:
-    """Yield every command there is: keys and menus, tools, levels, scenes, and graphs of quantities."""
+def commands(window: Window | None = None) -> Iterator[Command]:
+    """Yield every command there is: keys and menus, tools, levels, scenes, and graphs of quantities.
+
+    Keys are those that were chosen in the window, or the usual ones.
+    """
     for control in CONTROLS:
         if control.group and control.label != "Ctrl+K":
-            yield Command(control.title, control.label, control.tip, control.pressed)
+            keys = control.label if window is None else label_of(control, window)
+            yield Command(control.title, keys, control.tip, control.pressed)
     named = {control.tool.name for control in CONTROLS if control.group and control.tool is not None}
     for tool in TOOLS.values():
         if tool.name not in named:

@@ -364,7 +364,7 @@ CONTROLS: tuple[Control, ...] = (
     Control("F8", "share as a page", "f8", share_actions.toggle_sharing, group="file",
             panel="sharing.choosing", state=lambda _, window: window.sharing.running,
             tip="One file that plays the run in any browser; with sliders, if you like"),
-    Control("F5", "error against run time", "f5", file_actions.study_error, group="file",
+    Control("F5", "error against run time", "f5", file_actions.study_error, group="laws",
             state=lambda _, window: window.error_study.running,
             tip="Run this scene by every method, and plot the error and the cost of each"),
     Control("Ctrl++", "larger text", "ctrl+=", lambda _, window: actions.scale_text(window, 1),

@@ -10,6 +10,7 @@ from physicslab.components import Held, Shape, Transform
 from physicslab.contacts.outlines import Outlines
 from physicslab.ecs.vector import Vector2
 from physicslab.view.controls import actions, drawing
+from physicslab.view.controls.choosing_keys import choose_key, usual
 from physicslab.view.controls.context import open_context, thing_at
 from physicslab.view.controls.controls import KEYS, RELEASES, open_menu, reaches_world
 from physicslab.view.controls.file_actions import open_file
@@ -35,6 +36,10 @@ _OTHER_USE = pygame.KMOD_ALT | pygame.KMOD_META
 
 _HELD = 0.4
 """How long [s] the right button is held to open a menu."""
+_HELD_KEYS = (
+    pygame.K_LCTRL, pygame.K_RCTRL, pygame.K_LSHIFT, pygame.K_RSHIFT, pygame.K_LALT, pygame.K_RALT,
+    pygame.K_LGUI, pygame.K_RGUI,
+)  # fmt: skip
 _MENU = 0x40000065
 """The key beside the right Ctrl, which SDL calls "Application"."""
 _COMING_BACK = 0.15
@@ -92,6 +97,9 @@ class WindowEvents:
     def handle(self, world: World, event: pygame.Event) -> None:
         """Do what an event calls for."""
         window = self._window
+        if window.keys.asks and event.type == pygame.KEYDOWN:
+            self._choose_key(world, event)
+            return
         taken = self._take(event)
         self._do_pending(world)  # an entry in a field is done before the click beside it
         self._follow_alt(world, event)
@@ -159,17 +167,19 @@ class WindowEvents:
         except OSError as error:
             self._window.notify(f"Not done: {error.strerror or error}", 6.0, failed=True)
 
+    def _choose_key(self, world: World, event: pygame.Event) -> None:
+        """Take a key for what asks for one; those that are held with others are none."""
+        name, _, held = _named(event)
+        if event.key not in _HELD_KEYS:
+            choose_key(world, self._window, held + name)
+
     def _key(self, world: World, event: pygame.Event) -> None:
         mod = getattr(event, "mod", 0)
-        held = ("ctrl+" if mod & pygame.KMOD_CTRL else "") + ("shift+" if mod & pygame.KMOD_SHIFT else "")
-        printed = getattr(event, "unicode", "")
-        name = printed if printed in _BY_PRINT else pygame.key.name(event.key).lower()
-        if event.key == _MENU:
-            name = "menu"
+        name, printed, held = _named(event)
         if self._types(name, printed, held):
             return
-        keys = held + name, held.replace("shift+", "") + name
-        action = KEYS.get(keys[0]) or KEYS.get(keys[1])
+        keys = usual((held + name, held.replace("shift+", "") + name), self._window)
+        action = next((KEYS[key] for key in keys if key in KEYS), None)
         other_use = mod & _OTHER_USE and name not in _BY_PRINT
         if action is None or other_use:
             return
@@ -198,7 +208,8 @@ class WindowEvents:
             self._alt_alone = is_alt and event.type == pygame.KEYDOWN
 
     def _key_up(self, world: World, event: pygame.Event) -> None:
-        action = RELEASES.get(pygame.key.name(event.key).lower())
+        keys = usual((pygame.key.name(event.key).lower(),), self._window)
+        action = next((RELEASES[key] for key in keys if key in RELEASES), None)
         if action is not None:  # whatever else is held by now: what was begun must end
             self._do(action, world)
 
@@ -327,3 +338,11 @@ def _about(world: World, entity: int) -> Outlines | None:
     rows = world.batch(Transform, Shape).rows
     own = rows[world.entity_index.entities[rows] == entity]
     return outlines_of(world, own).moved(Vector2() - world.component(entity, Transform).position)
+
+
+def _named(event: pygame.Event) -> tuple[str, str, str]:
+    """Return the name of a key, what it prints, and ``"ctrl+"`` and ``"shift+"`` where these are held."""
+    mod, printed = getattr(event, "mod", 0), getattr(event, "unicode", "")
+    held = ("ctrl+" if mod & pygame.KMOD_CTRL else "") + ("shift+" if mod & pygame.KMOD_SHIFT else "")
+    name = printed if printed in _BY_PRINT else pygame.key.name(event.key).lower()
+    return "menu" if event.key == _MENU else name, printed, held

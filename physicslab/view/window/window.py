@@ -29,6 +29,7 @@ from physicslab.view.window.framing import Framing
 from physicslab.view.window.hand import Hand
 from physicslab.view.window.handles import Handles
 from physicslab.view.window.impacts import ImpactList, Microscope
+from physicslab.view.window.key_choice import KeyChoice
 from physicslab.view.window.lab_process import ErrorStudy
 from physicslab.view.window.lesson import OpenLesson
 from physicslab.view.window.making import Making
@@ -133,6 +134,8 @@ class Window:
     keys_go_to : str
         Where keys are to go from the next frame on: ``"menu"``, ``"fields"``, ``"panel"`` (the next one) or
         nowhere else.
+    keys : KeyChoice
+        The keys that were chosen in place of the usual ones.
     points_by_key, presses_by_key : bool
         Whether the cursor was moved by keys, and whether the tool was pressed by one and is to be let go.
     adding : bool
@@ -221,7 +224,7 @@ class Window:
         self.level = "Explore"
         self.text_scale = 1.0
         self.arrangement = ""
-        self.keys_go_to = ""
+        self.keys, self.keys_go_to = KeyChoice(), ""
         self.points_by_key = self.presses_by_key = False
         self.adding = False
         self.selection = Selection()

@@ -166,7 +166,7 @@ class CommandSearch:
             across, _ = ui.fitted(_WIDTH * ui.size, ui.size)
             if imgui.is_window_appearing():
                 imgui.set_keyboard_focus_here()
-                self._all, self._text = list(commands.commands()), None
+                self._all, self._text = list(commands.commands(window)), None
             text, _ = ui.field("Search", search.text, across)
             if text != self._text:
                 row = 0 if self._text is not None else search.row

@@ -13,6 +13,7 @@ from physicslab.scenes import SCENES
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import actions, file_actions
+from physicslab.view.controls.choosing_keys import bring_usual, is_open, label_of
 from physicslab.view.controls.controls import CONTROLS, Control
 from physicslab.view.controls.joining import JOINTS
 from physicslab.view.controls.lesson_actions import choose_language, open_lesson
@@ -86,7 +87,7 @@ def _build_controls(ui: Ui, groups: tuple[str, ...], world: World, window: Windo
             ui.rule()
         for control in CONTROLS:
             if control.group == group:
-                on, keys = control.on(world, window), control.label
+                on, keys = control.on(world, window), label_of(control, window)
                 enabled = control.is_open(window)
                 ui.item(control.title, control.pressed, keys=keys, on=on, enabled=enabled, tip=control.tip)
         if group == "file":
@@ -164,8 +165,8 @@ _GAP = "   "
 
 
 def build_help(ui: Ui, world: World, window: Window) -> None:
-    """Build the window of keys, in columns."""
-    lines = [(ui.said(_keys(control)), f"{ui.said(control.does)}{_GAP}") for control in CONTROLS]
+    """Build the window of keys, in columns, where they can be given to other things."""
+    lines = [(ui.said(_keys(control, window)), f"{ui.said(control.does)}{_GAP}") for control in CONTROLS]
     room = _SHARE * window.canvas.size[0]
     columns = next((n for n in range(_MAX_COLUMNS, 1, -1) if _width(lines, n) <= room), 1)
     with ui.floating("Keys and buttons", window.framing.middle, window.closing_of("help"), docks=True):
@@ -173,18 +174,40 @@ def build_help(ui: Ui, world: World, window: Window) -> None:
         if imgui.begin_table("keys", 2 * columns, imgui.TableFlags_.sizing_fixed_fit):
             for n in range(rows):
                 imgui.table_next_row()
-                for keys, does in lines[n::rows]:
+                for control, (keys, does) in zip(CONTROLS[n::rows], lines[n::rows], strict=True):
                     imgui.table_next_column()
-                    ui.text(keys, ui.theme.accent)
+                    _build_key(ui, window, control, keys)
                     imgui.table_next_column()
+                    if window.keys.open:
+                        imgui.align_text_to_frame_padding()
                     ui.text(does)
             imgui.end_table()
-        ui.faint("F1 or Esc closes this")
+        if ui.checkbox("Choose keys", window.keys.open, "Then click a key, and press another"):
+            window.keys.open, window.keys.asks = not window.keys.open, ""
+        imgui.same_line()
+        if window.keys.asks:
+            ui.text("Press the new key. Backspace: the usual one, Esc: leave it", ui.theme.accent)
+        elif window.keys.chosen:
+            ui.button("All usual keys", "Every key does what it usually does", bring_usual)
+        else:
+            ui.faint("F1 or Esc closes this")
 
 
-def _keys(control: Control) -> str:
+def _build_key(ui: Ui, window: Window, control: Control, keys: str) -> None:
+    """Build the key of a control: a button where another can be chosen."""
+    if not (window.keys.open and is_open(control)):
+        if window.keys.open:
+            imgui.align_text_to_frame_padding()
+        ui.text(keys, ui.theme.accent)
+    elif ui.button(
+        f"Key of {control.does}", shown=label_of(control, window), on=window.keys.asks == control.does
+    ):
+        window.keys.asks = control.does
+
+
+def _keys(control: Control, window: Window) -> str:
     others = [key.capitalize() for key in control.also if key.isalpha()]
-    return ", ".join([control.label, *others])
+    return ", ".join([label_of(control, window), *others])
 
 
 def _width(lines: Sequence[tuple[str, str]], columns: int) -> float:

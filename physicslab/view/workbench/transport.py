@@ -89,6 +89,8 @@ def _mark(ui: Ui, window: Window, first: int, last: int) -> None:
 def _build_line(ui: Ui, world: World, window: Window) -> None:
     """Build the line of the steps that were made, to be gone through by dragging, and the hint beside it."""
     words = _HINT if window.lesson is None else _HINT_OF_LESSONS
+    if window.keys.chosen:  # the hint names usual keys
+        words = ""
     room, hint = imgui.get_content_region_avail().x, ui.width(words) + ui.size
     is_hinted = room - hint > _MIN_LINE * ui.size
     history = window.edits.history

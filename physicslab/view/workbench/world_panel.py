@@ -216,7 +216,7 @@ def build_levels(ui: Ui, window: Window) -> None:
 def build_world(ui: Ui, world: World, figures: WorldFigures, window: Window) -> None:
     """Build the part for everyone: its energies, its gravity."""
     build_energies(ui, figures, error=window.level == "Explore")
-    if window.level != "Explore":
+    if window.level == "Engineer":  # *Measure* has it with its parts
         momentum = without_rounding(figures.momentum.linear.magnitude, figures.scales["kg m/s"])
         ui.row("Total momentum", quantity(momentum, "kg m/s"))
     ui.gap(0.2)

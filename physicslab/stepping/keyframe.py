@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Iterator, Sequence
-from copy import copy
+from copy import copy, deepcopy
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Protocol, cast
 
 import esper
 import numpy as np
@@ -22,14 +22,12 @@ from physicslab.contacts.kept import KeptContacts, KeptSleep, forget_sleep, shar
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.context import create_numbered
-from physicslab.files.reader import SCENE_TEXTS
 from physicslab.state.account import KeptAccount
 from physicslab.state.remainders import Remainders
-from physicslab.stepping.island import Island
+from physicslab.state.state import SCENE_TEXTS, State
+from physicslab.stepping.island import Island, Part
+from physicslab.stepping.islands import Islands
 from physicslab.stepping.plan import StepPlan
-from physicslab.systems.standard import standard_systems
-from physicslab.systems.system import System
-from physicslab.world import World
 
 type _Array = NDArray[Any]
 type _Columns = tuple[_Array, ...]
@@ -38,6 +36,18 @@ _COUNTS = (
     "time", "steps", "substeps", "step_divisions", "force_evaluations", "collisions", "brought_back",
 )  # fmt: skip
 """What else a world counts."""
+
+
+class Kept(Part, Protocol):
+    """What a key frame needs of a world, which is a state as well."""
+
+    islands: Islands
+
+    def edited(self) -> None:
+        """Note that columns or components were changed from outside."""
+
+    def adopt(self, plan: StepPlan, remade: int) -> None:
+        """Go on by a plan, with steppers that keep nothing of the steps made since."""
 
 
 @dataclass(slots=True, eq=False)
@@ -58,14 +68,14 @@ class _Structure:
         The components of each entity that have no columns, such as its name.
     """
 
-    world: weakref.ref[World]
+    world: weakref.ref[State]
     changes: int
     entities: NDArray[np.int64]
     present: dict[type[Any], NDArray[np.bool_]]
     others: dict[int, tuple[Any, ...]]
 
     @classmethod
-    def of(cls, world: World) -> _Structure:
+    def of(cls, world: State) -> _Structure:
         index = world.entity_index
         others: dict[int, tuple[Any, ...]] = {}
         for entity in index.row_of:
@@ -76,15 +86,15 @@ class _Structure:
         present = {kind: table.present.copy() for kind, table in index.tables.items() if table.handles}
         return cls(weakref.ref(world), index.changes, index.entities.copy(), present, others)
 
-    def is_unchanged(self, world: World) -> bool:
+    def is_unchanged(self, world: State) -> bool:
         """Whether the world has had it last, and nothing came or went since."""
         return self.world() is world and self.changes == world.entity_index.changes
 
-    def is_that_of(self, world: World) -> bool:
+    def is_that_of(self, world: State) -> bool:
         """Whether that is so, and rows are numbered alike."""
         return self.is_unchanged(world) and np.array_equal(self.entities, world.entity_index.entities)
 
-    def restore(self, world: World) -> None:
+    def restore(self, world: State) -> None:
         """Make the same entities of the same components; what is there already stays as it is."""
         wanted = {int(entity): list(self.others.get(int(entity), ())) for entity in self.entities if entity}
         kinds: dict[int, set[type[Any]]] = {entity: set() for entity in wanted}
@@ -125,10 +135,11 @@ class Keyframe:
 
     __slots__ = (
         "_account", "_columns", "_contacts", "_counts", "_forces", "_islands", "_joints", "_laws", "_own",
-        "_plan", "_rates", "_remainders", "_sleep", "_structure", "_texts",
+        "_plan", "_rates", "_remade", "_remainders", "_sleep", "_structure", "_texts",
     )  # fmt: skip
 
-    def __init__(self, world: World, last: Keyframe | None = None) -> None:
+    def __init__(self, world: Kept, last: Keyframe | None = None) -> None:
+        assert isinstance(world, State)
         world.synchronise()
         same = last is not None and last._structure.is_that_of(world)
         with world.active():
@@ -143,21 +154,20 @@ class Keyframe:
         self._counts = {name: getattr(world, name) for name in _COUNTS}
         self._laws: tuple[PhysicsConfig, SimulationConfig] = world.physics, world.simulation
         self._texts = {key: getattr(world, key) for key in SCENE_TEXTS}
-        self._plan: StepPlan = world.plan
+        self._plan, self._remade = world.plan, world.schedule.remade
         self._rates = dict(world.fastest_rates)
         self._remainders: Remainders = world.remainders
         self._account: KeptAccount = world.account.keep()
         self._forces: _Columns = shared(
             (world.bodies.force, world.bodies.torque), last._forces if last is not None else None
         )
-        self._own: dict[System, _Columns] = {
-            system: kept for system in world.schedule.running if (kept := system.keep())
+        self._own: dict[str, _Columns] = {
+            system.name: kept for system in world.schedule.running if (kept := system.keep())
         }
         parts = {} if last is None else {entities.tobytes(): part for entities, part in last._islands}
         self._islands: list[tuple[_Array, Keyframe]] = []
         for island in world.islands.members:
-            assert isinstance(island.state, World)
-            part = Keyframe(island.state, parts.get(island.entities.tobytes()))
+            part = Keyframe(cast(Kept, island.world), parts.get(island.entities.tobytes()))
             self._islands.append((island.entities, part))
         before = (last._contacts, last._sleep) if last is not None else (None, None)
         self._contacts: KeptContacts = KeptContacts.of(world.contacts, before[0])
@@ -181,15 +191,17 @@ class Keyframe:
         low = self._remainders
         yield from (low.keys, low.q, low.v, low.q_low, low.v_low)
 
-    def replica(self) -> World:
-        """Return another world at this moment, with the systems that every scene has."""
-        world, frame = World(*standard_systems()), copy(self)
-        frame._structure, frame._own = replace(self._structure, changes=-1), {}
+    def fill(self, world: Kept) -> None:
+        """Put another world, which has no entities yet, to this moment."""
+        frame, alone = copy(self), {}
+        for entity, others in self._structure.others.items():
+            alone[entity] = tuple(deepcopy(other) for other in others)
+        frame._structure, frame._remade = replace(self._structure, changes=-1, others=alone), -1
         frame.restore(world)
-        return world
 
-    def restore(self, world: World) -> None:
+    def restore(self, world: Kept) -> None:
         """Put the world back to this moment, in place; every entity has the number that it had."""
+        assert isinstance(world, State)
         world.edited()
         before, world.islands.paused = world.islands.members, True
         world.islands.forget(world)
@@ -202,9 +214,10 @@ class Keyframe:
                 world.stale |= index.synchronise()
                 structure.world, structure.changes = weakref.ref(world), index.changes
             rows = np.where(structure.entities > 0, index.rows_of(structure.entities), -1)
+            there = None if np.array_equal(rows[1:], np.arange(1, len(index))) else rows
             for kind, columns in self._columns.items():
                 for now, then in zip(world.table(kind).columns, columns, strict=True):
-                    _put(then, now, rows)
+                    _put(then, now, there)
             if (world.physics, world.simulation) != self._laws:
                 world.physics, world.simulation = self._laws
             for name, value in (*self._counts.items(), *self._texts.items()):
@@ -212,21 +225,23 @@ class Keyframe:
             forget_sleep(world.sleep)
             world.contacts.clear()
             world.synchronise()
-            world.adopt(self._plan)
+            world.adopt(self._plan, self._remade)
         self._contacts.restore(world)
         self._sleep.restore(world, rows)
         world.joints.restore(self._joints)
         for now, then in zip((world.bodies.force, world.bodies.torque), self._forces, strict=True):
-            _put(then, now, rows)
-        for system, kept in self._own.items():
-            system.bring_back(kept)
+            _put(then, now, there)
+        for system in world.schedule.running if self._own else ():
+            if system.name in self._own:
+                system.bring_back(self._own[system.name])
         world.remainders = self._remainders
         world.account.bring_back(self._account)
         world.fastest_rates.update(self._rates)
         self._restore_islands(world, before)
 
-    def _restore_islands(self, world: World, before: Sequence[Island]) -> None:
+    def _restore_islands(self, world: Kept, before: Sequence[Island]) -> None:
         """Let the islands go on from that moment, in the worlds that the same ones had ``before``."""
+        assert isinstance(world, State)
         there = {island.entities.tobytes(): island.world for island in before}
         members: list[Island] = []
         for entities, frame in self._islands:
@@ -234,15 +249,14 @@ class Keyframe:
             if part is None:
                 part, frame = world.islands.blank(world), copy(frame)
                 frame._structure = replace(frame._structure, changes=-1)
-            assert isinstance(part, World)
-            frame.restore(part)
+            frame.restore(cast(Kept, part))
             members.append(Island(part, entities))
         world.islands.adopt(world, members)
 
 
-def _put(then: _Array, now: _Array, rows: NDArray[np.int64]) -> None:
-    """Write the rows of a column of ``then`` where they are now; -1 is for blank ones."""
-    if len(rows) == len(now) == len(then) and np.array_equal(rows[1:], np.arange(1, len(rows))):
+def _put(then: _Array, now: _Array, rows: NDArray[np.int64] | None) -> None:
+    """Write the rows of a column of ``then`` where they are now: -1 for blank ones, ``None`` for the same."""
+    if rows is None:
         now[1:] = then[1:]
     else:
         now[rows[rows > 0]] = then[rows > 0]
