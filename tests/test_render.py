@@ -9,7 +9,7 @@ import pytest
 from desk import FRAME, Desk, bits, empty_world
 from recording import RecordingCanvas
 
-from physicslab.components import Held, Mass, Transform, Velocity
+from physicslab.components import Held, Mass, Rod, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
@@ -171,6 +171,14 @@ def test_extent_is_of_what_there_is_to_see() -> None:
     assert extent is not None
     xmin, ymin, xmax, ymax = extent
     assert -20 < xmin <= -0.5 and 10.5 <= xmax < 30 and ymin == -1.5 and ymax >= 2.5
+
+
+def test_extent_of_what_hangs_holds_what_it_hangs_from() -> None:
+    world = World(*standard_systems())
+    bob = world.spawn(Transform((0.5, 1.0)), Velocity(), Mass(1.0))
+    world.spawn(Rod(b=bob, anchor_a=(0.0, 3.0)))
+    extent = extent_of(world)
+    assert extent is not None and extent[0] <= 0.0 and extent[3] >= 3.0
 
 
 def test_extent_of_walls_alone_and_of_lost_bodies() -> None:

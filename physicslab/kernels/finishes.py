@@ -7,6 +7,8 @@ import math
 
 from physicslab.kernels import inlined
 
+DIAGONAL = 0.7071067811865476
+"""Share of a place along each axis in that along the diagonal."""
 _EVERY_OTHER = 0x00FF00FF
 """Two channels of a pixel, with room between them for products."""
 WHITE, BLACK = 0xFFFFFFFF, 0
@@ -62,11 +64,17 @@ def _speck(i: int, j: int) -> float:
 
 
 @inlined
+def hatched(diagonal: float, colour: int, edge: int) -> int:
+    """Return the colour of the ground at a place, by how far it is along the diagonal of the body [px]."""
+    across = HATCH_SPACING * abs(_share_of(diagonal, HATCH_SPACING) - 0.5)
+    return mixed(colour, edge, HATCH * unit(1.25 - across))
+
+
+@inlined
 def textured(finish: int, u: float, v: float, colour: int, edge: int, under: int) -> int:
     """Return the colour of a material at a place in the body's own frame [px], before what is under it."""
     if finish == GROUND:
-        across = HATCH_SPACING * abs(_share_of((u + v) * 0.7071067811865476, HATCH_SPACING) - 0.5)
-        return mixed(colour, edge, HATCH * unit(1.25 - across))
+        return hatched((u + v) * DIAGONAL, colour, edge)
     if finish == _WOOD:
         wave = _share_of(u, 90.0)
         grain = abs(_share_of(v + 7.0 * wave * (1.0 - wave), 6.0) - 0.5)

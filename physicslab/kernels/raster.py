@@ -20,6 +20,7 @@ from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.finishes import (
     BLACK,
     DEEP,
+    DIAGONAL,
     FLAT,
     GROUND,
     LIGHT_REACH,
@@ -34,6 +35,7 @@ from physicslab.kernels.finishes import (
     WEDGE_REACH,
     WEDGE_SHARE,
     WHITE,
+    hatched,
     lit,
     mixed,
     shaded,
@@ -292,7 +294,12 @@ def paint_boxes(
                 core_left = core_right = right
             level = mixed(bright, dim, unit((dy + extent) / depth))
             _box_edge(pixels, row, left, core_left, x, dy, c, s, a, b, band, level, edge)
-            if kind >= GROUND:
+            if kind == GROUND:  # by itself: ground fills half of many pictures
+                ahead, place = (c + s) * DIAGONAL, (c - s) * DIAGONAL * dy
+                for column in range(core_left, core_right):
+                    diagonal = place + ahead * (column + 0.5 - x)
+                    pixels[row, column] = hatched(diagonal, level, edge)
+            elif kind > GROUND:
                 for column in range(core_left, core_right):
                     dx = column + 0.5 - x
                     u, v = c * dx - s * dy, s * dx + c * dy

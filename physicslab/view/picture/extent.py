@@ -17,7 +17,7 @@ _SURROUNDINGS = 4.0
 
 
 def extent_of(world: World) -> Extent | None:
-    """Return the extent of all bodies, springs and bounds, or ``None`` where there are none.
+    """Return the extent of all bodies, springs, joints and bounds, or ``None`` where there are none.
 
     A static body counts only as far as it is near the rest: a floor of a kilometre makes no speck of a ball.
     """
@@ -49,10 +49,12 @@ def _reach(world: World, rows: NDArray[np.int64]) -> Boxes:
 
 
 def _fixed_ends(world: World) -> Boxes:
-    """Return the points of the world that springs hang from."""
-    spring = world.table(Spring)
+    """Return the points of the world that springs and joints hang from."""
+    spring, joints = world.table(Spring), world.joints
     rows = world.batch(Spring).rows
-    anchors = spring["anchor_b"][rows[spring["b"][rows] == 0]]
+    held = [joints.anchor_a[one.first] for one in joints.joints if not one.a]
+    held += [joints.anchor_b[one.first] for one in joints.joints if not one.b]
+    anchors = np.array([*spring["anchor_b"][rows[spring["b"][rows] == 0]], *held]).reshape(-1, 2)
     return np.concatenate((anchors, anchors), axis=1)
 
 
