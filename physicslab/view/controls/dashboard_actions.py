@@ -18,6 +18,7 @@ from physicslab.history import AddComponent, Command, Group, Remove, SetField, S
 from physicslab.view.controls import actions
 from physicslab.view.controls.saving import save_new
 from physicslab.view.window.dashboard import Dashboard, GraphShown, SliderShown
+from physicslab.view.window.listening import tone
 from physicslab.view.window.placing import refused_change
 from physicslab.view.window.record import Key
 from physicslab.view.window.window import Window
@@ -241,3 +242,11 @@ def _heading(key: Key, dashboard: Dashboard) -> str:
     body, name = key
     heading = f"{name} [{QUANTITIES[name].unit}]"
     return heading if body is None else table_cell(f"{dashboard.label(body)}: {heading}")
+
+
+def listen(world: World, window: Window, key: Key) -> None:
+    """Let a line of a graph be heard."""
+    record = window.dashboard.record
+    window.sounds.listen(tone(record.times, record.values(key)))
+    if window.sounds.failure:
+        window.notify(f"No sound: {window.sounds.failure}", 6.0, failed=True)

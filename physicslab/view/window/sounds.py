@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 from physicslab.components import MadeOf, Shape
 from physicslab.components.made_of import look_of
 from physicslab.state.shapes import lengths_of
+from physicslab.view.window.listening import RATE
 from physicslab.world import World
 
-_RATE = 22_050
-"""Samples a second."""
 _CHANNELS, _PER_FRAME = 16, 6
 """Sounds at once, and new ones in a frame."""
 _MAX_SOUNDS = 200
@@ -59,6 +58,7 @@ class Sounds:
         self.on = False
         self.failure = ""
         self.played = 0
+        self._heard: pygame.mixer.Sound | None = None
         self._kept: OrderedDict[tuple[int, str], pygame.mixer.Sound] = OrderedDict()
 
     def play(self, world: World, impacts: NDArray[Any]) -> None:
@@ -74,11 +74,20 @@ class Sounds:
             channel.play(self._sound(*voice_of(world, impacts[n])))
             self.played += 1
 
+    def listen(self, wave: NDArray[np.int16]) -> None:
+        """Let samples (n,) be heard, in place of those before; where it cannot be, ``failure`` says why."""
+        if self._open():
+            if self._heard is not None:
+                self._heard.stop()
+            self._heard = _made(wave)
+            self._heard.play()
+            self.played += 1
+
     def _open(self) -> bool:
         """Open the device at the first sound; where there is none it is silent, and says why."""
         if not pygame.mixer.get_init() and not self.failure:
             try:
-                pygame.mixer.init(_RATE, -16, 1, 512)
+                pygame.mixer.init(RATE, -16, 1, 512)
                 pygame.mixer.set_num_channels(_CHANNELS)
             except pygame.error as error:
                 self.failure = str(error)
@@ -89,11 +98,16 @@ class Sounds:
         if key not in self._kept:
             if len(self._kept) >= _MAX_SOUNDS:
                 self._kept.popitem(last=False)
-            _, _, channels = pygame.mixer.get_init() or (_RATE, -16, 1)
-            wave = np.repeat(wave_of(pitch, look)[:, None], channels, axis=1)
-            self._kept[key] = pygame.mixer.Sound(buffer=np.ascontiguousarray(wave).tobytes())
+            self._kept[key] = _made(wave_of(pitch, look))
         self._kept.move_to_end(key)
         return self._kept[key]
+
+
+def _made(wave: NDArray[np.int16]) -> pygame.mixer.Sound:
+    _, _, channels = pygame.mixer.get_init() or (RATE, -16, 1)
+    return pygame.mixer.Sound(
+        buffer=np.ascontiguousarray(np.repeat(wave[:, None], channels, axis=1)).tobytes()
+    )
 
 
 def voice_of(world: World, impact: Any) -> tuple[int, str]:
@@ -123,10 +137,10 @@ def wave_of(pitch: int, look: str) -> NDArray[np.int16]:
     """Return the samples (n,) of a sound: partials of a bar, the higher ones the shorter."""
     _, ring, shares = _VOICES[look]
     frequency = _LOWEST * 2.0 ** (pitch / _STEPS)
-    time = np.arange(round(_RATE * min(6.0 * ring, 1.5))) / _RATE
+    time = np.arange(round(RATE * min(6.0 * ring, 1.5))) / RATE
     wave = np.zeros(len(time))
     for share, partial in zip(shares, _PARTIALS, strict=False):
-        if partial * frequency < 0.45 * _RATE:
+        if partial * frequency < 0.45 * RATE:
             wave += (
                 share * np.exp(-time * partial**0.7 / ring) * np.sin(2.0 * np.pi * partial * frequency * time)
             )

@@ -171,6 +171,13 @@ class GraphPanels:
         if ui.item("All of the time", enabled=entity in fitting.spans):
             del fitting.spans[entity]
         ui.rule()
+        with ui.menu("Listen", f"listen to graph {graph.number}") as is_open:
+            for key in graph.keys if is_open else ():
+                tip = (
+                    "The line as a tone: the higher it is, the higher the tone; a tick where it crosses zero"
+                )
+                name = graph_readings.line_name(graph, key, window)
+                ui.item(f"Listen: {name}", dashboard_actions.listen, key, shown=name, tip=tip)
         ui.item("Save as a table (CSV)", dashboard_actions.save_table, graph)
         if ui.item("Save as a picture (PNG)"):
             dashboard.picture_of = graph.entity
@@ -179,6 +186,9 @@ class GraphPanels:
         if ui.item(f"Put it at the {other}"):
             body, name = graph.across or (None, TIME)
             window.do_next(dashboard_actions.change, graph.entity, Graph(name, body, other))
+
+
+_LISTEN = "The line as a tone: the higher it is, the higher the tone; a tick where it crosses zero"
 
 
 def _title(graph: GraphShown, window: Window) -> str:
