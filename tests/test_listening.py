@@ -1,6 +1,7 @@
 """Lines of graphs as tones: the pitch follows the value, ticks mark zero, gaps are silent."""
 
 import numpy as np
+import pygame
 import pytest
 from desk import SETTLED, click, empty_world, sized, tap
 from hypothesis import example, given
@@ -55,8 +56,8 @@ def test_any_line_has_pitches_within_the_range(values: list[float]) -> None:
     assert tone(times, line).dtype == np.int16
 
 
-def test_a_line_is_heard_from_the_menu_of_its_graph(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("SDL_AUDIODRIVER", "dummy")
+def test_a_line_is_heard_from_the_menu_of_its_graph(request: pytest.FixtureRequest) -> None:
+    request.addfinalizer(pygame.mixer.quit)
     desk = sized((1280, 720), empty_world(gravity=(0, 0)))
     ball_of(desk)
     tap(desk, "m")
@@ -68,7 +69,7 @@ def test_a_line_is_heard_from_the_menu_of_its_graph(monkeypatch: pytest.MonkeyPa
     assert (desk.window.sounds.played, desk.window.sounds.failure) == (1, "")
 
 
-def test_without_a_device_the_reason_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_device_the_reason_is_said() -> None:
     desk = sized((1280, 720), empty_world(gravity=(0, 0)))
     desk.window.sounds.failure = "no device"
     ball_of(desk)

@@ -25,7 +25,7 @@ _ROLES = {
     "text": "TEXT_INPUT",
 }  # fmt: skip
 _SWITCHES = ("check box", "radio")
-_ROOT, _SCENE, _NOTICE, _FIRST = 1, 2, 3, 4
+_ROOT, _SCENE, _NOTICE, _FIRST = range(1, 5)
 """Numbers of nodes; those of controls follow."""
 
 

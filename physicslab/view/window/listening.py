@@ -43,7 +43,13 @@ def pitches(times: _Numbers, values: _Numbers) -> _Numbers:
 
 
 def crossings(times: _Numbers, values: _Numbers) -> list[int]:
-    """Return the samples of the tone at which the line changes its sign."""
+    """Return the samples of the tone at which the line changes its sign.
+
+    Parameters
+    ----------
+    times, values : float64 arrays (n,)
+        The line, as in :func:`pitches`.
+    """
     known = np.isfinite(values) & (values != 0.0)
     signs, at = np.sign(values[known]), times[known]
     where = at[1:][signs[1:] != signs[:-1]]
@@ -52,7 +58,13 @@ def crossings(times: _Numbers, values: _Numbers) -> list[int]:
 
 
 def tone(times: _Numbers, values: _Numbers) -> NDArray[np.int16]:
-    """Return the samples (LASTS * RATE,) of the tone of a line, with a tick wherever it crosses zero."""
+    """Return the samples (LASTS * RATE,) of the tone of a line, with a tick wherever it crosses zero.
+
+    Parameters
+    ----------
+    times, values : float64 arrays (n,)
+        The line, as in :func:`pitches`.
+    """
     frequency = pitches(times, values)
     heard = np.isfinite(frequency)
     phase = 2.0 * np.pi * np.cumsum(np.where(heard, frequency, 0.0)) / RATE
