@@ -16,6 +16,7 @@ from physicslab.desktop.compiling import Compiling, Left
 from physicslab.desktop.garbage import loading
 from physicslab.desktop.preferences import load_preferences, save_preferences
 from physicslab.desktop.sandbox import Sandbox
+from physicslab.desktop.screen_reader import ScreenReader
 from physicslab.desktop.sessions import Session, session_folder
 from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.text import printable, shortened
@@ -183,9 +184,10 @@ def _loop(sandbox: Sandbox, display: Display, compiling: Compiling) -> None:
     """Show the first frame, which is drawn, and further ones until the window is to be closed."""
     window = sandbox.window
     display.show()  # the time that the first frame took, with all that it loads, is not made up for
-    elapsed = 0.0
+    elapsed, reader = 0.0, ScreenReader()
     while not window.closing:
         drawn = sandbox.frame(elapsed)
+        reader.follow(sandbox.world, window, sandbox.interface.ui)
         compiling.advance(window.theme)
         window.preparing = compiling.seconds_left
         window.pace.max_dt = compiling.time_for_steps(window.config.max_dt)

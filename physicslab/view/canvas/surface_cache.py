@@ -11,6 +11,7 @@ import pygame
 from physicslab.theme import NOTHING, Colour
 from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.canvas.drawable_text import drawable
+from physicslab.view.canvas.system_font import IDEOGRAPHS, system_font
 
 _RAISED = re.compile("([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 _PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
@@ -46,8 +47,12 @@ class SurfaceCache:
         self.text_size = lru_cache(_MAX_SIZES)(self._measure)
 
     def _measure(self, words: str, style: TextStyle) -> tuple[int, int]:
-        sizes = [self._font(one.size, one.bold).size(piece) for piece, one in _pieces(drawable(words), style)]
+        sizes = [self._of(piece, one).size(piece) for piece, one in _pieces(drawable(words), style)]
         return sum(width for width, _ in sizes), max((height for _, height in sizes), default=0)
+
+    def _of(self, piece: str, style: TextStyle) -> pygame.font.Font:
+        """Return the font of a piece of a line, which has letters of one kind."""
+        return self._font(style.size, style.bold, IDEOGRAPHS.match(piece) is not None)
 
     def _render(self, words: str, style: TextStyle) -> pygame.Surface:
         size = self.text_size(words, style)
@@ -57,10 +62,13 @@ class SurfaceCache:
             return line
         pieces, left = _pieces(drawable(words), style), 0
         for piece, one in pieces:
-            part = self._font(one.size, one.bold).render(piece, True, style.colour)
+            part = self._of(piece, one).render(piece, True, style.colour)
             if len(pieces) == 1 and one is style:
                 return part
-            line.blit(part, (left, 0))
+            own = self._of(piece, one)
+            is_far = IDEOGRAPHS.match(piece) is not None  # raised figures keep to the upper edge
+            down = self._font(one.size, one.bold, False).get_ascent() - own.get_ascent() if is_far else 0
+            line.blit(part, (left, down))
             left += part.get_width()
         return line
 
@@ -68,7 +76,10 @@ class SurfaceCache:
 def _pieces(words: str, style: TextStyle) -> list[tuple[str, TextStyle]]:
     """Return the pieces of a line with their styles: raised figures, which fonts lack, are small ones."""
     small = TextStyle(max(round(RAISED_SIZE * style.size), 6), style.colour, style.bold)
-    return [(part, small if raised else style) for part, raised in raised_parts(words)]
+    parts = [(part, small if raised else style) for part, raised in raised_parts(words)]
+    if IDEOGRAPHS.search(words) is None:
+        return parts
+    return [(piece, one) for part, one in parts for piece in IDEOGRAPHS.split(part) if piece]
 
 
 def raised_parts(words: str) -> list[tuple[str, bool]]:
@@ -83,9 +94,15 @@ def raised_parts(words: str) -> list[tuple[str, bool]]:
     return [(part.translate(_PLAIN) if raised else part, raised) for part, raised in parts]
 
 
-def _load_font(size: int, bold: bool) -> pygame.font.Font:
-    """Return a font by its nominal size [px]: Roboto, which panels have too, or pygame's own."""
+def _load_font(size: int, bold: bool, ideographs: bool) -> pygame.font.Font:
+    """Return a font by its nominal size [px]: Roboto, which panels have too, or pygame's own.
+
+    For ideographs it is one of the system, where there is one.
+    """
     pygame.font.init()  # without a window nothing else has done so
+    far = system_font() if ideographs else None
+    if far is not None:
+        return pygame.font.Font(far, size)
     package = importlib.util.find_spec("imgui_bundle")
     if package is not None and package.submodule_search_locations:
         name = "Roboto-Bold.ttf" if bold else "Roboto-Regular.ttf"

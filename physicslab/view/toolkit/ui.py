@@ -10,7 +10,7 @@ from physicslab.theme import Colour
 from physicslab.view.canvas.drawable_text import drawable, encodable
 from physicslab.view.canvas.surface_cache import RAISED_SIZE, raised_parts
 from physicslab.view.toolkit.style import packed
-from physicslab.view.toolkit.windows import Windows, widget_label
+from physicslab.view.toolkit.windows import Spoken, Windows, widget_label
 
 _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
 
@@ -136,8 +136,9 @@ class Ui(Windows):
 
     # ---- what is clicked -----------------------------------------------------------------------------------
 
-    def note(self, label: str) -> None:
-        """Note where the widget is that was drawn last, and whether keys go to it."""
+    def note(self, label: str, role: str = "button", value: str = "") -> None:
+        """Note where the widget is that was drawn last, what it is for who hears it, and if keys go to it."""
+        self.spoken.setdefault(label, Spoken(role, value))
         if imgui.is_item_focused():
             self.focused = label
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
@@ -171,7 +172,7 @@ class Ui(Windows):
         if not enabled:
             imgui.begin_disabled()
         clicked = imgui.button(widget_label(words, label), ImVec2(*size))
-        self.note(label)
+        self.note(label, value="on" if on else "")
         if not enabled:
             imgui.end_disabled()
         if on:
@@ -196,7 +197,7 @@ class Ui(Windows):
         words = self.said(label if shown is None else shown)
         self.words.append(words)
         chosen, _ = imgui.menu_item(widget_label(words, identity or label), self.said(keys), on, enabled)
-        self.note(label)
+        self.note(label, "menu item", "on" if on else "")
         self.tip(tip)
         return self._did(chosen, action)
 
@@ -206,7 +207,7 @@ class Ui(Windows):
         words = self.said(label)
         self.words.append(words)
         shown = bool(imgui.begin_menu(widget_label(words, identity or label)))
-        self.note(label)
+        self.note(label, "menu")
         try:
             yield shown
         finally:
@@ -259,7 +260,7 @@ class Ui(Windows):
         words = self.said(label)
         self.words.append(words)
         changed, _ = imgui.checkbox(widget_label(words, label), on)
-        self.note(label)
+        self.note(label, "check box", "on" if on else "off")
         self.tip(tip)
         return bool(changed)
 
@@ -285,14 +286,14 @@ class Ui(Windows):
         self.words.append(words)
         imgui.set_next_item_width(width)
         unfolded = imgui.begin_combo(widget_label("", label), words)
-        self.note(label)
+        self.note(label, "combo box", words)
         self.tip(tip if not unfolded else "")
         if unfolded:
             offered = choices() if callable(choices) else {one: str(one) for one in choices}
             for one, name in offered.items():
                 self.words.append(self.said(name))
                 clicked, _ = imgui.selectable(widget_label(self.words[-1], repr(one)), one == chosen)
-                self.note(f"{label}: {name}")
+                self.note(f"{label}: {name}", "list item")
                 if clicked:
                     chosen = one
             imgui.end_combo()
@@ -310,7 +311,7 @@ class Ui(Windows):
         imgui.push_style_color(imgui.Col_.text, packed(self.theme.faint if faint else self.theme.text))
         clicked, _ = imgui.selectable(widget_label(words, identity or label), on)
         imgui.pop_style_color()
-        self.note(label)
+        self.note(label, "list item", "on" if on else "")
         return self._did(clicked, action)
 
     def option(self, label: str, words: str, *, on: bool) -> bool:
@@ -319,7 +320,7 @@ class Ui(Windows):
         high = self.height(words, room - inset)
         corner = imgui.get_cursor_screen_pos()
         clicked, _ = imgui.selectable(widget_label("", label), on, 0, ImVec2(room, high + 0.4 * self.size))
-        self.note(label)
+        self.note(label, "radio", "on" if on else "off")
         after, paper, radius = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list(), 0.38 * self.size
         middle = ImVec2(
             corner.x + 0.8 * self.size, corner.y + 0.2 * self.size + 0.5 * imgui.get_text_line_height()
@@ -342,7 +343,7 @@ class Ui(Windows):
         flags = imgui.SliderFlags_.no_input  # Ctrl-click would make a field of it, without units
         words = shown.replace("%", "%%")
         moved, new = imgui.slider_float(self.held(label), value, low, high, words, flags)
-        self.note(label)
+        self.note(label, "slider", shown)
         return float(new) if moved else None
 
     def field(
@@ -370,7 +371,7 @@ class Ui(Windows):
             )
             several = flags.auto_select_all | flags.ctrl_enter_for_new_line
             _, text = imgui.input_text_multiline(known, text, room, several)
-        self.note(label)
+        self.note(label, "text", text)
         if wrong:
             imgui.pop_style_var()
             imgui.pop_style_color()

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import NamedTuple
 
 import pygame
 from imgui_bundle import ImVec2, imgui
@@ -49,6 +50,13 @@ def widget_label(words: str, identity: str) -> str:
     return f"{shown}###{ascii(identity)[1:-1].replace('#', '|23')}"
 
 
+class Spoken(NamedTuple):
+    """What a widget is, as ``"button"``, and its value in words; ``"on"`` or ``"off"`` for a switch."""
+
+    role: str
+    value: str
+
+
 class Windows:
     """The windows of one frame, and what is noted of the widgets in them.
 
@@ -61,6 +69,8 @@ class Windows:
 
     Attributes
     ----------
+    spoken : dict of str to Spoken
+        What widgets are, by their labels, for who hears them.
     places : dict of str to Rect
         Where each button, field and line of a menu is [px], by its words.
     words : list of str
@@ -88,6 +98,7 @@ class Windows:
     def __init__(self, fonts: Fonts, theme: Theme) -> None:
         self.fonts, self.theme = fonts, theme
         self.places: dict[str, Rect] = {}
+        self.spoken: dict[str, Spoken] = {}
         self.words: list[str] = []
         self.rows: dict[str, str] = {}
         self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
@@ -106,6 +117,7 @@ class Windows:
         self.theme, self.room = theme, room
         self.once = imgui.Cond_.always if rearranged else imgui.Cond_.first_use_ever
         self.places, self.words, self.rows, self.pictures, self.focused = {}, [], {}, [], ""
+        self.spoken = {}
 
     def said(self, words: str) -> str:
         """Return words in the language of the window, as they can be drawn."""
