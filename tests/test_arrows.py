@@ -241,3 +241,20 @@ def test_the_legend_lies_over_nothing(size: tuple[int, int], keys: str) -> None:
         assert not one.inflate(-2, -2).colliderect(two.inflate(-2, -2)), f"{a!r} lies over {b!r} at {size}"
     for one, two in itertools.combinations(canvas.panels, 2):
         assert not one.colliderect(two) or one.contains(two) or two.contains(one)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_the_legend_lies_where_the_fewest_bodies_are(side: float) -> None:
+    canvas = MeasuringCanvas((1280, 720))
+    desk = Desk(empty_world(gravity_mode="none"), canvas)
+    desk.frames(10)
+    left, top, width, _ = desk.sandbox.interface.visible
+    for n in range(3):  # under that upper corner of the world
+        pixel = left + (80 + 60 * n if side < 0.0 else width - 80 - 60 * n), top + 60
+        circle(desk.world, desk.window.camera.to_world(pixel), radius=0.2)
+    desk.key("v")
+    desk.frames(20)
+    canvas.words.clear()
+    desk.frames()
+    (legend,) = [rect for words, rect in canvas.words if words == "Net force"]
+    assert (legend.centerx - left - 0.5 * width) * side < 0.0 or legend.top > top + 110

@@ -57,6 +57,7 @@ class Hud:
         self._windows: list[Rect] = []
         self._said: object = None
         self._beside = 0
+        self._legend: tuple[object, tuple[int, int]] = None, (0, 0)
         self.readings: dict[Callable[[World, float], None], float] = {
             self._follow: 0.0, self._read_figures: 0.2, self._read_costs: 0.2, self._read_advice: 0.25,
         }  # fmt: skip
@@ -153,24 +154,36 @@ class Hud:
         advice = self._draw_advice(world, (begin, below, across, bottom - below))
         taken += [*shown, *([] if advice is None else [advice])]
         legends = legends_of(window.overlays, (width - 2 * margin, height), on)
-        taken += self._draw_legend(legends, room, margin, taken)
+        taken += self._draw_legend(world, legends, room, margin, taken)
         inner = left, top, width, max(height - numbers, 1)
         draw_edge_arrows(world, on, inner, [*taken, *self._windows])
         return taken
 
-    def _draw_legend(self, forms: Iterable[Legend], room: Rect, margin: int, taken: list[Rect]) -> list[Rect]:
-        """Draw the first form of the legend for which there is a place that nothing takes; return where."""
+    def _draw_legend(
+        self, world: World, forms: Iterable[Legend], room: Rect, margin: int, taken: list[Rect]
+    ) -> list[Rect]:
+        """Draw the first form of the legend for which there is a place that nothing takes; return where.
+
+        It is the place in which the fewest bodies lay when it was looked for: one that follows them jumps.
+        """
         left, top, width, height = room
         others = [*taken, *self._windows]
         tops = [top + margin, *sorted(y + high + margin for _, y, _, high in others)]
         for legend in forms:
             across, down = legend.size
-            for x in (left + margin, left + width - across - margin):
-                for y in tops:
-                    if not any(overlap((x, y, across, down), one) for one in others) and (
-                        top < y <= max(top + height - down - margin, top + margin)
-                    ):
-                        return [legend.draw(x, y, self._window.drawing)]
+            places = [
+                (x, y)
+                for x in (left + margin, left + width - across - margin)
+                for y in tops
+                if not any(overlap((x, y, across, down), one) for one in others)
+                and top < y <= max(top + height - down - margin, top + margin)
+            ]
+            if places and self._legend[0] != (places, legend.size):
+                camera = self._window.camera
+                best = min(places, key=lambda at: count_under(world, camera, (*at, across, down)))
+                self._legend = (places, legend.size), best
+            if places:
+                return [legend.draw(*self._legend[1], self._window.drawing)]
         return []
 
     def _free_strip(self, *, at_top: bool) -> tuple[int, int, int]:
