@@ -90,7 +90,7 @@ class ScreenReader:
         left, top, width, height = ui.places[label]
         place = left + width // 2, top + height // 2
         pygame.event.post(
-            pygame.Event(pygame.MOUSEMOTION, pos=place, rel=(0, 0), buttons=(0, 0, 0), touch=False)
+            pygame.Event(pygame.MOUSEMOTION, pos=place, rel=(0, 0), buttons=(0,) * 3, touch=False)
         )
         for kind in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
             pygame.event.post(pygame.Event(kind, pos=place, button=pygame.BUTTON_LEFT, touch=False))
