@@ -73,7 +73,7 @@ def test_a_lesson_is_played_to_its_end(
     name: str, code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    desk = sized((1280, 2600))  # so high that nothing has to be scrolled to
+    desk = sized((1280, 5000))  # so high that nothing has to be scrolled to
     choose_language(desk.world, desk.window, code)
     desk.window.do_next(open_lesson, name)
     desk.frames(SETTLED)

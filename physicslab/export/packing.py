@@ -1,4 +1,4 @@
-"""Float32 columns as text: differences of differences, in as few bytes as each needs, in base64.
+"""Float32 columns as text: differences of differences, in as few bytes as each needs, in base 85.
 
 What moves smoothly goes on about as it went, so differences of a column, and differences of those, are small;
 what rests has none. They are differences of the bit patterns, in an order in which neighbours are numbers one
@@ -14,10 +14,12 @@ _ORDERS = range(5)
 """How often differences may be taken; for each column the number is chosen that leaves the fewest bytes."""
 _MAX_BYTES = 5
 """Groups of seven bits that hold 32."""
+_SAFE = str.maketrans("<,", ",<")
+"""One of the digits of base 85 (RFC 1924) might begin a tag in HTML: a comma stands in its place."""
 
 
 def pack(values: NDArray[np.float32]) -> str:
-    """Return a float32 array (rows, columns) as base64, column after column.
+    """Return a float32 array (rows, columns) in base 85, column after column: 5 letters hold 4 bytes.
 
     A column begins with a byte: how often differences were taken. Of each number a byte holds seven bits, the
     lowest first, and the eighth says that more follow; the sign is the number's lowest bit.
@@ -28,9 +30,13 @@ def pack(values: NDArray[np.float32]) -> str:
     values : float32 array (rows, columns)
         A row an instant, a column a quantity.
     """
-    return base64.b64encode(b"".join(map(_packed, np.ascontiguousarray(values.T, np.float32)))).decode(
-        "ascii"
-    )
+    columns = b"".join(map(_packed, np.ascontiguousarray(values.T, np.float32)))
+    return base64.b85encode(columns).decode("ascii").translate(_SAFE)
+
+
+def unpacked_bytes(text: str) -> bytes:
+    """Return the bytes that a text of :func:`pack` holds."""
+    return base64.b85decode(text.translate(_SAFE))
 
 
 def _packed(column: NDArray[np.float32]) -> bytes:

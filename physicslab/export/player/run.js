@@ -11,9 +11,21 @@ const PARTS = [0, 1, 2, 3, 4, 5];  // x, y, angle and their rates
 const DASHES = [[], [7, 4], [2, 3], [9, 3, 2, 3], [4, 2]];
 const SPEEDS = [0.25, 0.5, 1, 2, 4];
 
+// The bytes of a text in base 85, five letters for four of them.
+const DIGITS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz!#$%&()*+-;,=>?@^_`{|}~";
+const DIGIT = Uint8Array.from({ length: 128 }, (_, code) => Math.max(DIGITS.indexOf(String.fromCharCode(code)), 0));
+function bytesOf(text) {
+  const bytes = new Uint8Array(Math.ceil(text.length / 5) * 4);
+  for (let i = 0, at = 0; i < text.length; i += 5) {
+    let number = 0;
+    for (let k = i; k < i + 5; k++) number = number * 85 + (k < text.length ? DIGIT[text.charCodeAt(k)] : 84);
+    for (let shift = 24; shift >= 0; shift -= 8) bytes[at++] = number >>> shift;
+  }
+  return bytes;
+}
 // Columns of float32, as packing.py packs them.
 function unpack(text, length) {
-  const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0)), bits = new Int32Array(length);
+  const bytes = bytesOf(text), bits = new Int32Array(length);
   let at = 0;
   for (let start = 0; start < length; start += COUNT) {
     const order = bytes[at++], values = bits.subarray(start, start + COUNT);

@@ -348,7 +348,7 @@ class LessonPanel:
 def _title(ui: Ui, icon: str, words: str) -> None:
     """Write what kind of part begins here."""
     ui.rule(0.2)
-    ui.text(f"{icon}  {words}", ui.theme.accent, wrapped=True)
+    ui.text(f"{icon}  {ui.said(words)}", ui.theme.accent, wrapped=True)
 
 
 def _given_words(part: Question, answer: dict[str, object]) -> str:
