@@ -8,7 +8,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
 from typing import Any
 
-from physicslab.commands import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError, require_window
 from physicslab.commands.arguments import (
     add_budget,
     check_output,
@@ -59,6 +59,7 @@ def make_film(option: str, path: str, arguments: Namespace) -> None:
     CommandError
         If it cannot be written, or the run fails; no file is left then.
     """
+    require_window(option)
     output = Output(option, path)
     if output.to_stdout:
         raise CommandError(f"{option} -: must be a path: a film does not go to stdout")
