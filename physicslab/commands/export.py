@@ -146,7 +146,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_budget(parser)
     add_assignments(parser)
     add_variations(parser)
-    words = "write to stderr how far it is, where that is no terminal too"
+    words = "write to stderr how far it is, terminal or not"
     add("--progress", action="store_true", help=words)
     parser.epilog = (
         f"A page holds bodies times instants, of all runs, of at most {POSES:,}, positions to 7 digits. A "
