@@ -18,7 +18,8 @@ from physicslab.desktop.compiling import Compiling, Left
 from physicslab.desktop.progress import draw_progress
 from physicslab.ecs.config import WindowConfig
 from physicslab.kernels import cache, keys, motion, warm
-from physicslab.kernels.warm import Progress, Warmup, is_warm, load_all, mark_warm, name_of
+from physicslab.kernels.program import own_command
+from physicslab.kernels.warm import WORKER, Progress, Warmup, is_warm, load_all, mark_warm, name_of
 from physicslab.theme import DARK
 from physicslab.view.canvas.display import Display, forget_clicks, wants_to_leave
 
@@ -218,7 +219,7 @@ def test_a_window_that_loads_is_drawn_where_it_changes(monkeypatch: pytest.Monke
 def test_a_worker_compiles_what_it_is_given() -> None:
     name = "physicslab.kernels.motion.clear"
     done = subprocess.run(
-        [sys.executable, "-m", "physicslab.kernels", "worker"],
+        own_command("kernels", WORKER),
         input=f"{name}\n", capture_output=True, text=True, check=True,
     )  # fmt: skip
     assert done.stdout == f"{name}\n"
