@@ -216,7 +216,11 @@ class World(State):
         self.compile(stepper.kernels)
         if not (stepper.keeps_balance or self.account.is_open):
             open_account(self, self.schedule.forces)
-        made = stepper.advance(self, h, self.steppers.at_once(stepper, steps))
+        apart = None if stepper.samples else self.samples
+        ahead = steps if apart is None else min(steps, apart.steps_ahead(self.time))
+        made = stepper.advance(self, h, self.steppers.at_once(stepper, ahead))
+        if apart is not None and made.steps:
+            apart.take(self, self.time + made.steps * h)
         self._follow_islands()
         return made
 
