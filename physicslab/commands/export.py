@@ -10,6 +10,7 @@ from typing import Any
 
 from physicslab.commands import FAILED, CommandError
 from physicslab.commands.arguments import (
+    add_assignments,
     add_budget,
     check_output,
     check_seconds,
@@ -17,7 +18,6 @@ from physicslab.commands.arguments import (
     opened,
     positive_duration,
 )
-from physicslab.commands.assignments import add_assignments
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress

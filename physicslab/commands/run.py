@@ -12,6 +12,7 @@ from typing import TextIO
 
 from physicslab.commands import FAILED, CommandError
 from physicslab.commands.arguments import (
+    add_assignments,
     add_budget,
     check_output,
     check_seconds,
@@ -22,7 +23,6 @@ from physicslab.commands.arguments import (
     positive_count,
     positive_duration,
 )
-from physicslab.commands.assignments import add_assignments
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
