@@ -409,7 +409,7 @@ class OdeSystem:
 def steady_turn(
     state: State, rows: NDArray[np.int64], after: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return angles [rad] and rates [rad/s] (n, rows) of what no force turns, ``after`` some times [s] (n,)."""
+    """Return angles [rad] and rates [rad/s] (n, rows) of what no force turns, after times [s] (n,)."""
     spin, angle = state.table(Velocity)["angular"][rows], state.table(Transform)["angle"][rows]
     c, time = state.physics.angular_damping, after[:, None]
     if not c:

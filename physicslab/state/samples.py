@@ -91,9 +91,9 @@ class Samples:
             self._write(state, done // self.stride, time)
 
     def finish(self, state: Entities, time: float) -> None:
-        """Take a sample at the end of a run, at a time [s], where none was due."""
-        if self.times[self.count - 1] != time:
-            self._write(state, self.count, time)
+        """Take a sample at the end of a run, at a time [s]."""
+        last = abs(self.times[self.count - 1] - time) <= _LATE * self.dt
+        self._write(state, self.count - last, time)
 
     def _write(self, state: Entities, place: int, time: float) -> None:
         transform, velocity = state.table(Transform), state.table(Velocity)

@@ -28,17 +28,34 @@ def time_of_break(load_after: Callable[[float], float], h: float, load: float) -
     ``load_after`` tells the load after a time [s]; where it jumps, as in an impact, that is the time of the
     jump. Nothing is known of the load at the beginning: halves lead there if it was too large before.
     """
-    early, late, under, over = 0.0, h, None, load - 1.0
+    return first_time(lambda t: load_after(t) - 1.0, h, load - 1.0, None, _LOCATED, _LOCATED)
+
+
+def first_time(
+    after: Callable[[float], float], h: float, over: float, under: float | None, share: float, close: float
+) -> float:
+    """Return when within ``h`` seconds a quantity becomes positive, to just beyond that.
+
+    Parameters
+    ----------
+    after : callable
+        Returns the quantity after a time [s].
+    over, under : float, float or None
+        It at the end, and at the beginning, if that is known.
+    share, close : float
+        Share of ``h`` to which the time is found, and the value that is treated as zero.
+    """
+    early, late = 0.0, h
     for trial in range(_TRIALS):
-        if late - early <= _LOCATED * h or over <= _LOCATED:
+        if late - early <= share * h or 0.0 <= over <= close:
             break
         middle = 0.5 * (early + late)
         if under is not None and trial % 3:
             middle = early + (late - early) * under / (under - over)
             if over < -under:
-                middle += _LOCATED * h  # to just beyond, from both sides
-        middle = min(max(middle, early + 0.25 * _LOCATED * h), late - 0.25 * _LOCATED * h)
-        beyond = load_after(middle) - 1.0
+                middle += share * h  # to just beyond, from both sides
+        middle = min(max(middle, early + 0.25 * share * h), late - 0.25 * share * h)
+        beyond = after(middle)
         if beyond > 0.0:
             late, over = middle, beyond
         else:

@@ -197,7 +197,7 @@ class EventDriven:
         first, stride = steps + 1, 1
         if samples is not None and span <= samples.dt * (1.0 + _LONGER):
             places, after = samples.due(state.time, steps * span)
-            taken = samples.put(places, state.time + after).reshape(len(places), -1)
+            taken = samples.put(places, state.time + after).reshape(len(places), 6 * len(self._moving))
             first, stride = samples.steps_ahead(state.time), samples.stride
         made, impacts, why, flown = events.run_events(
             contacts.manifolds, contacts.points, contacts.recorded,

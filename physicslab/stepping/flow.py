@@ -82,12 +82,15 @@ class Flow:
         try:
             for made in range(0, parts * steps, together):
                 state.time = start + made * h / parts
+                count = min(together, parts * steps - made)
                 try:
-                    self._flow(state, h / parts, min(together, parts * steps - made))
+                    self._flow(state, h / parts, count)
                 except NotSmooth:
                     if made and parts == 1:
                         return Advance(made)  # the next call begins where it fails
                     raise
+                if state.samples is not None:
+                    state.samples.take(state, start + (made + count) * h / parts)
         finally:
             state.time = start
         check_finite(state, state.time + h * steps)
@@ -118,6 +121,8 @@ class Flow:
     def _sample(self, state: State, samples: Samples, span: float) -> None:
         """Take the samples of the coming ``span`` seconds, aside: the motion itself is divided by none."""
         places, after = samples.due(state.time, span)
+        if len(after) and after[-1] == span:  # taken at the end
+            places, after = places[:-1], after[:-1]
         if not len(places):
             return
         ode, method, parts = self._ode, self._method, self._plan.substeps
