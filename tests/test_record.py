@@ -116,7 +116,7 @@ def test_an_impact_is_found_as_a_change_of_velocity_and_is_logged_once() -> None
 def test_energies_can_be_waited_for() -> None:
     world = load_scene("drop")
     run = world.record(3.0, until="world.kinetic >= 3 J")
-    assert world.energy.kinetic == pytest.approx(3.0, rel=1e-14) == run.columns["world.kinetic"][-1]
+    assert world.energy.kinetic == pytest.approx(3.0, rel=1e-14) == run.energies["world.kinetic"][-1]
 
 
 @pytest.mark.parametrize(
@@ -163,11 +163,11 @@ def test_impacts_and_accounts_are_those_of_the_run() -> None:
     assert run.impacts["speed_after"] == pytest.approx(
         -run.impacts["restitution"] * run.impacts["speed_before"]
     )
-    energy = run.columns["world.energy"]
+    energy = run.energies["world.energy"]
     assert energy[-1] - energy[0] == pytest.approx(sum(run.account.values()), rel=1e-12)
     assert energy[-1] == measure_energy(world).total == world.energy.total
     world.reset()
-    assert run.columns["world.energy"] is energy, "a run stays as it is"
+    assert run.energies["world.energy"] is energy, "a run stays as it is"
 
 
 def test_soft_contacts_have_their_impacts_too() -> None:
@@ -184,12 +184,12 @@ def run() -> Run:
 def test_a_run_is_saved_with_every_bit(run: Run, tmp_path: Path) -> None:
     run.save(tmp_path / "run.npz")
     with np.load(tmp_path / "run.npz") as kept:
-        assert {name: kept[name].tolist() for name in kept} == {k: v.tolist() for k, v in run.columns.items()}
+        assert {name: kept[name].tolist() for name in kept} == {k: v.tolist() for k, v in run.table.items()}
     run.save(str(tmp_path / "run.csv"))
     heading, *rows = csv.reader((tmp_path / "run.csv").read_text("utf-8").splitlines())
     assert heading[:3] == ["time [s]", "ball.x [m]", "ball.y [m]"] and heading[-1] == "world.energy [J]"
     columns = np.array(rows, float).T
-    assert all(np.array_equal(*pair) for pair in zip(columns, run.columns.values(), strict=True))
+    assert all(np.array_equal(*pair) for pair in zip(columns, run.table.values(), strict=True))
     with pytest.raises(ValueError, match=r"must end with one of \.npz, \.csv, \.parquet"):
         run.save(tmp_path / "run.xlsx")
 

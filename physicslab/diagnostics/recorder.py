@@ -186,18 +186,21 @@ class _Watch:
     def _locate(self, kept: Keyframe, h: float) -> float:
         """Return when the condition begins to hold within a step of ``h`` s, and leave the world there."""
         world = self._world
-        start, early = world.time, self._margin()
+        start, early, last = world.time, self._margin(), -1.0
 
         def after(t: float) -> float:
+            nonlocal last
             self._go_back(kept)
             world.run(seconds=t)
+            last = t
             return self._margin()
 
         late = first_time(
             after, h, after(h), early if early <= 0.0 else None,
             max(_ROUNDING, math.ulp(start + h) / h), 0.0,
         )  # fmt: skip
-        after(late)
+        if last != late:
+            after(late)
         return world.time
 
     def _go_back(self, kept: Keyframe) -> None:

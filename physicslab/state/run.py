@@ -73,25 +73,35 @@ class Run:
 
     @cached_property
     def columns(self) -> dict[str, Column]:
-        """All columns by name: ``time``, ``ball.x``, ``ball.vy``, ``world.energy`` and so on, in SI units.
-
-        Energies are found when this is first read: that takes some 50 us an instant.
-        """
+        """The time and the motion by name, in SI units: ``time``, ``ball.x``, ``ball.vy`` and so on."""
         found = {"time": self.times}
         for number, body in enumerate(self.bodies):
             for k, name in enumerate(BODY_COLUMNS):
                 found[f"{body}.{name}"] = self.motion[:, number, k]
-        return found | dict(self._sums(self))
+        return found
+
+    @cached_property
+    def energies(self) -> dict[str, Column]:
+        """``world.kinetic``, ``world.potential`` and ``world.energy`` [J].
+
+        They are found when they are first read, which takes some 50 us an instant.
+        """
+        return dict(self._sums(self))
+
+    @property
+    def table(self) -> dict[str, Column]:
+        """The columns, and the energies behind them: what is saved."""
+        return self.columns | self.energies
 
     @property
     def units(self) -> dict[str, str]:
-        """The SI unit of each column."""
+        """The SI unit of each column and energy."""
         known = BODY_COLUMNS | {"time": "s"}
-        return {name: known.get(name.rpartition(".")[2], "J") for name in self.columns}
+        return {name: known.get(name.rpartition(".")[2], "J") for name in self.table}
 
     def to_pandas(self) -> Any:
-        """Return a ``DataFrame`` with a row an instant; its ``attrs["units"]`` are those of the columns."""
-        table = _library("pandas", "to_pandas").DataFrame(self.columns)
+        """Return a ``DataFrame`` of columns and energies, a row an instant; its ``attrs["units"]`` are those of the columns."""
+        table = _library("pandas", "to_pandas").DataFrame(self.table)
         table.attrs["units"] = self.units
         return table
 
@@ -103,14 +113,13 @@ class Run:
         }
         whole = {
             name.removeprefix("world."): (("time",), values, {"units": "J"})
-            for name, values in self.columns.items()
-            if name.startswith("world.")
+            for name, values in self.energies.items()
         }
         places = {"time": ("time", self.times, {"units": "s"}), "body": list(self.bodies)}
         return _library("xarray", "to_xarray").Dataset({**arrays, **whole}, places)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write all columns to a file, by the end of its name: ``.npz``, ``.csv`` or ``.parquet``.
+        """Write columns and energies to a file, by the end of its name: ``.npz``, ``.csv`` or ``.parquet``.
 
         Raises
         ------
@@ -145,7 +154,7 @@ def _library(name: str, needed_by: str) -> Any:
 
 
 def _npz(run: Run) -> bytes:
-    stream, columns = io.BytesIO(), run.columns
+    stream, columns = io.BytesIO(), run.table
     np.savez(stream, allow_pickle=False, **columns)
     return stream.getvalue()
 
@@ -154,8 +163,8 @@ def _csv(run: Run) -> bytes:
     """Return rows with a heading; numbers keep every bit."""
     stream, units = io.StringIO(), run.units
     rows = csv.writer(stream, lineterminator="\n")
-    rows.writerow(f"{name} [{units[name]}]" for name in run.columns)
-    rows.writerows(zip(*(column.tolist() for column in run.columns.values()), strict=True))
+    rows.writerow(f"{name} [{units[name]}]" for name in run.table)
+    rows.writerows(zip(*(column.tolist() for column in run.table.values()), strict=True))
     return stream.getvalue().encode()
 
 
@@ -164,7 +173,7 @@ def _parquet(run: Run) -> bytes:
     arrow, parquet = _library("pyarrow", "save"), _library("pyarrow.parquet", "save")
     fields = [arrow.field(name, arrow.float64(), metadata={"unit": unit}) for name, unit in run.units.items()]
     stream = io.BytesIO()
-    arrays = [arrow.array(column) for column in run.columns.values()]
+    arrays = [arrow.array(column) for column in run.table.values()]
     parquet.write_table(arrow.table(arrays, schema=arrow.schema(fields)), stream)
     return stream.getvalue()
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 _LOCATED = 1e-11
 """Share of a step to which the moment is located, and of a load that is treated as reached."""
 _TRIALS = 100
-"""Largest number of trials to locate it; every third halves the time that is left."""
+"""Largest number of trials to locate it."""
 
 
 class Overloaded(Exception):
@@ -36,6 +36,9 @@ def first_time(
 ) -> float:
     """Return when within ``h`` seconds a quantity becomes positive, to just beyond that.
 
+    By Chandrupatla's method (Adv. Eng. Softw. 28 (1997) 145): inverse quadratic where that converges, halves
+    elsewhere, as at a jump.
+
     Parameters
     ----------
     after : callable
@@ -45,19 +48,31 @@ def first_time(
     share, close : float
         Share of ``h`` to which the time is found, and the value that is treated as zero.
     """
-    early, late = 0.0, h
-    for trial in range(_TRIALS):
-        if late - early <= share * h or 0.0 <= over <= close:
+    late, early = (h, over), (0.0, under)
+    newest, third, t = late, late, 0.5 if under is None else over / (over - under)
+    for _ in range(_TRIALS):
+        least = share * h / max(late[0] - early[0], share * h)
+        if least >= 1.0 or 0.0 <= late[1] <= close:
             break
-        middle = 0.5 * (early + late)
-        if under is not None and trial % 3:
-            middle = early + (late - early) * under / (under - over)
-            if over < -under:
-                middle += share * h  # to just beyond, from both sides
-        middle = min(max(middle, early + 0.25 * share * h), late - 0.25 * share * h)
-        beyond = after(middle)
-        if beyond > 0.0:
-            late, over = middle, beyond
-        else:
-            early, under = middle, beyond
-    return late
+        opposite = early if newest is late else late
+        t = min(max(t, 0.5 * least), 1.0 - 0.5 * least)
+        middle = newest[0] + t * (opposite[0] - newest[0])
+        found = middle, after(middle)
+        third = newest if (found[1] > 0.0) == (newest is late) else opposite
+        late, early = (found, early) if found[1] > 0.0 else (late, found)
+        newest = found
+        t = _inverse_quadratic(newest, early if newest is late else late, third)
+    return late[0]
+
+
+def _inverse_quadratic(
+    newest: tuple[float, float], opposite: tuple[float, float | None], third: tuple[float, float | None]
+) -> float:
+    """Return where between two points with values of opposite signs zero is; 0.5 where that is not known."""
+    (a, fa), (b, fb), (c, fc) = newest, opposite, third
+    if fb is None or fc is None or fc in (fa, fb) or c in (a, b):
+        return 0.5 if fb is None else fa / (fa - fb)
+    xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
+    if not (phi * phi < xi and (1.0 - phi) ** 2 < 1.0 - xi):
+        return 0.5
+    return fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
