@@ -100,7 +100,7 @@ class Run:
         return {name: known.get(name.rpartition(".")[2], "J") for name in self.table}
 
     def to_pandas(self) -> Any:
-        """Return a ``DataFrame`` of columns and energies, a row an instant; its ``attrs["units"]`` are those of the columns."""
+        """Return a ``DataFrame`` of columns and energies, a row an instant, with ``attrs["units"]``."""
         table = _library("pandas", "to_pandas").DataFrame(self.table)
         table.attrs["units"] = self.units
         return table

@@ -48,20 +48,23 @@ def first_time(
     share, close : float
         Share of ``h`` to which the time is found, and the value that is treated as zero.
     """
-    late, early = (h, over), (0.0, under)
-    newest, third, t = late, late, 0.5 if under is None else over / (over - under)
+    late: tuple[float, float] = (h, over)
+    early: tuple[float, float | None] = (0.0, under)
+    newest, opposite = late, early
+    t = 0.5 if under is None else over / (over - under)
     for _ in range(_TRIALS):
         least = share * h / max(late[0] - early[0], share * h)
         if least >= 1.0 or 0.0 <= late[1] <= close:
             break
-        opposite = early if newest is late else late
         t = min(max(t, 0.5 * least), 1.0 - 0.5 * least)
         middle = newest[0] + t * (opposite[0] - newest[0])
         found = middle, after(middle)
-        third = newest if (found[1] > 0.0) == (newest is late) else opposite
+        same = (found[1] > 0.0) == (newest[1] > 0.0)
+        third: tuple[float, float | None] = newest if same else opposite
+        opposite = opposite if same else newest
         late, early = (found, early) if found[1] > 0.0 else (late, found)
         newest = found
-        t = _inverse_quadratic(newest, early if newest is late else late, third)
+        t = _inverse_quadratic(newest, opposite, third)
     return late[0]
 
 
