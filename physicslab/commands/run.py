@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TextIO
 
-from physicslab.commands import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError, require_window
 from physicslab.commands.arguments import (
     add_assignments,
     add_budget,
@@ -158,6 +158,8 @@ def _outputs(arguments: Namespace) -> dict[str, Output]:
     """Return the chosen outputs, all of them writable and none in the way of another."""
     wanted = {kind: getattr(arguments, kind) for kind in ("json", "csv", "ledger", "png")}
     outputs = {kind: Output(f"--{kind}", path) for kind, path in wanted.items() if path is not None}
+    if "png" in outputs:
+        require_window("--png")
     for kind, output in outputs.items():
         check_output(output, arguments)
         for other, second in outputs.items():

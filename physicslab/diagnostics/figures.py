@@ -83,11 +83,11 @@ class Record:
         self.end = world.time
         self.times: list[float] = []
         self.columns: dict[str, list[float]] = {name: [] for name in names}
-        self.dimensions = {name: _dimension(unit_of(name)) for name in self.columns}
         self._sources = []
         for name in self.columns:
             entity, quantity = quantity_of(name, ids)
             self._sources.append((quantity, None if entity is None else ids[entity]))
+        self.dimensions = {name: _dimension(unit_of(name)) for name in self.columns}
 
     @property
     def samples(self) -> range:
