@@ -4,8 +4,6 @@ Editors complete and check scenes by it. It says all that can be said of each va
 words, keys. What refers to other entities is checked when a scene is opened.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
