@@ -116,6 +116,8 @@ class _Watch:
 
     def __init__(self, world: World, until: str, reader: ImpactReader, records: list[NDArray[Any]]) -> None:
         self._world, self._reader, self._records, self._text = world, reader, records, until
+        if not isinstance(until, str):
+            raise InvalidValue("record", "until", until, "a condition, as 'ball.x >= 8 m' is one")
         try:
             self._condition = Condition(until)
             self._names = [name for name in dict.fromkeys(self._condition.names()) if name != "time"]
