@@ -239,14 +239,14 @@ class _Replay:
 
     def __init__(self, world: World) -> None:
         self._frame, self._name = Keyframe(world), world.title or world.name
-        self._systems = [system.fresh() for system in world.schedule.systems[1:]]
+        self._systems = world.schedule.systems[1:]
         self._view = world.view
         self._made: World | None = None
 
     def _instants(self, run: Run) -> Iterator[World]:
         """Yield the copy at each instant."""
         if self._made is None:
-            self._made = World(systems=self._systems)
+            self._made = World(systems=[system.fresh() for system in self._systems])
             self._frame.fill(self._made)
             self._made.view = self._view
         world = self._made
