@@ -1,6 +1,6 @@
 # /// script
 # requires-python = ">=3.12"
-# dependencies = ["physicslab"]
+# dependencies = ["physicslab[window]"]
 #
 # [tool.uv.sources]
 # physicslab = { path = ".", editable = true }
@@ -9,7 +9,7 @@
 
 import sys
 
-REMEDY = "'uv run main.py' fetches what is needed, and so does 'python -m pip install .' once"
+REMEDY = """'uv run main.py' fetches what is needed, and so does 'python -m pip install ".[window]"' once"""
 USAGE = 2
 
 

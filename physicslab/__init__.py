@@ -24,17 +24,19 @@ if TYPE_CHECKING:
     from physicslab.files.scene import SceneError, load_scene, save_scene
     from physicslab.prefabs import box, capsule, chain, circle, pendulum, polygon
     from physicslab.state.masses import Diverged
+    from physicslab.state.run import Run
     from physicslab.world import World
 
 __all__ = [
-    "Diverged", "InvalidValue", "PhysicsConfig", "SceneError", "SimulationConfig", "Vector2", "World", "box",
-    "capsule", "chain", "circle", "describe", "load_scene", "pendulum", "polygon", "save_scene",
+    "Diverged", "InvalidValue", "PhysicsConfig", "Run", "SceneError", "SimulationConfig", "Vector2", "World",
+    "box", "capsule", "chain", "circle", "describe", "load_scene", "pendulum", "polygon", "save_scene",
 ]  # fmt: skip
 
 _HOMES = {
     "Diverged": "state.masses",
     "InvalidValue": "ecs.fields",
     "PhysicsConfig": "ecs.config",
+    "Run": "state.run",
     "SceneError": "files.checks",
     "SimulationConfig": "ecs.config",
     "Vector2": "ecs.vector",

@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError
 from typing import NoReturn
 
 import physicslab
-from physicslab.commands import COMMANDS, FAILED, USAGE, CommandError, command
+from physicslab.commands import COMMANDS, FAILED, USAGE, CommandError, command, require_window
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import SceneError
@@ -99,6 +99,7 @@ def _open(arguments: list[str]) -> int:
     parser.add_argument("scene", metavar="SCENE", nargs="?", help=words)
     parser.add_argument("--version", action="version", version=_version())
     scene = parser.parse_args(arguments).scene
+    require_window("the window")
     if scene is not None and scene.endswith(".md"):
         from physicslab.lessons.reader import read_lesson
 

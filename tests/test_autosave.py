@@ -6,13 +6,19 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
+from typing import Literal
 
 import pygame
 import pytest
 from desk import FRAME, Desk, bits, click, empty_world
+from platformdirs.api import PlatformDirsABC
+from platformdirs.macos import MacOS
+from platformdirs.unix import Unix
 
 from physicslab.components import Transform
+from physicslab.desktop import sessions
 from physicslab.desktop.app import open_window
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.sandbox import Sandbox
@@ -148,17 +154,19 @@ def test_sessions_without_a_state_leave_nothing(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has its own folder")
 def test_where_sessions_are_kept(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setattr(sessions, "user_state_path", partial(_state_path, Unix))
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     assert session_folder() == tmp_path / "physicslab" / "sessions"
     monkeypatch.setenv("XDG_STATE_HOME", "relative")
     monkeypatch.setenv("HOME", str(tmp_path))
     assert session_folder() == tmp_path / ".local" / "state" / "physicslab" / "sessions"
-    monkeypatch.setattr(sys, "platform", "darwin")
-    assert "Application Support" in str(session_folder())
-    monkeypatch.setattr(sys, "platform", "win32")
-    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path))
-    assert session_folder() == tmp_path / "physicslab" / "sessions"
+    monkeypatch.setattr(sessions, "user_state_path", partial(_state_path, MacOS))
+    assert session_folder() == tmp_path / "Library" / "Application Support" / "physicslab" / "sessions"
+
+
+def _state_path(system: type[PlatformDirsABC], name: str, *, appauthor: Literal[False]) -> Path:
+    """Return what ``user_state_path`` does on another system."""
+    return system(name, appauthor).user_state_path
 
 
 def crashed(folder: Path, scene: str) -> World:

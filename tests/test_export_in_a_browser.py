@@ -13,7 +13,6 @@ from browser import CHROMIUM, Browser
 from exporting import exported, recorded
 
 from physicslab import World, load_scene, save_scene
-from physicslab.commands.assignments import assign
 from physicslab.components import (
     Charge,
     Colour,
@@ -33,6 +32,7 @@ from physicslab.components import (
 )
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.files.assignments import assign
 from physicslab.prefabs import box, circle
 from physicslab.systems.standard import standard_systems
 from physicslab.theme import DARK, LIGHT, Theme

@@ -164,7 +164,7 @@ def test_what_cannot_be_filmed_is_refused_in_one_line(
 def test_without_the_extra_one_line_says_what_installs_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(importlib.util, "find_spec", {"pygame": 1, "imgui_bundle": 1}.get)
     monkeypatch.setenv("PATH", str(tmp_path))
     assert cli.main(["export", "drop", "--mp4", str(tmp_path / "a.mp4")]) == 2
     said = capsys.readouterr()

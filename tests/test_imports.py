@@ -8,7 +8,7 @@ import importlib, pkgutil, sys
 import physicslab
 
 window = ["desktop.app", "desktop.compiling", "desktop.sandbox", "desktop.session_window"]
-window += ["desktop.preferences", "desktop.timed_window", "view"]
+window += ["desktop.preferences", "desktop.screen_reader", "desktop.timed_window", "view"]
 names = [module.name for module in pkgutil.walk_packages(physicslab.__path__, "physicslab.", onerror=print)]
 for name in names:
     if not name.removeprefix("physicslab.").startswith(tuple(window)):

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from physicslab import World, load_scene, save_scene
-from physicslab.commands import CommandError
-from physicslab.commands.assignments import assign
 from physicslab.components import Mass, Pin, Rod, Shape, Slot, Transform, Velocity, Weld
 from physicslab.diagnostics.energy import measure_account
 from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import SimulationConfig
+from physicslab.files.assignments import assign
+from physicslab.files.checks import SceneError
 from physicslab.prefabs import box, circle
 from physicslab.state import joint_figures
 from physicslab.state.joint_rows import measured
@@ -130,7 +130,7 @@ def test_assignments_are_refused_by_what_is_wrong(text: str, words: str) -> None
     wheel = (Transform((3.0, 0.0)), Velocity(), Mass(1.0), Shape.circle(0.5))
     world = world_with((Pin, {"a": 1}), wheel=wheel)
     world.synchronise()
-    with pytest.raises(CommandError) as refused:
+    with pytest.raises(SceneError) as refused:
         assign(world, [text])
     assert words in str(refused.value)
 

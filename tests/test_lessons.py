@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 
 from physicslab.cli import main
+from physicslab.diagnostics.figures import Figures, Record
+from physicslab.ecs.conditions import Condition
 from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity
 from physicslab.languages.catalogue import languages
 from physicslab.lessons.catalogue import LESSONS, LIBRARY, find_lesson
 from physicslab.lessons.check import LessonRuns, check_lesson
-from physicslab.lessons.conditions import Condition
-from physicslab.lessons.figures import Figures, Record
 from physicslab.lessons.lesson import Recall
 from physicslab.lessons.reader import read_lesson
 from physicslab.lessons.setup import Case, Parameters

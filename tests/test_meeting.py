@@ -69,8 +69,8 @@ def table(kinds: tuple[int, int]) -> Shapes:
     first = np.cumsum([0, *map(len, CORES)])
     cores[:] = [len(CORES[kind]) for kind in kinds], first[list(kinds)]
     lengths[:3] = np.array([SIZES[kind] for kind in kinds]).T
-    lengths[3:] = np.hypot(lengths[0], lengths[1]), np.minimum(lengths[0], lengths[1])
-    lengths[3:] += lengths[2]
+    lengths[3:5] = np.hypot(lengths[0], lengths[1]), np.minimum(lengths[0], lengths[1])
+    lengths[3:5] += lengths[2]
     return with_names((cores, lengths, np.concatenate(CORES)))
 
 

@@ -16,14 +16,14 @@ from hypothesis import strategies as st
 from recording import RecordingCanvas
 
 from physicslab import World, load_scene, save_scene
-from physicslab.commands import CommandError
-from physicslab.commands.assignments import assign
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.components.vertices import centre_of_mass, centred, regular
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.files.assignments import assign
+from physicslab.files.checks import SceneError
 from physicslab.history import History, SetField
 from physicslab.prefabs import box, circle, polygon
 from physicslab.systems.standard import standard_systems
@@ -277,7 +277,7 @@ def test_vertices_are_set_from_the_command_line() -> None:
         corners([(-0.01, -0.01), (0.02, -0.01), (-0.01, 0.02)])
     )
     with pytest.raises(
-        CommandError, match=r"wedge.*vertices = .3.: .3. is no list of points \[\[x, y\], ...\]"
+        SceneError, match=r"wedge.*vertices = .3.: .3. is no list of points \[\[x, y\], ...\]"
     ):
         assign(world, ["wedge.Shape.vertices=3"])
 

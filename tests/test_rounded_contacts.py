@@ -20,7 +20,8 @@ box_box, circle_box, pose_at = twin_of(manifold.box_box), twin_of(manifold.circl
 
 _TURNS = [2.0 * math.pi * k / 5 for k in range(5)]
 FIVE = Kind(tuple((math.cos(turn), math.sin(turn)) for turn in _TURNS), x="radius", y="radius")
-POOL = Register((*KINDS.values(), FIVE)).pool
+REGISTER = Register((*KINDS.values(), FIVE))
+POOL, (WIDE, TALL) = REGISTER.pool, REGISTER.extents[len(KINDS) + 1]
 FIRST = {"disc": 0, "box": BOX, "capsule": 5, "five": 7}
 COUNT = {"disc": 1, "box": 4, "capsule": 2, "five": 5}
 angles, extents = st.floats(-math.pi, math.pi), st.floats(0.2, 2.0)
@@ -30,7 +31,8 @@ far = Way(0.0, 0.0, 0.0, 0.0)
 
 def outline(kind: str, angle: float, a: float, b: float) -> Outline:
     half_x, half_y, radius = {
-        "disc": (0.0, 0.0, a), "box": (a, b, 0.0), "capsule": (a, 0.0, b), "five": (a, a, 0.3 * b),
+        "disc": (0.0, 0.0, a), "box": (a, b, 0.0), "capsule": (a, 0.0, b),
+        "five": (a * WIDE, a * TALL, 0.3 * b),
     }[kind]  # fmt: skip
     c, s = (math.cos(angle), math.sin(angle)) if kind != "disc" else (1.0, 0.0)
     return Outline(
@@ -44,7 +46,7 @@ def touch(dx: float, dy: float, one: Outline, other: Outline, margin: float = ma
 
 
 def corners(one: Outline, x: float = 0.0, y: float = 0.0) -> list[complex]:
-    pool = POOL[one.first : one.first + one.vertices] * (one.half_x, one.half_y)
+    pool = POOL[one.first : one.first + one.vertices, :2] * (one.half_x, one.half_y)
     return [complex(x, y) + complex(*place) * complex(one.c, one.s) for place in pool.tolist()]
 
 

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from physicslab import cli, load_scene, save_scene
-from physicslab.commands import CommandError
-from physicslab.commands.assignments import assign
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import Component, component, field
+from physicslab.files.assignments import assign
+from physicslab.files.checks import SceneError
 from physicslab.world import World
 
 BALL = 'entity "ball": '
@@ -28,9 +28,9 @@ def report(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any
 
 
 def refusal(world: World, *texts: str) -> str:
-    with pytest.raises(CommandError) as error:
+    with pytest.raises(SceneError) as error:
         assign(world, texts)
-    assert error.value.status == 2 and "\n" not in str(error.value)
+    assert "\n" not in str(error.value)
     return str(error.value).removeprefix("--set")
 
 
@@ -288,3 +288,15 @@ def test_a_bad_spacing_is_refused(
     assert cli.main(["run", "drop", *arguments]) == 2
     out, err = capsys.readouterr()
     assert out == "" and err.count("\n") == 1 and line in err
+
+
+def test_laws_and_how_they_are_stepped_are_set_like_fields() -> None:
+    world = load_scene("drop")
+    assign(world, ["physics.gravity=[0, -1.62]", "simulation.substeps=2*4", "physics.linear_damping=1/(2 s)"])
+    assert world.physics.gravity.y == -1.62 and world.simulation.substeps == 8
+    assert world.physics.linear_damping == 0.5
+    assert 'physics.softening = "-1": must be a finite number >= 0 m' in refusal(
+        world, "physics.softening=-1"
+    )
+    found = refusal(world, "physics.gravty=1")
+    assert "physics.gravty" in found and "unknown field" in found and 'did you mean "gravity"' in found

@@ -13,7 +13,7 @@ import pygame
 import pytest
 from desk import Desk, bits
 
-from physicslab.desktop import session_window
+from physicslab.desktop import session_window, sessions
 from physicslab.desktop.app import open_window
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.sandbox import Sandbox
@@ -194,12 +194,12 @@ def test_saving_at_once_drops_what_is_half_written(tmp_path: Path) -> None:
 
 
 def test_without_a_home_the_window_works_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    def homeless() -> Path:
+    def homeless(*_: object, **__: object) -> Path:
         raise RuntimeError("Could not determine home directory.")
 
     for name in ("XDG_STATE_HOME", "LOCALAPPDATA"):
         monkeypatch.delenv(name, raising=False)
-    monkeypatch.setattr(Path, "home", homeless)
+    monkeypatch.setattr(sessions, "user_state_path", homeless)
     said: list[str] = []
     frame = Sandbox.frame
 

@@ -31,7 +31,7 @@ def row_of(
     columns = np.array([radius]), np.array([width]), np.array([height]), np.array([length])
     some = (*KINDS.values(), kind)
     kinds, extents, pool = Register(some).arrays()
-    plain: ShapesTuple = np.zeros((2, 1), np.int64), np.zeros((5, 1)), pool
+    plain: ShapesTuple = np.zeros((2, 1), np.int64), np.zeros((6, 1)), pool
     table, own = with_names(plain), np.zeros(1, np.int64)
     assert derive_shape(0, np.array([len(some)]), own, columns, kinds, extents, table)
     return table
@@ -82,4 +82,4 @@ def test_the_general_formula_gives_what_boxes_have() -> None:
     assert general.first[0] != shapes.BOX
     special = general._replace(first=np.array([shapes.BOX]))
     assert 3.0 * moment / area == pytest.approx(inertia_of(special, 0, 3.0), rel=1e-15)
-    assert np.array_equal(general.pool[shapes.BOX :][:4], 2.0 * np.array(box.core))
+    assert np.array_equal(general.pool[shapes.BOX :][:4, :2], 2.0 * np.array(box.core))

@@ -18,11 +18,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from physicslab import SceneError, World
-from physicslab.commands import CommandError
-from physicslab.commands.assignments import assign
 from physicslab.components import Note, Transform
 from physicslab.ecs.component import Component, InvalidValue, component, field, local_components
 from physicslab.ecs.text import code_of, has_width, is_line, text_of
+from physicslab.files.assignments import assign
 from physicslab.files.json_text import json_bytes
 from physicslab.files.reader import FORMAT, read_scene
 from physicslab.files.scene import load_scene, save_scene
@@ -141,7 +140,7 @@ def test_a_text_is_set_from_the_command_line() -> None:
     world.spawn(Note("before"), name="here")
     assign(world, ["here.Note.text=2 kg = mass"])
     assert world.component(world.entity("here"), Note).text == "2 kg = mass"
-    with pytest.raises(CommandError, match=r'entity "here": Note\.text = .*: must be a text'):
+    with pytest.raises(SceneError, match=r'entity "here": Note\.text = .*: must be a text'):
         assign(world, [f"here.Note.text={'x' * 401}"])
 
 

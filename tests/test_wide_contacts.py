@@ -20,7 +20,17 @@ from physicslab.kernels.solver import soft
 from physicslab.kernels.wide import restore_slots
 from physicslab.kernels.wide_layout import MASS_A, MASS_B, WIDE
 from physicslab.lab.worlds import floor, open_space, place
-from physicslab.prefabs import box, circle, container, pile, pyramid
+from physicslab.prefabs import (
+    box,
+    capsule,
+    circle,
+    container,
+    ground,
+    pile,
+    polygon,
+    pyramid,
+    regular_polygon,
+)
 from physicslab.world import World
 
 
@@ -58,7 +68,28 @@ def settled_mixed() -> World:
     return mixed(400)
 
 
-ADDED = {"boxes": settled_boxes, "discs": settled_discs, "mixed": settled_mixed}
+def settled_rounded() -> World:
+    """Return polygons, capsules, boxes and discs on a chain that turns now and then."""
+    world = open_space()
+    container(world, width=4.0, height=6.0)
+    ground(world, [(2.0, 0.6), (1.0, 0.3), (0.3, 0.25), (0.0, 0.2), (-0.3, 0.25), (-1.0, 0.3), (-2.0, 0.6)])
+    for i in range(120):
+        at = -1.6 + 0.36 * (i % 10), 0.8 + 0.36 * (i // 10)
+        if i % 4 == 0:
+            capsule(world, at, length=0.1, radius=0.08, angle=0.3 * i, restitution=0.0)
+        elif i % 4 == 1:
+            regular_polygon(world, at, corners=3 + i % 6, radius=0.14, angle=0.7 * i, restitution=0.0)
+        elif i % 4 == 2:
+            box(world, at, width=0.2, height=0.15, angle=0.2 * i, restitution=0.0)
+        else:
+            circle(world, at, radius=0.1, restitution=0.0)
+    world.run(steps=300)
+    return world
+
+
+ADDED = {
+    "boxes": settled_boxes, "discs": settled_discs, "mixed": settled_mixed, "rounded": settled_rounded,
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ADDED)
@@ -246,6 +277,23 @@ def test_a_mass_changed_by_hand_counts_from_the_next_step() -> None:
         for world in worlds
     ]
     assert felt[0] > 1.2 * felt[1]
+
+
+def test_other_vertices_of_the_same_extents_count_from_the_next_step() -> None:
+    """The mirror image of a triangle is as large, as heavy and as hard to turn, and touches elsewhere."""
+    world, corners = open_space(), [(-0.3, -0.2), (0.6, -0.2), (-0.3, 0.4)]
+    floor(world, width=200.0)
+    wedges = [polygon(world, (1.2 * i - 48.0, 0.2), corners) for i in range(80)]
+    world.run(steps=30)
+    assert world.contacts.wide.filled == 80
+    shape = world.component(wedges[7], Shape)
+    shape.vertices = [(-x, y) for x, y in reversed(corners)]
+    world.step()
+    world.contacts.sync()
+    near = world.contacts.manifolds[: world.contacts.recorded]
+    arms = world.contacts.points["arm_bx"].reshape(-1, 2)[: len(near)]
+    for wedge, right in ((wedges[6], 0.6), (wedges[7], 0.3)):
+        assert arms[near["entity_b"] == wedge].max() == pytest.approx(right, abs=1e-3)
 
 
 def test_removing_a_body_lets_those_above_fall() -> None:

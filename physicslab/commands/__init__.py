@@ -4,6 +4,7 @@ A command is a module with ``add_arguments(parser)`` and ``execute(arguments) ->
 status or raises :class:`CommandError`. To add one, write its file and name it here.
 """
 
+import importlib.util
 from argparse import ArgumentParser, Namespace
 from importlib import import_module
 from keyword import iskeyword
@@ -27,6 +28,34 @@ class CommandError(Exception):
     def __init__(self, message: str, status: int = USAGE) -> None:
         super().__init__(message)
         self.status = status
+
+
+def require(user: str, extra: str, *packages: str) -> None:
+    """Refuse to go on where packages are not installed that come with an extra of this one.
+
+    Parameters
+    ----------
+    user : str
+        What needs them: an option, or what is opened.
+    extra : str
+        The extra.
+    *packages : str
+        The modules that it brings, by their names in Python.
+
+    Raises
+    ------
+    CommandError
+        If one of them is not there.
+    """
+    for package in packages:
+        if importlib.util.find_spec(package) is None:
+            remedy = f"pip install 'physicslab[{extra}]'"
+            raise CommandError(f"{user}: needs the package {package}, which is not installed: {remedy}")
+
+
+def require_window(user: str) -> None:
+    """Refuse to go on where the packages of the window are not installed, which draw pictures as well."""
+    require(user, "window", "pygame", "imgui_bundle")
 
 
 class Command(Protocol):

@@ -8,15 +8,25 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from physicslab.commands import CommandError
-from physicslab.commands.assignments import assign
 from physicslab.commands.output import Output
 from physicslab.ecs.text import printable
+from physicslab.files.assignments import assign
 from physicslab.files.scene import load_scene
 from physicslab.scenes import SCENES
 from physicslab.world import World
 
 STEP_LIMIT = 10**15
 """More than any run will do; beyond it, times could no longer be counted exactly."""
+
+
+def add_assignments(parser: argparse.ArgumentParser) -> None:
+    """Declare the option ``--set``, which may be given any number of times."""
+    words = (
+        "set a field before the run: a number in SI units or with a unit of its own (2 kg, 30 deg, 5 km/h), "
+        "[x, y], [[x, y], ...], true, false, null or a word; of the laws, physics.field or simulation.field; "
+        "repeat it for more fields"
+    )
+    parser.add_argument("--set", metavar="ID.Component.field=VALUE", action="append", default=[], help=words)
 
 
 def add_budget(parser: argparse.ArgumentParser) -> None:

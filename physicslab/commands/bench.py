@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from physicslab.commands import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError, require_window
 from physicslab.commands.arguments import positive_count
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
 from physicslab.ecs.text import printable
@@ -181,6 +181,8 @@ def _jobs(
             if scene.size <= min(PEER_SIZE_LIMIT, _SIZE_LIMITS.get(peer.title, PEER_SIZE_LIMIT))
             or scene.name in named
         ]  # fmt: skip
+        if scene.in_window:
+            require_window(scene.name)
         make = _in_window if scene.in_window else Engine
         jobs.append((float(scene.size), measure_scene(scene, beside, make)))
     if _UNUSED in extras:

@@ -8,8 +8,9 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
 from typing import Any
 
-from physicslab.commands import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError, require_window
 from physicslab.commands.arguments import (
+    add_assignments,
     add_budget,
     check_output,
     check_seconds,
@@ -17,7 +18,6 @@ from physicslab.commands.arguments import (
     opened,
     positive_duration,
 )
-from physicslab.commands.assignments import add_assignments
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
@@ -59,6 +59,7 @@ def make_film(option: str, path: str, arguments: Namespace) -> None:
     CommandError
         If it cannot be written, or the run fails; no file is left then.
     """
+    require_window(option)
     output = Output(option, path)
     if output.to_stdout:
         raise CommandError(f"{option} -: must be a path: a film does not go to stdout")
@@ -145,7 +146,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_budget(parser)
     add_assignments(parser)
     add_variations(parser)
-    words = "write to stderr how far it is, where that is no terminal too"
+    words = "write to stderr how far it is, terminal or not"
     add("--progress", action="store_true", help=words)
     parser.epilog = (
         f"A page holds bodies times instants, of all runs, of at most {POSES:,}, positions to 7 digits. A "

@@ -1,6 +1,5 @@
 """Destinations of a command's documents: a file, or stdout for ``-``."""
 
-import importlib.util
 import io
 import os
 import sys
@@ -9,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO, TextIO
 
-from physicslab.commands import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError, require
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
 from physicslab.files.replace import check_writable, reason_of, replace_file, replacing
@@ -134,8 +133,7 @@ def picture_directory(path: str, example: str) -> Path:
     CommandError
         If it cannot be written, or there is no matplotlib.
     """
-    if importlib.util.find_spec("matplotlib") is None:
-        raise CommandError("--plot: needs matplotlib, which is not installed: pip install 'physicslab[plot]'")
+    require("--plot", "plot", "matplotlib")
     directory = Path(path)
     try:
         directory.mkdir(parents=True, exist_ok=True)

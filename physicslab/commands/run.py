@@ -10,8 +10,9 @@ from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TextIO
 
-from physicslab.commands import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError, require_window
 from physicslab.commands.arguments import (
+    add_assignments,
     add_budget,
     check_output,
     check_seconds,
@@ -22,7 +23,6 @@ from physicslab.commands.arguments import (
     positive_count,
     positive_duration,
 )
-from physicslab.commands.assignments import add_assignments
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
@@ -158,6 +158,8 @@ def _outputs(arguments: Namespace) -> dict[str, Output]:
     """Return the chosen outputs, all of them writable and none in the way of another."""
     wanted = {kind: getattr(arguments, kind) for kind in ("json", "csv", "ledger", "png")}
     outputs = {kind: Output(f"--{kind}", path) for kind, path in wanted.items() if path is not None}
+    if "png" in outputs:
+        require_window("--png")
     for kind, output in outputs.items():
         check_output(output, arguments)
         for other, second in outputs.items():

@@ -1,5 +1,7 @@
 """The list of near pairs, with their records carried over, and those of them that are solved in slots."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -122,9 +124,20 @@ def refill(state: State) -> None:
     elif found:
         rows = len(state.entity_index)
         contacts.sync()
+        _find_reshaped_again(state)
         wide.reset(rows)
         fill_again(state)
         contacts.list_scalar(rows)
+
+
+def _find_reshaped_again(state: State) -> None:
+    """Let the points be found again of bodies whose outline was edited."""
+    wide, near = state.contacts.wide, state.contacts.manifolds[: state.contacts.recorded]
+    outlines = np.stack(_columns(state)[4:], axis=1)
+    if len(wide.made_of) == len(outlines):
+        reshaped = (wide.made_of[:, 4:] != outlines).any(axis=1)
+        found_again = reshaped[near["a"]] | reshaped[near["b"]]
+        near["found"][found_again], near["slot"][found_again] = 0, -1
 
 
 def fill_again(state: State) -> None:
@@ -154,9 +167,9 @@ def _remember(state: State) -> None:
     restore_slots.remember(wide.made_of, *columns)
 
 
-def _columns(state: State) -> tuple[NDArray[np.float64], ...]:
+def _columns(state: State) -> tuple[NDArray[Any], ...]:
     material, bodies, shapes = state.table(Material), state.bodies, state.bodies.shapes
     return (
         bodies.inverse_mass, bodies.inverse_inertia, material["restitution"], material["friction"],
-        shapes.half_x, shapes.half_y, shapes.radius,
+        shapes.half_x, shapes.half_y, shapes.radius, shapes.first,
     )  # fmt: skip

@@ -14,12 +14,12 @@ import contextlib
 import os
 import secrets
 import stat
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from filelock import FileLock, Timeout
+from platformdirs import user_state_path
 
 from physicslab.files.replace import remove_leftovers
 
@@ -38,15 +38,7 @@ def session_folder() -> Path:
         If the user has no home directory.
     """
     try:
-        if sys.platform == "win32":
-            base = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
-            return base / "physicslab" / "sessions"
-        if sys.platform == "darwin":
-            return Path.home() / "Library" / "Application Support" / "physicslab" / "sessions"
-        given = os.environ.get("XDG_STATE_HOME", "")
-        # A path that is not absolute is to be passed over (XDG Base Directory Specification).
-        base = Path(given) if os.path.isabs(given) else Path.home() / ".local" / "state"
-        return base / "physicslab" / "sessions"
+        return user_state_path("physicslab", appauthor=False) / "sessions"
     except RuntimeError as error:  # neither HOME nor a line in the list of users
         raise OSError("there is no home directory to keep it in") from error
 

@@ -24,7 +24,6 @@ import os
 import re
 import shutil
 import stat
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -35,6 +34,7 @@ from typing import Any
 
 import numba.core.config
 from numba.core.caching import CacheImpl, UserProvidedCacheLocator
+from platformdirs import user_cache_path
 
 from physicslab.kernels.keys import current_folders, folder_of, hash_of
 
@@ -97,17 +97,9 @@ def _places() -> Iterator[tuple[Path, str]]:
         yield named.parent, named.name
         return
     with contextlib.suppress(RuntimeError, KeyError):
-        yield _user_cache() / "physicslab", "kernels"
+        yield user_cache_path("physicslab", appauthor=False, opinion=False), "kernels"
     shared = f"physicslab-{os.getuid() if hasattr(os, 'getuid') else 0}"
     yield Path(tempfile.gettempdir()), f"{shared}/kernels"
-
-
-def _user_cache() -> Path:
-    if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA") or tempfile.gettempdir())
-    if sys.platform == "darwin":
-        return Path.home() / "Library" / "Caches"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
 
 
 def _resolved(place: Path, name: str) -> Path | None:

@@ -5,12 +5,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from physicslab.diagnostics.figures import Figures
 from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity, in_unit, in_words, same_dimension
 from physicslab.files.checks import SceneError
 from physicslab.languages.language import language
 from physicslab.lessons.blocks import LessonError
-from physicslab.lessons.figures import Figures, record_run
 from physicslab.lessons.lesson import Compare, Lesson, Question, Reply, Run
+from physicslab.lessons.live_run import record_run
 from physicslab.lessons.setup import AS_IT_IS, Case
 from physicslab.lessons.words import case_words, with_run
 from physicslab.state.masses import Diverged

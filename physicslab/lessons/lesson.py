@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from physicslab.ecs.conditions import Condition
 from physicslab.ecs.quantity_text import Expression
-from physicslab.lessons.conditions import Condition
 from physicslab.lessons.setup import Case, Setup
 
 SURENESS = ("guess", "unsure", "sure", "certain")

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from physicslab.diagnostics.figures import Figures, quantity_of
 from physicslab.ecs.quantity_text import Expression, InvalidText
 from physicslab.export.packing import pack
 from physicslab.export.page import fill_page, run_document
@@ -24,9 +25,9 @@ from physicslab.files.checks import SceneError
 from physicslab.languages.language import language
 from physicslab.lessons.answers import FORMAT, asked, grade_one
 from physicslab.lessons.check import LessonRuns, Row, row_of, si_unit
-from physicslab.lessons.figures import Figures, quantity_of, record_run
 from physicslab.lessons.film import Film
 from physicslab.lessons.lesson import Compare, Explain, Lesson, Part, Prose, Question, Recall, Reply, Run
+from physicslab.lessons.live_run import record_run
 from physicslab.lessons.setup import AS_IT_IS, Case
 from physicslab.lessons.words import (
     case_words,

@@ -5,10 +5,10 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 
+from physicslab.diagnostics.figures import FUNCTIONS, quantity_of
+from physicslab.ecs.conditions import Condition
 from physicslab.ecs.quantity_text import Expression, InvalidText
 from physicslab.lessons.blocks import Block, Entry
-from physicslab.lessons.conditions import Condition
-from physicslab.lessons.figures import FUNCTIONS, quantity_of
 from physicslab.lessons.lesson import Compare, Explain, Question, Recall, Reply, Run
 from physicslab.lessons.setup import AS_IT_IS, Case, Setup
 

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+from physicslab.diagnostics.figures import FUNCTIONS
 from physicslab.ecs.quantity_text import Expression, InvalidText, is_known
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.reader import FORMAT as SCENE_FORMAT
 from physicslab.files.scene import load_scene, parse_json, read_bytes, write_scene
 from physicslab.lessons.blocks import KEYS, Block, Entry, LessonError, read_case, read_document
-from physicslab.lessons.figures import FUNCTIONS
 from physicslab.lessons.lesson import DEPTHS, HEADING, Lesson, Part, Prose, Step
 from physicslab.lessons.parts import CITED, PartMaker
 from physicslab.lessons.setup import Parameters, Setup

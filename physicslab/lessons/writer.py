@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from physicslab.components import Name, Velocity
+from physicslab.diagnostics.figures import FUNCTIONS
 from physicslab.ecs.component import COMPONENTS, parse_path
 from physicslab.ecs.quantity_text import Expression, InvalidText, is_known
 from physicslab.ecs.text import printable
 from physicslab.files.json_text import json_text
 from physicslab.files.reader import read_scene
 from physicslab.files.scene import write_scene
-from physicslab.lessons.figures import FUNCTIONS
 from physicslab.lessons.reader import FORMAT
 from physicslab.world import World
 

@@ -155,10 +155,10 @@ def links_in(shapes: Shapes, row: int) -> _Points:
 
 
 def links_before(pool: _Points, first: int) -> _Points:
-    """Return the links (m, ROWS, 2) before a vertex of the pool (n, 2), the first one of a chain."""
+    """Return the links (m, ROWS, 2) before a vertex of the pool (n, 4), the first one of a chain."""
     count = int(pool[first - 2, 0])
     begin = first - 2 - ROWS * count - 2 * -(-count // BLOCK)
-    return pool[begin : begin + ROWS * count].reshape(count, ROWS, 2)
+    return pool[begin : begin + ROWS * count, :2].reshape(count, ROWS, 2)
 
 
 def line_along(links: _Points) -> _Points:

@@ -26,14 +26,14 @@ class Register:
         with this code in :data:`physicslab.ecs.fields.POINTS`. Rows that are not taken yet are 0.
     extents : float64 array (n, 2)
         Half of the extents of each core, in units of the sizes that stretch it.
-    pool : float64 array (m, 2)
-        The vertices of the cores, in shares of these.
+    pool : float64 array (m, 4)
+        The vertices of the cores, in shares of these, and the normals of the faces that begin there.
     """
 
     def __init__(self, kinds: tuple[Kind, ...]) -> None:
         self.kinds: NDArray[np.int64] = np.zeros((0, 5), np.int64)
         self.extents: NDArray[np.float64] = np.zeros((0, 2))
-        self.pool: NDArray[np.float64] = np.zeros((0, 2))
+        self.pool: NDArray[np.float64] = np.zeros((0, 4))
         self._arrays: tuple[NDArray[Any], ...] = ()
         self._cores = self._vertices = 0
         self._known = 1  # of the lists of points; the first one is empty
@@ -72,14 +72,31 @@ class Register:
         """
         row, first = self._cores, self._vertices + len(links)
         self.pool = _with_room(self.pool, first)
-        self.pool[self._vertices : first] = links
+        self.pool[self._vertices : first, :2] = links
         extent = np.abs(core).max(axis=0, initial=0.0)
         self.kinds, self.extents = _with_room(self.kinds, row + 1), _with_room(self.extents, row + 1)
         self.pool = _with_room(self.pool, first + len(core))
         self.kinds[row] = max(len(core) - 2 * beside, 0), first + beside, x, y, radius
         self.extents[row] = extent
-        self.pool[first : first + len(core)] = core / np.where(extent > 0.0, extent, 1.0)
+        self.pool[first : first + len(core), :2] = core / np.where(extent > 0.0, extent, 1.0)
+        convex = core[beside : len(core) - beside]
+        faces = first + beside
+        self.pool[faces : faces + len(convex), 2:] = _normals(convex, as_one=x == y)
         self._cores, self._vertices = row + 1, first + len(core)
+
+
+def _normals(core: NDArray[np.float64], *, as_one: bool) -> NDArray[np.float64]:
+    """Return the outward normals (n, 2) of the faces of a core (n, 2).
+
+    One is 0 where its direction goes by the sizes of a shape: where these do not stretch the core ``as_one``,
+    and it is slanted.
+    """
+    along = np.roll(core, -1, axis=0) - core
+    length = np.hypot(*along.T)
+    normals = np.stack((along[:, 1], -along[:, 0]), axis=1) / np.where(length > 0.0, length, 1.0)[:, None]
+    if not as_one:
+        normals[(normals != 0.0).all(axis=1)] = 0.0
+    return normals
 
 
 def _with_room[T: np.generic](array: NDArray[T], rows: int) -> NDArray[T]:
@@ -97,13 +114,15 @@ REGISTER = Register(tuple(shape.KINDS.values()))
 
 def blank_shapes(rows: int) -> ShapesTuple:
     """Return a table of so many rows without shapes."""
-    return np.zeros((2, rows), np.int64), np.zeros((5, rows)), REGISTER.pool
+    return np.zeros((2, rows), np.int64), np.zeros((6, rows)), REGISTER.pool
 
 
 def with_names(plain: ShapesTuple) -> Shapes:
     """Return the same table, its columns by name."""
     cores, lengths, pool = plain
-    return Shapes(cores[0], cores[1], lengths[0], lengths[1], lengths[2], lengths[3], lengths[4], pool)
+    return Shapes(
+        cores[0], cores[1], lengths[0], lengths[1], lengths[2], lengths[3], lengths[4], lengths[5], pool
+    )
 
 
 def sizes_in(table: Table) -> SizesTuple:
@@ -152,7 +171,7 @@ def cores_of(table: Table, rows: NDArray[np.int64]) -> Cores:
     if chain.any():
         which[chain] = np.maximum(last[chain] - np.abs(np.arange(most) - last[chain]), 0)
         vertices = np.where(chain, 2 * last[:, 0], vertices)
-    corners = REGISTER.pool[first[:, None] + which] * half[:, None, :]
+    corners = REGISTER.pool[first[:, None] + which, :2] * half[:, None, :]
     return Cores(corners, vertices, radius)
 
 

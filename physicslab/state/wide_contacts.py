@@ -91,8 +91,8 @@ class WideContacts:
     ----------
     discs, boxes : WideConstraints
         The blocks.
-    made_of : float64 array (rows, 7)
-        The masses, sizes and materials that slots contain.
+    made_of : float64 array (rows, 8)
+        The masses, materials and outlines that slots were made of.
     changed : bool array (rows,)
         Which bodies have others now, when that was last looked at.
 
@@ -112,7 +112,7 @@ class WideContacts:
     def __init__(self, counts: _Rows) -> None:
         self._counts = counts
         self.discs, self.boxes = WideConstraints(DISC, counts), WideConstraints(BOX, counts)
-        self.made_of: NDArray[np.float64] = np.zeros((0, 7))
+        self.made_of: NDArray[np.float64] = np.zeros((0, 8))
         self.changed: NDArray[np.bool_] = np.zeros(0, np.bool_)
 
     @property

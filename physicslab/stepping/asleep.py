@@ -17,6 +17,7 @@ class Asleep:
     leaps: bool = False
     keeps_balance: bool = False
     leaves_forces: bool = True
+    samples: bool = False
     kernels: tuple[Any, ...] = ()
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:

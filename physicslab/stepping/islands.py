@@ -79,6 +79,7 @@ class Islands:
     leaps: bool = False
     keeps_balance: bool = False
     leaves_forces: bool = False
+    samples: bool = False
 
     def __init__(self, schedule: Schedule, make: Make | None) -> None:
         self._schedule, self._make = schedule, make

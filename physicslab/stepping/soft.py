@@ -46,6 +46,7 @@ class Soft:
     title: str = "Steps stage by stage, contacts within them"
     leaps: bool = False
     leaves_forces: bool = True
+    samples: bool = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self.substeps = schedule, Substeps(state, schedule, plan)

@@ -6,15 +6,17 @@ from physicslab.kernels import Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment_arms, response
 from physicslab.kernels.geometry.bend import note_bends
+from physicslab.kernels.geometry.cores import VERTICES
 from physicslab.kernels.geometry.outline import Way, is_segment, kept_outline, on_segment, swing_of
 from physicslab.kernels.geometry.pair import (
     CONTACT_MARGIN,
+    SWEEP_THRESHOLD,
     touch_boxes,
     touch_rounded,
     touch_wall,
     touch_with_circle,
 )
-from physicslab.kernels.geometry.shapes import Shapes, has_own_way
+from physicslab.kernels.geometry.shapes import Shapes, has_own_way, is_chain, segment_of
 from physicslab.kernels.records import Manifold, Point, Points
 
 ACTIVATION_RATIO = 1.02
@@ -105,14 +107,41 @@ def forget_points(one: Point, two: Point) -> None:
 
 
 @always_inlined
+def on_bend(manifold: Manifold, one: Point, two: Point) -> bool:
+    """Whether a pair touches where a chain turns: its points move along with what slides there."""
+    second = manifold.count == 2 and two.feature >= VERTICES
+    return bool(manifold.wall < -1 and (one.feature >= VERTICES or second))
+
+
+@always_inlined
+def _to_be_swept(manifold: Manifold, points: Points, p: int, fast: bool) -> bool:
+    """Whether the points of a pair that is ``fast`` for its size may be those of a later moment."""
+    one, two = points[2 * p], points[2 * p + 1]
+    load = one.normal_impulse + (two.normal_impulse if manifold.count == 2 else 0.0)
+    return bool(manifold.swept == 1 or (fast and load == 0.0) or on_bend(manifold, one, two))
+
+
+@always_inlined
+def _vertices_of(shapes: Shapes, i: int, wall: int) -> float:
+    """Return a number that depends on the vertices of row i, or on the segment of a chain that is named."""
+    at, pool = shapes.first[i], shapes.pool
+    if is_chain(shapes, i):
+        at += segment_of(wall)
+    mixed: float = shapes.reach[i] + shapes.thin[i]
+    if shapes.vertices[i] > 1:
+        mixed += 0.19 * pool[at, 0] + 0.23 * pool[at, 1] + 0.29 * pool[at + 1, 0] + 0.31 * pool[at + 1, 1]
+    return mixed
+
+
+@always_inlined
 def _look_up(
     manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, shapes: Shapes,
-    h: float, speculative_margin: float, tolerance: float, turns: bool, sharp: bool,
+    h: float, speculative_margin: float, tolerance: float, turns: bool, disc: bool,
 ) -> int:  # fmt: skip
     """Use what was found of a pair with corners, if they have hardly moved against each other.
 
-    Points are kept of two ``sharp`` polygons, or of one and a wall; that there are none, of any pair with
-    corners. Where the pair ``turns``, its points may be those of a later moment in the substep.
+    That there are no points is kept of any pair with corners, points where neither is a ``disc``. Where the
+    pair ``turns``, its points may be those of a later moment in the substep.
     ``tolerance`` is a share of :data:`CACHE_TOLERANCE` and :data:`CACHE_TURN_TOLERANCE`. Returns what is
     known of them now. Where that is nothing, their present pose is recorded, for which their points are to be
     found.
@@ -132,7 +161,8 @@ def _look_up(
         if has_own_way(shapes, a) and has_own_way(shapes, b):
             size = min(max(half_x[a], radius[a]), max(half_x[b], radius[b]))
         else:  # of the same extents there are many polygons
-            of_both += 13.0 * (shapes.reach[a] + shapes.thin[a]) + 17.0 * (shapes.reach[b] + shapes.thin[b])
+            of_both += 13.0 * _vertices_of(shapes, a, manifold.wall)
+            of_both += 17.0 * _vertices_of(shapes, b, manifold.wall)
         of_both += 7.0 * radius[a] + 11.0 * radius[b]
     moved_x, moved_y = way.dx - manifold.base_x, way.dy - manifold.base_y
     turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
@@ -144,11 +174,13 @@ def _look_up(
             nearest = manifold.gap - abs(moved_x) - abs(moved_y) - turned - 0.0025 * size
             if nearest > CONTACT_MARGIN * size + ahead + speculative_margin:
                 return _APART
-        elif sharp and (
-            abs(moved_x) + abs(moved_y) <= tolerance * CACHE_TOLERANCE * size
+        elif (
+            not disc
+            and abs(moved_x) + abs(moved_y) <= tolerance * CACHE_TOLERANCE * size
             and abs(turn_a) <= tolerance * CACHE_TURN_TOLERANCE
             and abs(turn_b) <= tolerance * CACHE_TURN_TOLERANCE
             and slow
+            and not (turns and _to_be_swept(manifold, points, p, travel > SWEEP_THRESHOLD * size))
         ):
             follow_pose(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
             return _KEPT
@@ -289,10 +321,10 @@ def find_contacts(
         if with_disc and not first and _in_place(manifold, one, way, motion, shapes, speculative_margin):
             one.separation = one.found_separation
             known = _KEPT
-        elif polygons > 0 and not (walled and rounded):
+        elif polygons > 0:
             known = _look_up(
                 manifold, near.points, p, way, motion, shapes, h, speculative_margin, tolerance,
-                circular or rounded, not (circular or rounded),
+                circular or rounded, circular,
             )  # fmt: skip
             if known == _APART:
                 continue

@@ -8,7 +8,7 @@ nearest, these are the discs that touch. Coordinates are relative to A's centre.
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Vectors, inlined
+from physicslab.kernels import Vectors, always_inlined, inlined
 from physicslab.kernels.geometry.manifold import ALIKE, FAVOUR, LEVEL, Corner
 from physicslab.kernels.geometry.outline import Outline, Way, corner
 
@@ -38,31 +38,60 @@ class Touch(NamedTuple):
 def _normal(k: int, outline: Outline, pool: Vectors) -> tuple[float, float, float, float, float]:
     """Return the outward normal of face k of a core, its distance [m], and the vertex at which it begins."""
     x, y = corner(k, outline, pool)
-    end_x, end_y = corner((k + 1) % outline.vertices, outline, pool)
-    along_x, along_y = end_x - x, end_y - y
-    length = math.sqrt(along_x * along_x + along_y * along_y)
-    nx, ny = along_y / length, -along_x / length
+    mx, my = _own_normal(k, outline, pool)
+    nx, ny = outline.c * mx - outline.s * my, outline.s * mx + outline.c * my
     return nx, ny, nx * x + ny * y, x, y
 
 
-@inlined
-def _clear_of(k: int, x: float, y: float, a: Outline, b: Outline, pool: Vectors) -> float:
-    """Return how far all of the core of B, which is at (x, y), is beyond face k of that of A [m]."""
-    nx, ny, distance, _, _ = _normal(k, a, pool)
+@always_inlined
+def _own_normal(k: int, outline: Outline, pool: Vectors) -> tuple[float, float]:
+    """Return the outward normal of face k of a core, in its own directions."""
+    at = outline.first + k
+    nx, ny = pool[at, 2], pool[at, 3]
+    if nx == 0.0 and ny == 0.0:
+        to = outline.first + (k + 1) % outline.vertices
+        nx = outline.half_y * (pool[to, 1] - pool[at, 1])
+        ny = outline.half_x * (pool[at, 0] - pool[to, 0])
+        length = math.sqrt(nx * nx + ny * ny)
+        nx, ny = nx / length, ny / length
+    return nx, ny
+
+
+class _Beside(NamedTuple):
+    """Where B's centre is, in A's directions [m], and cosine and sine of how far B is turned from A."""
+
+    x: float
+    y: float
+    c: float
+    s: float
+
+
+@always_inlined
+def _beside(x: float, y: float, a: Outline, b: Outline) -> _Beside:
+    """Return how B, which is at (x, y), lies beside A."""
+    return _Beside(a.c * x + a.s * y, a.c * y - a.s * x, a.c * b.c + a.s * b.s, a.c * b.s - a.s * b.c)
+
+
+@always_inlined
+def _clear_of(k: int, lies: _Beside, a: Outline, b: Outline, pool: Vectors) -> float:
+    """Return how far all of the core of B, which ``lies`` beside A, is beyond face k of that of A [m]."""
+    nx, ny = _own_normal(k, a, pool)
+    from_x, from_y = a.half_x * pool[a.first + k, 0], a.half_y * pool[a.first + k, 1]
+    mx, my = b.half_x * (lies.c * nx + lies.s * ny), b.half_y * (lies.c * ny - lies.s * nx)
     nearest = math.inf
-    for j in range(b.vertices):
-        bx, by = corner(j, b, pool)
-        nearest = min(nearest, nx * (x + bx) + ny * (y + by))
-    return nearest - distance
+    for j in range(b.first, b.first + b.vertices):
+        nearest = min(nearest, mx * pool[j, 0] + my * pool[j, 1])
+    clear: float = nearest + (nx * (lies.x - from_x) + ny * (lies.y - from_y))
+    return clear
 
 
 @inlined
-def _farthest_face(x: float, y: float, a: Outline, b: Outline, pool: Vectors) -> tuple[float, int]:
+def _farthest_face(lies: _Beside, a: Outline, b: Outline, pool: Vectors) -> tuple[float, int]:
     """Return the face of A from which all of the core of B is farthest, and before that how far [m]."""
     gap, face = -math.inf, 0
     if a.vertices > 1:
         for k in range(a.vertices):
-            clear = _clear_of(k, x, y, a, b, pool)
+            clear = _clear_of(k, lies, a, b, pool)
             if clear > gap:
                 gap, face = clear, k
     return gap, face
@@ -76,15 +105,16 @@ def _best_face(
 
     The face of an old point stays unless another one is better by a little.
     """
-    gap, face = _farthest_face(dx, dy, a, b, pool)
-    gap_b, face_b = _farthest_face(-dx, -dy, b, a, pool)
+    of_b, of_a = _beside(dx, dy, a, b), _beside(-dx, -dy, b, a)
+    gap, face = _farthest_face(of_b, a, b, pool)
+    gap_b, face_b = _farthest_face(of_a, b, a, pool)
     smallest, flip = min(a.thin, b.thin), False
     if gap_b > gap + ALIKE * smallest:
         gap, face, flip = gap_b, face_b, True
     if FACE <= old < VERTICES:
         held, held_flip = (old - FACE) // 8 % 8, old >= FLIPPED
-        held_a, held_b, sign = (b, a, -1.0) if held_flip else (a, b, 1.0)
-        held_gap = _clear_of(held, sign * dx, sign * dy, held_a, held_b, pool)
+        one, other, lies = (b, a, of_a) if held_flip else (a, b, of_b)
+        held_gap = _clear_of(held, lies, one, other, pool)
         if gap <= held_gap + FAVOUR * smallest:
             gap, face, flip = held_gap, held, held_flip
     return gap, face, flip
@@ -94,11 +124,12 @@ def _best_face(
 def nearest_edge(nx: float, ny: float, outline: Outline, pool: Vectors) -> int:
     """Return the edge of a core whose outward normal is most opposed to a normal."""
     best, least = 0, math.inf
+    mx, my = outline.c * nx + outline.s * ny, outline.c * ny - outline.s * nx
     if outline.vertices > 1:
         for k in range(outline.vertices):
-            ox, oy, _, _, _ = _normal(k, outline, pool)
-            if ox * nx + oy * ny < least:
-                best, least = k, ox * nx + oy * ny
+            ox, oy = _own_normal(k, outline, pool)
+            if ox * mx + oy * my < least:
+                best, least = k, ox * mx + oy * my
     return best
 
 

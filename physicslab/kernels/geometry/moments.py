@@ -54,6 +54,8 @@ def inertia_of(shapes: Shapes, i: int, mass: float) -> float:
         width: float = 2.0 * shapes.half_x[i]
         height: float = 2.0 * shapes.half_y[i]
         return mass * (width * width + height * height) / 12.0
-    area, moment = area_and_moment(shapes, i)
-    inertia: float = mass * (moment / area)
+    if shapes.gyration[i] == 0.0:
+        area, moment = area_and_moment(shapes, i)
+        shapes.gyration[i] = moment / area
+    inertia: float = mass * shapes.gyration[i]
     return inertia

@@ -48,8 +48,11 @@ class Shapes(NamedTuple):
         The largest distance of the outline from the centre [m].
     thin : float64 array (rows,)
         Half of the smallest width of the outline [m].
-    pool : float64 array (n, 2)
-        The vertices of each core, in shares of ``half_x`` and ``half_y``; equal cores share theirs.
+    gyration : float64 array (rows,)
+        The moment of inertia of a uniform mass, by that mass [m^2]; 0 until it is computed.
+    pool : float64 array (n, 4)
+        The vertices of each core, in shares of ``half_x`` and ``half_y``; equal cores share theirs. Then the
+        outward normal of the face that begins there; 0 where the sizes of a shape turn it.
     """
 
     vertices: Rows
@@ -59,11 +62,12 @@ class Shapes(NamedTuple):
     radius: Numbers
     reach: Numbers
     thin: Numbers
+    gyration: Numbers
     pool: Vectors
 
 
 ShapesTuple = tuple[Pairs, Vectors, Vectors]
-"""The same in three arrays (2, rows), (5, rows), (n, 2), which are passed faster."""
+"""The same in three arrays (2, rows), (6, rows), (n, 4), which are passed faster."""
 SizesTuple = tuple[Numbers, Numbers, Numbers, Numbers]
 """The columns of sizes of the ``Shape`` component, in its order."""
 
@@ -72,7 +76,9 @@ SizesTuple = tuple[Numbers, Numbers, Numbers, Numbers]
 def named_shapes(plain: ShapesTuple) -> Shapes:
     """Give names to the arrays."""
     cores, lengths, pool = plain
-    return Shapes(cores[0], cores[1], lengths[0], lengths[1], lengths[2], lengths[3], lengths[4], pool)
+    return Shapes(
+        cores[0], cores[1], lengths[0], lengths[1], lengths[2], lengths[3], lengths[4], lengths[5], pool
+    )
 
 
 @inlined
@@ -199,7 +205,7 @@ def derive_shape(
     if not same or shapes.first[i] != first or shapes.vertices[i] != parts:
         shapes.vertices[i], shapes.first[i] = count, first
         shapes.half_x[i], shapes.half_y[i], shapes.radius[i] = half_x, half_y, radius
-        farthest = 0.0
+        farthest = shapes.gyration[i] = 0.0
         for k in range(count):
             x, y = vertex(shapes, i, k)
             farthest = max(farthest, x * x + y * y)

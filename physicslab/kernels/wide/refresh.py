@@ -21,6 +21,7 @@ from physicslab.kernels.geometry.contact import (
     effective_masses,
     forget_points,
     note_pose,
+    on_bend,
     touch,
 )
 from physicslab.kernels.geometry.outline import Way
@@ -131,7 +132,7 @@ def _find_again(
     )  # fmt: skip
     manifold.offset_x, manifold.offset_y = way.dx, way.dy
     touch(manifold, one, two, way, motion, shapes, bounds, near.rotations, h, start, speculative_margin)
-    if manifold.count == 0 or manifold.swept != 0:
+    if manifold.count == 0 or manifold.swept != 0 or on_bend(manifold, one, two):
         if manifold.count == 0:
             forget_points(one, two)
         manifold.found, manifold.slot = 0, -1

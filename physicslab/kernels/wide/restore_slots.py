@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Flags, Numbers, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import (
     Inverse,
@@ -13,7 +13,7 @@ from physicslab.kernels.arguments import (
     MaterialsTuple,
 )
 from physicslab.kernels.geometry.contact import effective_masses
-from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, has_own_way, named_shapes
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
 from physicslab.kernels.wide.slots import clear_slot, store_slot
 
@@ -103,12 +103,11 @@ def fill_points(slots: L.Slots, slot: int, manifold: Manifold, one: Point, two: 
 
 @inlined
 def is_of_kind(kind: int, shapes: Shapes, i: int, j: int) -> bool:
-    """Whether blocks of a kind are for pairs of such shapes: discs, or boxes with either."""
+    """Whether blocks of a kind are for pairs of such shapes: of discs, or of all others with any."""
     one, other = shapes.vertices[i], shapes.vertices[j]
     if one == 1 and other == 1:
         return kind == L.DISC
-    shaped = one != 0 and other != 0
-    return kind != L.DISC and shaped and has_own_way(shapes, i) and has_own_way(shapes, j)
+    return kind != L.DISC and one != 0 and other != 0
 
 
 @inlined
@@ -158,24 +157,24 @@ def restore_slots(
 @kernel
 def remember(
     made_of: Vectors, inverse_mass: Numbers, inverse_inertia: Numbers, restitution: Numbers,
-    friction: Numbers, half_x: Numbers, half_y: Numbers, radius: Numbers,
+    friction: Numbers, half_x: Numbers, half_y: Numbers, radius: Numbers, first: Rows,
 ) -> None:  # fmt: skip
-    """Write what slots hold of each body into ``made_of`` (rows, 7)."""
+    """Write what slots hold of each body into ``made_of`` (rows, 8)."""
     for i in range(len(made_of)):
         made_of[i, 0], made_of[i, 1], made_of[i, 2] = inverse_mass[i], inverse_inertia[i], restitution[i]
         made_of[i, 3], made_of[i, 4] = friction[i], half_x[i]
-        made_of[i, 5], made_of[i, 6] = half_y[i], radius[i]
+        made_of[i, 5], made_of[i, 6], made_of[i, 7] = half_y[i], radius[i], first[i]
 
 
 @kernel
 def outdated(
     made_of: Vectors, changed: Flags, inverse_mass: Numbers, inverse_inertia: Numbers, restitution: Numbers,
-    friction: Numbers, half_x: Numbers, half_y: Numbers, radius: Numbers,
+    friction: Numbers, half_x: Numbers, half_y: Numbers, radius: Numbers, first: Rows,
 ) -> int:  # fmt: skip
     """Mark the bodies of which any of that has been ``changed`` (rows,) since :func:`remember`.
 
     Returns 0 where there are none; 1 where the contacts of none are to be in other slots; else 2: there are
-    other rows, or a body has another size, or can be moved where it could not, or the other way round.
+    other rows, or a body has another outline, or can be moved where it could not, or the other way round.
     """
     if len(made_of) != len(inverse_mass):
         return 2
@@ -183,6 +182,7 @@ def outdated(
     for i in range(len(made_of)):
         fixed = (made_of[i, 0] == 0.0) != (inverse_mass[i] == 0.0)
         sized = (made_of[i, 4] != half_x[i]) | (made_of[i, 5] != half_y[i]) | (made_of[i, 6] != radius[i])
+        sized |= made_of[i, 7] != first[i]
         weighs = (made_of[i, 0] != inverse_mass[i]) | (made_of[i, 1] != inverse_inertia[i])
         changed[i] = weighs | (made_of[i, 2] != restitution[i]) | (made_of[i, 3] != friction[i])
         found = max(found, 2 if fixed | sized else (1 if changed[i] else 0))

@@ -4,6 +4,7 @@ import time
 from pathlib import Path
 
 from physicslab.components import Velocity
+from physicslab.diagnostics.figures import columns, unit_of
 from physicslab.ecs.component import parse_path
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.text import printable
@@ -14,8 +15,8 @@ from physicslab.files.scene import file_stem
 from physicslab.languages.language import language
 from physicslab.lessons.blocks import LessonError
 from physicslab.lessons.check import row_of
-from physicslab.lessons.figures import LiveRun, columns, unit_of
 from physicslab.lessons.lesson import Lesson, Run
+from physicslab.lessons.live_run import LiveRun
 from physicslab.lessons.reader import parse_lesson
 from physicslab.lessons.setup import AS_IT_IS
 from physicslab.lessons.writer import Draft, Opened, identifier, lesson_text, name_bodies

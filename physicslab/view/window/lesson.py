@@ -5,14 +5,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from physicslab.diagnostics.figures import Figures
 from physicslab.ecs.quantity_text import Expression, InvalidText
 from physicslab.files.checks import SceneError
 from physicslab.files.replace import reason_of
 from physicslab.history import Command, Group, Remove, Spawn
 from physicslab.lessons.answers import Graded, check_answer, grade_one, read_answers, write_answers
 from physicslab.lessons.check import LessonRuns
-from physicslab.lessons.figures import Figures, LiveRun
 from physicslab.lessons.lesson import Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
+from physicslab.lessons.live_run import LiveRun
 from physicslab.lessons.setup import AS_IT_IS, Case
 from physicslab.state.attached import INSTRUMENTS
 from physicslab.state.state import Desk

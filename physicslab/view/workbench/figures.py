@@ -6,10 +6,11 @@ from typing import Literal
 
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.contacts.report import count_near_pairs
-from physicslab.diagnostics.energy import ACCOUNT_WORDS, Audit, Momentum, flows, summation
+from physicslab.diagnostics.energy import ACCOUNT_WORDS, Audit, flows, summation
 from physicslab.diagnostics.reference_solution import ReferenceSolution, reference_solution
 from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.vector import Vector2
+from physicslab.state.account import Momentum
 from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity, without_rounding
 from physicslab.view.picture.bodies import body_rows
 from physicslab.world import World

@@ -7,9 +7,9 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 from numpy.typing import NDArray
 
+from physicslab.diagnostics.figures import quantity_of
 from physicslab.ecs.quantity_text import Expression, InvalidText, evaluate
 from physicslab.lessons.check import Row, si_unit
-from physicslab.lessons.figures import quantity_of
 from physicslab.lessons.lesson import Compare, Question
 from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import rounded_up, written_unit

@@ -1,4 +1,4 @@
-"""Runs of a lesson as samples, and the figures that expressions read from them.
+"""Runs as samples, and the figures that expressions read from them.
 
 Samples are taken after each step. Between them a quantity is the polynomial through the six samples around
 it, so that a moment is not bound to steps: the error is of the sixth power of a step if nothing collides.
@@ -14,19 +14,14 @@ from collections.abc import Callable, Iterable, Sequence
 
 from physicslab.components.quantities import QUANTITIES, carrier_of, why_not_of
 from physicslab.diagnostics.quantities import Reading
-from physicslab.ecs.quantity_text import Dimension, Expression, InvalidText, Quantity
-from physicslab.files.checks import SceneError
-from physicslab.lessons.conditions import Comparison, comparison, difference
-from physicslab.lessons.lesson import Run
-from physicslab.lessons.setup import AS_IT_IS, Case, Parameters, Setup
+from physicslab.ecs.conditions import Comparison, comparison, difference
+from physicslab.ecs.quantity_text import Dimension, Expression, InvalidText, Quantity, Scope
 from physicslab.world import World
 
-_AROUND = 6
+AROUND = 6
 """Samples that an interpolation goes through."""
 _HALVINGS = 60
 """How often an interval is halved in which a moment is."""
-_ROUNDING = 1e-6
-"""Share of a step by which a sum of steps is rounded at most."""
 _SECOND = Quantity(1.0, (0, 0, 1, 0), True)
 COLLISIONS = "world.collisions"
 """The number of impacts since the run began."""
@@ -88,11 +83,11 @@ class Record:
         self.end = world.time
         self.times: list[float] = []
         self.columns: dict[str, list[float]] = {name: [] for name in names}
-        self.dimensions = {name: _dimension(unit_of(name)) for name in self.columns}
         self._sources = []
         for name in self.columns:
             entity, quantity = quantity_of(name, ids)
             self._sources.append((quantity, None if entity is None else ids[entity]))
+        self.dimensions = {name: _dimension(unit_of(name)) for name in self.columns}
 
     @property
     def samples(self) -> range:
@@ -110,7 +105,7 @@ class Record:
 
 
 class Figures:
-    """The figures of a run, and parameters: the scope in which a lesson's expressions are evaluated.
+    """The figures of a run: the scope in which expressions are evaluated, as those of lessons are.
 
     A quantity by its name is that at the end of the run. Functions of expressions look at all of it:
     ``start``, ``greatest``, ``least``, ``mean``, ``slope``, ``at(time, E)``, ``when(a < b[, n])``,
@@ -120,19 +115,22 @@ class Figures:
     ----------
     record : Record
         The samples.
-    parameters : Parameters
-        The values of the run.
+    parameters : Scope, optional
+        Values that have names.
     now : float or int, optional
         At which time [s], or at which sample, quantities are read; at the end where absent.
     """
 
-    def __init__(self, record: Record, parameters: Parameters, now: float | int | None = None) -> None:
+    def __init__(
+        self, record: Record, parameters: Scope | None = None, now: float | int | None = None
+    ) -> None:
         self.record, self.parameters = record, parameters
         self.now = record.end if now is None else now
 
     def named(self, name: str) -> Quantity | None:
         """Return the value of a parameter, of a quantity, or the ``time``."""
-        if (parameter := self.parameters.named(name)) is not None:
+        parameter = None if self.parameters is None else self.parameters.named(name)
+        if parameter is not None:
             return parameter
         column = self.record.times if name == "time" else self.record.columns.get(name)
         if column is None:
@@ -184,8 +182,8 @@ class Figures:
             return column[place]
         if not (times and times[0] <= time <= times[-1]):
             raise InvalidText(f"the run has no time {time:.6g} s")
-        first = max(0, min(place - _AROUND // 2, len(times) - _AROUND))
-        nodes = range(first, min(first + _AROUND, len(times)))
+        first = max(0, min(place - AROUND // 2, len(times) - AROUND))
+        nodes = range(first, min(first + AROUND, len(times)))
         total = 0.0
         for i in nodes:
             weight = 1.0
@@ -299,79 +297,3 @@ FUNCTIONS = frozenset(_FUNCTIONS)
 
 def _dimension(unit: str) -> Dimension:
     return Expression(unit).value().dimension if unit != "1" else Quantity(0.0).dimension
-
-
-class LiveRun:
-    """A run of a lesson that is being made: :meth:`sample` after each step of its ``world``.
-
-    Attributes
-    ----------
-    case : Case
-        What differs from the scene as it is.
-    world : World
-        What is stepped.
-    record : Record
-        The samples so far.
-    limit : float
-        The longest that it takes [s].
-    """
-
-    def __init__(self, setup: Setup, run: Run, names: Iterable[str], case: Case = AS_IT_IS) -> None:
-        self.case = Case(case.text, (*run.case.values, *case.values), case.note)
-        self.world, self._parameters = setup.world(self.case), setup.values(self.case)
-        self.record = Record(self.world, names)
-        self.record.add()
-        self._until, self._after = run.until, 0
-        self.limit = (run.seconds or run.limit).value(self._parameters).value
-
-    @property
-    def figures(self) -> Figures:
-        """What was found so far."""
-        return Figures(self.record, self._parameters)
-
-    def sample(self) -> bool:
-        """Take a sample after a step, and return whether the run has ended.
-
-        After an event a few steps more are made, for what is read between samples.
-
-        Raises
-        ------
-        SceneError
-            If the event does not come in time.
-        """
-        self.record.add()
-        if self._until is None:
-            return self.world.time >= self.limit - _ROUNDING * self.world.simulation.dt
-        self._after += bool(self._after) or self._until.margin(self.figures) > 0.0
-        if self._after < _AROUND // 2:
-            if self.world.time > self.limit:
-                raise SceneError(f"the run did not come to '{self._until.text}' within {self.limit:g} s")
-            return False
-        self.record.end = self.figures.moment(self._until.margin)
-        return True
-
-
-def record_run(
-    setup: Setup, run: Run, names: Iterable[str], case: Case = AS_IT_IS,
-    watch: Callable[[World], object] = lambda world: None,
-) -> Figures:  # fmt: skip
-    """Make a run of a lesson, and return its figures; ``watch`` is given the world at every sample.
-
-    Raises
-    ------
-    SceneError
-        If it does not end in time, or a case is not of the scene.
-    """
-    live = LiveRun(setup, run, names, case)
-    watch(live.world)
-    if run.seconds is not None:
-        for _ in live.world.stepping(seconds=live.limit):
-            live.record.add()
-            watch(live.world)
-        return live.figures
-    ended = False
-    while not ended:
-        live.world.step()
-        ended = live.sample()
-        watch(live.world)
-    return live.figures
