@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from physicslab.ecs.config import PhysicsConfig, SimulationConfig
     from physicslab.ecs.fields import InvalidValue
     from physicslab.ecs.vector import Vector2
+    from physicslab.ensembles import ensemble
     from physicslab.files.scene import SceneError, load_scene, save_scene
     from physicslab.prefabs import box, capsule, chain, circle, pendulum, polygon
     from physicslab.state.masses import Diverged
@@ -29,7 +30,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Diverged", "InvalidValue", "PhysicsConfig", "Run", "SceneError", "SimulationConfig", "Vector2", "World",
-    "box", "capsule", "chain", "circle", "describe", "load_scene", "pendulum", "polygon", "save_scene",
+    "box", "capsule", "chain", "circle", "describe", "ensemble", "load_scene", "pendulum", "polygon",
+    "save_scene",
 ]  # fmt: skip
 
 _HOMES = {
@@ -46,6 +48,7 @@ _HOMES = {
     "chain": "prefabs",
     "circle": "prefabs",
     "describe": "diagnostics.description",
+    "ensemble": "ensembles",
     "load_scene": "files.scene",
     "pendulum": "prefabs",
     "polygon": "prefabs",
