@@ -53,7 +53,7 @@ class Flow:
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
         """Return what acts besides forces, or ``None``."""
-        return None if plan.smooth else plan.obstacle
+        return None if plan.smooth else plan.obstacle or plan.collision_reason
 
     def holds(self, state: State) -> bool:
         """Whether no number was changed that the layout, or the choice of a method, depends on."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Material, Shape, Velocity
 from physicslab.components.shape import CHAIN
 from physicslab.contacts.arguments import shapes_of
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import CONTACT, FRICTION, HAND, JOINTS, MOTORS
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.geometry.shapes import ShapesTuple
@@ -155,7 +156,7 @@ class Rigid:
             q[clock], v[clock] = moment, 1.0  # the clock goes by one second a second
             step = self._motion.step(scene, state, moment, h / parts)
             if self._ode.hold_together() and not (step.refused or step.by_impulses):
-                step.refused = "joints contradict each other, or a limit: not all of them can be closed"
+                step.refused = sentence("contradiction")
             state.force_evaluations += step.evaluations
             self.energetic_impacts += step.energetic
             self.restitutions_lowered += step.lowered

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
+from physicslab.ecs.sentences import sentence
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS
 from physicslab.kernels.arguments import SpringsTuple
@@ -30,13 +31,13 @@ def why_no_spring_flow(state: State, forces: Sequence[ForceSystem]) -> str | Non
     physics, (_, a, b) = state.physics, spring_ends(state)
     for force in forces:
         if type(force) not in (SpringSystem, GravitySystem, DragSystem):
-            return f"{force.name} acts"
+            return sentence("acts", system=force.name)
     if physics.gravity_mode == "planet":
-        return "planets attract each other"
+        return sentence("planets")
     if physics.linear_damping or physics.angular_damping:
-        return "motion is damped"
+        return sentence("motion_damped")
     if state.table(Drag).present[np.concatenate((a, b))].any():
-        return "drag acts on what a spring holds"
+        return sentence("drag_held")
     return None
 
 
