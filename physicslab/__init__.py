@@ -21,20 +21,24 @@ if TYPE_CHECKING:
     from physicslab.ecs.config import PhysicsConfig, SimulationConfig
     from physicslab.ecs.fields import InvalidValue
     from physicslab.ecs.vector import Vector2
+    from physicslab.ensembles import ensemble
     from physicslab.files.scene import SceneError, load_scene, save_scene
     from physicslab.prefabs import box, capsule, chain, circle, pendulum, polygon
     from physicslab.state.masses import Diverged
+    from physicslab.state.run import Run
     from physicslab.world import World
 
 __all__ = [
-    "Diverged", "InvalidValue", "PhysicsConfig", "SceneError", "SimulationConfig", "Vector2", "World", "box",
-    "capsule", "chain", "circle", "describe", "load_scene", "pendulum", "polygon", "save_scene",
+    "Diverged", "InvalidValue", "PhysicsConfig", "Run", "SceneError", "SimulationConfig", "Vector2", "World",
+    "box", "capsule", "chain", "circle", "describe", "ensemble", "load_scene", "pendulum", "polygon",
+    "save_scene",
 ]  # fmt: skip
 
 _HOMES = {
     "Diverged": "state.masses",
     "InvalidValue": "ecs.fields",
     "PhysicsConfig": "ecs.config",
+    "Run": "state.run",
     "SceneError": "files.checks",
     "SimulationConfig": "ecs.config",
     "Vector2": "ecs.vector",
@@ -44,6 +48,7 @@ _HOMES = {
     "chain": "prefabs",
     "circle": "prefabs",
     "describe": "diagnostics.description",
+    "ensemble": "ensembles",
     "load_scene": "files.scene",
     "pendulum": "prefabs",
     "polygon": "prefabs",

@@ -16,9 +16,9 @@ from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationC
 from physicslab.ecs.fields import Field
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
-from physicslab.state.state import State
 from physicslab.stepping.accounting import book_account, close_account, open_account
 from physicslab.stepping.breaks import Overloaded, time_of_break
+from physicslab.stepping.facade import Facade
 from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.forces import add_up_forces
 from physicslab.stepping.islands import Islands
@@ -45,7 +45,7 @@ _LOOK_S, _STRIDE = 0.1, 1000
 _STEP = Field("dt", "number", minimum=MIN_TIME, maximum=MAX_TIME, unit="s", owner="step")
 
 
-class World(State):
+class World(Facade):
     """Entities, a clock, and the systems that act on them.
 
     Parameters
@@ -216,7 +216,11 @@ class World(State):
         self.compile(stepper.kernels)
         if not (stepper.keeps_balance or self.account.is_open):
             open_account(self, self.schedule.forces)
-        made = stepper.advance(self, h, self.steppers.at_once(stepper, steps))
+        apart = None if stepper.samples else self.samples
+        ahead = steps if apart is None else min(steps, apart.steps_ahead(self.time))
+        made = stepper.advance(self, h, self.steppers.at_once(stepper, ahead))
+        if apart is not None and made.steps:
+            apart.take(self, self.time + made.steps * h)
         self._follow_islands()
         return made
 

@@ -55,11 +55,11 @@ def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[s
         "scene", "time", "steps", "dt", "substeps", "integrator", "integrator_reason", "collision_method",
         "collision_reason", "contact_model", "contact_reason", "summation", "interpreted",
         "force_evaluations", "wall_s", "compile_s", "interpreted_steps", "interpreted_s", "stepper",
-        "steppers_left_out", "islands", "islands_reason", "systems", "left_out", "energy", "account",
-        "momentum_account",
+        "reason_codes", "steppers_left_out", "islands", "islands_reason", "systems", "left_out", "energy",
+        "account", "momentum_account",
         "angular_momentum_account", "momentum", "angular_momentum",
         "candidate_pairs", "contacts", "asleep", "contact_forces", "collisions", "max_penetration",
-        "divided", "advice", "entities",
+        "divided", "advice", "advice_codes", "entities",
     ]  # fmt: skip
     assert (report["scene"], report["time"], report["steps"]) == ("drop", 1.0, 60)
     assert (report["dt"], report["substeps"], report["integrator"]) == (1 / 60, 4, "exact")
@@ -68,7 +68,8 @@ def test_run_writes_the_document_of_the_contract(capsys: pytest.CaptureFixture[s
     assert 0.0 < report["wall_s"] < 10.0
     gravity = next(system for system in report["systems"] if system["name"] == "GravitySystem")
     assert gravity["calls"] > 0 and gravity["ms"] == 0.0  # its cost is part of the event loop's
-    assert {"name": "SpringSystem", "reason": "no Spring in the scene"} in report["left_out"]
+    spring = {"name": "SpringSystem", "reason": "no Spring in the scene"}
+    assert {**spring, "code": "no_component", "values": {"components": "Spring"}} in report["left_out"]
     assert set(report["energy"]) == {
         "initial", "final", "kinetic_linear", "kinetic_angular", "potential_gravity", "potential_spring",
         "exchanged", "max_relative_drift", "max_relative_change", "changed_by",

@@ -6,12 +6,13 @@ import pytest
 
 from physicslab import load_scene
 from physicslab.components import Held, Mass, Shape, Spring, Transform, Velocity
-from physicslab.diagnostics.energy import Audit, Energy, measure_account, measure_energy, measure_momentum
+from physicslab.diagnostics.energy import Audit, measure_account, measure_energy, measure_momentum
 from physicslab.diagnostics.quantities import Reading, why_undefined
 from physicslab.diagnostics.run_report import RunRecord, run_report
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import circle
+from physicslab.state.account import Energy
 from physicslab.state.state import State
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem

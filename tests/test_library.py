@@ -25,7 +25,7 @@ from physicslab import (
     load_scene,
     save_scene,
 )
-from physicslab.components import GraphLine, Mass, Rod, Spring, Transform, Velocity
+from physicslab.components import Drag, GraphLine, Mass, Rod, Spring, Transform, Velocity
 from physicslab.files.scene import parse_json
 
 
@@ -127,3 +127,24 @@ def test_the_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) 
 def test_the_package_is_a_command() -> None:
     done = subprocess.run([sys.executable, "-m", "physicslab", "--version"], capture_output=True, text=True)
     assert (done.returncode, done.stdout) == (0, f"physicslab {physicslab.__version__}\n")
+
+
+TASKS = Path(__file__).parents[1].joinpath("docs", "library.md").read_text("utf-8").split("### Four tasks")[1]
+BLOCKS = [block.split("```")[0] for block in TASKS.split("```python")[1:5]]
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=["period", "impacts", "parting", "throw"])
+def test_a_task_of_the_documents_takes_nine_lines(block: str) -> None:
+    lines = [line for line in block.splitlines() if line.strip() and "import" not in line]
+    written = [line for line in lines if line.startswith((">>>", "..."))] if ">>>" in block else lines
+    assert len(written) <= 9
+
+
+def test_the_slowest_throw_is_found_by_scipy() -> None:
+    pytest.importorskip("scipy")
+    known: dict[str, Any] = {"World": World, "circle": circle, "Drag": Drag, "Velocity": Velocity, "np": np}
+    exec(BLOCKS[3], known)
+    best, height = known["best"], known["height"]
+    assert best.fun == pytest.approx(11.1, abs=2.0)
+    for angle in (best.x - 0.02, best.x + 0.02):
+        assert height(best.fun, angle) < 1.0, "no other angle reaches it at this speed"

@@ -10,11 +10,11 @@ from physicslab.theme import DARK
 from physicslab.view.canvas import surface_cache, system_font
 from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.canvas.surface_cache import SurfaceCache
-from physicslab.view.canvas.system_font import IDEOGRAPHS
+from physicslab.view.canvas.system_font import FAR
 
 STYLE = TextStyle(20, DARK.text)
 needs_font = pytest.mark.skipif(
-    system_font.system_font() is None, reason="no font of the system has ideographs"
+    system_font.system_font("球") is None, reason="no font of the system has ideographs"
 )
 
 
@@ -22,10 +22,10 @@ def picture(words: str) -> np.ndarray:
     return pygame.surfarray.array_alpha(SurfaceCache().text(words, STYLE))
 
 
-@pytest.mark.parametrize("words", ["两个球", "ボール", "충돌", "運動"])
-def test_ideographs_are_known(words: str) -> None:
-    assert IDEOGRAPHS.fullmatch(words)
-    assert IDEOGRAPHS.split(f"a {words}: 2·10⁻⁶ µ Ω ж")[1] == words
+@pytest.mark.parametrize("words", ["两个球", "ボール", "충돌", "運動", "كرة", "כדור"])
+def test_such_letters_are_known(words: str) -> None:
+    assert FAR.fullmatch(words)
+    assert FAR.split(f"a {words}: 2·10⁻⁶ µ Ω ж")[1] == words
 
 
 @needs_font
@@ -42,8 +42,14 @@ def test_mixed_lines_are_as_wide_as_their_pieces() -> None:
     assert cache.text("Saved 红球.json", STYLE).get_size() == cache.text_size("Saved 红球.json", STYLE)
 
 
+@pytest.mark.skipif(system_font.system_font("ك") is None, reason="no font of the system has such letters")
+def test_arabic_and_hebrew_letters_are_no_boxes() -> None:
+    shapes = {picture(letter).tobytes() for letter in "كرةבדו"}
+    assert len(shapes) == 6 and picture("ك").tobytes() != picture("\U000e0fff").tobytes()
+
+
 def test_without_such_a_font_nothing_fails(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(surface_cache, "system_font", lambda: None)
+    monkeypatch.setattr(surface_cache, "system_font", lambda letter: None)
     assert picture("球").shape[0] > 0
 
 

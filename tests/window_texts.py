@@ -16,7 +16,9 @@ from physicslab.components.quantities import QUANTITIES
 from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
+from physicslab.ecs.sentences import SENTENCES
 from physicslab.export.page import player_texts
+from physicslab.integrators import INTEGRATORS, SPLIT_METHODS
 from physicslab.languages.catalogue import sources
 from physicslab.languages.language import Language
 from physicslab.scenes import SCENES
@@ -86,6 +88,8 @@ def tables() -> dict[str, list[str]]:
         "tools": [text for texts in tools for text in texts],
         "scenes": [text for one in SCENES.values() for text in (one.title, one.description)],
         "player": player_texts(), "quantities": list(QUANTITIES), "levels": [*LEVELS, *LEVELS.values()],
+        "methods": [one.title for one in (*INTEGRATORS.values(), *SPLIT_METHODS.values())],
+        "reasons": list(SENTENCES.values()),
         "themes": [theme.name for theme in THEMES],
         "fields": [text for one in fields() for text in (_label(one), one.meaning)],
     }  # fmt: skip

@@ -70,7 +70,7 @@ class Command(Protocol):
 
 COMMANDS = (
     "run", "replay", "accuracy", "stability", "bench", "scenes", "lesson", "grade", "import", "export",
-    "kernels",
+    "sweep", "kernels",
 )  # fmt: skip
 """Every command, by the name of its module, which has an underscore behind a keyword of Python."""
 

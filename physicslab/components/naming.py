@@ -16,6 +16,7 @@ from physicslab.components.trail import Trail
 from physicslab.components.transform import Transform
 from physicslab.components.velocity import Velocity
 from physicslab.ecs.text import in_words
+from physicslab.languages.sentence import Sentence
 
 _OF_BODIES = (Transform, Velocity, Mass, Material, Drag, Trail, Held, Name, Colour, Layer, MadeOf)
 """Components that do not say what an entity is."""
@@ -40,8 +41,12 @@ def name_by_kinds(number: int, kinds: Iterable[type], shape: str | None) -> str:
     """
     present = list(kinds)
     if shape is not None:
-        return f"{shape} {number}"
+        return _numbered(shape, number)
     if Velocity in present or Mass in present:
-        return f"point {number}"
+        return _numbered("point", number)
     other = next((kind for kind in present if kind not in _OF_BODIES), None)
-    return f"{in_words(other.__name__) if other is not None else 'entity'} {number}"
+    return _numbered(in_words(other.__name__) if other is not None else "entity", number)
+
+
+def _numbered(kind: str, number: int) -> str:
+    return Sentence("{kind} {number}", kind=Sentence(kind), number=number)

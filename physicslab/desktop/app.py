@@ -3,6 +3,7 @@
 import threading
 import time
 from importlib import import_module
+from typing import TYPE_CHECKING
 
 from physicslab.desktop.garbage import loading
 from physicslab.desktop.progress import PAUSE, draw_loading
@@ -10,19 +11,22 @@ from physicslab.ecs.config import WindowConfig
 from physicslab.theme import DARK
 from physicslab.view.canvas.display import Display, NoScreen, wants_to_leave
 
+if TYPE_CHECKING:
+    from physicslab.world import World
+
 __all__ = ["NoScreen", "open_window"]
 
 _PATIENCE = 0.5
 """Time [s] after which it is said that something is being loaded: later starts are there sooner."""
 
 
-def open_window(scene: str | None) -> int:
+def open_window(scene: "str | World | None") -> int:
     """Open the sandbox on a scene and return the exit status when it is closed.
 
     Parameters
     ----------
-    scene : str, optional
-        A built-in scene's name or a path; a small playground where none is named.
+    scene : str or World, optional
+        A built-in scene's name, a path or a world; a small playground where none is named.
 
     Raises
     ------

@@ -98,8 +98,8 @@ _TITLE_LIMIT = 200
 """Characters of the window's title that come from the scene."""
 
 
-def run_window(display: Display, config: WindowConfig, scene: str, *, welcomes: bool = False) -> int:
-    """Show a scene, or a lesson, until the window is closed; return the exit status.
+def run_window(display: Display, config: WindowConfig, scene: str | World, *, welcomes: bool = False) -> int:
+    """Show a scene, a lesson or a world, until the window is closed; return the exit status.
 
     Where it ``welcomes``, the cards of the first minute are shown, unless they were used before.
     Where a signal ends the program (a logout, ``kill``), the state is saved and offered at the next start.
@@ -109,18 +109,19 @@ def run_window(display: Display, config: WindowConfig, scene: str, *, welcomes: 
     SceneError
         If there is no such scene, or it is not allowed.
     """
-    lesson = scene if scene.endswith(".md") else ""
+    lesson = scene if isinstance(scene, str) and scene.endswith(".md") else ""
     scene = FIRST_SCENE if lesson else scene
-    source = Path(scene) if scene not in SCENES else scene
-    stamp = stamp_of(source)
-    world = load_scene(scene)
+    source = None if isinstance(scene, World) else scene if scene in SCENES else Path(scene)
+    stamp = None if source is None else stamp_of(source)
+    world = scene if isinstance(scene, World) else load_scene(scene)
     window = Window(display.canvas, config)
     window.scenes.source = source
     session, abandoned = _begin_session(window)
     with suppress(OSError):
         load_preferences(session_folder().with_name(_PREFERENCES), window)
     offered = window.shows_cards = welcomes and not window.welcomed
-    window.scenes.note(source, stamp)
+    if source is not None:
+        window.scenes.note(source, stamp)
     autosave = None if session is None else Autosave(session.path)
     window.scenes.recovery = Recovery(abandoned, None if session is None else session.path)
     sandbox: Sandbox | None = None

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Mass, Velocity
 from physicslab.diagnostics.step_warnings import ModelWarning
+from physicslab.ecs.sentences import sentence
 from physicslab.stepping.contact_model import why_not_rigid
 from physicslab.stepping.plan import WITHOUT_END
 from physicslab.stepping.rigid import Rigid
@@ -113,7 +114,7 @@ _LATEST = 1000
 """Number of impacts that are looked at, the last ones."""
 _SAME_TIME = 1e-12
 """Share of a step within which impacts are at one moment."""
-_BETTER = "a smaller simulation.dt, or fewer bodies"
+_BETTER = sentence("smaller_dt_or_fewer")
 _ALIGNED = 1e-9
 """Deviation of a cosine from 0 and from 1 that is rounding."""
 
@@ -147,7 +148,7 @@ def _softness(world: World, rigid: Rigid | None) -> Iterator[ModelWarning]:
     forces = np.hypot(*world.bodies.force.T) * world.bodies.inverse_mass
     h = simulation.dt / simulation.substeps
     off = max(float(forces.max(initial=0.0)) * h * h, float(graph.depth.max(initial=0.0)))
-    what = "contacts are soft; a stack that barely stands may fall, and contacts are off by about so much"
+    what = sentence("soft_contacts")
     setting = rigid_setting(world, len(graph.touching)) or _BETTER
     if off > 0.0:  # why steps were left to them has a line of its own
         why = "" if left else plan.contact_reason
@@ -195,9 +196,6 @@ def _undetermined(world: World) -> Iterator[ModelWarning]:
     k = int(found[-1])
     bodies = [int(number) for number in (body[k], other[k], other[k + 1]) if number]
     names = ", ".join(dict.fromkeys(world.label(number) for number in bodies))
-    what = (
-        "meet at one moment, and no law determines which impulses act together and which in turn: "
-        "the outcome is one of several (moments)"
-    )
+    what = sentence("undetermined")
     moments = len(np.unique(moment[first[found]]))
     yield ModelWarning(names, what, float(moments), "", 0.0, "")

@@ -11,49 +11,9 @@ import numpy as np
 from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES, UNMEASURED_MOMENTA
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels import accounts
-from physicslab.state.account import Balance
+from physicslab.state.account import Balance, Energy, Momentum
 from physicslab.stepping.accounting import balance_of, held_in, motion_totals_of
 from physicslab.world import World
-
-
-@dataclass(frozen=True, slots=True)
-class Energy:
-    """The energy of a world [J]; bodies that are static, kinematic or held do not count.
-
-    Attributes
-    ----------
-    kinetic_linear, kinetic_angular : float
-        Of translation and of rotation.
-    potential : dict of str to float
-        What each running force stores, by the force's name ("gravity", "spring", ...).
-    """
-
-    kinetic_linear: float
-    kinetic_angular: float
-    potential: dict[str, float]
-
-    @property
-    def kinetic(self) -> float:
-        """Kinetic energy [J]."""
-        return self.kinetic_linear + self.kinetic_angular
-
-    @property
-    def stored(self) -> float:
-        """Potential energy [J]; it may be negative, and where it is zero depends on the force."""
-        return sum(self.potential.values())
-
-    @property
-    def total(self) -> float:
-        """Kinetic and potential energy [J], added up in the order in which balances do (to the bit)."""
-        return sum(self.potential.values(), self.kinetic)
-
-
-@dataclass(frozen=True, slots=True)
-class Momentum:
-    """The momentum [kg m/s] of a world and its angular momentum about the origin [kg m^2/s]."""
-
-    linear: Vector2
-    angular: float
 
 
 def _motion(world: World) -> tuple[float, float, float, float, float, float, float]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Charge, Held, Mass, Molecule, Thrust, Transform
 from physicslab.diagnostics.step_warnings import ModelWarning
+from physicslab.ecs.sentences import sentence
 from physicslab.systems.coulomb import CoulombSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.molecule import MoleculeSystem
@@ -26,16 +27,16 @@ def field_warnings(world: World) -> Iterator[ModelWarning]:
     lost = thrust.entities[world.bodies.inverse_mass[thrust.rows] == 0.0]
     lost = [entity for entity in lost.tolist() if not world.has(entity, Held)]
     if lost:
-        what = "has a Thrust that moves nothing: a body with Mass and Velocity would be pushed"
-        yield ModelWarning.about(world, lost[0], what, None, "", None, "a Velocity and a Mass")
+        what = sentence("idle_thrust")
+        yield ModelWarning.about(world, lost[0], what, None, "", None, sentence("velocity_and_mass"))
 
 
 def _coincident(world: World) -> Iterator[ModelWarning]:
     """Yield the first pair, for each law that has no force between two in one place."""
     rules = (
-        (GravitySystem, Mass, "mass", "gravity"),
-        (CoulombSystem, Charge, "charge", "Coulomb's law"),
-        (MoleculeSystem, Molecule, "depth", "the force of molecules"),
+        (GravitySystem, Mass, "mass", sentence("law_of_gravity")),
+        (CoulombSystem, Charge, "charge", sentence("coulomb")),
+        (MoleculeSystem, Molecule, "depth", sentence("molecule_force")),
     )
     softened = world.physics.softening > 0.0
     for system, kind, weight, law in rules:
@@ -48,10 +49,10 @@ def _coincident(world: World) -> Iterator[ModelWarning]:
         if pair is None or not world.bodies.inverse_mass[rows[list(pair)]].any():
             continue
         one, other = (int(world.entity_index.entities[rows[n]]) for n in pair)
-        what = f"is in the place of another body: {law} has no direction there, and leaves the two out"
-        setting = "places apart" if force.crowd else "places apart, or physics.softening > 0,"
+        what = sentence("one_place", law=law)
+        setting = sentence("apart") if force.crowd else sentence("apart_or_softened")
         warning = ModelWarning.about(world, one, what, None, "", None, setting)
-        yield replace(warning, because=f"{world.label(other)} is nearer than numbers tell")
+        yield replace(warning, because=sentence("too_near", body=world.label(other)))
 
 
 def _in_one_place(position: NDArray[np.float64]) -> tuple[int, int] | None:

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Sequence
 from physicslab.components.quantities import QUANTITIES, carrier_of, why_not_of
 from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.conditions import Comparison, comparison, difference
-from physicslab.ecs.quantity_text import Dimension, Expression, InvalidText, Quantity, Scope
+from physicslab.ecs.quantity_text import Dimension, Expression, InvalidText, Quantity, Scope, Undefined
 from physicslab.world import World
 
 AROUND = 6
@@ -83,11 +83,11 @@ class Record:
         self.end = world.time
         self.times: list[float] = []
         self.columns: dict[str, list[float]] = {name: [] for name in names}
-        self.dimensions = {name: _dimension(unit_of(name)) for name in self.columns}
         self._sources = []
         for name in self.columns:
             entity, quantity = quantity_of(name, ids)
             self._sources.append((quantity, None if entity is None else ids[entity]))
+        self.dimensions = {name: _dimension(unit_of(name)) for name in self.columns}
 
     @property
     def samples(self) -> range:
@@ -181,7 +181,7 @@ class Figures:
         if place < len(times) and times[place] == time:
             return column[place]
         if not (times and times[0] <= time <= times[-1]):
-            raise InvalidText(f"the run has no time {time:.6g} s")
+            raise Undefined(f"the run has no time {time:.6g} s")
         first = max(0, min(place - AROUND // 2, len(times) - AROUND))
         nodes = range(first, min(first + AROUND, len(times)))
         total = 0.0
@@ -258,7 +258,7 @@ def _when(of: Figures, condition: Expression, number: Expression | None = None) 
     compared, n = comparison(condition), 1 if number is None else round(number.value(of).value)
     time = of.moment(lambda figures: difference(compared, figures), n)
     if math.isnan(time):
-        raise InvalidText(f"'{condition.text}': that does not happen {n} times within the run")
+        raise Undefined(f"'{condition.text}': that does not happen {n} times within the run")
     return Quantity(time, _SECOND.dimension, True)
 
 
@@ -272,7 +272,7 @@ def _peak(of: Figures, number: Expression, expression: Expression) -> Quantity:
     series, n = of.series(expression), round(number.value(of).value)
     peaks = [i for i in range(1, len(series) - 1) if series[i - 1] < series[i] >= series[i + 1]]
     if not 1 <= n <= len(peaks):
-        raise InvalidText(f"'{expression.text}': the run has {len(peaks)} peaks, not {n}")
+        raise Undefined(f"'{expression.text}': the run has {len(peaks)} peaks, not {n}")
     return _like(of, expression, of.extreme(series, peaks[n - 1], 1.0))
 
 
@@ -281,7 +281,7 @@ def _period(of: Figures, expression: Expression) -> Quantity:
     series = of.series(expression)
     ups = [i for i in range(1, len(series)) if series[i - 1] <= 0.0 < series[i]]
     if len(ups) < 2:
-        raise InvalidText(f"'{expression.text}': it crosses zero upwards fewer than twice within the run")
+        raise Undefined(f"'{expression.text}': it crosses zero upwards fewer than twice within the run")
     first, last = (of._root(lambda figures: expression.value(figures).value, i) for i in (ups[0], ups[-1]))
     return Quantity((last - first) / (len(ups) - 1), _SECOND.dimension, True)
 

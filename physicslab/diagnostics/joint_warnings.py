@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Held, Rod, Transform
 from physicslab.diagnostics.step_warnings import ModelWarning
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.joints.blocks import ACTIVE, GIVES, STATE
 from physicslab.kernels.joints.measured import AX, BX, BY, TURN_A
 from physicslab.state.joint_figures import (
@@ -41,8 +42,8 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
     world.joints.refresh(world.entity_index)
     moves = _moves(world)
     if not moves.all():
-        idle, what = joints[int(np.argmin(moves))].entity, "joins what no force moves, and does nothing"
-        yield ModelWarning.about(world, idle, what, None, "", None, "a Mass and a Velocity at one end")
+        idle, what = joints[int(np.argmin(moves))].entity, sentence("idle_joint")
+        yield ModelWarning.about(world, idle, what, None, "", None, sentence("mass_at_one_end"))
     if not moves.any():
         return
     yield from _light_to_turn(world)
@@ -52,19 +53,19 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
     if stretch > limit:
         # Other steppers than the soft one close what can be closed, to rounding.
         told = bool(dependent.any()) or not isinstance(world.stepper, Soft) or _contradict(world, limit)
-        what = "contradicts other joints: not all can be kept" if told else "does not hold what it joins"
+        what = sentence("contradicts") if told else sentence("does_not_hold")
         setting = "" if told else f"simulation.substeps = {2 * world.simulation.substeps}"
         yield ModelWarning.about(world, joints[worst].entity, what, stretch, "m", limit, setting)
     elif dependent.any():
         first = int(np.argmax(dependent))
         joint = joints[int(joints_of_rows(world)[first])]
         if joint.kind is Rod and not measured_terms(world)[first, AX : BY + 1].any():
-            what = "has both ends in one place, where a distance has no direction"
-            yield ModelWarning.about(world, joint.entity, what, None, "", None, "a Pin")
+            what = sentence("ends_in_one_place")
+            yield ModelWarning.about(world, joint.entity, what, None, "", None, sentence("a_pin"))
             return
-        what = "holds what other joints hold already: how they share the load is not determined (rows)"
+        what = sentence("redundant")
         count = float(np.count_nonzero(dependent))
-        yield ModelWarning.about(world, joint.entity, what, count, "", 0.0, "one joint less")
+        yield ModelWarning.about(world, joint.entity, what, count, "", 0.0, sentence("one_joint_less"))
 
 
 def _moves(world: World) -> NDArray[np.bool_]:
@@ -88,7 +89,7 @@ def _light_to_turn(world: World) -> Iterator[ModelWarning]:
     leverage = np.where(mass > 0.0, held * inertia / np.where(mass > 0.0, mass, 1.0), 0.0)
     worst = int(np.argmax(leverage))
     if leverage[worst] > LEVERAGE_LIMIT:
-        what = "turns too easily for its joints to be solved with all digits (mass * arm^2 / inertia)"
+        what = sentence("light_to_turn")
         setting = f"Mass.inertia = {1.01 * leverage[worst] / (LEVERAGE_LIMIT * inertia[worst]):.3g}"
         entity = int(world.entity_index.entities[ends[worst]])
         yield ModelWarning.about(world, entity, what, float(leverage[worst]), "", LEVERAGE_LIMIT, setting)

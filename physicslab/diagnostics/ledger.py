@@ -12,6 +12,7 @@ in the impulses. The sum over the points of a pair, negative, is what the impact
 
 import csv
 import io
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, TextIO
 
@@ -174,10 +175,68 @@ _HEADER = (
 )  # fmt: skip
 
 
+class ImpactReader:
+    """Reads every impact of a world, from now on, out of its ring; which is doubled where it fills up fast.
+
+    Parameters
+    ----------
+    state : State
+        Whose impacts; they are logged while ``state.contacts.read`` is true.
+
+    Attributes
+    ----------
+    lost : int
+        How many were overwritten in the ring before they could be read.
+    """
+
+    def __init__(self, state: State) -> None:
+        self._state, self.lost = state, 0
+        self.skip()
+
+    def skip(self) -> None:
+        """Begin with those that come."""
+        self._next = int(self._state.contacts.logged)
+
+    def read(self) -> Iterator[NDArray[Any]]:
+        """Yield the impacts since the last call, arrays of IMPACT (n,) in the order of the log."""
+        contacts = self._state.contacts
+        logged, ring = int(contacts.logged), len(contacts.log)
+        new = logged - self._next
+        if new <= 0:
+            return
+        self.lost += max(new - ring, 0)
+        for first in range(max(self._next, logged - ring), logged, _BLOCK):
+            number = np.arange(first, min(first + _BLOCK, logged))
+            yield contacts.log[number % ring]
+        self._next = logged
+        if new > _GROWS_FROM * ring and ring < _MAX_RING:
+            contacts.lengthen_log(2 * ring)
+
+
+def impact_table(state: State, records: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    """Return what a person wants to know of impacts, by name; arrays (n,) in SI units.
+
+    Parameters
+    ----------
+    state : State
+        The world of which they are.
+    records : array of IMPACT (n,)
+        The impacts.
+    """
+    found, (a, b) = read_impacts(records), names_of(state, records)
+    plain = ("x", "y", "normal_x", "normal_y", "normal_impulse", "tangent_impulse")
+    return {
+        "time": records["time"].copy(), "a": np.array(a, object), "b": np.array(b, object),
+        **{name: records[name].copy() for name in plain},
+        "speed_before": found.vn_before, "speed_after": found.vn_after,
+        "sliding_before": found.vt_before, "sliding_after": found.vt_after,
+        "restitution": found.e_found, "sticks": found.sticks, "energy_lost": found.energy_lost,
+    }  # fmt: skip
+
+
 class LedgerWriter:
     """Writes every impact of a world to a stream as CSV, from now on: a row each, in the order of the log.
 
-    The world's ring of impacts is read between steps, and doubled where one reading finds much of it filled.
     Numbers keep every bit. A cell is empty where there is nothing to tell: a pair's first impact has no last.
 
     Parameters
@@ -191,32 +250,25 @@ class LedgerWriter:
     ----------
     rows : int
         How many impacts were written.
-    lost : int
-        How many were overwritten in the ring before they could be read.
     """
 
     def __init__(self, stream: TextIO, state: State) -> None:
         state.contacts.read = True
         self._rows = csv.writer(stream, lineterminator="\n")
         self._rows.writerow(_HEADER)
-        self._state, self._next = state, int(state.contacts.logged)
+        self._state, self._reader = state, ImpactReader(state)
         self._last: LastTimes = {}
-        self.rows = self.lost = 0
+        self.rows = 0
+
+    @property
+    def lost(self) -> int:
+        """How many impacts were overwritten in the ring before they could be read."""
+        return self._reader.lost
 
     def write(self) -> None:
         """Write the impacts since the last call."""
-        contacts = self._state.contacts
-        logged, ring = int(contacts.logged), len(contacts.log)
-        new = logged - self._next
-        if new <= 0:
-            return
-        self.lost += max(new - ring, 0)
-        for first in range(max(self._next, logged - ring), logged, _BLOCK):
-            number = np.arange(first, min(first + _BLOCK, logged))
-            self.write_rows(contacts.log[number % ring])
-        self._next = logged
-        if new > _GROWS_FROM * ring and ring < _MAX_RING:
-            contacts.lengthen_log(2 * ring)
+        for records in self._reader.read():
+            self.write_rows(records)
 
     def write_rows(self, records: NDArray[Any]) -> None:
         """Write some impacts, an array of IMPACT (n,)."""

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Spring, Transform, Velocity
-from physicslab.diagnostics.energy import Energy, measure_momentum
+from physicslab.diagnostics.energy import measure_momentum
+from physicslab.state.account import Energy
 from physicslab.state.packed import spring_ends
 from physicslab.world import World
 

@@ -18,12 +18,13 @@ from physicslab.components.quantities import (
     UNMEASURED_MOMENTA,
     carrier_of,
 )
-from physicslab.diagnostics.energy import Accounts, Energy, Momentum, measure_account
+from physicslab.diagnostics.energy import Accounts, measure_account
 from physicslab.diagnostics.free_body import forces_on, net_force
 from physicslab.diagnostics.joints import JointState, joint_states
 from physicslab.diagnostics.period import spring_state
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.forces import springs
+from physicslab.state.account import Energy, Momentum
 from physicslab.state.joint_rows import KINDS
 from physicslab.state.masses import quiet
 from physicslab.state.packed import spring_ends

@@ -14,6 +14,7 @@ from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import ModelWarning, WorstWarnings
 from physicslab.ecs.text import printable, unique_name
 from physicslab.ecs.vector import Vector2
+from physicslab.languages.sentence import coded
 from physicslab.stepping.partition import MAX_BODIES
 from physicslab.stepping.stepper import Advancer
 from physicslab.systems.breaking import breaks_of
@@ -103,6 +104,15 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "interpreted_steps": record.interpreted_steps,
         "interpreted_s": record.interpreted_s,
         "stepper": {"name": stepper.name, "reason": stepper.reason},
+        "reason_codes": {
+            name: coded(words)
+            for name, words in (
+                ("integrator", most.plan.reason),
+                ("collision", most.plan.collision_reason),
+                ("contact", most.plan.contact_reason),
+                ("stepper", stepper.reason),
+            )
+        },
         "steppers_left_out": [{"name": left.name, "reason": left.reason} for left in most.steppers.left_out],
         "islands": [_island(world, part) for part in world.parts],
         "islands_reason": world.islands.reason if world.islands.members else world.islands.why_one,
@@ -110,7 +120,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
             {"name": name, "calls": timing.calls, "ms": timing.ms} for name, timing in timings.items()
         ],
         "left_out": [
-            {"name": left.name, "reason": left.reason}
+            {"name": left.name, "reason": left.reason, **coded(left.reason)}
             for left in world.schedule.left_out
             if left.name not in timings
         ],
@@ -128,6 +138,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "max_penetration": record.max_penetration,
         "divided": record.divided,
         "advice": advice_of(record.warnings.all),
+        "advice_codes": [coded(warning.what) for warning in record.warnings.all],
         **_joints(world),
         "entities": _bodies(world),
     }

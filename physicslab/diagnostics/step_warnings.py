@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Spring
+from physicslab.ecs.sentences import sentence
 from physicslab.integrators import Integrator
+from physicslab.languages.sentence import Sentence
 from physicslab.state.joint_rows import Role
 from physicslab.state.packed import spring_ends
 from physicslab.systems.joint_forces import JointForces
@@ -67,17 +69,24 @@ class ModelWarning:
     @property
     def told(self) -> str:
         """A warning: the entity, the fault and its size."""
-        words = f"{self.entity}: {self.what}" if self.entity else self.what
-        if self.value is not None and self.limit is not None:
-            unit = f" {self.unit}" if self.unit else ""
-            words += f": {self.value:.3g}{unit}" + (f", well up to {self.limit:.3g}" if self.limit else "")
-        return words
+        words = sentence("about", entity=self.entity, what=self.what) if self.entity else self.what
+        if self.value is None or self.limit is None:
+            return words
+        figure = f"{self.value:.3g} {self.unit}".rstrip()
+        if not self.limit:
+            return sentence("figure", what=words, figure=figure)
+        return sentence("figure_and_limit", what=words, figure=figure, limit=f"{self.limit:.3g}")
+
+    @property
+    def words(self) -> Sentence:
+        """All of it, for people."""
+        words = sentence("because", what=self.told, because=self.because) if self.because else self.told
+        if not self.setting:
+            return sentence("no_help", what=words)
+        return sentence("would_help", what=words, setting=self.setting)
 
     def __str__(self) -> str:
-        words = f"{self.told}, as {self.because}" if self.because else self.told
-        return (
-            f"{words}; {self.setting} would help" if self.setting else f"{words}; no setting is known to help"
-        )
+        return str(self.words)
 
 
 class WorstWarnings:
@@ -142,7 +151,7 @@ def _cost(world: World) -> Iterator[ModelWarning]:
     setting = f"simulation.tolerance = {max(1e-12, 1e3 * world.simulation.tolerance):.0e}"
     if stiff:
         setting = 'simulation.integrator = "implicit_midpoint"'
-    what = "force evaluations are made in a step: something is followed that is too fast to be seen"
+    what = sentence("many_evaluations")
     yield ModelWarning(None, what, made, "", EVALUATIONS_LIMIT, setting)
 
 
@@ -156,17 +165,18 @@ def _rates(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarn
     if value <= limit:
         return
     entity = _stiffest(world) if Spring in system.needs else None
-    source = "" if entity is not None else f"{system.name.removesuffix('System')}: "
+    source = "" if entity is not None else f"{system.name.removesuffix('System')}"
     if bounded:
-        what = "is too fast to be followed (omega h): its motion between steps is not shown"
+        what = sentence("not_followed")
     elif value > integrator.stability_limit:
-        what = "is too stiff for the step (omega h): it flies apart"
+        what = sentence("flies_apart")
     else:
-        what = "is resolved coarsely (omega h): its energy swings"
+        what = sentence("coarse")
     setting = _shorter(world, rate, limit, followed=bounded)
     if system.attractors > 1 and world.simulation.integrator != "auto":
         setting = 'simulation.integrator = "auto"'  # with the steps of a passage, others are still long
-    yield ModelWarning.about(world, entity, source + what, value, "", limit, setting)
+    what = sentence("about", entity=source, what=what) if source else what
+    yield ModelWarning.about(world, entity, what, value, "", limit, setting)
 
 
 def fastest_force(world: World) -> tuple[float, ForceSystem | None]:
@@ -226,7 +236,7 @@ def _phase(world: World, integrator: Integrator) -> Iterator[ModelWarning]:
     )
     if world.simulation.integrator == "auto":
         setting = ""  # it takes other steps of its own
-    what = "oscillates out of phase by now, by the error of the method"
+    what = sentence("lost_phase")
     yield ModelWarning.about(world, late, what, lost, "rad", PHASE_LIMIT, setting)
 
 
@@ -245,7 +255,7 @@ def _order(world: World) -> Iterator[ModelWarning]:
     seeing = next((force for force in forces if force.sees_velocity(world)), None)
     if seeing is not None:
         name = seeing.name.removesuffix("System")
-        what = f"{name}: {method.name} has order 1 where a force depends on velocities"
+        what = sentence("order_one", force=name, method=method.name)
         better = '"dop853"' if plan.smooth else '"auto"'
         yield ModelWarning(None, what, None, "", None, f"simulation.integrator = {better}")
 

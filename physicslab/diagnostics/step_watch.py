@@ -4,6 +4,7 @@ import numpy as np
 
 from physicslab.contacts.report import count_near_pairs
 from physicslab.diagnostics.step_warnings import ModelWarning
+from physicslab.ecs.sentences import sentence
 from physicslab.systems.breaking import breaks_of
 from physicslab.world import World
 
@@ -64,7 +65,7 @@ class StepWatch:
             return ""
         first, self._worst = self._slow is None, each
         why, setting, figures = self._reason(impacts, evaluations)
-        self._slow = ModelWarning(None, f"a step takes long: {why}", each, "s", _SLOW_S, setting)
+        self._slow = ModelWarning(None, sentence("step_takes_long", why=why), each, "s", _SLOW_S, setting)
         line = f"slow: the step to t = {world.time:.9g} s took {each:.3g} s: {why} ({figures})"
         return f"{line}; {setting} would help" if first else ""
 
@@ -105,7 +106,7 @@ class StepWatch:
         within = (log["time"] >= start) & (log["time"] < start + world.simulation.dt)
         entities, often = np.unique(log["entity_b"][within], return_counts=True)
         struck = int(entities[np.argmax(often)])
-        what = "is part of a storm of impacts: so many follow each other within a step"
+        what = sentence("storm")
         setting = 'simulation.collisions = "step"'
         self._storm = ModelWarning.about(world, struck, what, float(count), "", float(STORM_LIMIT), setting)
         return f"at t = {start:.9g} s: {self._storm}" if first else ""
@@ -116,14 +117,14 @@ class StepWatch:
         # That of the part which has evaluated its forces most often.
         method = max(world.parts, key=lambda part: part.force_evaluations).plan.integrator
         if impacts >= _STORM and any(plan.collisions == "exact" for plan in plans):
-            return "one impact follows another", 'simulation.collisions = "step"', f"{impacts:.3g} impacts"
+            return sentence("impact_after_impact"), 'simulation.collisions = "step"', f"{impacts:.3g} impacts"
         if evaluations >= _EVALUATIONS:
-            setting = "a shorter dt" if not method.chooses_steps else "a larger simulation.tolerance"
+            setting = sentence("shorter_dt") if not method.chooses_steps else sentence("larger_tolerance")
             figures = f"{evaluations:.3g} force evaluations by {method.name}"
-            return "forces change so fast that it is divided into many", setting, figures
+            return sentence("forces_change_fast"), setting, figures
         if any(plan.contacts == "rigid" and plan.collisions == "step" for plan in plans):
-            why = "rigid contacts go from one event to the next"
+            why = sentence("event_to_event")
             return why, 'simulation.contacts = "soft"', f"{evaluations:.3g} force evaluations"
         bodies = len(world.entity_index) - 1
         figures = f"{bodies} entities, {count_near_pairs(world)} near pairs, {world.substeps} substeps"
-        return "there is much to compute", "fewer bodies or substeps", figures
+        return sentence("much_to_compute"), sentence("fewer"), figures

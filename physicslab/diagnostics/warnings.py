@@ -22,6 +22,7 @@ from physicslab.diagnostics.energy import measure_account, measure_kinetic
 from physicslab.diagnostics.field_warnings import field_warnings
 from physicslab.diagnostics.joint_warnings import joint_warnings
 from physicslab.diagnostics.step_warnings import SUBSTEPS_LIMIT, ModelWarning, WorstWarnings, step_warnings
+from physicslab.ecs.sentences import listed, sentence
 from physicslab.kernels.solver.impulse import HEAVY_RATIO
 from physicslab.state.masses import quiet
 from physicslab.state.shapes import lengths_of
@@ -88,15 +89,15 @@ def _finished_otherwise(world: World) -> Iterator[ModelWarning]:
     if rigid is None:
         return
     if rigid.left_to_soft:
-        what, count = "steps were left to soft contacts", float(rigid.left_to_soft)
+        what, count = sentence("left_to_soft"), float(rigid.left_to_soft)
         yield ModelWarning(None, what, count, "", 0.0, "", because=rigid.why_soft)
     if rigid.by_impulses:
-        what, count = "steps were made by impulses in 32 parts, an error of order one", rigid.by_impulses
+        what, count = sentence("by_impulses"), rigid.by_impulses
         lost = measure_account(world).energy["numerical"]
-        why = f"{rigid.why_impulses}; {lost:.3g} J of the energy is an error by now"
+        why = sentence("and_lost_by_now", why=rigid.why_impulses, energy=f"{lost:.3g}")
         yield ModelWarning(None, what, float(count), "", 0.0, "", because=why)
     if rigid.energy_added:
-        what = "was added by moving bodies apart that overlapped"
+        what = sentence("moved_apart")
         yield ModelWarning(None, what, rigid.energy_added, "J", 0.0, "")
 
 
@@ -121,16 +122,10 @@ def _laws(world: World) -> Iterator[ModelWarning]:
     if rigid is not None:
         energetic, lowered = energetic + rigid.energetic_impacts, lowered + rigid.restitutions_lowered
     if energetic:
-        what = (
-            "impacts obey Stronge's law (the normal force gives back e^2 of the work of the approach), as "
-            "Newton's with friction would have made energy"
-        )
+        what = sentence("energetic_impacts")
         yield ModelWarning(None, what, float(energetic), "", 0.0, "")
     if lowered:
-        what = (
-            "impacts of several points at once have a lower restitution, as Newton's law with friction would "
-            "have made energy"
-        )
+        what = sentence("lowered_restitution")
         yield ModelWarning(None, what, float(lowered), "", 0.0, "")
 
 
@@ -148,8 +143,8 @@ def _refusals(world: World) -> Iterator[ModelWarning]:
 
 def _division(world: World) -> Iterator[ModelWarning]:
     if world.step_divisions > 1:
-        what = "steps are longer than the scene's, and are divided into so many"
-        yield ModelWarning(None, what, float(world.step_divisions), "", 1.0, "a shorter step")
+        what = sentence("divided")
+        yield ModelWarning(None, what, float(world.step_divisions), "", 1.0, sentence("shorter_step"))
 
 
 def _distance(world: World) -> Iterator[ModelWarning]:
@@ -165,8 +160,8 @@ def _distance(world: World) -> Iterator[ModelWarning]:
     worst = int(np.argmax(reach / size))
     limit = DISTANCE_LIMIT * float(size[worst])
     if reach[worst] >= limit:
-        what = "is so far from the origin that its contacts cannot be resolved"
-        far, better = int(batch.entities[worst]), "a place nearer to the origin"
+        what = sentence("far_away")
+        far, better = int(batch.entities[worst]), sentence("nearer_origin")
         yield ModelWarning.about(world, far, what, float(reach[worst]), "m", limit, better)
 
 
@@ -179,7 +174,7 @@ def _overlap(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     if share[worst] > OVERLAP_LIMIT:
         lighter = graph.lighter(world, int(graph.touching[worst]))
         size = float(graph.size[graph.touching[worst]])
-        what = "is pressed into another body deeper than contacts can hold"
+        what = sentence("pressed_in")
         depth, limit = float(graph.depth[worst]), OVERLAP_LIMIT * size
         yield ModelWarning.about(
             world, lighter, what, depth, "m", limit, rigid_setting(world, len(graph.touching))
@@ -200,13 +195,11 @@ def _gains(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     if not (len(a) and soft.energy_given > limit):
         return
     worst = int(np.argmax(ratio if unlike else graph.depth))
-    names = " and ".join(
-        world.label(int(world.entity_index.entities[row])) for row in (a[worst], b[worst]) if row
-    )
-    what = "press on each other, and contacts have given energy that comes from nowhere"
-    setting = "masses that differ less" if unlike else "bodies that do not overlap at the start"
-    setting = rigid_setting(world, len(a)) or f"{setting}, or a smaller simulation.dt"
-    yield ModelWarning(names, what, soft.energy_given, "J", limit, setting)
+    names = [world.label(int(world.entity_index.entities[row])) for row in (a[worst], b[worst]) if row]
+    what = sentence("energy_from_nowhere")
+    better = sentence("unlike_masses") if unlike else sentence("no_overlap_at_start")
+    setting = rigid_setting(world, len(a)) or sentence("or_smaller_dt", setting=better)
+    yield ModelWarning(listed("and", names), what, soft.energy_given, "J", limit, setting)
 
 
 def _mass_ratios(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
@@ -214,7 +207,7 @@ def _mass_ratios(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     ratio = graph.mass_ratios(world)
     if len(ratio) and ratio.max() > MASS_RATIO_LIMIT:
         lighter = graph.lighter(world, int(graph.touching[np.argmax(ratio)]))
-        what = "carries a body so much heavier that contacts cannot hold it (mass ratio)"
+        what = sentence("mass_ratio")
         setting = rigid_setting(world, len(graph.touching)) if ratio.max() <= _RIGID_MASS_RATIO else ""
         yield ModelWarning.about(world, lighter, what, float(ratio.max()), "", MASS_RATIO_LIMIT, setting)
 
@@ -229,7 +222,7 @@ def _speeds(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     if len(sizes) and sizes.max() > SPEED_LIMIT:
         worst = int(np.argmax(sizes))
         setting = _more_substeps(world, float(sizes[worst]) / SPEED_LIMIT)
-        what = "passes so many sizes of a body in a substep that impacts after the first may be missed"
+        what = sentence("passes_sizes")
         faster = graph.faster(world, worst)
         yield ModelWarning.about(world, faster, what, float(sizes[worst]), "", SPEED_LIMIT, setting)
 
@@ -244,7 +237,7 @@ def _spins(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
     angles = np.abs(world.table(Velocity)["angular"][rows]) * h
     if len(angles) and angles.max() > SPIN_LIMIT:
         setting = _more_substeps(world, float(angles.max()) / SPIN_LIMIT)
-        what = "turns so far in a substep that its corners may hit anywhere"
+        what = sentence("turns_far")
         spinning = int(world.entity_index.entities[rows[np.argmax(angles)]])
         yield ModelWarning.about(world, spinning, what, float(angles.max()), "rad", SPIN_LIMIT, setting)
 
@@ -256,13 +249,13 @@ def _falls(world: World) -> Iterator[ModelWarning]:
         sizes = world.physics.gravity.magnitude * h * h / world.bodies.smallest
         if sizes <= FALL_LIMIT:
             return
-        what = "gravity carries bodies so many sizes of the smallest in a substep that they may pass others"
-        yield ModelWarning(None, what, sizes, "", FALL_LIMIT, "a smaller simulation.dt")
+        what = sentence("falls_far")
+        yield ModelWarning(None, what, sizes, "", FALL_LIMIT, sentence("smaller_dt"))
 
 
 def _more_substeps(world: World, factor: float) -> str:
     needed = math.ceil(world.simulation.substeps * factor * _PEAK_MARGIN)
-    return f"simulation.substeps = {needed}" if needed <= SUBSTEPS_LIMIT else "a smaller simulation.dt"
+    return f"simulation.substeps = {needed}" if needed <= SUBSTEPS_LIMIT else sentence("smaller_dt")
 
 
 RULES: tuple[Callable[[World], Iterator[ModelWarning]], ...] = (

@@ -26,6 +26,10 @@ class InvalidText(ValueError):
     """A text is no number with a unit; the message is one line that shows what is wrong."""
 
 
+class Undefined(InvalidText):
+    """An expression stands for no number where its names have the values that they have."""
+
+
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """A value in SI, the powers of its unit, and whether a unit is named: a pure number fits any."""
@@ -173,9 +177,10 @@ class Expression:
         try:
             return self._value(self.node, scope)
         except (OverflowError, ZeroDivisionError):
-            raise InvalidText(f"'{_shown(self.text)}' is not finite") from None
+            raise Undefined(f"'{_shown(self.text)}' is not finite") from None
         except ValueError as error:
-            raise error if isinstance(error, InvalidText) else self._no_number() from None
+            no_number = Undefined(f"'{_shown(self.text)}' is no number")
+            raise error if isinstance(error, InvalidText) else no_number from None
 
     def names(self) -> Iterator[str]:
         """Yield what it refers to that is neither a unit nor a constant: ``th``, ``ball.x``, ``period``."""
@@ -396,7 +401,7 @@ def _combined(kind: ast.operator, left: Quantity, right: Quantity, shown: str) -
                 raise InvalidText(f"'{shown}': a unit to a broken power")
             raised = left.value**right.value
             if isinstance(raised, complex):
-                raise InvalidText(f"'{shown}' is no real number")
+                raise Undefined(f"'{shown}' is no real number")
             return Quantity(raised, tuple(map(int, raised_to)), has_unit)
     raise InvalidText(f"'{shown}' is no number")
 

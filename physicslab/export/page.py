@@ -3,11 +3,12 @@
 import html
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any
 
+from physicslab.diagnostics.energy import measure_account
 from physicslab.ecs.text import printable
 from physicslab.export.look import look, style
 from physicslab.export.packing import pack
@@ -159,6 +160,16 @@ def run_document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> d
         "view": world.view or extent_of_run(world, recorder),
         "data": pack(recorder.columns),
     }
+
+
+def page_of(instants: Iterable[World], name: str) -> bytes:
+    """Return the page that plays a world at one instant after another, in UTF-8."""
+    recorder: RunRecorder | None = None
+    for world in instants:
+        recorder = recorder or RunRecorder(world)
+        recorder.write(world, measure_account(world))
+    assert recorder is not None
+    return page(world, name, [run_document(world, recorder, [])])
 
 
 def _part(name: str) -> str:

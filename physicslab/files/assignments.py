@@ -7,7 +7,7 @@ from typing import Any
 from physicslab.ecs.component import Component, Field, InvalidValue
 from physicslab.ecs.quantity_text import InvalidText, evaluate_as
 from physicslab.files.checks import SceneError, shown
-from physicslab.files.places import SECTIONS, Section, entity_names, known_words, read_path, words_of
+from physicslab.files.places import SECTIONS, Place, Section, entity_names, known_words, read_path, words_of
 from physicslab.files.reader import check_scene
 from physicslab.files.writer import write_scene
 from physicslab.world import World
@@ -50,6 +50,27 @@ def assign(world: World, texts: Sequence[str]) -> None:
             _check_held(world.component(names[name], component), name, fields)
 
 
+def put(world: World, values: Mapping[Place, Any]) -> None:
+    """Set fields, or parts of vectors, to values: those of one component are checked together.
+
+    Raises
+    ------
+    SceneError
+        If one cannot have its value, or if all together make a scene that none may be.
+    """
+    given: dict[tuple[str, type[Component] | Section], tuple[Place, dict[str, tuple[str, Any]]]] = {}
+    for place, value in values.items():
+        _, fields = given.setdefault((place.name, place.kind), (place, {}))
+        whole = fields[place.spec.name][1] if place.spec.name in fields else place.read(world)
+        if place.part:
+            x, y = whole
+            value = (value, y) if place.part == "x" else (x, value)
+        fields[place.spec.name] = str(value), value
+    for (name, kind), (place, fields) in given.items():
+        _replace(world, name, place.entity, kind, fields, place.option)
+    check_scene(write_scene(world), next(iter(values)).option if values else "")
+
+
 def _value(spec: Field, text: str, names: Mapping[str, int], where: str) -> Any:
     """Return the value that a text stands for, as the field's component takes it."""
     if text == "null" and (spec.derived or spec.kind == "entity"):
@@ -76,6 +97,7 @@ def _replace(
     entity: int,
     kind: type[Component] | Section,
     fields: Mapping[str, tuple[str, Any]],
+    option: str = "--set",
 ) -> None:
     """Put a component with these values in the place of the one that the entity has, or such laws."""
     values = {field: value for field, (_, value) in fields.items()}
@@ -87,7 +109,7 @@ def _replace(
         made = component(**{**world.component(entity, component).given(), **values})
     except InvalidValue as error:
         field, (text, _) = next(iter(fields.items()))
-        where = words_of(name, kind, next(spec for spec in kind.FIELDS if spec.name == field))
+        where = words_of(name, kind, next(spec for spec in kind.FIELDS if spec.name == field), option)
         if error.field in fields:
             where = f"{where.removesuffix(field)}{error.field} = {shown(fields[error.field][0])}:"
         else:

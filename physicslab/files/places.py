@@ -34,8 +34,8 @@ class Place:
         The field.
     part : str
         ``"x"`` or ``"y"``; empty for the whole field.
-    words : str
-        How messages begin that name it.
+    option : str
+        What messages begin with: where it was given.
     """
 
     name: str
@@ -43,7 +43,12 @@ class Place:
     kind: type[Component] | Section
     spec: Field
     part: str
-    words: str
+    option: str
+
+    @property
+    def words(self) -> str:
+        """How messages begin that name it."""
+        return words_of(self.name, self.kind, self.spec, self.option)
 
     @property
     def field(self) -> str:
@@ -125,12 +130,11 @@ def find_place(
     whole = path if part is None else part["whole"]
     names = entity_names(world) if names is None else names
     name, kind, spec, _ = read_path(world, names, f"{whole}={value}", option, value)
-    words = words_of(name, kind, spec, option)
+    found = Place(name, names.get(name, 0), kind, spec, letter, option)
     if letter and spec.kind != "vector":
-        raise SceneError(
-            f"{words} = {shown(value)}: must be a number, or a part of a vector; it has no .{letter}"
-        )
-    return Place(name, names.get(name, 0), kind, spec, letter, words)
+        allowed = f"must be a number, or a part of a vector; it has no .{letter}"
+        raise SceneError(f"{found.words} = {shown(value)}: {allowed}")
+    return found
 
 
 def read_path(

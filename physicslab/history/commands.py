@@ -14,6 +14,7 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.text import shortened
 from physicslab.ecs.vector import Vector2
 from physicslab.files.reader import checked_scene_text
+from physicslab.languages.sentence import Sentence
 from physicslab.world import World
 
 
@@ -65,7 +66,8 @@ class Spawn:
         kinds = {type(part).__name__: part for part in self.components}
         shape, made = kinds.get("Shape"), next(iter(kinds), "entity").lower()
         made = str(getattr(shape, "kind", made if "Transform" not in kinds else "point"))
-        return f"made {_with_article(made)}" + (f", {self.name}" if self.name else "")
+        words = Sentence("made an {thing}" if _takes_an(made) else "made a {thing}", thing=Sentence(made))
+        return Sentence("{what}, {name}", what=words, name=self.name) if self.name else words
 
     def carry_out(self, world: World) -> Spawn:
         """Make the entity; return the command with its number."""
@@ -81,7 +83,7 @@ class Remove:
 
     def words(self, world: World) -> str:
         """Return what it does, in plain English."""
-        return f"removed {world.label(self.entity)}"
+        return Sentence("removed {what}", what=world.label(self.entity))
 
     def carry_out(self, world: World) -> Remove:
         """Remove the entity."""
@@ -112,7 +114,8 @@ class SetField:
         """Return what it does, in plain English."""
         spec = _field(_kind(self.component), self.field)
         unit = "" if spec.unit in ("", "1") else f" {spec.unit}"
-        return f"{self.field} of {world.label(self.entity)}: {shown_value(self.value)}{unit}"
+        owner, value = world.label(self.entity), f"{shown_value(self.value)}{unit}"
+        return Sentence("{field} of {body}: {value}", field=Sentence(self.field), body=owner, value=value)
 
     def carry_out(self, world: World) -> SetField:
         """Set the field."""
@@ -141,8 +144,10 @@ class AddComponent:
         """Return what it does, in plain English."""
         label = world.label(self.entity)
         if isinstance(self.component, Name):
-            return f"named {label}: {self.component.id}"
-        return f"gave {label} {_with_article(type(self.component).__name__)}"
+            return Sentence("named {body}: {name}", body=label, name=self.component.id)
+        part = type(self.component).__name__
+        words = "gave {body} an {part}" if _takes_an(part) else "gave {body} a {part}"
+        return Sentence(words, body=label, part=Sentence(part))
 
     def carry_out(self, world: World) -> AddComponent:
         """Add the component."""
@@ -159,7 +164,8 @@ class RemoveComponent:
 
     def words(self, world: World) -> str:
         """Return what it does, in plain English."""
-        return f"took {self.component} from {world.label(self.entity)}"
+        part = Sentence(self.component)
+        return Sentence("took {part} from {body}", part=part, body=world.label(self.entity))
 
     def carry_out(self, world: World) -> RemoveComponent:
         """Take the component."""
@@ -285,5 +291,5 @@ def shown_value(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float | int) else shortened(" ".join(str(value).split()))
 
 
-def _with_article(noun: str) -> str:
-    return f"{'an' if noun[:1].lower() in 'aeiou' else 'a'} {noun}"
+def _takes_an(noun: str) -> bool:
+    return noun[:1].lower() in "aeiou"

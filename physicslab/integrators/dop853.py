@@ -2,8 +2,11 @@
 
 import math
 
+import numpy as np
+from numpy.typing import NDArray
+
 from physicslab.integrators.integrator import Integrator, StepTooSmall
-from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853
+from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853, dop853_samples
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 
@@ -15,16 +18,19 @@ _MAX_COSTLY = 100_000
 """The same where Python computes a force, or joints are solved: they take a second or two."""
 
 
-def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
+def _floor(state: State, ode: OdeSystem) -> float:
+    """Return how far rounding puts off accelerations [m/s^2] of what may come to rest."""
     rests = len(ode.damping) or any(force.sees_velocity(state) for force in ode.forces)
     floor = max((force.rounding_floor(state) for force in ode.forces), default=0.0) if rests else 0.0
+    return floor if math.isfinite(floor) else 0.0
+
+
+def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     q_low, v_low = ode.remainders(state)
-    tolerance, costly = ode.tolerance, ode.interpreted or ode.joined
-    most = _MAX_COSTLY if costly else _MAX_EVALUATIONS
+    tolerance, most = ode.tolerance, _most(ode)
     made = dop853(
         ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.damped_calls, ode.places,
-        steps * h, tolerance, state.simulation.dt, most, ode.free_bodies, ode.steepness,
-        floor if math.isfinite(floor) else 0.0,
+        steps * h, tolerance, state.simulation.dt, most, ode.free_bodies, ode.steepness, _floor(state, ode),
     )  # fmt: skip
     if made == NOT_FINITE:
         raise StepTooSmall(f"forces are no longer finite at t = {state.time:.9g} s")
@@ -42,6 +48,20 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     return made
 
 
+def _most(ode: OdeSystem) -> int:
+    return _MAX_COSTLY if ode.interpreted or ode.joined else _MAX_EVALUATIONS
+
+
+def _sample(state: State, ode: OdeSystem, spans: NDArray[np.float64], into: NDArray[np.float64]) -> None:
+    q_low, v_low = ode.remainders(state)
+    state.compile((dop853_samples,))
+    dop853_samples(
+        ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.damped_calls, ode.places,
+        spans, ode.tolerance, state.simulation.dt, _most(ode), ode.free_bodies, ode.steepness,
+        _floor(state, ode), into[0], into[1],
+    )  # fmt: skip
+
+
 DOP853 = Integrator(
     name="dop853",
     title="Dormand-Prince 8(5,3), adaptive",
@@ -51,4 +71,5 @@ DOP853 = Integrator(
     flow=_flow,
     kernels=(dop853,),
     chooses_steps=True,
+    sample=_sample,
 )

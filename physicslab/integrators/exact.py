@@ -5,6 +5,9 @@ the solution has its own energy, of which dampers and drag take what is lost
 (:mod:`physicslab.ode.closed_form_account`).
 """
 
+import numpy as np
+from numpy.typing import NDArray
+
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.forces.bookings import ACCOUNTS
 from physicslab.kernels.ode.propagate import propagate
@@ -29,6 +32,16 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     return 0
 
 
+def _sample(state: State, ode: OdeSystem, spans: NDArray[np.float64], into: NDArray[np.float64]) -> None:
+    form, n = closed_form(state, ode.forces), 2 * len(ode.layout.moving)
+    for k, after in enumerate(np.cumsum(spans).tolist()):
+        position, velocity = form.motion(state)
+        form.advance(position, velocity, after)
+        into[0, k], into[1, k] = ode.q, ode.v
+        into[0, k, :n], into[1, k, :n] = position.ravel(), velocity.ravel()
+        into[0, k, n : ode.layout.moving_count] += after * ode.v[n : ode.layout.moving_count]
+
+
 EXACT = Integrator(
     name="exact",
     title="Closed form",
@@ -39,4 +52,5 @@ EXACT = Integrator(
     flow=_flow,
     kernels=(propagate,),
     chooses_steps=True,
+    sample=_sample,
 )

@@ -92,7 +92,7 @@ def in_processes[Result](
                 warmup.poll(0.1)
     # A fork would share threads of the compiled code: each worker imports for itself.
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, context, initializer=_end_with_parent) as pool:
+    with ProcessPoolExecutor(workers, context, initializer=end_with_parent) as pool:
         futures = {name: future for run in runs for future in [pool.submit(_each, work, run)] for name in run}
         try:
             yield from _in_order(futures, names)
@@ -100,7 +100,7 @@ def in_processes[Result](
             pool.shutdown(wait=False, cancel_futures=True)
 
 
-def _end_with_parent() -> None:
+def end_with_parent() -> None:
     """Let this process end when the one that began it does, which may be killed."""
     threading.Thread(target=_follow_parent, name="parent", daemon=True).start()
 

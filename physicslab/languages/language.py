@@ -6,6 +6,7 @@ from functools import cache, lru_cache
 from gettext import NullTranslations
 
 from physicslab.languages.catalogue import SOURCE, sources, translations
+from physicslab.languages.sentence import Sentence
 
 _POINT = re.compile(r"(?<![\w.])(\d+)\.(\d+(?:e[+-]?\d+)?)(?!\w|\.\w)")
 """A number with a decimal point, which is no part of a name."""
@@ -67,14 +68,25 @@ class Language:
     def reword(self, text: str) -> str:
         """Return a finished text of the program in this language, also the numbers in it.
 
-        A sentence is known by what it has around its gaps, ``"Saved {file}"``, and what stands in these is
-        reworded as well; several lines are, each for itself. Any other text stays, but for its numbers.
+        A :class:`Sentence` is said as it was made, and names in its gaps stay. Of other texts a sentence is
+        known by what it has around its gaps, ``"Saved {file}"``, and what stands in these is reworded as
+        well; several lines are, each for itself. Any other text stays, but for its numbers.
 
         >>> [language(code).reword("undo: 2.5 m") for code in ("de", "en")], language("de").reword("undo")
         (['undo: 2,5 m', 'undo: 2.5 m'], 'Rückgängig')
         """
+        if isinstance(text, Sentence) and text.values:
+            return self._filled(text)
         has_words = any(map(str.isalpha, text))
         return self._reworded(text) if has_words else self.decimal(text)
+
+    def _filled(self, text: Sentence) -> str:
+        """Return a sentence whose gaps are known."""
+        said = {
+            name: self.reword(value) if isinstance(value, Sentence) else self.decimal(value)
+            for name, value in text.values.items()
+        }
+        return self._catalogue.gettext(text.template).format(**said)
 
     def _found(self, text: str) -> str:
         for written in (text, text[0].swapcase() + text[1:]):  # as within a sentence, or where one begins

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
+from physicslab.ecs.sentences import listed, sentence
 from physicslab.ecs.vector import rotated
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.state.packed import spring_ends
@@ -78,7 +79,7 @@ def closed_form(state: State, forces: Sequence[ForceSystem]) -> ClosedForm:
     bodies, physics, mass = state.bodies, state.physics, state.table(Mass)["mass"]
     inverse = bodies.inverse_mass[rows]
     if not np.isfinite(inverse).all():
-        raise NoClosedForm("a mass is too small for its inverse to be a number")
+        raise NoClosedForm(sentence("mass_too_small"))
     free = inverse > 0.0
     gravity = np.zeros((n, 2))
     gravity[free] = uniform
@@ -98,8 +99,12 @@ def closed_form(state: State, forces: Sequence[ForceSystem]) -> ClosedForm:
 def _words(forces: Sequence[ForceSystem], damped: bool) -> str:
     uniform = any(type(force) not in _KNOWN for force in forces)
     springs = any(type(force) is SpringSystem for force in forces)
-    parts = ["uniform gravity"] * uniform + ["springs to fixed points"] * springs + ["linear drag"] * damped
-    return (" and ".join(parts) or "no force") + " alone"
+    parts = [sentence("uniform_gravity")] * uniform
+    parts += [sentence("anchored_springs")] * springs
+    parts += [sentence("linear_drag")] * damped
+    if not parts:
+        return sentence("no_force")
+    return sentence("forces_alone_act", forces=listed("and", parts))
 
 
 def _uniform(state: State, forces: Sequence[ForceSystem]) -> tuple[float, float]:
@@ -111,11 +116,15 @@ def _uniform(state: State, forces: Sequence[ForceSystem]) -> tuple[float, float]
         uniform = force.uniform_alone(state)
         if uniform is None:
             attracts = force.attractors > 0
-            why = "bodies attract each other" if attracts else f"the force of {force.name} has no closed form"
+            why = (
+                sentence("attraction")
+                if attracts
+                else sentence("force_without_closed_form", system=force.name)
+            )
             raise NoClosedForm(why)
         x, y = x + uniform.x, y + uniform.y
     if (state.table(Drag)["quadratic"][state.batch(Drag, Velocity, Mass).rows] > 0.0).any():
-        raise NoClosedForm("there is quadratic drag")
+        raise NoClosedForm(sentence("quadratic_drag"))
     return x, y
 
 
@@ -131,10 +140,10 @@ def _hang(state: State, form: ClosedForm) -> None:
         if not any(bodies.inverse_mass[end] > 0.0 for end in moving):
             continue
         if len(moving) > 1:
-            raise NoClosedForm(f"the spring of {label} joins two bodies that move")
+            raise NoClosedForm(sentence("joins_two", body=label))
         side, body, other = ("a", end_a, end_b) if velocity[end_a] else ("b", end_b, end_a)
         if state.table(Spring)[f"anchor_{side}"][spring].any():
-            raise NoClosedForm(f"the spring of {label} holds its body beside the middle, and turns it")
+            raise NoClosedForm(sentence("turned_by_spring", body=label))
         of_body.setdefault(body, []).append((spring, _fixed_point(state, spring, side, other)))
     for body, held in of_body.items():
         _hang_body(state, form, index[body], held)
@@ -186,9 +195,9 @@ def _hang_in_line(
     speed = float(np.hypot(*velocity)) + rate * float(lengths.max())  # what rounding is measured against
     for vector, scale in ((velocity, speed), (form.acceleration[i], float(np.hypot(*form.acceleration[i])))):
         if abs(float(normal @ vector)) > _IN_LINE * scale:
-            raise NoClosedForm(f"{label} does not stay on the line of its springs")
+            raise NoClosedForm(sentence("off_line", body=label))
     if (np.abs(reach @ normal) > _IN_LINE * lengths.max()).any():
-        raise NoClosedForm(f"{label} does not stay on the line of its springs")
+        raise NoClosedForm(sentence("off_line", body=label))
     side = np.sign(reach @ line)
     rate2, drag = float(stiffness.sum() * inverse), float(damping.sum() * inverse) + form.drag[i, 0]
     acceleration = float(form.acceleration[i] @ line)
@@ -208,4 +217,4 @@ def _hang_in_line(
         room = np.abs(form.centre[i, 0] - points @ line)
         sides = np.sign(form.centre[i, 0] - points @ line)
         if (rigid & ((room <= swing) | (sides != side))).any():
-            raise NoClosedForm(f"{label} may swing through the fixed end of its spring")
+            raise NoClosedForm(sentence("through_end", body=label))

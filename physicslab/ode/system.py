@@ -2,7 +2,8 @@
 
 import ctypes
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -186,8 +187,20 @@ class OdeSystem:
         n = self.layout.moving_count
         if not self._carries:
             return np.zeros(n), np.zeros(n)
+        if self._low is not None:
+            return self._low  # of an earlier call since the state was gathered
         self._low = state.remainders.of(self._keys, self.q[:n], self.v[:n])
         return self._low
+
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """Let a method be tried in a ``with`` block: after it the state is as it was gathered."""
+        q, v, steepness = self.q.copy(), self.v.copy(), self.steepness.copy()
+        try:
+            yield
+        finally:
+            self.q, self.v, self._low = q, v, None
+            self.steepness[:] = steepness
 
     def scatter(self, state: State, span: float) -> None:
         """Put the state back into the tables; what no force turns has turned steadily for ``span`` s."""
@@ -207,13 +220,11 @@ class OdeSystem:
         steady = layout.steady
         if len(steady):
             spin, c = velocity["angular"][steady], state.physics.angular_damping
-            if not c:
-                transform["angle"][steady] += spin * span
-                return
-            free = state.bodies.inverse_mass[steady] > 0.0
-            transform["angle"][steady] += spin * np.where(free, -np.expm1(-c * span) / c, span)
-            velocity["angular"][steady] = np.where(free, spin * np.exp(-c * span), spin)
-            self._book_steady(state, spin, c * span)
+            (transform["angle"][steady],), (velocity["angular"][steady],) = steady_turn(
+                state, steady, np.array([span])
+            )
+            if c:
+                self._book_steady(state, spin, c * span)
 
     def set_going(self) -> None:
         """Change speeds that joints do not allow, and bring motors to theirs, by impulses."""
@@ -393,3 +404,16 @@ class OdeSystem:
                 state.time = start
 
         return call
+
+
+def steady_turn(
+    state: State, rows: NDArray[np.int64], after: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return angles [rad] and rates [rad/s] (n, rows) of what no force turns, after times [s] (n,)."""
+    spin, angle = state.table(Velocity)["angular"][rows], state.table(Transform)["angle"][rows]
+    c, time = state.physics.angular_damping, after[:, None]
+    if not c:
+        return angle + spin * time, np.broadcast_to(spin, (len(after), len(rows)))
+    free = state.bodies.inverse_mass[rows] > 0.0
+    turned = spin * np.where(free, -np.expm1(-c * time) / c, time)
+    return angle + turned, np.where(free, spin * np.exp(-c * time), spin)

@@ -1,11 +1,13 @@
 """What changed the energy and the momentum of a world, by cause: kept where it happens."""
 
 import math
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.ecs.vector import Vector2
 from physicslab.kernels.accounts import BALANCE, BEFORE, BOOK, CAUSES, EDITS, HAND
 
 
@@ -16,6 +18,46 @@ class Balance(NamedTuple):
     px: float
     py: float
     spin: float
+
+
+@dataclass(frozen=True, slots=True)
+class Energy:
+    """The energy of a world [J]; bodies that are static, kinematic or held do not count.
+
+    Attributes
+    ----------
+    kinetic_linear, kinetic_angular : float
+        Of translation and of rotation.
+    potential : dict of str to float
+        What each running force stores, by the force's name ("gravity", "spring", ...).
+    """
+
+    kinetic_linear: float
+    kinetic_angular: float
+    potential: dict[str, float]
+
+    @property
+    def kinetic(self) -> float:
+        """Kinetic energy [J]."""
+        return self.kinetic_linear + self.kinetic_angular
+
+    @property
+    def stored(self) -> float:
+        """Potential energy [J]; it may be negative, and where it is zero depends on the force."""
+        return sum(self.potential.values())
+
+    @property
+    def total(self) -> float:
+        """Kinetic and potential energy [J], added up in the order in which balances do (to the bit)."""
+        return sum(self.potential.values(), self.kinetic)
+
+
+@dataclass(frozen=True, slots=True)
+class Momentum:
+    """The momentum [kg m/s] of a world and its angular momentum about the origin [kg m^2/s]."""
+
+    linear: Vector2
+    angular: float
 
 
 class KeptAccount(NamedTuple):

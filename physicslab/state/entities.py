@@ -14,6 +14,7 @@ from physicslab.ecs.context import Active, create_numbered, next_number, switch
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.table import Batch, Table
 from physicslab.ecs.text import printable, shortened, suggestion
+from physicslab.languages.sentence import proper
 
 _numbers = itertools.count(1)
 _NO_COMPONENTS = ("builtins", "numpy")
@@ -23,7 +24,7 @@ _NO_COMPONENTS = ("builtins", "numpy")
 def label_in_context(entity: int) -> str:
     """Return the label of an entity that is there, where the context of its world is active."""
     named = esper.try_component(entity, Name)
-    return named.id if named is not None else plain_name(entity, esper.components_for_entity(entity))
+    return proper(named.id) if named is not None else plain_name(entity, esper.components_for_entity(entity))
 
 
 class Entities:

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from physicslab.components import Velocity, Weld
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.entity_index import EntityIndex
+from physicslab.ecs.sentences import sentence
+from physicslab.languages.sentence import Sentence
 from physicslab.state.entities import label_in_context
 from physicslab.state.joint_order import NO_BLOCKS, order_rows
 from physicslab.state.joint_rows import KINDS, Joined, Measure, Role, Row, Term, ends_of, measured
@@ -202,17 +204,17 @@ class Joints:
     def why_not_smooth(self) -> str | None:
         """Return which joint has other rows, or ``None``."""
         left = (joint.kind.__name__ for joint in self.joints if not self.solved[joint.own].all())
-        return next((f"a {kind} has a limit, or a motor that may stall" for kind in left), None)
+        return next((sentence("joint_limit", joint=Sentence(kind)) for kind in left), None)
 
     def why_not(self, roles: Collection[Role], measures: Collection[Measure], terms: int = 2) -> str | None:
         """Return which joint has rows of others than these, or of more terms, or ``None``."""
         for joint in self.joints:
             own = joint.own
             if not set(self.role[own].tolist()) <= {*roles} or (terms < 2 and self.second[own].max() >= 0):
-                return f"a {joint.kind.__name__} has rows that it does not solve"
+                return sentence("rows_not_solved", joint=Sentence(joint.kind.__name__))
             ends = [*range(own.start, own.stop), *self.second[own][self.second[own] >= 0].tolist()]
             if not set(self.measure[ends].tolist()) <= {*measures}:
-                return f"a {joint.kind.__name__} has rows that it does not solve"
+                return sentence("rows_not_solved", joint=Sentence(joint.kind.__name__))
         return None
 
     def kept(self) -> Iterator[tuple[int, str, list[float]]]:

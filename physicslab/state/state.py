@@ -13,6 +13,7 @@ from physicslab.state.contacts import Contacts
 from physicslab.state.entities import Entities
 from physicslab.state.joints import Joints
 from physicslab.state.remainders import NO_REMAINDERS, Remainders
+from physicslab.state.samples import Samples
 from physicslab.state.sleep import Sleep
 
 SCENE_TEXTS: Mapping[str, int | None] = {"name": 1_000, "title": 200, "description": None}
@@ -97,6 +98,8 @@ class State(Entities):
         Which bodies have come to rest, and are not simulated until something wakes them.
     account : Account
         What changed the energy and the momentum, by cause.
+    samples : Samples, optional
+        What is filled with the motion while the world is advanced.
     """
 
     # An attribute that is misspelt, or belongs elsewhere, would be kept and do nothing.
@@ -104,7 +107,7 @@ class State(Entities):
         "_physics", "_simulation", "_waited_before", "account", "bodies", "brought_back", "checkpoint",
         "collisions", "contacts", "description", "desk", "event_driven", "fastest_rates", "force_evaluations",
         "generation", "has_forces", "joints", "kick_before_contacts", "moment", "motion_edits", "name",
-        "remainders", "revision", "rigid_contacts", "sleep", "stale", "step_divisions", "steps",
+        "remainders", "revision", "rigid_contacts", "samples", "sleep", "stale", "step_divisions", "steps",
         "substeps", "time", "title", "uniform_forces", "view", "window",
     )  # fmt: skip
 
@@ -131,6 +134,7 @@ class State(Entities):
         self.fastest_rates: dict[str, float] = {}
         self.checkpoint = Checkpoint()
         self.account = Account()
+        self.samples: Samples | None = None
         self.stale = True
         super().__init__()
 

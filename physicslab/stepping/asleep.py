@@ -3,6 +3,7 @@
 from typing import Any
 
 from physicslab.contacts.islands import all_asleep
+from physicslab.ecs.sentences import sentence
 from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.stepper import Advance
@@ -17,15 +18,16 @@ class Asleep:
     leaps: bool = False
     keeps_balance: bool = False
     leaves_forces: bool = True
+    samples: bool = False
     kernels: tuple[Any, ...] = ()
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
-        self.reason = "everything sleeps"
+        self.reason = sentence("everything_sleeps")
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
         """Return why bodies cannot sleep, or ``None``."""
-        return None if state.sleep.on else "bodies do not fall asleep"
+        return None if state.sleep.on else sentence("stays_awake")
 
     def holds(self, state: State) -> bool:
         """Return True: whether everything sleeps is found at every step."""

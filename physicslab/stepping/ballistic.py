@@ -5,6 +5,8 @@ from numpy.typing import NDArray
 
 from physicslab.components import Held, Material, Shape, Transform, Velocity
 from physicslab.components.shape import CHAIN, KINDS
+from physicslab.ecs.sentences import sentence
+from physicslab.languages.sentence import Sentence
 from physicslab.state.chain_links import links_in
 from physicslab.state.solid import is_any_apart, may_touch, solid_rows
 from physicslab.state.state import State
@@ -34,23 +36,23 @@ def why_not_exact(state: State, schedule: Schedule) -> str | None:
     Between impacts a body must move under a constant acceleration, and nothing but a disc may turn.
     """
     if state.simulation.integrator not in ("auto", "exact"):
-        return f"{state.simulation.integrator} was asked for, and between impacts bodies move in closed form"
+        return sentence("other_method_asked", method=state.simulation.integrator)
     reason = _why_not_ballistic(state, schedule)
     if reason is not None:
         return reason
     if state.physics.linear_damping > 0.0 or state.physics.angular_damping > 0.0:
-        return "velocities are damped"
+        return sentence("damped")
     if len(state.batch(Held)):
-        return "a body is held"
+        return sentence("held")
     if (state.table(Velocity).present & ~state.table(Transform).present).any():
-        return "something moves that is nowhere"
+        return sentence("nowhere")
     rows = turning_rows(state)
     if len(rows):
         label, kind = state.label_of_row(int(rows[0])), state.table(Shape)["kind"][rows[0]]
         name = list(KINDS)[kind - 1]
-        return f"{label} is a {name} that may turn (Mass.fixed_rotation would keep it as it is)"
+        return sentence("turns", body=label, shape=Sentence(name))
     if count_pairs(state, linked=True) > MAX_PAIRS:
-        return f"more than {MAX_PAIRS} pairs may meet"
+        return sentence("many_pairs", limit=MAX_PAIRS)
     return None
 
 
@@ -58,20 +60,16 @@ def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:
     """Return what acts within a step that is neither uniform gravity nor the contact step, or ``None``."""
     for needed in CONTACT_STEP:
         if schedule.find(needed) is None:
-            return f"{needed.__name__} is not among the systems, which moves what rests"
+            return sentence("system_absent_for_rest", system=needed.__name__)
     for system in schedule.running:
         if isinstance(system, ForceSystem):
             if system.uniform_alone(state) is None:
                 attracts = system.attractors > 0
-                return (
-                    "bodies attract each other"
-                    if attracts
-                    else f"the force of {system.name} is no uniform acceleration"
-                )
+                return sentence("attraction") if attracts else sentence("not_uniform", system=system.name)
         elif isinstance(system, JointSystem):
-            return "joints hold bodies together, which are left to rigid contacts"
+            return sentence("joined")
         elif not (system.is_engine or type(system).marked().keys() <= _OBSERVING):
-            return f"{system.name} acts within the step"
+            return sentence("acts_within_step", system=system.name)
     return None
 
 
@@ -133,12 +131,12 @@ def why_not_worthwhile(state: State, schedule: Schedule) -> str | None:
     """Return why a world that qualifies is better off with the contact step, or ``None``."""
     moving = state.batch(Transform, Velocity).rows
     if len(moving) > MAX_BODIES:
-        return f"more than {MAX_BODIES} bodies move"
+        return sentence("many_bodies", limit=MAX_BODIES)
     pairs = pairs_that_may_meet(state)
     restitution = state.table(Material)["restitution"]
     other = np.where(pairs[:, 2] >= 0, state.physics.bounds_restitution, restitution[pairs[:, 0]])
     if (np.minimum(other, restitution[pairs[:, 1]]) == 0.0).any():
-        return "some pairs do not bounce"
+        return sentence("no_bounce")
     return _why_at_rest(state, schedule, moving, pairs)
 
 
@@ -163,10 +161,10 @@ def _why_at_rest(
     touching = slow & (apart <= _CONTACT_DISTANCE * np.minimum(size[a], size[b]))
     free = state.bodies.inverse_mass > 0.0
     if (touching & free[a] & free[b]).any():
-        return "bodies rest on each other"
+        return sentence("lying_on_each_other")
     resting = np.unique(np.concatenate((a[touching & free[a]], b[touching & free[b]])))
     if len(moving) and len(resting) == int(free[moving].sum()):
-        return "everything rests"
+        return sentence("everything_rests")
     return None
 
 

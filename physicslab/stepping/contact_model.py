@@ -1,6 +1,7 @@
 """Which worlds can have rigid contacts, and limits and motors with a largest force beside them or alone."""
 
 from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.ecs.sentences import sentence
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
 from physicslab.stepping.forces import fastest_rate
@@ -26,19 +27,19 @@ def choose_contacts(state: State, schedule: Schedule, kept: str | None = None) -
     """
     wish = state.simulation.contacts
     if wish == "soft":
-        return "soft", "asked for"
+        return "soft", sentence("asked_for")
     obstacle = why_not_rigid(state, schedule)
     if wish == "rigid":
-        why = "asked for" if obstacle is None else f"rigid was asked for, and {obstacle}"
+        why = sentence("asked_for") if obstacle is None else sentence("rigid_refused", obstacle=obstacle)
         return "rigid" if obstacle is None else "soft", why
     obstacle = _why_not_worthwhile(state) or obstacle
     if obstacle is None and kept != "rigid":
-        before = "soft contacts were chosen before the scene was saved"
+        before = sentence("soft_before")
         obstacle = before if kept == "step" else _why_too_fast(state, schedule)
     if obstacle is not None:
         return "soft", obstacle
     joint = state.joints.why_not_smooth()
-    return "rigid", "few bodies touch" if joint is None else f"{joint}: its events are located in time"
+    return "rigid", sentence("few_touch") if joint is None else sentence("joint_events", joint=joint)
 
 
 def _why_not_worthwhile(state: State) -> str | None:
@@ -47,14 +48,14 @@ def _why_not_worthwhile(state: State) -> str | None:
     What was asked for, and only soft contacts have, is not overruled by a default.
     """
     if state.simulation.sleeping is True:
-        return "sleeping was asked for, and with rigid contacts nothing sleeps"
+        return sentence("sleeping_asked")
     if state.simulation.collisions == "step":
-        return "collisions within steps were asked for, and rigid contacts locate them"
+        return sentence("within_steps_asked")
     # A body that is held counts: the model must not change when it is let go.
     if len(state.batch(Shape, Transform, Velocity, Mass)) > _MAX_BODIES:
-        return f"more than {_MAX_BODIES} bodies can touch"
+        return sentence("many_touch", limit=_MAX_BODIES)
     if state.joints.why_not_smooth() and len(state.batch(Transform, Velocity, Mass)) > _MAX_BODIES:
-        return f"more than {_MAX_BODIES} bodies move"
+        return sentence("many_bodies", limit=_MAX_BODIES)
     return None
 
 
@@ -62,24 +63,24 @@ def _why_too_fast(state: State, schedule: Schedule) -> str | None:
     """Return whether forces act too fast for rigid contacts, in the present state of motion, or ``None``."""
     rate = fastest_rate(state, schedule.forces)
     if rate * state.simulation.dt > _MAX_RATE:
-        return f"forces act at {rate:.3g} rad/s, which rigid contacts would follow in many steps"
+        return sentence("fast_forces", rate=f"{rate:.3g}")
     return None
 
 
 def why_not_rigid(state: State, schedule: Schedule) -> str | None:
     """Return why contacts cannot be rigid, or ``None``."""
     if state.simulation.integrator not in ("auto", "dop853"):
-        return f"{state.simulation.integrator} was asked for, and rigid contacts go by dop853"
+        return sentence("other_method_than_rigid", method=state.simulation.integrator)
     for needed in CONTACT_STEP if schedule.runs(Stage.CONTACT) else (IntegrateSystem,):
         if schedule.find(needed) is None:
-            return f"{needed.__name__} is not among the systems"
+            return sentence("system_absent", system=needed.__name__)
     for system in schedule.running:
         if isinstance(system, ForceSystem) or system.is_engine:
             continue
         if not type(system).marked().keys() <= _OBSERVING:
-            return f"{system.name} acts within the step"
+            return sentence("acts_within_step", system=system.name)
     if (state.table(Velocity).present & ~state.table(Transform).present).any():
-        return "something moves that is nowhere"
+        return sentence("nowhere")
     if count_pairs(state) > _MAX_PAIRS:
-        return f"more than {_MAX_PAIRS} pairs may meet"
+        return sentence("many_pairs", limit=_MAX_PAIRS)
     return why_not_points(state)

@@ -31,6 +31,8 @@ _LOW = (1, 3, 5, 7)
 """The columns of what rounding leaves out of a path's place and velocity."""
 _MASS = 12
 """The column of the mass that gravity accelerates."""
+_LONGER = 1e-2
+"""Share by which a step may be longer than the scene's own without being divided."""
 _IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 
 
@@ -50,6 +52,7 @@ class EventDriven:
     leaps: bool = False
     keeps_balance: bool = False
     leaves_forces: bool = False
+    samples: bool = True
     kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
@@ -190,12 +193,19 @@ class EventDriven:
         began = time.perf_counter_ns()
         contacts, bodies = state.contacts, state.bodies
         self._paths[:, _MASS] = np.where(self._ballistic, state.table(Mass)["mass"], 0.0)
+        samples, taken = state.samples, np.zeros((0, 0))
+        first, stride = steps + 1, 1
+        if samples is not None and span <= samples.dt * (1.0 + _LONGER):
+            places, after = samples.due(state.time, steps * span)
+            taken = samples.put(places, state.time + after).reshape(len(places), 6 * len(self._moving))
+            first, stride = samples.steps_ahead(state.time), samples.stride
         made, impacts, why, flown = events.run_events(
             contacts.manifolds, contacts.points, contacts.recorded,
             self._paths, self._mode, self._face, self._apart, self._due,
             self._impact_positions, motion_of(state), shapes_of(state), materials_of(state),
             (bodies.inverse_mass, bodies.inverse_inertia), self._bounds,
             state.account.sums, contacts.log, contacts.logged, state.time, span, steps,
+            self._moving, first, stride, taken,
         )  # fmt: skip
         contacts.logged += impacts
         state.collisions += impacts

@@ -2,11 +2,15 @@
 
 import math
 import time
+from contextlib import suppress
 from typing import Any
 
+import numpy as np
+
 from physicslab.integrators import StepTooSmall
-from physicslab.ode.system import OdeSystem
+from physicslab.ode.system import OdeSystem, steady_turn
 from physicslab.state.masses import Diverged, check_finite
+from physicslab.state.samples import Samples
 from physicslab.state.state import State
 from physicslab.stepping.accounting import put_together
 from physicslab.stepping.fastest_body import fastest_body
@@ -36,6 +40,7 @@ class Flow:
     leaps: bool = True
     keeps_balance: bool = False
     leaves_forces: bool = False
+    samples: bool = True
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self._plan, self._method = schedule, plan, plan.integrator
@@ -48,7 +53,7 @@ class Flow:
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
         """Return what acts besides forces, or ``None``."""
-        return None if plan.smooth else plan.obstacle
+        return None if plan.smooth else plan.obstacle or plan.collision_reason
 
     def holds(self, state: State) -> bool:
         """Whether no number was changed that the layout, or the choice of a method, depends on."""
@@ -77,12 +82,15 @@ class Flow:
         try:
             for made in range(0, parts * steps, together):
                 state.time = start + made * h / parts
+                count = min(together, parts * steps - made)
                 try:
-                    self._flow(state, h / parts, min(together, parts * steps - made))
+                    self._flow(state, h / parts, count)
                 except NotSmooth:
                     if made and parts == 1:
                         return Advance(made)  # the next call begins where it fails
                     raise
+                if state.samples is not None:
+                    state.samples.take(state, start + (made + count) * h / parts)
         finally:
             state.time = start
         check_finite(state, state.time + h * steps)
@@ -95,6 +103,8 @@ class Flow:
         parts = 1 if method.chooses_steps else self._plan.substeps
         span, count = (h * steps, 1) if method.chooses_steps else (h / parts, parts * steps)
         start = time.perf_counter_ns()
+        if state.samples is not None:
+            self._sample(state, state.samples, h * steps)
         try:
             made = method.flow(state, ode, span, count)
         except StepTooSmall as error:
@@ -107,3 +117,31 @@ class Flow:
         for system in ode.forces:
             self._schedule.note(system.name, made, 0)  # their time is part of the loop's
         state.force_evaluations += made
+
+    def _sample(self, state: State, samples: Samples, span: float) -> None:
+        """Take the samples of the coming ``span`` seconds, aside: the motion itself is divided by none."""
+        places, after = samples.due(state.time, span)
+        if len(after) and after[-1] == span:  # taken at the end
+            places, after = places[:-1], after[:-1]
+        if not len(places):
+            return
+        ode, method, parts = self._ode, self._method, self._plan.substeps
+        packed = np.full((2, len(places), len(ode.q)), np.nan)
+        spans = np.diff(after, prepend=0.0)
+        with ode.aside(), suppress(StepTooSmall):  # the motion itself then tells why
+            if method.sample is not None:
+                method.sample(state, ode, spans, packed)
+            else:
+                own = 1 if method.chooses_steps else parts
+                for k, each in enumerate(spans.tolist()):
+                    steps = own * max(1, round(each / samples.dt))
+                    method.flow(state, ode, each / steps, steps)
+                    packed[0, k], packed[1, k] = ode.q, ode.v
+        layout, into = ode.layout, samples.put(places, state.time + after)
+        n, d = 2 * len(layout.moving), layout.moving_count
+        turning, steady = (np.searchsorted(layout.moving, rows) for rows in (layout.turning, layout.steady))
+        for numbers, first in ((packed[0], 0), (packed[1], 3)):
+            into[:, :, first : first + 2] = numbers[:, :n].reshape(len(places), -1, 2)
+            into[:, turning, first + 2] = numbers[:, n:d]
+        if len(steady):
+            into[:, steady, 2], into[:, steady, 5] = steady_turn(state, layout.steady, after)

@@ -18,6 +18,7 @@ from physicslab.components import Transform, Velocity
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.kept import KeptContacts, carry_sleep
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.sentences import sentence
 from physicslab.state.masses import Diverged
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import State
@@ -79,11 +80,12 @@ class Islands:
     leaps: bool = False
     keeps_balance: bool = False
     leaves_forces: bool = False
+    samples: bool = False
 
     def __init__(self, schedule: Schedule, make: Make | None) -> None:
         self._schedule, self._make = schedule, make
         self.members: tuple[Island, ...] = ()
-        self.why_one = "an island itself"
+        self.why_one: str = sentence("one_island")
         self.due, self.paused, self.joined = make is not None, False, False
         self._comes_apart = False
         self._examined = self._bodies = 0
@@ -96,7 +98,7 @@ class Islands:
     @property
     def reason(self) -> str:
         """The reason for several steppers."""
-        return f"{len(self.members)} islands are too far apart to meet, and no force couples them"
+        return sentence("islands", count=len(self.members))
 
     @property
     def kernels(self) -> tuple[Any, ...]:
@@ -328,7 +330,7 @@ class Islands:
         self.members = _in_order(members)
         if all_one:
             self.give_back(state)
-            self.joined, self.why_one = True, "bodies came near each other"
+            self.joined, self.why_one = True, sentence("came_near")
         else:
             self._begin(state)
         return True

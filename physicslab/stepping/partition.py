@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Shape, Transform, Velocity
+from physicslab.ecs.sentences import sentence
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP
 from physicslab.systems.accelerate import AccelerateSystem
@@ -60,14 +61,14 @@ def why_whole(state: State, schedule: Schedule) -> str | None:
     """Return why a world cannot be divided, whatever is where, or ``None``."""
     for system in schedule.running:
         if type(system) not in (AccelerateSystem, *PHYSICS_SYSTEMS) and system.acts_within_step():
-            return f"{system.name} acts within the step"
+            return sentence("acts_within_step", system=system.name)
     if (state.table(Velocity).present & ~state.table(Transform).present).any():
-        return "something moves that is nowhere"
+        return sentence("nowhere")
     found = [schedule.find(needed) is not None for needed in CONTACT_STEP]
     if not found[0]:
-        return "nothing moves the bodies"
+        return sentence("nothing_integrates")
     if any(found[1:]) and not all(found):
-        return "the systems for contacts are not all there"
+        return sentence("contact_systems_absent")
     return _why_coupled(state, schedule)
 
 
@@ -78,34 +79,34 @@ def _why_coupled(state: State, schedule: Schedule) -> str | None:
     for force in schedule.forces:
         pairs = force.couples(state)
         if pairs is None:
-            return f"{force.name} acts between all bodies"
+            return sentence("couples_all", system=force.name)
         a, b = pairs.T
         # Row 0, the world, is fixed.
         if ((driven[a] & (given[b] | (b == 0))) | (driven[b] & (given[a] | (a == 0)))).any():
-            return f"{force.name} acts between bodies that move at given speeds"
+            return sentence("couples_driven", system=force.name)
     if (driven & state.table(Drag).present & state.table(Mass).present).any():
-        return "drag acts on a body that is held"
+        return sentence("drag_on_held")
     return None
 
 
 def groups_of(state: State, schedule: Schedule, rows: Rows) -> Partition:
     """Return into which islands some movable bodies are to be divided."""
     if len(rows) < 2:
-        return Partition((rows,), "one body moves")
+        return Partition((rows,), sentence("one_body"))
     labels = _labels(state, schedule, rows)
     groups = [rows[labels == label] for label in dict.fromkeys(labels.tolist())]
     if len(groups) == 1:
-        return Partition((rows,), "all bodies that move are near each other, or coupled")
+        return Partition((rows,), sentence("all_near"))
     shaped = state.table(Shape).present
     small = [np.count_nonzero(shaped[group]) <= MAX_BODIES for group in groups]
     own = [group for group, alone in zip(groups, small, strict=True) if alone]
     if len(own) > MAX_ISLANDS:
-        return Partition((rows,), f"more than {MAX_ISLANDS} islands would cost more than one")
+        return Partition((rows,), sentence("many_islands", limit=MAX_ISLANDS))
     rest = [group for group, alone in zip(groups, small, strict=True) if not alone]
     if rest:
         own.append(np.sort(np.concatenate(rest)))
     if len(own) == 1:
-        return Partition((rows,), f"islands of more than {MAX_BODIES} bodies are advanced together")
+        return Partition((rows,), sentence("large_islands", limit=MAX_BODIES))
     return Partition(tuple(sorted(own, key=lambda group: int(group[0]))))
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.sentences import sentence
 from physicslab.integrators import INTEGRATORS, SPLIT_METHODS, Integrator
 from physicslab.integrators.blanes_moan import BLANES_MOAN
 from physicslab.integrators.dop853 import DOP853
@@ -57,9 +58,9 @@ bodies at 100 to 10^6 N/m and damping ratios from 1.5 on are then 6e-12 m off at
 times the time of the cheapest method that reaches 1e-10 m; 1e-13 takes 5 to 15 times as long."""
 _OVERDAMPED = 1.4
 """The damping ratio from which that holds."""
-WITHOUT_END = "joints hold bodies by forces that grow without limit, or from one event to the next"
+WITHOUT_END = sentence("joints_without_end")
 """Why joints are soft that were not before."""
-_ASKED_FOR = "asked for"
+_ASKED_FOR = sentence("asked_for")
 _FOLLOWING = (BLANES_MOAN.name, DOP853.name, IMPLICIT_MIDPOINT.name, SPRING_SPLITTING.name)
 """The methods that ``auto`` chooses by the state of motion."""
 
@@ -105,9 +106,9 @@ class StepPlan:
     smooth: bool
     refused: str = ""
     collisions: str = "none"
-    collision_reason: str = "nothing can touch"
+    collision_reason: str = sentence("nothing_touches")
     contacts: str = "soft"
-    contact_reason: str = "nothing can touch"
+    contact_reason: str = sentence("nothing_touches")
     obstacle: str = ""
     stages: Integrator = LEAPFROG
     split_forces: Integrator | None = None
@@ -135,7 +136,7 @@ def default_plan(simulation: SimulationConfig) -> StepPlan:
     """Return the plan of a world before its contents are known."""
     name = simulation.integrator
     if name == "auto":
-        return StepPlan(LEAPFROG, "nothing moves", simulation.substeps, smooth=False)
+        return StepPlan(LEAPFROG, sentence("nothing_moves"), simulation.substeps, smooth=False)
     method = INTEGRATORS[name]
     stages = method if method.substep else LEAPFROG
     return StepPlan(method, _ASKED_FOR, simulation.substeps, smooth=False, stages=stages)
@@ -153,11 +154,12 @@ def choose_plan(state: State, schedule: Schedule, kept: str | None = None) -> St
     plan = _plan_of_collisions(state, schedule, "step" if kept == "rigid" else kept)
     if contacts == "rigid" and (state.simulation.contacts == "rigid" or plan.collisions == "step"):
         # The rest of the plan is for steps that are left to soft contacts.
-        own = "rigid contacts locate their own events"
+        own = sentence("own_events")
         bounced = plan.collisions == "step" and plan.collision_reason != _ASKED_FOR
+        own = sentence("both", one=plan.collision_reason, other=own) if bounced else own
         plan = replace(
-            _mover(state, schedule), integrator=DOP853, reason="contacts are rigid: the step follows events",
-            collisions="step", collision_reason=f"{plan.collision_reason}; {own}" if bounced else own,
+            _mover(state, schedule), integrator=DOP853, reason=sentence("rigid_events"),
+            collisions="step", collision_reason=own,
         )  # fmt: skip
     return replace(plan, contacts=contacts, contact_reason=reason)
 
@@ -168,7 +170,7 @@ def _bounded(state: State, schedule: Schedule, kept: str | None) -> StepPlan:
     plan = replace(_mover(state, schedule), contacts=contacts, contact_reason=reason)
     if contacts == "soft":
         return plan
-    return replace(plan, integrator=DOP853, reason="joints have limits: the step follows events")
+    return replace(plan, integrator=DOP853, reason=sentence("joint_limits"))
 
 
 def _plan_of_collisions(state: State, schedule: Schedule, kept: str | None) -> StepPlan:
@@ -181,13 +183,13 @@ def _plan_of_collisions(state: State, schedule: Schedule, kept: str | None) -> S
     obstacle = why_not_exact(state, schedule)
     if wish == "exact":
         if obstacle is not None:
-            reason = f"exact was asked for, and {obstacle}"
+            reason = sentence("exact_refused", obstacle=obstacle)
             return replace(_mover(state, schedule), collisions="step", collision_reason=reason)
         return _event_driven_plan(state, _ASKED_FOR)
     obstacle = obstacle or why_not_worthwhile(state, schedule)
     if obstacle is not None:
         return replace(_mover(state, schedule), collisions="step", collision_reason=obstacle)
-    return _event_driven_plan(state, "few bodies, which bounce")
+    return _event_driven_plan(state, sentence("few_bounce"))
 
 
 def plan_for_jumps(state: State, schedule: Schedule, plan: StepPlan) -> StepPlan:
@@ -204,7 +206,7 @@ def plan_for_jumps(state: State, schedule: Schedule, plan: StepPlan) -> StepPlan
         return replace(
             plan, collisions=touch, collision_reason=WITHOUT_END, contacts="soft", contact_reason=WITHOUT_END
         )
-    reason = f"the force of {schedule.interpreted[0]} has no compiled kernel, and jumps"
+    reason = sentence("jumps_in_python", system=schedule.interpreted[0])
     return replace(plan, integrator=RK4, substeps=state.simulation.substeps, reason=reason)
 
 
@@ -226,7 +228,7 @@ def resumed_plan(state: State, schedule: Schedule, kept: tuple[str, str, int]) -
         return plan_for_jumps(state, schedule, plan)
     if plan.kept == kept or plan.integrator.name == state.simulation.integrator:
         return plan
-    reason = f"{method} was chosen before the scene was saved"
+    reason = sentence("chosen_before", method=method)
     if plan.split_forces is not None and method in _FOLLOWING:
         return replace(plan, split_forces=SPLIT_METHODS[method], split_steps=steps, reason=reason)
     if plan.smooth and method in INTEGRATORS and (method in _FOLLOWING or method == LEAPFROG.name):
@@ -236,7 +238,7 @@ def resumed_plan(state: State, schedule: Schedule, kept: tuple[str, str, int]) -
 
 def _event_driven_plan(state: State, reason: str) -> StepPlan:
     """Return the plan for bodies whose collisions are exact."""
-    method = "between impacts bodies move in closed form"
+    method = sentence("closed_form_between_impacts")
     return StepPlan(
         EXACT, method, state.simulation.substeps, smooth=False, collisions="exact", collision_reason=reason
     )
@@ -258,7 +260,7 @@ def _mover(state: State, schedule: Schedule) -> StepPlan:
             return replace(choice, obstacle=obstacle, stages=stages, split_forces=own, split_steps=1)
         if method.substep:
             return replace(choice, obstacle=obstacle)
-        reason = f"{method.name} was asked for, which advances bodies under forces alone, and {obstacle}"
+        reason = sentence("forces_alone", method=method.name, obstacle=obstacle)
         return StepPlan(
             LEAPFROG, reason, simulation.substeps, smooth=False, refused=reason, obstacle=obstacle
         )
@@ -266,7 +268,7 @@ def _mover(state: State, schedule: Schedule) -> StepPlan:
         try:
             closed_form(state, schedule.smooth_forces)
         except NoClosedForm as error:
-            reason = f"exact was asked for, and there is no closed form: {error}"
+            reason = sentence("no_closed_form", why=error.args[0])
             return replace(_best(state, schedule), reason=reason, refused=reason)
     return replace(choice, substeps=1 if method.chooses_steps else simulation.substeps, smooth=True)
 
@@ -275,9 +277,9 @@ def _in_python(state: State, schedule: Schedule) -> StepPlan:
     """Return the method for a world in which nothing but forces acts, of which Python computes some."""
     substeps, name = state.simulation.substeps, schedule.interpreted[0]
     if _sees_velocity(state, schedule.smooth_forces):
-        reason = f"the force of {name} has no compiled kernel, and forces may depend on velocities"
+        reason = sentence("velocity_may_matter_in_python", system=name)
         return StepPlan(DOP853, reason, 1, smooth=True)
-    return StepPlan(LEAPFROG, f"the force of {name} has no compiled kernel", substeps, smooth=True)
+    return StepPlan(LEAPFROG, sentence("in_python", system=name), substeps, smooth=True)
 
 
 def _best(state: State, schedule: Schedule) -> StepPlan:
@@ -290,11 +292,10 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
     if python:
         return _in_python(state, schedule)
     try:
-        return StepPlan(
-            EXACT, f"{closed_form(state, schedule.smooth_forces).what}: solved in closed form", 1, smooth=True
-        )
+        forces_alone = closed_form(state, schedule.smooth_forces).what
+        return StepPlan(EXACT, sentence("closed_form", forces=forces_alone), 1, smooth=True)
     except NoClosedForm as error:
-        why = str(error)
+        (why,) = error.args
     attractors = max((force.attractors for force in forces), default=0)
     planets = attractors > 1
     rate = fastest_rate(state, [force for force in forces if not force.attractors > 1])
@@ -302,22 +303,25 @@ def _best(state: State, schedule: Schedule) -> StepPlan:
     if needed > MAX_STEPS and not crowd:  # no rule that steps over it makes molecules bounce
         return StepPlan(IMPLICIT_MIDPOINT, _too_fast(rate), substeps, smooth=True)
     if planets and attractors >= _SAMPLED_LIMIT and state.physics.softening > 0.0:
-        return StepPlan(LEAPFROG, f"{attractors} bodies attract each other, softened", substeps, smooth=True)
+        return StepPlan(LEAPFROG, sentence("softened", count=attractors), substeps, smooth=True)
     if planets:
-        return StepPlan(DOP853, f"{_why_singular(state, forces)}: the step follows them", 1, smooth=True)
+        return StepPlan(DOP853, sentence("step_follows", why=_why_singular(state, forces)), 1, smooth=True)
     if crowd >= _CROWD and not _sees_velocity(state, forces):
         needed = _steps(rate, h, _RESOLVED_IN_CROWDS)
-        how = f"{crowd} molecules: symplectic; {needed} steps of omega h = {rate * h / needed:.2g}"
+        how = sentence("molecules", count=crowd, steps=needed, phase=f"{rate * h / needed:.2g}")
         return StepPlan(LEAPFROG, how, needed, smooth=True)
     if _sees_velocity(state, forces):
-        tolerance = f"tolerance {tolerance_for(state, forces):.0e}"
-        return StepPlan(DOP853, f"forces depend on velocities, and {why}; {tolerance}", 1, smooth=True)
+        tolerance = sentence("tolerance", value=f"{tolerance_for(state, forces):.0e}")
+        return StepPlan(DOP853, sentence("velocity_forces", why=why, tolerance=tolerance), 1, smooth=True)
     singular = _why_singular(state, forces)
     if singular is not None:
-        return StepPlan(DOP853, f"{singular}: the step follows it", 1, smooth=True)
-    kind = "smooth, and go by places and the time" if any(f.sees_time(state) for f in forces) else ""
-    reason = f"{kind or 'conservative and smooth'}; {needed} steps of omega h = {rate * h / needed:.2g}"
-    return StepPlan(BLANES_MOAN, reason, needed, smooth=True)
+        return StepPlan(DOP853, sentence("step_follows_it", why=singular), 1, smooth=True)
+    kind = sentence("conservative")
+    if any(force.sees_time(state) for force in forces):
+        kind = sentence("by_places_and_time")
+    phase = f"{rate * h / needed:.2g}"
+    how = sentence("steps_of", why=kind, steps=needed, phase=phase)
+    return StepPlan(BLANES_MOAN, how, needed, smooth=True)
 
 
 def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPlan:
@@ -334,7 +338,7 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     python = schedule.interpreted
     followed = any(sees_velocity_in_python(state, force) for force in forces)
     if python and not followed:
-        return replace(kicks, reason=f"{obstacle}, and the force of {python[0]} has no compiled kernel")
+        return replace(kicks, reason=sentence("and_in_python", obstacle=obstacle, system=python[0]))
     attractors = max((force.attractors for force in forces), default=0)
     turned = any(force.gyration(state) is not None for force in forces)
     if attractors >= _SAMPLED_LIMIT and not turned:
@@ -344,23 +348,23 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     if needed * 2 * substeps > MAX_STEPS:
         method, needed, how = IMPLICIT_MIDPOINT, 1, _too_fast(rate)
     elif followed:
-        method, how = RK4, f"the force of {python[0]} has no compiled kernel, and forces depend on velocities"
+        method, how = RK4, sentence("velocity_in_python", system=python[0])
     elif why_no_spring_flow(state, forces) is None:
         method, needed = SPRING_SPLITTING, _steps(rate, half, _RESOLVED_BESIDE_CONTACTS)
-        how = f"steps of omega h = {rate * half / needed:.2g}, and {DOP853.name} where springs turn fast"
+        how = sentence("resolved_springs", phase=f"{rate * half / needed:.2g}", method=DOP853.name)
     elif turned and not _sees_velocity(state, [force for force in forces if force.gyration(state) is None]):
         method = BLANES_MOAN if attractors < _SAMPLED_LIMIT else LEAPFROG
-        how = f"the magnetic field turns velocities exactly; steps of omega h = {rate * half / needed:.2g}"
+        how = sentence("magnetic", phase=f"{rate * half / needed:.2g}")
     elif max(force.crowd for force in forces) >= _CROWD and not _sees_velocity(state, forces):
         method, needed = LEAPFROG, _steps(rate, half, _RESOLVED_IN_CROWDS)
-        how = f"many molecules; {needed} steps of omega h = {rate * half / needed:.2g}"
+        how = sentence("many_molecules", steps=needed, phase=f"{rate * half / needed:.2g}")
     elif attractors > 1 or _sees_velocity(state, forces) or _why_singular(state, forces):
-        method, needed, how = DOP853, 1, "the step follows the motion"
+        method, needed, how = DOP853, 1, sentence("follows_motion")
     else:
-        method, how = BLANES_MOAN, f"steps of omega h = {rate * half / needed:.2g}"
-    moved_by = "all bodies" if followed else "bodies with springs or drag"
-    moved_by = "charges" if turned and not python else moved_by
-    reason = f"{obstacle}; between contacts {moved_by} move by {method.name}: {how}"
+        method, how = BLANES_MOAN, sentence("resolved", phase=f"{rate * half / needed:.2g}")
+    moved_by = sentence("all_bodies") if followed else sentence("sprung_bodies")
+    moved_by = sentence("charges_alone") if turned and not python else moved_by
+    reason = sentence("beside_contacts", obstacle=obstacle, bodies=moved_by, method=method.name, how=how)
     return replace(
         kicks, reason=reason, stages=LEAPFROG_WITH_SPLIT_FORCES, split_forces=method, split_steps=needed
     )
@@ -413,11 +417,11 @@ def _sees_velocity(state: State, forces: Sequence[ForceSystem]) -> bool:
 
 def _joined(state: State) -> str:
     """Return why bodies on joints move as they do."""
-    return f"joints hold bodies by {len(state.joints)} equations, which are solved with those of the motion"
+    return sentence("joint_equations", count=len(state.joints))
 
 
 def _too_fast(rate: float) -> str:
-    return f"{rate:.3g} rad/s is too fast to be followed: the motion between steps is lost"
+    return sentence("too_fast", rate=f"{rate:.3g}")
 
 
 _WITHIN = {Stage.FORCE, Stage.KICK, Stage.DRIFT}
@@ -427,15 +431,15 @@ _WITHIN = {Stage.FORCE, Stage.KICK, Stage.DRIFT}
 def why_not_smooth(state: State, schedule: Schedule) -> str | None:
     """Return what acts on bodies within a step besides forces, or ``None``."""
     if schedule.runs(Stage.BROAD_PHASE) or schedule.runs(Stage.CONTACT):
-        return "bodies can touch"
+        return sentence("can_touch")
     if schedule.find(IntegrateSystem) is None:
-        return "nothing moves the bodies"
+        return sentence("nothing_integrates")
     for system in schedule.running:
         stages = type(system).marked().keys() & _WITHIN
         if isinstance(system, ForceSystem):
             stages -= {Stage.FORCE}
         if stages and type(system) not in (AccelerateSystem, IntegrateSystem):  # a subclass may do other work
-            return f"{system.name} acts within the step"
+            return sentence("acts_within_step", system=system.name)
     if (state.table(Velocity).present & ~state.table(Transform).present).any():
-        return "something moves that is nowhere"
+        return sentence("nowhere")
     return state.joints.why_not_smooth()

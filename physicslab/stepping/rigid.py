@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Material, Shape, Velocity
 from physicslab.components.shape import CHAIN
 from physicslab.contacts.arguments import shapes_of
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import CONTACT, FRICTION, HAND, JOINTS, MOTORS
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.geometry.shapes import ShapesTuple
@@ -18,6 +19,7 @@ from physicslab.kernels.rigid.features import PAIR
 from physicslab.kernels.wide import slots
 from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import check_finite
+from physicslab.state.samples import Samples
 from physicslab.state.state import State
 from physicslab.stepping.accounting import put_together
 from physicslab.stepping.ballistic import pairs_that_may_meet
@@ -62,6 +64,7 @@ class Rigid:
     leaps: bool = False
     keeps_balance: bool = False
     leaves_forces: bool = False
+    samples: bool = True
     kernels: tuple[Any, ...] = (
         motion.touch, motion.collide, motion.advance_piece, motion.begin_motion,
         time_stepping.drift, time_stepping.drive, time_stepping.kick, time_stepping.separate,
@@ -121,6 +124,8 @@ class Rigid:
                 self.left_to_soft += 1
                 break
             last, made = step, made + 1
+            if state.samples is not None:
+                self._sample(state.samples, state.time + (made - 1) * h, h)
         if last is not None:
             self._ode.scatter(state, 0.0)
             self._records.write(state, last, h / parts)
@@ -130,6 +135,16 @@ class Rigid:
             state.substeps = state.simulation.substeps
             self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
         return Advance(made, parts)
+
+    def _sample(self, samples: Samples, time: float, h: float) -> None:
+        """Take a sample of the packed state after a step of ``h`` s from a time [s] on, if one is due."""
+        places, after = samples.due(time, h)
+        if not len(places):
+            return
+        into, n = samples.put(places, time + after)[-1], len(self._ode.layout.moving)
+        for packed, first in ((self._ode.q, 0), (self._ode.v, 3)):
+            into[:, first : first + 2] = packed[: 2 * n].reshape(n, 2)[samples.rows]
+            into[:, first + 2] = packed[2 * n : 3 * n][samples.rows]
 
     def _step(self, scene: tuple[Any, ...], state: State, at: float, h: float, parts: int) -> MadeStep:
         """Make a step from time ``at`` in parts; where one cannot be made, all is as before the step."""
@@ -141,7 +156,7 @@ class Rigid:
             q[clock], v[clock] = moment, 1.0  # the clock goes by one second a second
             step = self._motion.step(scene, state, moment, h / parts)
             if self._ode.hold_together() and not (step.refused or step.by_impulses):
-                step.refused = "joints contradict each other, or a limit: not all of them can be closed"
+                step.refused = sentence("contradiction")
             state.force_evaluations += step.evaluations
             self.energetic_impacts += step.energetic
             self.restitutions_lowered += step.lowered

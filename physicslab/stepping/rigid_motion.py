@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import PX
 from physicslab.kernels.forces.bookings import ACCOUNTS
 from physicslab.kernels.joints import layout
@@ -59,9 +60,9 @@ _ROUNDING = 4e-15
 _SEPARATIONS = 12
 """How often bodies are moved apart, as that can press them into others."""
 _WHY = {
-    motion.NO_FORCES: "no contact forces keep all laws (Painleve's paradox, or bodies that are jammed)",
-    motion.UNRESOLVED: "an impact has no solution",
-    motion.TOO_MANY: f"more than {MAX_POINTS} points touch",
+    motion.NO_FORCES: sentence("no_forces"),
+    motion.UNRESOLVED: sentence("unresolved"),
+    motion.TOO_MANY: sentence("many_points", limit=MAX_POINTS),
 }
 
 
@@ -180,11 +181,11 @@ class RigidMotion:
             stalled = stalled + 1 if piece <= _NO_TIME * h else 0
             done = h if piece == h - done else done + piece
             if not math.isfinite(piece):
-                made.refused = "a piece of motion is not finite"
+                made.refused = sentence("piece_not_finite")
                 return done
             if stalled > _MAX_STALLED or made.work > _MAX_WORK:
                 break
-        made.by_impulses = "events follow each other almost without time between them"
+        made.by_impulses = sentence("stalled")
         return done
 
     def _begin(
@@ -218,7 +219,7 @@ class RigidMotion:
             if made_steps == 0 or short < h:
                 h = left / math.ceil(left / short) if short > 0.0 else 0.0
             if left > (_MAX_SHORT_STEPS - made_steps) * h:
-                return "bodies are too fast for short steps"
+                return sentence("too_fast_for_short_steps")
             made_steps += 1
             last = left <= 1.5 * h
             h = left if last else h
@@ -290,7 +291,7 @@ class RigidMotion:
             if why != motion.DONE:
                 return _WHY[why]
             if not math.isfinite(rest):  # every speed would be treated as zero
-                return "squares of speeds or accelerations are not finite"
+                return sentence("squares_not_finite")
             if deepest <= max(_SEPARATE, rounding):
                 if before is not None:
                     at_first = v.copy()
@@ -303,8 +304,7 @@ class RigidMotion:
             before = q.copy() if before is None else before
             if deepest > allowed or not time_stepping.separate(scene, self._equations, count, q, v):
                 break
-        limits = ", or are beyond what joints allow," if len(self._rows) else ""
-        return f"bodies overlap{limits} by {deepest:.2g} of their size"
+        return sentence("joints_overlap" if len(self._rows) else "overlap", share=f"{deepest:.2g}")
 
     def _resist(
         self, scene: tuple[Any, ...], state: State, time: float, h: float, tolerance: float, made: MadeStep

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.rigid import joint_points as packing
 from physicslab.kernels.rigid.features import JOINT, MOTOR, WALL
 from physicslab.state.joint_rows import Measure, Role
@@ -104,5 +105,5 @@ def why_not_points(state: State) -> str | None:
     """Return which row rigid contacts cannot have as a point, as it acts on more than two bodies."""
     for row in np.flatnonzero(~state.joints.solved).tolist():
         if len(RigidRows._bodies(state, row)) > 2:
-            return "a limit or a motor acts on more than two bodies"
+            return sentence("three_bodies")
     return None

@@ -5,6 +5,7 @@ from typing import Any
 
 from physicslab.contacts.islands import keep_places
 from physicslab.contacts.near_pairs import refill
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import CONTACT, ENERGY
 from physicslab.kernels.loading import working_ns
 from physicslab.state.masses import check_finite
@@ -46,6 +47,7 @@ class Soft:
     title: str = "Steps stage by stage, contacts within them"
     leaps: bool = False
     leaves_forces: bool = True
+    samples: bool = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self.substeps = schedule, Substeps(state, schedule, plan)
@@ -61,9 +63,9 @@ class Soft:
         self.reason = plan.reason
         if not self.hooks:
             self.name, self.title = "fused_contact", "Compiled steps, contacts within them"
-            self.reason = "bodies can touch, and nothing looks at substeps"
+            self.reason = sentence("compiled_contacts")
         elif self.hooks[0] not in plan.reason:
-            self.reason = f"{plan.reason}; {self.hooks[0]}"
+            self.reason = sentence("both", one=plan.reason, other=self.hooks[0])
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.ecs.sentences import sentence
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS
 from physicslab.kernels.arguments import SpringsTuple
@@ -27,17 +28,17 @@ def why_no_spring_flow(state: State, forces: Sequence[ForceSystem]) -> str | Non
     rows, a, b = spring_ends(state)
     for force in forces:
         if type(force) not in (SpringSystem, GravitySystem):
-            return f"{force.name} acts"
+            return sentence("acts", system=force.name)
     if physics.gravity_mode == "planet":
-        return "planets attract each other"
+        return sentence("planets")
     if physics.linear_damping or physics.angular_damping:
-        return "motion is damped"
+        return sentence("motion_damped")
     if (spring["damping"][rows] > 0.0).any():
-        return "a spring has a damper"
+        return sentence("damper")
     moves = state.table(Velocity).present
     for end, anchors in ((a, "anchor_a"), (b, "anchor_b")):
         if spring[anchors][rows[moves[end]]].any():
-            return "a spring is attached beside the middle of a body"
+            return sentence("beside_middle")
     return None
 
 

@@ -56,12 +56,15 @@ class Advancer(Protocol):
         Whether it measures energy and momentum before its steps and after them.
     leaves_forces : bool
         Whether ``bodies.force`` holds the forces after a step.
+    samples : bool
+        Whether it takes those of ``state.samples`` that are due within its steps.
     """
 
     name: str
     title: str
     keeps_balance: bool
     leaves_forces: bool
+    samples: bool
 
     @property
     def reason(self) -> str:

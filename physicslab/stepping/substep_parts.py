@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.solver import soft
 from physicslab.state.state import State
 from physicslab.stepping.accounting import acts_unbooked, run_measured
@@ -18,8 +19,8 @@ from physicslab.systems.schedule import Schedule
 from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.system import ForceSystem, Stage, System
 
-_BOOKED = "the work of a force along the way of bodies is booked"
-_NOTHING_TOUCHES = "nothing can touch, so that each system is called by itself"
+_BOOKED = sentence("way_booked")
+_NOTHING_TOUCHES = sentence("system_by_system")
 
 type Hook = Callable[[State, float], None]
 """Called with the length of the substep [s]."""
@@ -134,7 +135,7 @@ class SubstepParts:
             if split.springs is not None:
                 self.parts[-1] = soft.SPRINGS
             else:
-                reason = reason or "what springs and drag act on is sub-integrated"
+                reason = reason or sentence("sub_integrated")
         self._drifted += share if stage is Stage.DRIFT else 0.0
         self._kicked += share if stage is Stage.KICK else 0.0
         return reason
@@ -164,7 +165,7 @@ class SubstepParts:
         self._hook(lambda state, h: run(stage, state, share * h), share)
         if stage is Stage.RELAX:
             self._hook(lambda state, h: accounts.book_overlap(state))
-        return f"{others[0].name} acts within the step" if others else _NOTHING_TOUCHES
+        return sentence("acts_within_step", system=others[0].name) if others else _NOTHING_TOUCHES
 
     def _add_forces(self, state: State, systems: tuple[System, ...], share: float) -> str:
         """Add what adds up the forces."""
@@ -195,7 +196,7 @@ class SubstepParts:
         if not self.compiled:
             return _NOTHING_TOUCHES
         python = [one.name for one in forces if not (isinstance(one, ForceSystem) and one.packs())]
-        return f"the force of {python[0]} is computed in Python" if python else _BOOKED
+        return sentence("computed_in_python", system=python[0]) if python else _BOOKED
 
     def _count(self, systems: tuple[System, ...]) -> None:
         """Count a call of each system in every substep."""

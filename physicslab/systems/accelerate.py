@@ -1,6 +1,7 @@
 """Forces change velocities: Newton's second law."""
 
 from physicslab.components import Transform, Velocity
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels import motion
 from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
@@ -19,7 +20,7 @@ class AccelerateSystem(System):
     def why_left_out(self, state: State) -> str | None:
         """Needed wherever something can change a velocity."""
         if not len(state.batch(Velocity)):
-            return "nothing moves"
+            return sentence("nothing_moves")
         return None
 
     @at(Stage.FORCE)

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.ecs.sentences import sentence
 from physicslab.state.joint_figures import figures_of
 from physicslab.state.joints import Joint
 from physicslab.state.state import State
@@ -55,7 +56,7 @@ class BreakSystem(System):
 
     def why_left_out(self, state: State) -> str | None:
         """Needed where a joint can break."""
-        return None if next(_breakable(state), None) is not None else "no joint that breaks"
+        return None if next(_breakable(state), None) is not None else sentence("no_breaking")
 
     @at(Stage.FINISH)
     def remove(self, state: State, h: float) -> None:

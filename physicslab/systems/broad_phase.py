@@ -9,6 +9,7 @@ from physicslab.components import Layer, Shape, Transform, Velocity
 from physicslab.components.shape import CHAIN
 from physicslab.contacts.arguments import motion_of, near_in, shapes_of, speculative_margin
 from physicslab.contacts.near_pairs import partition
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.broad import chains, grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fat_boxes, still_holds
 from physicslab.kernels.geometry.shapes import OWN
@@ -30,16 +31,15 @@ def nothing_to_touch(state: State) -> str | None:
     """Return why no two things in this world can ever meet, or ``None`` if they can."""
     shapes, moving = len(solid_rows(state)), len(state.batch(Shape, Transform, Velocity))
     if not shapes:
-        return "no Shape in the scene"
+        return sentence("no_shape")
     if not moving:
-        return "nothing that has a Shape moves"
+        return sentence("shapes_stay")
     if state.physics.bounds is not None:
         return None
     if shapes == 1:
-        return "only one Shape in the scene, and no bounds"
+        return sentence("one_shape")
     if is_any_apart(state) and shapes <= _FEW and not _may_any_touch(state):
-        layers = ", or in layers that do not touch" if len(state.batch(Layer)) else ""
-        return f"all pairs that could meet are on joints{layers}, and pass through each other"
+        return sentence("joined_or_in_layers" if len(state.batch(Layer)) else "all_joined")
     return None
 
 

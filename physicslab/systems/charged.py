@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Charge, Mass, Transform, Velocity
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces import packed_forces
 from physicslab.kernels.forces.magnetic import magnetic_field
@@ -44,7 +45,7 @@ class ElectricFieldSystem(_ChargeForce):
     def why_left_out(self, state: State) -> str | None:
         """Needed where there is a field, and a charge that it can move."""
         return super().why_left_out(state) or (
-            None if state.physics.electric_field else "electric_field is 0"
+            None if state.physics.electric_field else sentence("no_electric_field")
         )
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
@@ -71,7 +72,7 @@ class MagneticFieldSystem(_ChargeForce):
     def why_left_out(self, state: State) -> str | None:
         """Needed where there is a field, and a charge that can move."""
         return super().why_left_out(state) or (
-            None if state.physics.magnetic_field else "magnetic_field is 0"
+            None if state.physics.magnetic_field else sentence("no_magnetic_field")
         )
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Charge, Held, Transform
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces import packed_forces
 from physicslab.state.packed import PackedForce, StateLayout
@@ -36,9 +37,9 @@ class CoulombSystem(ForceSystem):
         """Needed where there is a constant, and two charges of which one can be moved."""
         reason = super().why_left_out(state)
         if reason is None and state.physics.coulomb_constant == 0.0:
-            return "coulomb_constant is 0"
+            return sentence("no_coulomb_constant")
         if reason is None and len(self._acting) < 2:
-            return "fewer than two charges act on each other"
+            return sentence("few_charges")
         return reason
 
     def _law(self, state: State) -> InverseSquare:
@@ -78,7 +79,7 @@ class CoulombSystem(ForceSystem):
 
     def why_singular(self, state: State) -> str | None:
         """Return that charges may come close."""
-        return "charges may come close"
+        return sentence("charges_close")
 
     @property
     def attractors(self) -> int:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Mass, Transform, Velocity
+from physicslab.ecs.sentences import sentence
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.accounts import GRAVITY
 from physicslab.kernels.forces import packed_forces
@@ -41,15 +42,15 @@ class GravitySystem(ForceSystem):
         """Needed where the mode pulls and something can be pulled."""
         mode = state.physics.gravity_mode
         if mode == "none":
-            return "gravity is switched off"
+            return sentence("gravity_off")
         if not len(state.batch(Velocity, Mass)):
-            return "nothing that moves has Mass"
+            return sentence("no_moving_mass")
         if mode == "linear" and not state.physics.gravity:
-            return "gravity is zero"
+            return sentence("gravity_zero")
         if mode == "planet" and len(self._attracting) < 2:
-            return "fewer than two bodies attract each other"
+            return sentence("few_attract")
         if mode == "planet" and state.physics.G == 0.0:
-            return "G is 0"
+            return sentence("no_constant_of_gravity")
         return None
 
     def kernels_for(self, state: State) -> tuple[Any, ...]:
@@ -100,7 +101,7 @@ class GravitySystem(ForceSystem):
 
     def why_singular(self, state: State) -> str | None:
         """Say that planets may come close, where they attract each other."""
-        return "planets may come close" if self.attractors > 1 else None
+        return sentence("planets_close") if self.attractors > 1 else None
 
     @property
     def attractors(self) -> int:

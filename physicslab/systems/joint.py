@@ -12,6 +12,7 @@ from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.contacts.arguments import do_stage
 from physicslab.contacts.islands import wake_all
 from physicslab.ecs.component import InvalidValue
+from physicslab.ecs.sentences import listed, sentence
 from physicslab.kernels.solver import impulse, soft
 from physicslab.state.joint_rows import KINDS, ends_of
 from physicslab.state.state import State
@@ -167,5 +168,5 @@ class JointSystem(System):
 
     def why_left_out(self, state: State) -> str | None:
         """Needed where anything is joined."""
-        names = " or ".join(kind.__name__ for kind in KINDS)
-        return None if len(state.joints) else f"no {names} in the scene"
+        names = listed("or", (kind.__name__ for kind in KINDS))
+        return None if len(state.joints) else sentence("no_component", components=names)

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Mass, Medium, Shape, Transform, Velocity
 from physicslab.ecs.component import InvalidValue
+from physicslab.ecs.sentences import sentence
 from physicslab.ecs.vector import rotated
 from physicslab.kernels.accounts import DAMPING, FIELDS
 from physicslab.kernels.forces.immersion import OUTLINE
@@ -50,7 +51,7 @@ class MediumSystem(ForceSystem):
         """Needed where there is a medium, and something with a Shape that moves in it."""
         reason = super().why_left_out(state)
         if reason is None and not len(state.batch(*_BODIES)):
-            return "nothing that has a Shape moves in the medium"
+            return sentence("nothing_in_medium")
         return reason
 
     def turned(self, state: State) -> NDArray[np.int64]:
@@ -140,7 +141,7 @@ class MediumSystem(ForceSystem):
 
     def why_singular(self, state: State) -> str | None:
         """Return that forces bend where the outline of a body comes into a medium."""
-        return "bodies may come into a medium"
+        return sentence("into_medium")
 
     def couples(self, state: State) -> NDArray[np.int64]:
         """Return no pairs: a medium stays where it is."""

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Held, Molecule, Transform, Velocity
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.molecules import CUT2, molecules
 from physicslab.state.packed import PackedForce, StateLayout
@@ -33,9 +34,9 @@ class MoleculeSystem(ForceSystem):
         """Needed where there are two molecules, of which one can be moved."""
         reason = super().why_left_out(state)
         if reason is None and len(self._acting) < 2:
-            return "fewer than two molecules act on each other"
+            return sentence("few_molecules")
         if reason is None and not len(state.batch(Molecule, Velocity)):
-            return "no molecule moves"
+            return sentence("no_molecule_moves")
         return reason
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
@@ -94,7 +95,7 @@ class MoleculeSystem(ForceSystem):
 
     def why_singular(self, state: State) -> str | None:
         """Return that molecules collide."""
-        return "molecules collide"
+        return sentence("molecules_collide")
 
     @property
     def crowd(self) -> int:

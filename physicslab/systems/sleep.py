@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from physicslab.components import Charge, Mass, Shape, Transform, Velocity
 from physicslab.contacts.arguments import do_stage, near_in
 from physicslab.contacts.islands import check_edits, fall_asleep, keep_places, wake, wake_all
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels import motion, near_counts
 from physicslab.kernels.accounts import GRAVITY
 from physicslab.kernels.arguments import InverseTuple
@@ -52,15 +53,15 @@ class SleepSystem(System):
             return reason
         wish = state.simulation.sleeping
         if not wish:
-            return "sleeping is switched off"
+            return sentence("sleeping_off")
         if state.physics.gravity_mode == "planet":
-            return "planets attract each other"
+            return sentence("planets")
         if state.physics.coulomb_constant and len(state.batch(Charge)) > 1:
-            return "charges act on each other"
+            return sentence("charges")
         if state.event_driven or state.rigid_contacts:
-            return "impacts are located exactly"
+            return sentence("impacts_located")
         if wish == "auto" and len(state.batch(Shape, Transform, Velocity, Mass)) <= _AWAKE_LIMIT:
-            return f"at most {_AWAKE_LIMIT} bodies can move: simulating them costs little"
+            return sentence("few_awake", limit=_AWAKE_LIMIT)
         return None
 
     @at(Stage.CONTACT)

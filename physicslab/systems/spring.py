@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Spring, Transform, Velocity
 from physicslab.components.spring import OTHER_END
 from physicslab.ecs.component import InvalidValue
+from physicslab.ecs.sentences import sentence
 from physicslab.ecs.vector import rotated
 from physicslab.kernels import accounts, direct_entry
 from physicslab.kernels.forces import bookings, packed_forces, springs
@@ -155,7 +156,7 @@ class SpringSystem(ForceSystem):
         if state.physics.gravity_mode == "linear":
             available += 2.0 * float(mass.sum()) * state.physics.gravity.magnitude * float(rest.max())
         enough = available > 0.25 * float((0.5 * stiffness * rest * rest)[rigid].min())
-        return "a spring may be pressed together to nothing" if enough else None
+        return sentence("compressed_to_nothing") if enough else None
 
     def _lengths(self, state: State) -> NDArray[np.float64]:
         """Return how long every spring is [m]."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform
+from physicslab.ecs.sentences import listed, sentence
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.force_calls import add_forces
@@ -111,7 +112,8 @@ class System:
         """Return why this scene does not need the system, or ``None`` if it does."""
         if self.needs and not len(state.batch(*self.needs)):
             absent = [needed for needed in self.needs if not len(state.batch(needed))] or self.needs
-            return f"no {' and '.join(needed.__name__ for needed in absent)} in the scene"
+            names = listed("and", (needed.__name__ for needed in absent))
+            return sentence("no_component", components=names)
         return None
 
     def kernels_for(self, state: State) -> tuple[Any, ...]:

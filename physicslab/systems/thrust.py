@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Mass, Thrust, Transform, Velocity
 from physicslab.components.thrust import FRAMES
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import THRUST
 from physicslab.kernels.forces.thrust import thrust
 from physicslab.state.packed import PackedForce, StateLayout
@@ -83,4 +84,4 @@ class ThrustSystem(ForceSystem):
 
     def why_singular(self, state: State) -> str | None:
         """Return that a body may turn fast, where its force turns with it."""
-        return "a thrust turns with its body" if self._follows(state).any() else None
+        return sentence("thrust_turns") if self._follows(state).any() else None

@@ -10,7 +10,7 @@ two pairs with one body meet at one time the order would decide: the motion ends
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Rows, Vectors, always_inlined, inlined, kernel
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels.accounts import IMPACTS
 from physicslab.kernels.arguments import (
     Bounds,
@@ -253,12 +253,24 @@ def _end_all(flight: Flight, now: float, low: float) -> None:
             linear[i, 0], linear[i, 1] = paths[i, 4], paths[i, 6]
 
 
+@inlined
+def _take_sample(motion: Motion, moving: Rows, sample: Numbers) -> None:
+    """Write x, y, the angle and their rates of the rows that move (moving,) into a sample (6 moving,)."""
+    for k in range(len(moving)):
+        i = moving[k]
+        sample[6 * k], sample[6 * k + 1] = motion.position[i, 0], motion.position[i, 1]
+        sample[6 * k + 2] = motion.angle[i]
+        sample[6 * k + 3], sample[6 * k + 4] = motion.linear[i, 0], motion.linear[i, 1]
+        sample[6 * k + 5] = motion.angular[i]
+
+
 @kernel
 def run_events(
     manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, apart: Rows,
     due: Vectors, impact_position: Vectors, motion: MotionTuple, shapes: ShapesTuple,
     materials: MaterialsTuple, inverse: InverseTuple, bounds: BoundsTuple,
     account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int,
+    moving: Rows, first_due: int, stride: int, samples: Vectors,
 ) -> tuple[int, int, int, float]:  # fmt: skip
     """Move bodies from impact to impact for ``steps`` times ``span`` s, or until one rests or meets two.
 
@@ -283,6 +295,9 @@ def run_events(
         To which the work and the momentum of impacts and gravity are added.
     log, logged : impact records (n,), int
         Impacts are logged from number ``logged`` on, with times from ``start`` [s].
+    moving, samples : int64 array (moving,), float64 array (n, 6 moving)
+        Receives x, y [m], the angle [rad] and their rates of these rows after ``first_due`` steps, and every
+        ``stride`` steps from there on.
 
     Returns
     -------
@@ -324,6 +339,8 @@ def run_events(
         if why != DONE:
             return made, impacts, why, now
         made += 1
+        if made >= first_due and (made - first_due) % stride == 0:
+            _take_sample(flight.motion, moving, samples[(made - first_due) // stride])
     return made, impacts, why, 0.0
 
 

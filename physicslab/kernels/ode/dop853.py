@@ -350,3 +350,24 @@ def dop853(
     if moved_origin:
         _restore_origin(q, q_low, bodies, origin)
     return evaluations
+
+
+@allocating_kernel
+def dop853_samples(
+    q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
+    calls: Calls, places: Rows, spans: Numbers, tolerance: float, period: float, max_evaluations: int,
+    bodies: int, steepness: Numbers, floor: float, q_samples: Vectors, v_samples: Vectors,
+) -> int:  # fmt: skip
+    """Advance by ``spans`` seconds (n,), one after the other, and keep q and v (n, coordinates) after each.
+
+    The rest is as :func:`dop853` has it. Returns how many spans were made.
+    """
+    for k in range(len(spans)):
+        made = dop853(
+            q, v, q_low, v_low, inverse_mass, damping, calls, places, spans[k], tolerance, period,
+            max_evaluations, bodies, steepness, floor,
+        )  # fmt: skip
+        if made < 0:
+            return k
+        q_samples[k], v_samples[k] = q, v
+    return len(spans)

@@ -11,7 +11,7 @@ import pygame
 from physicslab.theme import NOTHING, Colour
 from physicslab.view.canvas.canvas import TextStyle
 from physicslab.view.canvas.drawable_text import drawable
-from physicslab.view.canvas.system_font import IDEOGRAPHS, system_font
+from physicslab.view.canvas.system_font import FAR, system_font
 
 _RAISED = re.compile("([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 _PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
@@ -52,7 +52,7 @@ class SurfaceCache:
 
     def _of(self, piece: str, style: TextStyle) -> pygame.font.Font:
         """Return the font of a piece of a line, which has letters of one kind."""
-        return self._font(style.size, style.bold, IDEOGRAPHS.match(piece) is not None)
+        return self._font(style.size, style.bold, system_font(piece[:1]))
 
     def _render(self, words: str, style: TextStyle) -> pygame.Surface:
         size = self.text_size(words, style)
@@ -66,8 +66,8 @@ class SurfaceCache:
             if len(pieces) == 1 and one is style:
                 return part
             own = self._of(piece, one)
-            is_far = IDEOGRAPHS.match(piece) is not None  # raised figures keep to the upper edge
-            down = self._font(one.size, one.bold, False).get_ascent() - own.get_ascent() if is_far else 0
+            is_far = FAR.match(piece) is not None  # raised figures keep to the upper edge
+            down = self._font(one.size, one.bold, None).get_ascent() - own.get_ascent() if is_far else 0
             line.blit(part, (left, down))
             left += part.get_width()
         return line
@@ -77,9 +77,9 @@ def _pieces(words: str, style: TextStyle) -> list[tuple[str, TextStyle]]:
     """Return the pieces of a line with their styles: raised figures, which fonts lack, are small ones."""
     small = TextStyle(max(round(RAISED_SIZE * style.size), 6), style.colour, style.bold)
     parts = [(part, small if raised else style) for part, raised in raised_parts(words)]
-    if IDEOGRAPHS.search(words) is None:
+    if FAR.search(words) is None:
         return parts
-    return [(piece, one) for part, one in parts for piece in IDEOGRAPHS.split(part) if piece]
+    return [(piece, one) for part, one in parts for piece in FAR.split(part) if piece]
 
 
 def raised_parts(words: str) -> list[tuple[str, bool]]:
@@ -94,13 +94,12 @@ def raised_parts(words: str) -> list[tuple[str, bool]]:
     return [(part.translate(_PLAIN) if raised else part, raised) for part, raised in parts]
 
 
-def _load_font(size: int, bold: bool, ideographs: bool) -> pygame.font.Font:
+def _load_font(size: int, bold: bool, far: Path | None) -> pygame.font.Font:
     """Return a font by its nominal size [px]: Roboto, which panels have too, or pygame's own.
 
-    For ideographs it is one of the system, where there is one.
+    ``far`` is one of the system, for letters that it has not.
     """
     pygame.font.init()  # without a window nothing else has done so
-    far = system_font() if ideographs else None
     if far is not None:
         return pygame.font.Font(far, size)
     package = importlib.util.find_spec("imgui_bundle")

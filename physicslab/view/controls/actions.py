@@ -10,6 +10,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.replace import reason_of
 from physicslab.files.scene import SceneError, file_stem
 from physicslab.history import Branch, Command, Remove, SetField, SetPhysics, SetText
+from physicslab.languages.sentence import Sentence
 from physicslab.state.state import SCENE_TEXTS
 from physicslab.systems.gravity import GravitySystem
 from physicslab.theme import THEMES
@@ -244,6 +245,10 @@ def turner(sign: int) -> Action:
     return turn
 
 
+def _told(words: str, what: str) -> Sentence:
+    return Sentence(words, what=what if isinstance(what, Sentence) else Sentence(what))
+
+
 def undo(world: World, window: Window) -> None:
     """Undo the last edit, and the run since; where there is none, the run."""
     window.pause_for_history(world)
@@ -251,14 +256,14 @@ def undo(world: World, window: Window) -> None:
     if words is None and window.scenes.left is not None and window.lesson is None:
         window.scenes.next_world = window.scenes.left.history.world
         words = "opened another scene"
-    window.notify(f"Undone: {words}" if words else "There is nothing to undo")
+    window.notify(_told("Undone: {what}", words) if words else "There is nothing to undo")
 
 
 def redo(world: World, window: Window) -> None:
     """Redo what was undone last."""
     window.pause_for_history(world)
     words = window.edits.history.redo(runs=False)
-    window.notify(f"Redone: {words}" if words else "There is nothing to redo")
+    window.notify(_told("Redone: {what}", words) if words else "There is nothing to redo")
 
 
 def seek(world: World, window: Window, step: int) -> None:

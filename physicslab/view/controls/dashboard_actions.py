@@ -15,6 +15,7 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.text import table_cell
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, Remove, SetField, SetPhysics, Spawn
+from physicslab.languages.sentence import Sentence
 from physicslab.view.controls import actions
 from physicslab.view.controls.saving import save_new
 from physicslab.view.window.dashboard import Dashboard, GraphShown, SliderShown
@@ -97,7 +98,8 @@ def plot_phase(world: World, window: Window) -> None:
         return
     body = bodies[-1]
     graph = Graph("x", body=body)
-    _plot(window, f"plotted velocity of {world.label(body)} against place", graph, [(body, "velocity x")])
+    what = Sentence("velocity of {body} against place", body=world.label(body))
+    _plot(window, Sentence("plotted {what}", what=what), graph, [(body, "velocity x")])
 
 
 def _plot(window: Window, words: str, graph: Graph, keys: Sequence[Key]) -> None:
@@ -113,7 +115,7 @@ def add_meter(world: World, window: Window) -> None:
     keys: list[Key] = [(body, "speed" if world.has(body, Velocity) else "y") for body in bodies]
     keys = keys or [(None, "total energy")]
     made = [Spawn([Meter(name, body)]) for body, name in keys]
-    window.edits.do(Group(f"made a meter: {_labels(world, bodies) or 'total energy'}", made))
+    window.edits.do(Group(Sentence("made a meter: {what}", what=_labels(world, bodies)), made))
 
 
 def add_slider(world: World, window: Window) -> None:
@@ -122,7 +124,8 @@ def add_slider(world: World, window: Window) -> None:
         for kind, changes in ((Spring, "Spring.stiffness"), (Mass, "Mass.mass")):
             if world.has(entity, kind):
                 slider = Slider(changes, entity, *usual_range(world, changes, entity))
-                words = f"made a slider: {changes} of {world.label(entity)}"
+                what = Sentence("{quantity} of {body}", quantity=changes, body=world.label(entity))
+                words = Sentence("made a slider: {what}", what=what)
                 window.edits.do(Group(words, [Spawn([slider])]))
                 return
     window.edits.do(Group("made a slider: gravity", [Spawn([Slider(GRAVITY)])]))
@@ -145,12 +148,14 @@ def toggle_line(world: World, window: Window, graph: GraphShown, key: Key) -> No
     """Draw a line in a graph, or take it away."""
     body, name = key
     there = [Remove(line.entity) for line in graph.lines if line.key == key]
-    what = name if body is None else f"{name} of {window.dashboard.label(body)}"
+    what = Sentence(name)
+    if body is not None:
+        what = Sentence("{quantity} of {body}", quantity=what, body=window.dashboard.label(body))
     if there:
-        _do(world, window, graph.entity, Group(f"took {what} from a graph", there))
+        _do(world, window, graph.entity, Group(Sentence("took {what} from a graph", what=what), there))
     else:
         made = Spawn([GraphLine(graph.entity, name, body)])
-        _do(world, window, graph.entity, Group(f"plotted {what}", [made]))
+        _do(world, window, graph.entity, Group(Sentence("plotted {what}", what=what), [made]))
 
 
 def change(world: World, window: Window, entity: int, part: Component) -> None:
@@ -196,7 +201,7 @@ def _sliding(world: World, slider: SliderShown, value: float) -> Command | str:
     if slider.target is None or slider.target not in world.entity_index.row_of:
         return "The entity of the slider was removed"
     if not world.has(slider.target, kind):
-        return f"{world.label(slider.target)} has no {kind.__name__}"
+        return Sentence("{body} has no {part}", body=world.label(slider.target), part=Sentence(kind.__name__))
     refused = refused_change(world, slider.target, kind, spec.name, value) if kind in _IN_SPACE else ""
     return refused or SetField(slider.target, kind.__name__, spec.name, value)
 
@@ -219,7 +224,9 @@ def save_picture(world: World, window: Window, graph: GraphShown, content: bytes
 
 
 def _labels(world: World, bodies: Sequence[int]) -> str:
-    return world.label(bodies[0]) if len(bodies) == 1 else f"{len(bodies)} bodies" if bodies else ""
+    if not bodies:
+        return Sentence("total energy")
+    return world.label(bodies[0]) if len(bodies) == 1 else Sentence("{n} bodies", n=len(bodies))
 
 
 def table_of(graph: GraphShown, dashboard: Dashboard) -> str:

@@ -3,6 +3,8 @@
 from typing import Any
 
 from physicslab.components import Velocity
+from physicslab.ecs.sentences import listed
+from physicslab.languages.sentence import Sentence
 from physicslab.view.controls import actions
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -46,8 +48,11 @@ def pause_at_next(world: World, window: Window) -> None:
     chosen = tuple(entity for entity in window.selection.entities if world.has(entity, Velocity))
     microscope.waits_for = chosen
     window.error, window.pace.paused = "", False
-    names = " or ".join(world.label(entity) for entity in chosen[:2]) if len(chosen) < 3 else "the selection"
-    window.notify(f"Pause at the next impact{' of ' + names if chosen else ''}")
+    names: str = Sentence("the selection")
+    if 0 < len(chosen) < 3:
+        names = listed("or", map(world.label, chosen))
+    words = Sentence("Pause at the next impact of {body}", body=names)
+    window.notify(words if chosen else "Pause at the next impact")
 
 
 def run_slowly(world: World, window: Window) -> None:

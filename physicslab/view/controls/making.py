@@ -39,7 +39,7 @@ _PERIOD = "its period"
 _BODIES = 40
 """How many bodies are offered."""
 _TRIAL = 1.0
-"""How long the run is tried at most before a lesson is written [s of the clock]."""
+"""How long the run is tried at most before a lesson is written [s of the processor]."""
 
 
 def toggle_making(world: World, window: Window) -> None:
@@ -144,10 +144,10 @@ def _tried(lesson: Lesson) -> str:
         If what is measured, or the theory, has no value in it.
     """
     run = next(part for part in lesson.parts() if isinstance(part, Run))
-    live, deadline = LiveRun(lesson.setup, run, lesson.quantities), time.monotonic() + _TRIAL
+    live, deadline = LiveRun(lesson.setup, run, lesson.quantities), time.process_time() + _TRIAL
     live.world.step()
     while not live.sample():
-        if time.monotonic() > deadline:
+        if time.process_time() > deadline:
             return ""
         live.world.step()
     for question in lesson.questions():

@@ -9,6 +9,7 @@ import pygame
 from physicslab.components import Gate, Note, Protractor, Ruler, Strobe, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, Group, Remove, RemoveComponent, SetField
+from physicslab.languages.sentence import Sentence
 from physicslab.state.attached import attached_to, place_of
 from physicslab.view.controls.picking import centre_near, directions_near, instrument_at, point_at
 from physicslab.view.controls.tool import Tool
@@ -244,7 +245,7 @@ def nudged(world: World, entity: int, by: Vector2) -> Command | None:
     part = world.component(entity, one.kind)
     free = [n for n in one.kind.POINTS if getattr(part, f"{n}_body") is None or one.kind is Note]
     commands = [SetField(entity, one.kind.__name__, name, getattr(part, name) + by) for name in free]
-    return Group(f"moved {world.label(entity)}", commands) if commands else None
+    return Group(Sentence("moved {what}", what=world.label(entity)), commands) if commands else None
 
 
 def detached(world: World, removed: set[int]) -> list[Command]:

@@ -6,6 +6,7 @@ import pygame
 
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.history import Command, Group, Remove, RemoveComponent
+from physicslab.languages.sentence import Sentence
 from physicslab.state.joint_rows import KINDS
 from physicslab.view.controls import drawing
 from physicslab.view.controls.drawing import Drawn
@@ -59,7 +60,7 @@ def take_hold(world: World, window: Window) -> bool:
         return True
     window.edits.history.divide()  # one undo takes back what the hand does from now on
     if not window.hand.take(world, entity, window.place, window.now) and not window.pace.paused:
-        window.notify(f"{world.label(entity)} stays where it is: it is fixed")
+        window.notify(Sentence("{body} stays where it is: it is fixed", body=world.label(entity)))
     return True
 
 

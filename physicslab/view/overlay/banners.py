@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from physicslab.diagnostics.warnings import ModelWarning
+from physicslab.languages.sentence import proper
 from physicslab.theme import Colour
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
@@ -13,23 +14,23 @@ from physicslab.view.canvas.drawable_text import MAX_LETTERS, shortened
 def broken(words: str, width: int, canvas: Canvas, style: TextStyle) -> list[str]:
     """Break words, in the canvas's language, into lines no wider than ``width`` px; one too long is cut.
 
-    Text beyond ``MAX_LETTERS`` is left out.
+    Text beyond ``MAX_LETTERS`` is left out. Lines are what is drawn, in every language.
     """
     lines: list[str] = []
     line = ""
     for word in shortened(canvas.language.reword(words), MAX_LETTERS).split():
         longer = f"{line} {word}" if line else word
-        if canvas.text_size(longer, style)[0] <= width:
+        if canvas.text_size(proper(longer), style)[0] <= width:
             line = longer
             continue
         if line:
             lines.append(line)
         line = word
-        while canvas.text_size(line, style)[0] > width and len(line) > 1:
+        while canvas.text_size(proper(line), style)[0] > width and len(line) > 1:
             cut = _fitting(line, width, canvas, style)
             lines.append(line[:cut])
             line = line[cut:]
-    return [*lines, line] if line else lines
+    return list(map(proper, [*lines, line] if line else lines))
 
 
 def _fitting(word: str, width: int, canvas: Canvas, style: TextStyle) -> int:
@@ -37,7 +38,7 @@ def _fitting(word: str, width: int, canvas: Canvas, style: TextStyle) -> int:
     fits, too_long = 1, len(word)
     while too_long - fits > 1:
         middle = (fits + too_long) // 2
-        if canvas.text_size(word[:middle], style)[0] <= width:
+        if canvas.text_size(proper(word[:middle]), style)[0] <= width:
             fits = middle
         else:
             too_long = middle
@@ -191,13 +192,17 @@ def draw_advice(
     left, top, width, height = room
     width = min(width, _MAX_WIDTH * on.size) - 3 * on.size
     style, inner = TextStyle(small, on.theme.warning, bold=True), max(width, 4 * on.size)
-    told = ordered[0].told if ordered[0].entity else ordered[0].told.capitalize()
-    rest = f" And {len(ordered) - 1} more." if len(ordered) > 1 else ""
-    brief = broken(f"! {told}.{' More under Engineer.' if plainly else rest}", inner, on.canvas, style)
+    own = on.canvas.language
+    told = own.reword(ordered[0].told)
+    told = told if ordered[0].entity else told[:1].upper() + told[1:]
+    rest = f" {own.say_count('And {n} more.', 'And {n} more.', len(ordered) - 1)}" if len(ordered) > 1 else ""
+    if plainly:
+        rest = f" {own.say('More under Engineer.')}"
+    brief = broken(proper(f"! {told}.{rest}"), inner, on.canvas, style)
     lines = ["! Not to be trusted"]
     for one in ordered[:_MAX_SHOWN]:
-        pieces = broken(str(one), inner, on.canvas, style)
-        lines += [f"- {pieces[0]}", *pieces[1:]]
+        pieces = broken(one.words, inner, on.canvas, style)
+        lines += [proper(f"- {pieces[0]}"), *pieces[1:]]
     if len(ordered) > _MAX_SHOWN:
         lines.append(f"and {len(ordered) - _MAX_SHOWN} more")
     if plainly or pill_height(len(lines), style, on.canvas) > _MAX_HEIGHT * height:

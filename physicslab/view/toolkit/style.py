@@ -7,7 +7,7 @@ from pathlib import Path
 from imgui_bundle import ImVec2, ImVec4, imgui, implot
 
 from physicslab.theme import Colour, Theme, mixed
-from physicslab.view.canvas.system_font import system_font
+from physicslab.view.canvas.system_font import system_fonts
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +37,7 @@ def _font(folder: Path, weight: str) -> imgui.ImFont:
     icons.glyph_min_advance_x = 16.0
     icons.glyph_offset = ImVec2(0.0, 1.0)
     atlas.add_font_from_file_ttf(str(folder / "Font_Awesome_6_Free-Solid-900.otf"), 13.0, icons)
-    far = system_font()
-    if far is not None:  # its letters are made when they are first written
+    for far in system_fonts():  # their letters are made when they are first written
         others = imgui.ImFontConfig()
         others.merge_mode = True
         atlas.add_font_from_file_ttf(str(far), 19.0, others)

@@ -6,6 +6,7 @@ from typing import Any
 from physicslab.components import Note, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.history import Command, Group, SetField, Spawn
+from physicslab.languages.sentence import Sentence
 from physicslab.state.attached import local_point
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.overlay.instruments import Instrument, Overrides
@@ -191,4 +192,4 @@ def moved(world: World, one: Instrument, places: dict[str, Spot]) -> Group:
         if wanted != body:
             commands.append(SetField(one.entity, kind, f"{name}_body", wanted))
         commands.append(SetField(one.entity, kind, name, local_point(world, wanted, spot.place)))
-    return Group(f"moved {world.label(one.entity)}", commands)
+    return Group(Sentence("moved {what}", what=world.label(one.entity)), commands)

@@ -8,6 +8,7 @@ from physicslab.diagnostics.collision import ENERGETIC, LOWERED, Body, Collision
 from physicslab.diagnostics.ledger import WALLS
 from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
+from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity, without_rounding
 from physicslab.world import World
@@ -45,6 +46,9 @@ class Step:
     difference: float = 0.0
 
 
+_HIT = "{a} hit {b} at {speed}."
+
+
 def body_name(world: World, entity: int, wall: int) -> str:
     """Return what a body of an impact is called; entity 0 is one of the bounds."""
     if entity == 0:
@@ -63,7 +67,7 @@ def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[
     spot = max(collision.spots, key=lambda one: one.normal_impulse)
     vn, vt = collision.approach(spot)
     left, slides = collision.approach(spot, after=True)
-    told = [f"{_who(collision, names)} at {quantity(-vn, 'm/s')}."]
+    told: list[str] = [_who(collision, names, quantity(-vn, "m/s"))]
     told.append(_bounce(collision, result, -left / vn if vn else 0.0))
     told.append("These speeds are along the normal n of the contact.")
     if len(collision.spots) == 2:
@@ -79,18 +83,23 @@ def story(collision: Collision, result: Result, names: tuple[str, str]) -> list[
     return told
 
 
-def _who(collision: Collision, names: tuple[str, str]) -> str:
+def _who(collision: Collision, names: tuple[str, str], speed: str) -> str:
     """Return which of the two moved into the other."""
-    a, b = (f"{name} ({letter})" for name, letter in zip(names, "AB", strict=True))
+    a, b = (
+        Sentence("{name} ({letter})", name=name, letter=letter)
+        for name, letter in zip(names, "AB", strict=True)
+    )
     of_a = collision.a.before.linear.dot(collision.normal)
     of_b = -collision.b.before.linear.dot(collision.normal)
     if not (collision.a.is_free and collision.b.is_free):
-        return f"{b} hit {a}" if collision.b.is_free else f"{a} hit {b}"
+        a, b = (b, a) if collision.b.is_free else (a, b)
+        return Sentence(_HIT, a=a, b=b, speed=speed)
     none = AGREES * collision.speed_scale
     if of_a > none and of_b > none:
-        return f"{a} and {b} ran into each other"
+        return Sentence("{a} and {b} ran into each other at {speed}.", a=a, b=b, speed=speed)
     first, second, other = (a, b, of_b) if of_a > of_b else (b, a, of_a)
-    return f"{first} caught up with {second}" if other < -none else f"{first} hit {second}"
+    words = "{a} caught up with {b} at {speed}." if other < -none else _HIT
+    return Sentence(words, a=first, b=second, speed=speed)
 
 
 def _bounce(collision: Collision, result: Result, found: float) -> str:

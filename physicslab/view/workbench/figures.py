@@ -6,10 +6,13 @@ from typing import Literal
 
 from physicslab.components import Held, Mass, Transform, Velocity
 from physicslab.contacts.report import count_near_pairs
-from physicslab.diagnostics.energy import ACCOUNT_WORDS, Audit, Momentum, flows, summation
+from physicslab.diagnostics.energy import ACCOUNT_WORDS, Audit, flows, summation
 from physicslab.diagnostics.reference_solution import ReferenceSolution, reference_solution
 from physicslab.diagnostics.scales import scales_of
+from physicslab.ecs.sentences import listed
 from physicslab.ecs.vector import Vector2
+from physicslab.languages.sentence import Sentence, proper
+from physicslab.state.account import Momentum
 from physicslab.view.canvas.quantities import percentage, quantity, vector_quantity, without_rounding
 from physicslab.view.picture.bodies import body_rows
 from physicslab.world import World
@@ -247,7 +250,7 @@ def method_lines(world: World) -> list[Line]:
 
 def _plan_lines(world: World) -> list[Line]:
     method = Line(world.plan.integrator.title, kind="remark")
-    return [method, Line(f"because: {world.plan.reason}", kind="remark")]
+    return [method, Line(_because([world.plan.reason]), kind="remark")]
 
 
 def _island_lines(world: World) -> list[Line]:
@@ -274,7 +277,11 @@ def _stepper_lines(world: World) -> list[Line]:
         if world.stepper.reason not in (plan.reason, *reasons):
             reasons.append(world.stepper.reason)
     lines = [Line(world.stepper.title, kind="remark")]
-    return lines + [Line(f"because: {'; '.join(reasons)}", kind="remark")] * bool(reasons)
+    return [*lines, Line(_because(reasons), kind="remark")] if reasons else lines
+
+
+def _because(reasons: list[str]) -> Sentence:
+    return Sentence("because: {reason}", reason=listed("both", reasons))
 
 
 def _plain(name: str) -> str:
@@ -286,7 +293,7 @@ def cost_lines(world: World, meter: FrameMeter) -> list[Line]:
     running = [system.name for system in world.schedule.running]
     costs = {name: meter.cost.get(name, 0.0) for name in running}
     lines = [Line("Running", "time per frame", "heading")]
-    lines += [Line(_plain(name), f"{cost:.2f} ms") for name, cost in costs.items()]
+    lines += [Line(proper(_plain(name)), f"{cost:.2f} ms") for name, cost in costs.items()]
     return [*lines, Line("Together", f"{sum(costs.values()):.2f} ms")]
 
 
@@ -295,5 +302,8 @@ def left_out_lines(world: World) -> list[Line]:
     if not world.schedule.left_out:
         return []
     lines = [Line(kind="gap"), Line("Left out", kind="heading")]
-    lines += [Line(f"{_plain(out.name)}: {out.reason}", kind="remark") for out in world.schedule.left_out]
+    lines += [
+        Line(Sentence("{system}: {reason}", system=_plain(out.name), reason=out.reason), kind="remark")
+        for out in world.schedule.left_out
+    ]
     return lines

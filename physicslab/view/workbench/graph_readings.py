@@ -16,6 +16,7 @@ from physicslab.components.quantities import (
 )
 from physicslab.diagnostics.quantities import why_undefined
 from physicslab.diagnostics.scales import scales_of
+from physicslab.languages.sentence import Sentence
 from physicslab.state.joint_rows import KINDS
 from physicslab.theme import Colour, Theme, mixed
 from physicslab.view.canvas.quantities import (
@@ -72,7 +73,8 @@ def scale_of(key: Key, scales: dict[str, float]) -> float:
 
 def named_key(key: Key, window: Window) -> str:
     """Return what a quantity is called, with its body: ``"ball: speed"``."""
-    return f"{window.dashboard.label(key[0])}: {key[1]}"
+    body = window.dashboard.label(key[0])
+    return Sentence("{body}: {quantity}", body=body, quantity=Sentence(key[1]))
 
 
 def build_quantities(

@@ -30,6 +30,7 @@ from physicslab.diagnostics.scales import scales_of
 from physicslab.ecs.component import Component
 from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.vector import Vector2
+from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.quantities import quantity, vector_quantity, without_rounding
 from physicslab.view.controls.copies import duplicate_selected
 from physicslab.view.controls.dashboard_actions import plot_selected
@@ -152,7 +153,8 @@ def build_pairs(ui: Ui, measured: Measured) -> None:
     for one in measured.forces:
         if one.pair is not None:
             other, friction, restitution = one.pair
-            ui.faint(f"With {other}: mu = {friction:.4g}, e = {restitution:.4g}")
+            mu, e = f"{friction:.4g}", f"{restitution:.4g}"
+            ui.faint(Sentence("With {body}: mu = {mu}, e = {e}", body=other, mu=mu, e=e))
             ui.tip("For this pair mu is the root of both frictions multiplied, e the smaller restitution")
 
 

@@ -12,6 +12,7 @@ from physicslab.components import Gate, Note
 from physicslab.diagnostics.stopwatch import Lap, laps
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, table_cell
+from physicslab.languages.sentence import Sentence
 from physicslab.state.attached import place_of
 from physicslab.systems.gate import GateSystem
 from physicslab.view.canvas.drawable_text import shortened
@@ -78,8 +79,9 @@ def _meaning(world: World, last: Lap | None, every: Sequence[Lap], gates: int) -
     if last is not None and last.since is not None:
         body = _named(world, last.crossing.body)
         if gates == 1:
-            return f"Period of {body}"
-        return f"{body}: {_named(world, last.since.gate)} to {_named(world, last.crossing.gate)}"
+            return Sentence("Period of {body}", body=body)
+        gates_of = _named(world, last.since.gate), _named(world, last.crossing.gate)
+        return Sentence("{body}: {a} to {b}", body=body, a=gates_of[0], b=gates_of[1])
     if not gates:
         return "Draw a gate for bodies to cross"
     if not every:

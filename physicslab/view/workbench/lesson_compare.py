@@ -5,6 +5,7 @@ from imgui_bundle import imgui
 from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.files.checks import SceneError
 from physicslab.languages.language import language
+from physicslab.languages.sentence import Sentence
 from physicslab.lessons.check import Row, row_of
 from physicslab.lessons.lesson import Compare
 from physicslab.lessons.setup import AS_IT_IS, Case
@@ -70,8 +71,9 @@ def _build_row(
     values = ", ".join(f"{name} = {text}" for name, text in case.values)
     imgui.table_next_row()
     imgui.table_next_column()
-    words = f"{number}. {'as run' if case is AS_IT_IS else values}"
-    ui.text(f"{words}: {case.note}" if case.note else words, wrapped=True)
+    what = Sentence("as run") if case is AS_IT_IS else values
+    words = Sentence("{n}. {case}", n=number, case=what)
+    ui.text(Sentence("{case}: {note}", case=words, note=case.note) if case.note else words, wrapped=True)
     imgui.table_next_column()
     if predicted is not None:
         if case is AS_IT_IS and isinstance(row, Row):
@@ -80,7 +82,7 @@ def _build_row(
     if row is None:
         button, tip = f"Run {part.name} {number}", f"Run it with {values}"
         ui.button(button, tip, lesson_actions.begin_run, part.run,
-                  case, shown=f"{RUN}  Run", enabled=not lesson.running)  # fmt: skip
+                  case, shown=Sentence("{icon}  Run", icon=RUN), enabled=not lesson.running)  # fmt: skip
         return
     if isinstance(row, str):
         ui.text(row, ui.theme.error, wrapped=True)

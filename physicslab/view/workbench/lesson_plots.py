@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from physicslab.diagnostics.figures import quantity_of
 from physicslab.ecs.quantity_text import Expression, InvalidText, evaluate
+from physicslab.languages.sentence import Sentence, proper
 from physicslab.lessons.check import Row, si_unit
 from physicslab.lessons.lesson import Compare, Question
 from physicslab.theme import Colour
@@ -55,10 +56,8 @@ def plot_run(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
             units = [si_unit(one.value(trial.live.figures.at(0))) for one in (curve.against, curve.along)]
         except InvalidText:
             continue
-        labels = [
-            f"{_plain(one)} [{written_unit(unit)}]" if unit else _plain(one)
-            for one, unit in zip((curve.against, curve.along), units, strict=True)
-        ]
+        shown = zip((curve.against, curve.along), units, strict=True)
+        labels = [_with_unit(_plain(one), unit) for one, unit in shown]
         if _begin(ui, f"{trial.run.name} {n}", labels[0], labels[1], legend=_has_more(lesson, trial, curve)):
             _plot_lines(ui, lesson, trial, curve)
             implot.end_plot()
@@ -87,10 +86,10 @@ def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve) -> None:
                     shade = _look(ui, theme.notice, _SHADE)
                     shade.fill_color, shade.fill_alpha = as_vector(theme.notice), _SHADE
                     implot.plot_shaded("##gap", x, predicted, y, shade)
-                    implot.plot_line(PREDICTED, drawn[:, 0].copy(), drawn[:, 1] * factor_of(question.unit),
-                                     _look(ui, theme.notice))  # fmt: skip
+                    values = drawn[:, 1] * factor_of(question.unit)
+                    implot.plot_line(ui.said(PREDICTED), drawn[:, 0].copy(), values, _look(ui, theme.notice))
                     ui.words.append(PREDICTED)
-    implot.plot_line(MEASURED, x, y, _look(ui, theme.accent))
+    implot.plot_line(ui.said(MEASURED), x, y, _look(ui, theme.accent))
     for compare in lesson.lesson.compares():
         if compare.name in trial.theory and compare.measured.text == curve.along.text:
             theory = np.array(trial.theory[compare.name])
@@ -98,15 +97,13 @@ def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve) -> None:
             dashes = dashes[: len(dashes) // 2 * 2]
             look = _look(ui, theme.text)
             look.flags = implot.LineFlags_.segments
-            implot.plot_line(THEORY, x[dashes], theory[dashes], look)
+            implot.plot_line(ui.said(THEORY), x[dashes], theory[dashes], look)
             ui.words.append(THEORY)
 
 
 def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predicted: float | None) -> None:
     """Build the graph of a comparison: in each case, by its number, theory, measurement and prediction."""
-    unit = written_unit(rows[0][1].unit)
-    label = f"{part.quantity} [{unit}]" if unit else part.quantity
-    if not _begin(ui, part.name, "case", label):
+    if not _begin(ui, part.name, "case", _with_unit(proper(part.quantity), rows[0][1].unit)):
         return
     numbers = np.array([float(n) for n, _ in rows])
     implot.setup_axis_ticks(implot.ImAxis_.x1, [float(n) for n, _ in rows], [f"{n}" for n, _ in rows], False)
@@ -127,7 +124,7 @@ def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predic
         look.marker, look.marker_size = marker, size * ui.size
         look.marker_line_color = as_vector(colour)
         look.marker_fill_color = as_vector(colour, 0.0 if name == THEORY else 1.0)
-        implot.plot_scatter(name, x, y, look)
+        implot.plot_scatter(ui.said(name), x, y, look)
         ui.words.append(name)
     implot.end_plot()
 
@@ -139,7 +136,13 @@ def _plain(expression: Expression) -> str:
         entity, name = quantity_of(expression.text, [owner])
     except InvalidText:
         return expression.text
-    return name if entity is None else f"{name} of {owner}"
+    own = Sentence(name)
+    return own if entity is None else Sentence("{quantity} of {body}", quantity=own, body=owner)
+
+
+def _with_unit(words: str, unit: str) -> str:
+    unit = written_unit(unit)
+    return Sentence("{what} [{unit}]", what=words, unit=unit) if unit else words
 
 
 def _begin(ui: Ui, name: str, across: str, along: str, *, legend: bool = True) -> bool:
@@ -150,7 +153,7 @@ def _begin(ui: Ui, name: str, across: str, along: str, *, legend: bool = True) -
     if not implot.begin_plot(f"##{name}", ImVec2(-1.0, _HEIGHT * ui.size), flags):
         return False
     fit = implot.AxisFlags_.auto_fit
-    implot.setup_axes(across, "", fit, fit)
+    implot.setup_axes(ui.said(across), "", fit, fit)
     implot.setup_legend(implot.Location_.north_east, implot.LegendFlags_.horizontal)
     ui.words.append(across)
     return True
@@ -173,12 +176,12 @@ class CurveField:
     def build(self, ui: Ui, lesson: OpenLesson, part: Question) -> list[list[float]]:
         """Build it, and return the points that are drawn: times [s] and values, in the question's unit."""
         end, low, high = _axes(lesson, part)
-        unit = written_unit(part.unit)
-        name = part.answer.text if part.answer is not None else ""
+        name = _plain(part.answer) if part.answer is not None else ""
         ui.faint("Draw it: press the button of the mouse in the graph, and go along.")
         if implot.begin_plot(f"##draw {part.name}", ImVec2(-1.0, 1.3 * _HEIGHT * ui.size),
                              _FLAGS | implot.Flags_.no_legend):  # fmt: skip
-            implot.setup_axes("time [s]", f"{name} [{unit}]" if unit else name, _LOCK, _LOCK)
+            across, along = _with_unit(Sentence("time"), "s"), _with_unit(name, part.unit)
+            implot.setup_axes(ui.said(across), ui.said(along), _LOCK, _LOCK)
             implot.setup_axes_limits(0.0, end, low, high, implot.Cond_.always)
             implot.setup_finish()
             place, size = implot.get_plot_pos(), implot.get_plot_size()
@@ -189,7 +192,10 @@ class CurveField:
             if self._values:
                 points = np.array(sorted(self._values.items()))
                 implot.plot_line(
-                    PREDICTED, points[:, 0] * end / _BINS, points[:, 1].copy(), _look(ui, ui.theme.notice)
+                    ui.said(PREDICTED),
+                    points[:, 0] * end / _BINS,
+                    points[:, 1].copy(),
+                    _look(ui, ui.theme.notice),
                 )
             implot.end_plot()
         self._build_text(ui, part, end)

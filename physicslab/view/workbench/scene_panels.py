@@ -8,6 +8,8 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.components import Graph
 from physicslab.components.graph import TIME
 from physicslab.diagnostics.fits import FITS
+from physicslab.ecs.sentences import listed
+from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.controls import dashboard_actions
@@ -195,8 +197,12 @@ def _title(graph: GraphShown, window: Window) -> str:
     """Return what a graph shows, in a few words."""
     bodies = list(dict.fromkeys(key[0] for key in graph.keys))
     names = [window.dashboard.label(body) for body in bodies]
-    subject = ", ".join(names) if len(names) <= 2 else f"{names[0]} and {len(names) - 1} others"
-    return f"Graph {graph.number}: {subject}" if names else f"Graph {graph.number}"
+    if not names:
+        return f"Graph {graph.number}"
+    subject: str = Sentence("{body} and {n} others", body=names[0], n=len(names) - 1)
+    if len(names) <= 2:
+        subject = listed("and", names)
+    return Sentence("Graph {n}: {what}", n=graph.number, what=subject)
 
 
 class ScenePanels:

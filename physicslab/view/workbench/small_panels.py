@@ -13,6 +13,7 @@ from physicslab.components.meter import CORNERS
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
 from physicslab.diagnostics.quantities import Reading, why_undefined
 from physicslab.diagnostics.scales import scales_of
+from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable, shortened
 from physicslab.view.canvas.quantities import quantity, without_rounding, written_unit
@@ -262,7 +263,8 @@ def _build_choice(ui: Ui, world: World, window: Window, slider: SliderShown, cha
 def _title(slider: SliderShown, window: Window) -> str:
     if slider.changes == GRAVITY:
         return "Gravity"
-    return f"{window.dashboard.label(slider.target)}: {_plain(slider.changes)}"
+    body, changes = window.dashboard.label(slider.target), Sentence(_plain(slider.changes))
+    return Sentence("{body}: {quantity}", body=body, quantity=changes)
 
 
 def _plain(changes: str) -> str:

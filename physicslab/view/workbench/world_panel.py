@@ -15,6 +15,7 @@ from physicslab.ecs.fields import Field
 from physicslab.ecs.vector import Vector2
 from physicslab.history import SetPhysics, SetSimulation
 from physicslab.integrators import Integrator
+from physicslab.languages.sentence import Sentence
 from physicslab.theme import Colour, Theme
 from physicslab.view.canvas.quantities import quantity, round_quantity, without_rounding
 from physicslab.view.controls.actions import gravity_in_words, has_gravity
@@ -320,7 +321,8 @@ def build_settings(ui: Ui, numbers: NumberFields, world: World, window: Window) 
         if name == "integrator":
             for plan in dict.fromkeys(world.plans):
                 if now != plan.integrator.name:
-                    ui.faint(f"{now} takes {plan.integrator.name}: {plan.reason}")
+                    method, why = plan.integrator.name, plan.reason
+                    ui.faint(Sentence("{auto} takes {method}: {reason}", auto=now, method=method, reason=why))
                 ui.faint(_cost(plan.integrator))
     if charged:
         _build_electric_field(ui, numbers, world, window)

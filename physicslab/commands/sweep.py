@@ -1,0 +1,180 @@
+"""Run a scene many times with other values, on all processors, and keep what is measured of each run."""
+
+import sys
+from argparse import ArgumentParser, Namespace
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from physicslab.commands import FAILED, CommandError
+from physicslab.commands.arguments import (
+    add_assignments,
+    check_seconds,
+    count,
+    name_of,
+    opened,
+    positive_count,
+    positive_duration,
+)
+from physicslab.commands.output import Output
+from physicslab.commands.progress import Progress
+from physicslab.commands.variations import vary
+from physicslab.ecs.text import printable, shortened
+from physicslab.ensembles.result import EnsembleResult
+from physicslab.ensembles.runs import run_task, task_of
+from physicslab.ensembles.task import Task
+from physicslab.ensembles.workers import Workers
+from physicslab.files.checks import shown
+from physicslab.scenes import SCENES
+from physicslab.world import World
+
+_DEFAULT_S = 10.0
+_MOST_VALUES = 1_000_000
+_SAMPLE_FORM = "ID.Component.field=LAW:A:B"
+_SHOWN_FAILURES = 3
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Declare what the command takes."""
+    add = parser.add_argument
+    add("scene", metavar="SCENE", help="a built-in scene's name, or a path")
+    words = (
+        "a run for each of COUNT values from START to STOP, with those of other options in every combination"
+    )
+    add("--vary", metavar="ID.Component.field=START:STOP:COUNT", action="append", default=[], help=words)
+    words = "a number drawn for each sample: uniform:FROM:TO, normal:MEAN:DEVIATION or sobol:FROM:TO"
+    add("--sample", metavar=_SAMPLE_FORM, action="append", default=[], help=words)
+    add("--samples", metavar="N", type=positive_count, help="how many samples, for each combination")
+    add("--seed", metavar="N", type=count, help="by which they are drawn (0)")
+    words = "what is kept of a run, [NAME=]EXPRESSION: ball.x, max(ball.y), first_impact.time, numerical, ..."
+    add("--measure", metavar="EXPR", action="append", default=[], help=words)
+    add("--seconds", metavar="T", type=positive_duration, default=_DEFAULT_S,
+        help=f"how long a run is, in the scene's time ({_DEFAULT_S:g})")  # fmt: skip
+    add("--out", metavar="FILE", help="where the rows go: .npz, .csv or .parquet; else a summary on stdout")
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument("--workers", metavar="N", type=positive_count, help="processes (one a processor)")
+    where.add_argument("--dask", metavar="ADDRESS", help="the scheduler of a Dask cluster: tcp://host:8786")
+    add("--open", metavar="ROW", type=count, help="make no run; open the window on the scene of this row")
+    add_assignments(parser)
+
+
+def execute(arguments: Namespace) -> int:
+    """Make the runs that are missing, and write the rows."""
+    if not arguments.measure and arguments.open is None:
+        raise CommandError("--measure: must be given: what is kept of each run")
+    if arguments.seed is not None and not arguments.sample:
+        raise CommandError("--seed: must go with --sample, whose numbers it chooses")
+    output = _output(arguments)
+    world = opened(arguments)
+    check_seconds(arguments.seconds, world.simulation.dt)
+    space = _space(world, arguments)
+    task = task_of(
+        world, space, measure=_measures(arguments), seconds=arguments.seconds, samples=arguments.samples,
+        seed=arguments.seed or 0,
+    )  # fmt: skip
+    if arguments.open is not None:
+        return _open(task, arguments.open)
+    label = shortened(printable(name_of(world, arguments)))
+    progress = Progress(label, sys.stderr)
+    workers = _workers(arguments)
+    try:
+        result = run_task(task, workers, None if output is None else Path(output.path), progress.show)
+    except OSError as error:
+        raise CommandError(f"{label}: {error}", FAILED) from error
+    finally:
+        progress.clear()
+    _tell(result, label, output)
+    return 0
+
+
+def _output(arguments: Namespace) -> Output | None:
+    """Return where the rows go, which can be written."""
+    if arguments.out is None:
+        return None
+    output = Output("--out", arguments.out)
+    if output.to_stdout:
+        raise CommandError("--out -: must be a path, whose ending names the format")
+    if arguments.scene not in SCENES:
+        output.refuse_same(arguments.scene, "the scene")
+    return output
+
+
+def _space(world: World, arguments: Namespace) -> dict[str, Any]:
+    """Return the fields that differ from run to run, and their values."""
+    space: dict[str, Any] = {}
+    for text in arguments.vary:
+        place, values = vary(world, text, _MOST_VALUES)
+        _once(space, place.path, "--vary")
+        space[place.path] = list(values)
+    for text in arguments.sample:
+        path, sign, law = text.rpartition("=")
+        parts = tuple(part.strip() for part in law.split(":"))
+        if not sign or len(parts) != 3 or parts[0] not in ("uniform", "normal", "sobol"):
+            raise CommandError(
+                f"--sample {shown(text)}: must be {_SAMPLE_FORM}, LAW one of uniform, normal, sobol"
+            )
+        _once(space, path.strip(), "--sample")
+        space[path.strip()] = parts
+    if not space:
+        raise CommandError("--vary: must be given, or --sample: what differs from run to run")
+    return space
+
+
+def _once(space: dict[str, Any], path: str, option: str) -> None:
+    if path in space:
+        raise CommandError(f"{option}: {printable(path)}: is given twice; a field must be given once")
+
+
+def _measures(arguments: Namespace) -> dict[str, str]:
+    """Return the measures by their columns."""
+    found: dict[str, str] = {}
+    for text in arguments.measure or ["time"]:
+        name, sign, expression = text.partition("=")
+        named = bool(sign) and name.strip().isidentifier() and not expression.startswith("=")
+        key, value = (name.strip(), expression.strip()) if named else (text.strip(), text.strip())
+        if key in found:
+            raise CommandError(f"--measure {shown(text)}: is given twice")
+        found[key] = value
+    return found
+
+
+def _workers(arguments: Namespace) -> Workers:
+    if arguments.dask is not None:
+        raise CommandError("--dask: needs the package distributed")
+    return Workers("processes", arguments.workers)
+
+
+def _open(task: Task, row: int) -> int:
+    """Open the window on the scene of a row."""
+    if row >= len(task.space):
+        raise CommandError(f"--open {row}: must be a row from 0 to {len(task.space) - 1}")
+    from physicslab.desktop.app import NoScreen, open_window  # no command without a window imports pygame
+
+    try:
+        return open_window(task.world(row))
+    except NoScreen as error:
+        raise CommandError(str(error)) from error
+
+
+def _tell(result: EnsembleResult, label: str, output: Output | None) -> None:
+    """Say what came of it."""
+    failed = f", {len(result.failures):,} of them with a failure" if result.failures else ""
+    where = label if output is None else printable(output.path)
+    print(f"{where}: {len(result):,} runs{failed}")
+    for row, why in [*result.failures.items()][:_SHOWN_FAILURES]:
+        print(f"  row {row}: {why}")
+    if output is None:
+        for line in _summary(result, list(result.task.measures)):
+            print(line)
+
+
+def _summary(result: EnsembleResult, names: Sequence[str]) -> list[str]:
+    """Return least, mean and greatest of each measure."""
+    lines = []
+    for name in names:
+        column = result.columns[name]
+        there = column[column == column]
+        if len(there):
+            numbers = f"least {there.min():.6g}, mean {there.mean():.6g}, greatest {there.max():.6g}"
+            lines.append(f"  {name}: {numbers}")
+    return lines

@@ -1,0 +1,268 @@
+"""Runs that are recorded: advanced as any, with the motion kept, for a time or until a condition holds.
+
+Steppers keep the motion of bodies while they advance the world. Energies and the page of the player are made
+when they are first read, in a copy of the world that is put to each recorded instant.
+"""
+
+import logging
+import math
+import sys
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Transform, Velocity
+from physicslab.diagnostics.energy import measure_account, measure_energy
+from physicslab.diagnostics.figures import Figures, Record
+from physicslab.diagnostics.ledger import ImpactReader, impact_table
+from physicslab.diagnostics.run_report import body_names
+from physicslab.ecs.conditions import Condition
+from physicslab.ecs.fields import Field, InvalidValue
+from physicslab.ecs.quantity_text import InvalidText
+from physicslab.state.run import BODY_COLUMNS, Column, Run
+from physicslab.state.samples import Samples
+from physicslab.stepping.breaks import first_time
+from physicslab.stepping.keyframe import Keyframe
+from physicslab.stepping.run import RunLength, run_length
+from physicslab.world import World
+
+_log = logging.getLogger(__name__)
+_EVERY = Field("every", "number", above=0.0, unit="s", owner="record")
+_LATE = 1e-6
+"""Share of a step by which ``every`` may be longer than whole steps."""
+_LOOK = 1024
+"""Steps after which impacts are read from the log, so that it does not run over."""
+_AHEAD = 8, 512
+"""So many steps are made at first, and at most, before a condition is looked at."""
+_ROUNDING = 1e-15
+"""Share of a step to which a moment is located."""
+_SUMS = ("kinetic", "potential", "energy")
+
+
+def record(world: World, seconds: float, every: float | None, until: str | None) -> Run:
+    """Advance a world and return what it did, as :meth:`World.record` says."""
+    length = run_length(world, seconds, None)
+    stride = 1
+    if every is not None:
+        stride = max(1, math.ceil(_EVERY.check(every) / length.dt - _LATE))
+    world.synchronise()
+    with world.active():
+        names = body_names(world)
+    begin, reader = measure_account(world), ImpactReader(world)
+    reads, world.contacts.read = world.contacts.read, True
+    records: list[NDArray[Any]] = []
+    found: float | None = None
+    try:
+        if until is None:
+            samples = _recorded(world, length, stride, reader, records)
+        else:
+            samples, found = _Watch(world, until, reader, records).go(length, stride)
+    finally:
+        world.samples, world.contacts.read = None, reads
+    table = impact_table(world, np.concatenate(records) if records else world.contacts.log[:0])
+    account = measure_account(world).after(begin).energy
+    moving = world.entity_index.entities[samples.rows].tolist()
+    replay = _Replay(world)
+    return Run(
+        samples.times[: samples.count], samples.motion[: samples.count],
+        tuple(names[entity] for entity in moving), found, table, account,
+        lambda run: replay.sums(run), lambda run: replay.page(run),
+    )  # fmt: skip
+
+
+def _recorded(
+    world: World, length: RunLength, stride: int, reader: ImpactReader, records: list[NDArray[Any]]
+) -> Samples:
+    """Make a whole run; the world ends with the bits of :meth:`World.run`."""
+    samples = Samples(world, world.time, length.dt, stride, length.steps)
+    if _has_smooth_islands(world):  # samples divide their motion, which is then made once more, undivided
+        start, world.samples = Keyframe(world), samples
+        world.run(seconds=length.seconds)
+        samples.finish(world, world.time)
+        world.samples = None
+        start.restore(world)
+        reader.skip()
+    else:
+        world.samples = samples
+    undivided = _has_smooth_islands(world) or world.plan.smooth
+    for _ in world.stepping(seconds=length.seconds, stride=sys.maxsize if undivided else _LOOK):
+        records += reader.read()
+    if reader.lost:
+        _log.warning("record: %d impacts were not kept, more than the log holds", reader.lost)
+    if world.samples is not None:
+        samples.finish(world, world.time)
+    return samples
+
+
+def _has_smooth_islands(world: World) -> bool:
+    return any(not island.touches for island in world.islands.members)
+
+
+class _Watch:
+    """Advances a world until a condition holds, and finds when that begins.
+
+    Parameters
+    ----------
+    world : World
+        What is advanced.
+    until : str
+        The condition, of what graphs show: ``"ball.x >= 8 m"``, ``"time > 2 s and world.kinetic < 1 mJ"``.
+    reader, records : ImpactReader, list
+        What reads impacts, and where they are kept.
+    """
+
+    def __init__(self, world: World, until: str, reader: ImpactReader, records: list[NDArray[Any]]) -> None:
+        self._world, self._reader, self._records, self._text = world, reader, records, until
+        try:
+            self._condition = Condition(until)
+            self._names = [name for name in dict.fromkeys(self._condition.names()) if name != "time"]
+            self._record = Record(world, self._names)
+            self._record.add()
+            self._holds = self._check()
+            self._condition.margin(self._now())
+        except InvalidText as error:
+            allowed = f"a condition, as 'ball.x >= 8 m' is one: {error}"
+            raise InvalidValue("record", "until", until, allowed) from error
+
+    def go(self, length: RunLength, stride: int) -> tuple[Samples, float | None]:
+        """Advance; return the samples, and when the condition began to hold [s], if it did."""
+        world = self._world
+        every = Samples(world, world.time, length.dt, 1, length.steps)
+        ahead, most = _AHEAD if self._of_motion else (1, 1)
+        done, start, found = 0, world.time, world.time if self._holds else None
+        while found is None and done < length.steps:
+            count, before, kept = min(ahead, length.steps - done), every.count, Keyframe(world)
+            end = start + length.elapsed(done + count)
+            self._advance(every, end - world.time, world.time)
+            first = self._first(every, before)
+            if first is not None:
+                steps = first - before
+                self._go_back(kept)
+                if steps:
+                    world.run(steps=steps)
+                    self._records += self._reader.read()
+                    kept = Keyframe(world)
+                found = self._locate(kept, float(every.times[first]) - world.time)
+                every.count = first
+            self._records += self._reader.read()
+            done, ahead = done + count, min(2 * ahead, most)
+        world.samples = None
+        return self._thinned(every, stride), found
+
+    def _advance(self, samples: Samples, seconds: float, time: float) -> None:
+        """Make some steps, of which every one is sampled."""
+        self._world.samples = samples
+        self._world.run(seconds=seconds)
+        samples.finish(self._world, self._world.time)
+
+    @property
+    def _of_motion(self) -> bool:
+        """Whether all that it refers to is in samples of the motion."""
+        return all(name.rpartition(".")[2] in BODY_COLUMNS for name in self._names)
+
+    def _first(self, samples: Samples, before: int) -> int | None:
+        """Return the first sample from number ``before`` on at which the condition holds."""
+        world, record = self._world, self._record
+        if not self._of_motion:
+            record.add()
+            return before if self._check() else None
+        place = {row: k for k, row in enumerate(samples.rows.tolist())}
+        fields, columns = list(BODY_COLUMNS), []
+        for name in self._names:
+            entity, _, field = name.rpartition(".")
+            row = place.get(world.entity_index.row_of[world.entity(entity)])
+            columns.append((record.columns[name], row, fields.index(field)))
+        for number in range(before, samples.count):
+            record.times.append(float(samples.times[number]))
+            for column, row, k in columns:
+                column.append(column[0] if row is None else float(samples.motion[number, row, k]))
+            if self._check():
+                return number
+        return None
+
+    def _locate(self, kept: Keyframe, h: float) -> float:
+        """Return when the condition begins to hold within a step of ``h`` s, and leave the world there."""
+        world = self._world
+        start, early, last = world.time, self._margin(), -1.0
+
+        def after(t: float) -> float:
+            nonlocal last
+            self._go_back(kept)
+            world.run(seconds=t)
+            last = t
+            return self._margin()
+
+        late = first_time(
+            after, h, after(h), early if early <= 0.0 else None,
+            max(_ROUNDING, math.ulp(start + h) / h), 0.0,
+        )  # fmt: skip
+        if last != late:
+            after(late)
+        return world.time
+
+    def _go_back(self, kept: Keyframe) -> None:
+        self._world.samples = None
+        kept.restore(self._world)
+        self._reader.skip()
+
+    def _margin(self) -> float:
+        """Return by how much the condition holds now [SI]."""
+        self._record.add()
+        return self._condition.margin(self._now())
+
+    def _check(self) -> bool:
+        """Whether the condition holds at the last moment that was read."""
+        return self._condition.holds(self._now())
+
+    def _now(self) -> Figures:
+        return Figures(self._record, None, len(self._record.times) - 1)
+
+    def _thinned(self, samples: Samples, stride: int) -> Samples:
+        """Return every ``stride``-th of the samples, and the state of now as the last."""
+        world = self._world
+        samples.finish(world, world.time)
+        if stride > 1:
+            last = samples.count - 1
+            kept = np.unique(np.append(np.arange(0, samples.count, stride), last))
+            samples.times, samples.motion = samples.times[kept], samples.motion[kept]
+            samples.count = len(kept)
+        return samples
+
+
+class _Replay:
+    """A copy of a world that is put to the instants of a run, for what is found afterwards."""
+
+    def __init__(self, world: World) -> None:
+        self._frame, self._name = Keyframe(world), world.title or world.name
+        self._systems = [system.fresh() for system in world.schedule.systems[1:]]
+        self._view = world.view
+        self._made: World | None = None
+
+    def _instants(self, run: Run) -> Iterator[World]:
+        """Yield the copy at each instant."""
+        if self._made is None:
+            self._made = World(systems=self._systems)
+            self._frame.fill(self._made)
+            self._made.view = self._view
+        world = self._made
+        transform, velocity = world.table(Transform), world.table(Velocity)
+        rows = world.batch(Transform, Velocity).rows
+        for time, bodies in zip(run.times.tolist(), run.motion, strict=True):
+            world.time = time
+            transform["position"][rows], velocity["linear"][rows] = bodies[:, 0:2], bodies[:, 3:5]
+            transform["angle"][rows], velocity["angular"][rows] = bodies[:, 2], bodies[:, 5]
+            yield world
+
+    def sums(self, run: Run) -> Mapping[str, Column]:
+        """Return the energies of the world at each instant [J]."""
+        energies = [measure_energy(world) for world in self._instants(run)]
+        found = np.array([(one.kinetic, one.stored, one.total) for one in energies]).reshape(-1, 3)
+        return {f"world.{name}": found[:, k] for k, name in enumerate(_SUMS)}
+
+    def page(self, run: Run) -> bytes:
+        """Return the page that plays the run; what makes pages stands above what measures."""
+        made: bytes = import_module("physicslab.export.page").page_of(self._instants(run), self._name)
+        return made

@@ -1,0 +1,247 @@
+"""What is kept of each run: expressions of its figures, or functions of the world at its end.
+
+Expressions are those of lessons (:mod:`physicslab.diagnostics.figures`). These names are known besides, as
+``run --json`` has them: ``ball.position.y``, ``ball.linear.x``, ``ball.angular``, ``account.friction``,
+``numerical`` and ``collisions``. ``end.ball.x`` is ``ball.x``, that at the end; ``max`` and ``min`` of one
+expression are the greatest and least of the run; the first and last impact of the run have ``time``, ``x``,
+``y``, ``speed`` and ``energy_lost``.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import pickle
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+from physicslab.components.quantities import ENERGY_CAUSES
+from physicslab.diagnostics.figures import COLLISIONS, FUNCTIONS, Figures, Record, quantity_of
+from physicslab.diagnostics.ledger import read_impacts
+from physicslab.ecs.quantity_text import (
+    Expression,
+    InvalidText,
+    Quantity,
+    Undefined,
+    dotted,
+    in_words,
+    is_known,
+)
+from physicslab.files.checks import SceneError, shown
+from physicslab.files.places import entity_names
+from physicslab.world import World
+
+type Measure = str | Callable[[World], float]
+"""An expression, or an importable function of the world at the end of the run."""
+
+_PARTS = {"position.x": "x", "position.y": "y", "linear.x": "vx", "linear.y": "vy", "angular": "omega"}
+"""Quantities by what ``run --json`` calls them."""
+_SHORT = {
+    **{f"account.{cause}": f"world.account_{cause}" for cause in ENERGY_CAUSES},
+    "account.numerical": "world.error_of_energy",
+    "numerical": "world.error_of_energy",
+    "collisions": COLLISIONS,
+}
+_EXTREMES = {"max": "greatest", "min": "least"}
+_IMPACTS = {
+    "time": (0, 0, 1, 0), "x": (1, 0, 0, 0), "y": (1, 0, 0, 0), "speed": (1, 0, -1, 0),
+    "energy_lost": (2, 1, -2, 0),
+}  # fmt: skip
+"""What is known of an impact, with the powers of its unit."""
+_WHICH = ("first_impact", "last_impact")
+_TRIAL = 8
+"""Samples of the run that never was by which an expression is tried."""
+
+
+def parsed(text: str, ids: Iterable[str]) -> Expression:
+    """Return an expression in the names that figures have, all of which are known.
+
+    Raises
+    ------
+    InvalidText
+        If it is no expression, or names what is not there.
+    """
+    known = [*ids]
+    whole = Expression(text)
+    expression = Expression(text, _Canonical(known).visit(whole.node))
+    for name in _quantities((expression,)):
+        quantity_of(name, known)
+    return expression
+
+
+class _Canonical(ast.NodeTransformer):
+    """Puts the names that figures have in the place of others."""
+
+    def __init__(self, ids: Sequence[str]) -> None:
+        self._ids = ids
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return self._named(node)
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.expr:
+        return self._named(node)
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        name = dotted(node.func)
+        if len(node.args) == 1 and name in _EXTREMES:
+            name = _EXTREMES[name]
+        if name not in FUNCTIONS and not is_known(name):
+            words = ", ".join(sorted({*FUNCTIONS, *_EXTREMES}))
+            raise InvalidText(f"'{name}' is no function: of a run there are {words}")
+        return ast.Call(ast.Name(name), [self.visit(argument) for argument in node.args], node.keywords)
+
+    def _named(self, node: ast.Name | ast.Attribute) -> ast.expr:
+        name = dotted(node)
+        name = _SHORT.get(name, name.removeprefix("end."))
+        which, _, column = name.partition(".")
+        if which in _WHICH and which not in self._ids and column not in _IMPACTS:
+            raise InvalidText(f"'{name}': an impact has {', '.join(_IMPACTS)}")
+        own = next((one for one in self._ids if name.startswith(f"{one}.")), None)
+        if own is not None:
+            column = name.removeprefix(f"{own}.")
+            name = f"{own}.{_PARTS.get(column, column)}"
+        return ast.parse(name, mode="eval").body if name != dotted(node) else node
+
+
+class _Impacts:
+    """The first and the last impact of a run, as names of expressions."""
+
+    def __init__(self, world: World | None, since: int) -> None:
+        self._found: dict[str, float] = {}
+        contacts = None if world is None else world.contacts
+        if contacts is None or contacts.logged <= since:
+            return
+        for which, number in zip(_WHICH, (since, contacts.logged - 1), strict=True):
+            if number < contacts.logged - len(contacts.log):
+                continue  # overwritten by later ones
+            record = contacts.log[[number % len(contacts.log)]]
+            found = read_impacts(record)
+            columns = (record["time"], record["x"], record["y"], -found.vn_before, found.energy_lost)
+            for name, column in zip(_IMPACTS, columns, strict=True):
+                self._found[f"{which}.{name}"] = float(column[0])
+
+    def named(self, name: str) -> Quantity | None:
+        which, _, column = name.partition(".")
+        if which not in _WHICH:
+            return None
+        return Quantity(self._found.get(name, math.nan), _IMPACTS[column], True)
+
+    def called(self, name: str, arguments: list[ast.expr], whole: Expression) -> Quantity | None:
+        return None
+
+
+class Measures:
+    """The measures of one world's runs.
+
+    Parameters
+    ----------
+    world : World
+        Whose runs.
+    given : mapping of str to str or callable
+        The measures by what their columns are called.
+
+    Attributes
+    ----------
+    needs_path : bool
+        Whether one of them looks at the whole run, which is sampled then after each step.
+
+    Raises
+    ------
+    SceneError
+        If one cannot be computed.
+    """
+
+    def __init__(self, world: World, given: Mapping[str, Measure]) -> None:
+        self._world, self._functions = world, {}
+        self._expressions: dict[str, Expression] = {}
+        ids = list(entity_names(world))
+        for name, measure in given.items():
+            if callable(measure):
+                self._functions[name] = _importable(name, measure)
+                continue
+            try:
+                self._expressions[name] = parsed(measure, ids)
+            except InvalidText as error:
+                raise SceneError(f"measure {shown(measure)}: {error}") from error
+        self._names = list(given)
+        path = {name for name, expression in self._expressions.items() if _looks_back(expression)}
+        self.needs_path = bool(path)
+        self._path = _quantities(self._expressions[name] for name in path)
+        self._end = _quantities(self._expressions[name] for name in self._expressions.keys() - path)
+        self._on_path = path
+        self._since, self._impacts = (
+            0,
+            any(name.startswith(_WHICH) for one in self._expressions.values() for name in one.names()),
+        )
+        world.contacts.read |= self._impacts
+        self.units = {name: self._tried(name) for name in self._names}
+        self._record: Record | None = None
+
+    def begin(self) -> None:
+        """Note the beginning of a run."""
+        self._since = self._world.contacts.logged
+        self._record = Record(self._world, self._path) if self.needs_path else None
+        self.sample()
+
+    def sample(self) -> None:
+        """Sample the run, where a measure looks at all of it."""
+        if self._record is not None:
+            self._record.add()
+
+    def values(self) -> tuple[list[float], str]:
+        """Return the measures of the run that has ended [SI], and why one of them is NaN."""
+        impacts = _Impacts(self._world if self._impacts else None, self._since)
+        ends = Record(self._world, self._end)
+        if self._end:
+            ends.add()
+        else:
+            ends.times.append(self._world.time)
+        path = None if self._record is None else Figures(self._record, impacts)
+        end, found, why = Figures(ends, impacts), [], ""
+        for name in self._names:
+            if name in self._functions:
+                found.append(float(self._functions[name](self._world)))
+                continue
+            scope = path if name in self._on_path and path is not None else end
+            try:
+                found.append(self._expressions[name].value(scope).value)
+            except Undefined as error:
+                found.append(math.nan)
+                why = why or f"measure {name}: {error}"
+        return found, why
+
+    def _tried(self, name: str) -> str:
+        """Return the unit of a measure, tried on samples that are all alike: no run is made for it."""
+        if name in self._functions:
+            return ""
+        expression = self._expressions[name]
+        record = Record(self._world, _quantities((expression,)))
+        record.times = [self._world.time + number for number in range(_TRIAL)]
+        record.columns = {column: [1.0] * _TRIAL for column in record.columns}
+        record.end = record.times[-1]
+        try:
+            quantity = expression.value(Figures(record, _Impacts(None, 0)))
+        except Undefined:
+            return ""
+        except InvalidText as error:
+            raise SceneError(f"measure {shown(expression.text)}: {error}") from error
+        return in_words(quantity.dimension) if quantity.has_unit else ""
+
+
+def _importable(name: str, function: Callable[[World], float]) -> Callable[[World], float]:
+    """Return a function that other processes can import."""
+    try:
+        pickle.dumps(function)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        words = "must be an expression, or a function of a module: another process imports it by its name"
+        raise SceneError(f"measure {shown(name)}: {words}") from error
+    return function
+
+
+def _looks_back(expression: Expression) -> bool:
+    calls = (node for node in ast.walk(expression.node) if isinstance(node, ast.Call))
+    return any(dotted(call.func) in FUNCTIONS for call in calls)
+
+
+def _quantities(expressions: Iterable[Expression]) -> list[str]:
+    names = dict.fromkeys(name for one in expressions for name in one.names())
+    return [name for name in names if name not in ("time", *FUNCTIONS) and not name.startswith(_WHICH)]

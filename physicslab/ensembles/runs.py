@@ -1,0 +1,181 @@
+"""One scene, many runs: the rows of a space, on all processors or a cluster."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from concurrent.futures import Executor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from physicslab.ensembles.measures import Measure, Measures
+from physicslab.ensembles.result import EnsembleResult, check_format, write_result
+from physicslab.ensembles.sink import Sink
+from physicslab.ensembles.space import Given, space_of
+from physicslab.ensembles.task import Task
+from physicslab.ensembles.workers import KINDS, Workers
+from physicslab.files.checks import SceneError, shown
+from physicslab.files.json_text import json_bytes
+from physicslab.files.replace import check_writable, reason_of
+from physicslab.files.scene import load_scene
+from physicslab.files.writer import write_scene
+from physicslab.stepping.run import run_length
+from physicslab.world import World
+
+_TAKEN = ("wall_s", "failure", "replica")
+PARTS = ".parts"
+"""What the folder of results that are not whole yet ends in, beside the file that they become."""
+
+
+def ensemble(
+    scene: str | os.PathLike[str] | Mapping[str, Any] | World,
+    space: Mapping[str, Given],
+    *,
+    measure: Measure | Mapping[str, Measure],
+    seconds: float | None = None,
+    steps: int | None = None,
+    samples: int | None = None,
+    seed: int = 0,
+    replicas: int = 1,
+    jitter: float | str | Mapping[str, float | str] = 0.0,
+    executor: str | Executor = "processes",
+    workers: int | None = None,
+    out: str | os.PathLike[str] | None = None,
+    progress: Callable[[float], object] | None = None,
+) -> EnsembleResult:
+    """Run a scene once for each row of a space, and measure each run.
+
+    Parameters
+    ----------
+    scene : str, path, dict or World
+        What is run; a world as it is now.
+    space : mapping of str to list or tuple
+        Fields (``ball.Mass.mass``, ``ball.Velocity.linear.x``, ``physics.gravity.y``) and their values, in SI
+        or as texts with units. A list or an array is a grid, of which every combination is run;
+        ``("uniform", a, b)``, ``("normal", mean, deviation)`` and ``("sobol", a, b)`` are drawn for each
+        sample; ``("rows", values)`` has a value for each.
+    measure : str, callable, or mapping of str to either
+        What is kept of a run, by the name of its column: an expression of its figures
+        (:mod:`physicslab.ensembles.measures`), or an importable function of the world at its end.
+    seconds, steps : float or int
+        How long a run is: one of the two.
+    samples, seed : int
+        How many are drawn, for each combination of the grids, and by which seed. A row's numbers depend on
+        the seed and on its place alone.
+    replicas, jitter : int, float or mapping of str to float
+        How many runs of each row there are, and by which deviation [SI] the numbers of all but the first
+        differ: one for all that is varied, or one for each field.
+    executor : str or concurrent.futures.Executor
+        ``"processes"``, ``"threads"``, ``"serial"``, or one of your own.
+    workers : int, optional
+        How many; by default one for each processor.
+    out : path, optional
+        A file (``.npz``, ``.csv``, ``.parquet``) for the columns. Until it is whole, its rows are in a folder
+        beside it, and what is run again goes on there.
+    progress : callable, optional
+        Called with the share that is done, from 0 to 1.
+
+    Returns
+    -------
+    EnsembleResult
+        Its ``columns`` are a dict of arrays.
+
+    Raises
+    ------
+    SceneError
+        If anything of this cannot be; nothing is begun then.
+
+    Examples
+    --------
+    >>> result = ensemble("drop", {"ball.Material.restitution": [0.5, 0.7, 0.9]},
+    ...                   measure={"height": "ball.position.y"}, seconds=1.2, executor="serial")
+    >>> result.columns["height"].round(3).tolist()
+    [1.126, 1.685, 1.964]
+    """
+    task = task_of(
+        scene, space, measure=measure, seconds=seconds, steps=steps, samples=samples, seed=seed,
+        replicas=replicas, jitter=jitter,
+    )  # fmt: skip
+    if isinstance(executor, str) and executor not in KINDS:
+        raise SceneError(f"executor {shown(executor)}: must be one of {', '.join(KINDS)}, or an Executor")
+    return run_task(task, Workers(executor, workers), None if out is None else Path(out), progress)
+
+
+def task_of(
+    scene: str | os.PathLike[str] | Mapping[str, Any] | World, space: Mapping[str, Given], *,
+    measure: Measure | Mapping[str, Measure], seconds: float | None = None, steps: int | None = None,
+    samples: int | None = None, seed: int = 0, replicas: int = 1,
+    jitter: float | str | Mapping[str, float | str] = 0.0,
+) -> Task:  # fmt: skip
+    """Return what :func:`ensemble` of the same arguments runs, all of it checked."""
+    world = scene if isinstance(scene, World) else load_scene(scene)
+    document = json_bytes(write_scene(world))
+    measures = measure if isinstance(measure, Mapping) else {_name_of(measure): measure}
+    if not measures:
+        raise SceneError("measure: must name at least one")
+    trial = load_scene(write_scene(world))
+    rows = space_of(trial, space, samples, seed, replicas, jitter)
+    taken = {*_TAKEN, *(axis.name for axis in rows.axes)}
+    for name in measures:
+        if name in taken:
+            raise SceneError(f"measure {shown(name)}: is the name of another column")
+    Measures(trial, measures)
+    run_length(trial, seconds, steps)
+    return Task(document, rows, dict(measures), seconds, steps)
+
+
+def run_task(
+    task: Task, workers: Workers, out: Path | None, progress: Callable[[float], object] | None
+) -> EnsembleResult:
+    """Make the runs that are not there yet, and return all results.
+
+    Raises
+    ------
+    SceneError
+        If the results cannot be written.
+    """
+    if out is not None:
+        check_format(out)
+        try:
+            check_writable(out)
+        except (OSError, ValueError) as error:
+            raise SceneError(f"out {out}: cannot be written: {reason_of(error)}") from error
+    sink = Sink(task, None if out is None else out.with_name(out.name + PARTS))
+    done, rows = 0, len(task.space)
+    try:
+        with workers:
+            for block in workers.blocks(task, sink.missing()):
+                sink.put(block)
+                done += len(block.values)
+                if progress is not None:
+                    progress((done + sink.found) / rows)
+    finally:
+        sink.flush()
+    columns, failures = _joined(task, sink)
+    if out is not None:
+        write_result(out, columns, failures)
+        sink.remove()
+    return EnsembleResult(columns, failures, task)
+
+
+def _joined(task: Task, sink: Sink) -> tuple[dict[str, Any], dict[int, str]]:
+    """Return the columns of all parts, and the failures."""
+    rows = len(task.space)
+    columns: dict[str, Any] = task.space.columns(0, rows)
+    values, wall_s = np.empty((len(task.measures), rows)), np.empty(rows)
+    failures: dict[int, str] = {}
+    for part in sink.results():
+        span = slice(part.first, part.first + len(part.done))
+        values[:, span], wall_s[span] = part.values.T, part.wall_s
+        failures |= part.failures
+    columns |= dict(zip(task.measures, values, strict=True))
+    reasons = np.full(rows, "", object)
+    for row, why in failures.items():
+        reasons[row] = why
+    return {**columns, "wall_s": wall_s, "failure": reasons}, dict(sorted(failures.items()))
+
+
+def _name_of(measure: Measure) -> str:
+    return measure if isinstance(measure, str) else measure.__name__

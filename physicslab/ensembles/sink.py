@@ -1,0 +1,168 @@
+"""Where results go: memory, or parts of a thousand rows that a killed program finds again."""
+
+from __future__ import annotations
+
+import io
+import json
+import shutil
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.ensembles.task import Block, Task
+from physicslab.files.replace import replace_file
+
+PART = 1000
+"""Rows of a part."""
+_WRITE_S = 10.0
+"""So long [s] results of a part that is not whole yet may be in memory alone."""
+
+
+class Part:
+    """The results of up to ``PART`` rows: which are there, and their measures, times and failures."""
+
+    def __init__(self, first: int, count: int, measures: int) -> None:
+        self.first = first
+        self.done = np.zeros(count, np.bool_)
+        self.values = np.full((count, measures), np.nan)
+        self.wall_s = np.full(count, np.nan)
+        self.failures: dict[int, str] = {}
+        self.written = time.monotonic()
+
+    def put(self, block: Block) -> None:
+        """Take the results of some of the rows."""
+        rows = slice(block.first - self.first, block.first - self.first + len(block.values))
+        self.done[rows] = True
+        self.values[rows], self.wall_s[rows] = block.values, block.wall_s
+        self.failures |= block.failures
+
+    def missing(self) -> Iterator[tuple[int, int]]:
+        """Yield the rows that are not there, from and up to."""
+        edges = np.flatnonzero(np.diff(np.concatenate(([True], self.done, [True])).astype(np.int8)))
+        for begin, end in edges.reshape(-1, 2).tolist():
+            yield self.first + begin, self.first + end
+
+
+class Sink:
+    """The results of a task: in memory, or in a folder of parts beside the file that they become.
+
+    Parameters
+    ----------
+    task : Task
+        Whose results.
+    folder : Path, optional
+        Where parts are kept; in memory where absent.
+
+    Attributes
+    ----------
+    found : int
+        How many rows were there already.
+    strange : int
+        How many parts held rows of another scene, other measures or another version.
+    """
+
+    def __init__(self, task: Task, folder: Path | None) -> None:
+        self._task, self._folder = task, folder
+        self._rows = len(task.space)
+        self._open: dict[int, Part] = {}
+        self.found = self.strange = 0
+
+    @property
+    def parts(self) -> int:
+        """How many parts there are."""
+        return -(-self._rows // PART)
+
+    def missing(self) -> Iterator[tuple[int, int]]:
+        """Yield the rows to be made, from and up to, none beyond the end of a part."""
+        for number in range(self.parts):
+            part = self._read(number)
+            self.found += int(part.done.sum())
+            if not part.done.all():
+                self._open[number] = part
+                yield from part.missing()
+            elif self._folder is None:
+                self._open[number] = part
+
+    def put(self, block: Block) -> None:
+        """Keep the results of some rows."""
+        number = block.first // PART
+        part = self._open[number]
+        part.put(block)
+        if self._folder is None:
+            return
+        whole = bool(part.done.all())
+        if whole or time.monotonic() - part.written > _WRITE_S:
+            self._write(number, part)
+        if whole:
+            del self._open[number]
+
+    def flush(self) -> None:
+        """Write what is in memory alone."""
+        if self._folder is not None:
+            for number, part in self._open.items():
+                if part.done.any():
+                    self._write(number, part)
+
+    def results(self) -> Iterator[Part]:
+        """Yield all parts, in order."""
+        for number in range(self.parts):
+            yield self._open[number] if number in self._open else self._read(number)
+
+    def remove(self) -> None:
+        """Remove the parts, which have become a file."""
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _path(self, number: int) -> Path:
+        assert self._folder is not None
+        return self._folder / f"part-{number:06d}.npz"
+
+    def _keys(self, number: int) -> NDArray[np.uint8]:
+        first = number * PART
+        return self._task.keys(self._task.space.columns(first, min(first + PART, self._rows)))
+
+    def _read(self, number: int) -> Part:
+        """Return a part with those of its rows that are kept of this task."""
+        first = number * PART
+        part = Part(first, min(PART, self._rows - first), len(self._task.measures))
+        kept = None if self._folder is None else _read(self._path(number))
+        if kept is None:
+            return part
+        keys, own = kept["keys"], self._keys(number)
+        count = min(len(keys), len(own))
+        same = np.zeros(len(own), np.bool_)
+        same[:count] = (keys[:count] == own[:count]).all(axis=1) & kept["done"][:count]
+        self.strange += bool(kept["done"].any()) and not same.any()
+        if same.any() and kept["values"].shape[1:] == part.values.shape[1:]:
+            part.done = same
+            part.values[same], part.wall_s[same] = (
+                kept[name][: len(own)][same[: len(keys)]] for name in ("values", "wall_s")
+            )
+            failures = json.loads(bytes(kept["failures"]))
+            part.failures = {int(row): why for row, why in failures.items() if same[int(row) - first]}
+        return part
+
+    def _write(self, number: int, part: Part) -> None:
+        assert self._folder is not None
+        self._folder.mkdir(exist_ok=True)
+        failures = json.dumps(part.failures, sort_keys=True).encode()
+        content = io.BytesIO()
+        np.savez(
+            content, keys=self._keys(number), done=part.done, values=part.values, wall_s=part.wall_s,
+            failures=np.frombuffer(failures, np.uint8),
+        )  # fmt: skip
+        replace_file(self._path(number), content.getvalue())
+        part.written = time.monotonic()
+
+
+def _read(path: Path) -> dict[str, NDArray[Any]] | None:
+    """Return the arrays of a part; ``None`` where there is none that can be read."""
+    try:
+        with np.load(path, allow_pickle=False) as kept:
+            return {name: kept[name] for name in ("keys", "done", "values", "wall_s", "failures")}
+    except (OSError, ValueError, KeyError, EOFError):
+        return None

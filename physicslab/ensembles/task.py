@@ -1,0 +1,258 @@
+"""What crosses to other processes: a scene, its rows, its measures; and how a row is run there."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import json
+import math
+import pickle
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.ecs.fields import InvalidValue
+from physicslab.ecs.text import printable, shortened
+from physicslab.ensembles.measures import Measure, Measures
+from physicslab.ensembles.space import Space, Values
+from physicslab.files.assignments import put
+from physicslab.files.checks import SceneError, shown
+from physicslab.files.places import SECTIONS, Place, entity_names, find_place
+from physicslab.files.reader import read_scene
+from physicslab.kernels.keys import sources_key
+from physicslab.stepping.partition import movable_in, why_whole
+from physicslab.stepping.plan import choose_plan
+from physicslab.world import World
+
+_SETTLED = ("Transform", "Velocity")
+"""Components whose values decide nothing about which systems a world needs."""
+_REASON_LIMIT = 300
+
+
+@dataclass(frozen=True)
+class Task:
+    """An ensemble without its results.
+
+    Attributes
+    ----------
+    scene : bytes
+        The scene as a JSON document.
+    space : Space
+        The rows.
+    measures : mapping of str to str or callable
+        What is kept of each run, by its column.
+    seconds, steps : float or int, optional
+        How long a run is; one of the two.
+    """
+
+    scene: bytes
+    space: Space
+    measures: Mapping[str, Measure]
+    seconds: float | None
+    steps: int | None
+
+    @cached_property
+    def payload(self) -> bytes:
+        """What is sent with each piece of work."""
+        own = {name: getattr(self, name) for name in ("scene", "space", "measures", "seconds", "steps")}
+        return pickle.dumps(own)
+
+    @cached_property
+    def digest(self) -> bytes:
+        """32 bytes that differ where a row of the same values would differ: scene, length, measures, code."""
+        measures = {
+            name: one if isinstance(one, str) else _code_of(one) for name, one in self.measures.items()
+        }
+        settings = json.dumps([self.seconds, self.steps, measures, sources_key()])
+        return hashlib.sha256(self.scene + b"\0" + settings.encode()).digest()
+
+    def keys(self, columns: Mapping[str, Values]) -> NDArray[np.uint8]:
+        """Return a key (n, 32) for each row of these values, by which its result is found again."""
+        names = json.dumps([*columns]).encode()
+        head = hashlib.sha256(self.digest + names)
+        found = bytearray()
+        for row in zip(*(column.tolist() for column in columns.values()), strict=True):
+            key = head.copy()
+            key.update(repr(row).encode())
+            found += key.digest()
+        if not columns:
+            found += head.digest() * len(self.space)
+        return np.frombuffer(bytes(found), np.uint8).reshape(-1, 32)
+
+    def world(self, row: int) -> World:
+        """Return the world of a row before its first step."""
+        world = read_scene(json.loads(self.scene), "the scene")
+        values = {name: column[0] for name, column in self.space.columns(row, row + 1).items()}
+        places = places_of(world, self.space)
+        put(world, {place: _plain(values[name]) for name, place in places.items()})
+        return world
+
+
+def _code_of(function: Any) -> str:
+    """Return what names a function, and changes where its source does."""
+    try:
+        source = inspect.getsource(function)
+    except (OSError, TypeError):
+        source = ""
+    return f"{function.__module__}.{function.__qualname__} {source}"
+
+
+def places_of(world: World, space: Space) -> dict[str, Place]:
+    """Return the fields of a space in a world, by their columns."""
+    names = entity_names(world)
+    return {axis.name: find_place(world, "space", axis.path, "...", names) for axis in space.axes}
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+@dataclass(frozen=True)
+class Block:
+    """The results of some rows.
+
+    Attributes
+    ----------
+    first : int
+        The first of them.
+    values : float64 array (n, measures)
+        The measures [SI], NaN where a run failed.
+    wall_s : float64 array (n,)
+        How long each took [s].
+    failures : dict of int to str
+        Why a row, by its number, has no result, or not all of it.
+    """
+
+    first: int
+    values: NDArray[np.float64]
+    wall_s: NDArray[np.float64]
+    failures: dict[int, str]
+
+
+class Runner:
+    """Runs rows of a task, one after the other, in one world where that is possible."""
+
+    def __init__(self, task: Task) -> None:
+        self.task = task
+        self._names = list(task.measures)
+        world = read_scene(json.loads(task.scene), "the scene")
+        world.mark()
+        self._measures = Measures(world, task.measures)
+        self._world = world
+        self._places = places_of(world, task.space)
+        kinds = {place.kind for place in self._places.values()}
+        self._in_place = all(map(_is_plain, self._places.values()))
+        self._handles = (
+            [world.component(place.entity, place.kind) for place in self._places.values()]
+            if self._in_place
+            else []
+        )
+        self._changes = world.entity_index.changes
+        self._plan = world.plan
+        self._alone = why_whole(world, world.schedule) is not None or np.count_nonzero(movable_in(world)) < 2
+        running = set(world.schedule.running)
+        self._asked = [
+            (system, system in running)
+            for system in world.schedule.systems
+            if any(kind in kinds and kind.__name__ not in _SETTLED for kind in system.needs)
+        ]
+
+    def block(self, first: int, last: int) -> Block:
+        """Run the rows from ``first`` up to ``last``."""
+        columns = self.task.space.columns(first, last)
+        values = np.full((last - first, len(self._names)), math.nan)
+        wall_s, failures = np.zeros(last - first), {}
+        rows = (
+            zip(*(columns[name].tolist() for name in self._places), strict=True)
+            if self._places
+            else [()] * len(values)
+        )
+        for number, row in enumerate(rows):
+            began = time.perf_counter()
+            try:
+                found, why = self._run(row)
+                values[number] = found
+            except Exception as error:  # of whatever kind: the other rows go on
+                why = _reason(error)
+            if why:
+                failures[first + number] = shortened(printable(why), _REASON_LIMIT)
+            wall_s[number] = time.perf_counter() - began
+        return Block(first, values, wall_s, failures)
+
+    def _run(self, row: Sequence[Any]) -> tuple[list[float], str]:
+        """Make the run of a row; return its measures, and why one of them is no number."""
+        world, measures = self._world, self._measures
+        if not self._in_place or not self._set(row):
+            world = read_scene(json.loads(self.task.scene), "the scene")
+            put(world, dict(zip(self._places.values(), row, strict=True)))
+            measures = Measures(world, self.task.measures)
+        measures.begin()
+        if measures.needs_path:
+            for _ in world.stepping(seconds=self.task.seconds, steps=self.task.steps):
+                measures.sample()
+        else:
+            world.run(seconds=self.task.seconds, steps=self.task.steps)
+        return measures.values()
+
+    def _set(self, row: Sequence[Any]) -> bool:
+        """Go back and give the fields their values; return whether all else is as in a world made so."""
+        world = self._world
+        world.reset()
+        if self._changes != world.entity_index.changes:
+            self._handles = [world.component(place.entity, place.kind) for place in self._places.values()]
+            self._changes = world.entity_index.changes
+        for place, handle, value in zip(self._places.values(), self._handles, row, strict=True):
+            try:
+                whole = value
+                if place.part:
+                    held = getattr(handle, place.spec.name)
+                    whole = (value, held.y) if place.part == "x" else (held.x, value)
+                setattr(handle, place.spec.name, whole)
+            except InvalidValue as error:
+                raise SceneError(f"{place.words} = {shown(value)}: must be {error.allowed}") from error
+        if not self._alone:
+            world.stale = world.entity_index.motion_edited = True
+            return True
+        return self._chooses_the_same()
+
+    def _chooses_the_same(self) -> bool:
+        """Whether the same systems and the same method would be chosen for the values of now."""
+        world = self._world
+        with world.active():
+            world.synchronise()
+            for system, runs in self._asked:
+                if (system.why_left_out(world) is None) != runs:
+                    return False
+            return choose_plan(world, world.schedule) == self._plan
+
+
+def _is_plain(place: Place) -> bool:
+    """Whether a field can have another value in a world that stays as it is otherwise."""
+    spec = place.spec
+    return (
+        place.kind not in SECTIONS.values()
+        and spec.kind in ("number", "vector")
+        and not (spec.fixed or spec.derived)
+    )
+
+
+def _reason(error: Exception) -> str:
+    known = isinstance(error, SceneError | InvalidValue | ArithmeticError) and str(error)
+    return str(error) if known else f"{type(error).__name__}: {error}"
+
+
+_kept = threading.local()
+
+
+def work(payload: bytes, first: int, last: int) -> Block:
+    """Run some rows of a task, in a process, or a thread, that keeps the world for the next ones."""
+    if getattr(_kept, "payload", None) != payload:
+        _kept.runner, _kept.payload = Runner(Task(**pickle.loads(payload))), payload
+    runner: Runner = _kept.runner
+    return runner.block(first, last)

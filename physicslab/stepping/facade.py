@@ -1,0 +1,84 @@
+"""What a person asks of a world: how much energy there is, what met, what it did in a run."""
+
+from importlib import import_module
+from typing import Any, Never, cast
+
+from numpy.typing import NDArray
+
+from physicslab.state.account import Energy, Momentum
+from physicslab.state.run import Run
+from physicslab.state.state import State
+
+
+def _measuring(part: str) -> Any:
+    """Return a module of what measures worlds, which stands above them."""
+    return import_module(f"physicslab.diagnostics.{part}")
+
+
+class Facade(State):
+    """A state with the measurements of it."""
+
+    __slots__ = ()
+
+    @property
+    def energy(self) -> Energy:
+        """The energy as it is now: ``.kinetic``, ``.potential`` by force, ``.total`` [J]."""
+        return cast(Energy, _measuring("energy").measure_energy(self))
+
+    @property
+    def momentum(self) -> Momentum:
+        """The momentum as it is now: ``.linear`` [kg m/s], ``.angular`` about the origin [kg m^2/s]."""
+        return cast(Momentum, _measuring("energy").measure_momentum(self))
+
+    @property
+    def impacts(self) -> dict[str, NDArray[Any]]:
+        """The last impacts in the order of time, by columns: ``time``, ``a``, ``b``, ``energy_lost`` [J], ...
+
+        Those of contacts that are found within steps are there where the run was recorded.
+        """
+        return cast(dict[str, NDArray[Any]], _measuring("ledger").impact_table(self, self.contacts.impacts))
+
+    def describe(self, language: str = "en") -> str:
+        """Return in words what there is, where it is and how it moves, a sentence a line.
+
+        ``language`` is a code as ``"de"``.
+        """
+        return cast(str, _measuring("description").describe(self, language))
+
+    def record(
+        self, seconds: float, *wrong: Never, every: float | None = None, until: str | None = None
+    ) -> Run:
+        """Advance like :meth:`run`, with the same bits, and return what happened as columns.
+
+        Parameters
+        ----------
+        seconds : float
+            How long [s], at most.
+        every : float, optional
+            Time between two instants [s], up to whole steps; every step where it is not given.
+        until : str, optional
+            A condition at which it ends, of what graphs and lessons show: ``"ball.x >= 8 m"``,
+            ``"time > 1 s and world.kinetic < 2 J"``. It is looked at after each step; the moment at which it
+            begins to hold is then found to rounding, and the world stands there.
+
+        Raises
+        ------
+        Diverged
+            As :meth:`run` does.
+        InvalidValue
+            If ``until`` is no condition of this world.
+        """
+        if wrong:
+            raise TypeError(f"record: give every=... or until=... by name, not {wrong[0]!r}")
+        return cast(Run, _measuring("recorder").record(self, seconds, every, until))
+
+    def __dir__(self) -> list[str]:
+        """Return what a person may want; all else is there, and belongs to the machine."""
+        return sorted(_SHOWN)
+
+
+_SHOWN = (
+    "add", "clear", "component", "components", "copy", "describe", "description", "discard", "energy",
+    "entities", "entity", "has", "impacts", "label", "mark", "momentum", "name", "physics", "plan", "record",
+    "remove", "reset", "run", "schedule", "simulation", "spawn", "step", "stepping", "steps", "time", "title",
+)  # fmt: skip

@@ -1,0 +1,251 @@
+"""Ensembles: rows of a space, measures of runs, and results that are found again."""
+
+import csv
+import itertools
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from physicslab import SceneError, World, ensemble, load_scene
+from physicslab.components import Transform
+from physicslab.ensembles import sink
+from physicslab.ensembles.runs import task_of
+from physicslab.ensembles.sobol import DIMENSIONS, sobol
+from physicslab.ensembles.space import space_of
+from physicslab.files.places import entity_names
+
+E, M = "ball.Material.restitution", "ball.Mass.mass"
+DRAWN: dict[str, Any] = {
+    E: ("uniform", 0.2, 0.9),
+    M: ("normal", 2.0, 0.1),
+    "ball.Velocity.linear.x": ("sobol", 0, 1),
+}
+
+
+def height_at_end(world: World) -> float:
+    return world.component("ball", Transform).position.y
+
+
+def bits(columns: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: column.tolist() for name, column in columns.items() if name != "wall_s"}
+
+
+@given(st.integers(0, 2**63), st.lists(st.integers(0, 60), min_size=2, max_size=6))
+def test_the_numbers_of_a_row_depend_on_the_seed_and_on_its_place_alone(seed: int, cuts: list[int]) -> None:
+    world = load_scene("drop")
+    space = space_of(world, {**DRAWN, "physics.G": [1.0, 2.0, 3.0]}, 20, seed, 1, 0.0)
+    whole = space.columns(0, len(space))
+    for first, last in itertools.pairwise(sorted({0, len(space), *cuts})):
+        for name, column in space.columns(first, last).items():
+            assert column.tobytes() == whole[name][first:last].tobytes()
+    other = space_of(world, dict(reversed(DRAWN.items())), 40, seed, 1, 0.0).columns(0, 20)
+    for name in DRAWN:
+        assert other[name].tobytes() == whole[name][:20].tobytes(), "more samples, other fields beside it"
+
+
+def test_a_grid_has_every_combination_and_the_last_field_changes_fastest() -> None:
+    space = {E: [0.5, 0.7], M: ["200 g", 3], "simulation.integrator": ["auto", "exact"]}
+    result = ensemble("drop", space, measure="ball.y", seconds=0.1, executor="serial")
+    assert len(result) == 8 and not result.failures
+    assert result.columns[E].tolist() == [0.5] * 4 + [0.7] * 4
+    assert result.columns[M].tolist() == [0.2, 0.2, 3.0, 3.0] * 2
+    assert result.columns["simulation.integrator"].tolist() == ["auto", "exact"] * 4
+
+
+def test_twins_differ_from_the_first_by_the_jitter() -> None:
+    task = task_of(
+        "drop",
+        {M: [1.0, 2.0]},
+        measure="ball.y",
+        seconds=1,
+        replicas=3,
+        jitter={"ball.Transform.position[1]": "1 nm"},
+    )
+    columns = task.space.columns(0, 6)
+    assert columns["replica"].tolist() == [0, 1, 2, 0, 1, 2] and columns[M].tolist() == [1.0] * 3 + [2.0] * 3
+    moved = columns["ball.Transform.position[1]"] - 4.0
+    assert moved[[0, 3]].tolist() == [0.0, 0.0] and (np.abs(moved[[1, 2, 4, 5]]) < 1e-8).all()
+    assert len({*moved.tolist()}) == 5
+
+
+SWEPT = (
+    ("drop", {E: [0.0, 0.5, 0.9], "ball.Velocity.linear[0]": [0.0, 1.0, -2.0]}),
+    ("drop", {"ball.Transform.position.y": [0.25, 4.0], "physics.gravity.y": [-9.81, 0.0, -1.0]}),
+    ("drop", {"simulation.substeps": [1, 3], "ball.Shape.radius": [0.1, "30 cm"]}),
+    ("drop", {"ball.Mass.inertia": [0.1, 1.0], "simulation.contacts": ["soft", "rigid"]}),
+)
+
+
+@pytest.mark.parametrize(("scene", "space"), SWEPT)
+def test_a_row_has_the_bits_of_a_scene_with_these_values(scene: str, space: dict[str, Any]) -> None:
+    measure = {"y": "ball.y", "vx": "ball.linear.x", "n": "collisions", "error": "numerical"}
+    result = ensemble(scene, space, measure=measure, seconds=1.1, executor="serial")
+    assert not result.failures
+    for row in range(len(result)):
+        world = result.world(row)
+        world.run(seconds=1.1)
+        assert result.columns["y"][row] == height_at_end(world)
+        assert result.columns["n"][row] == world.collisions
+
+
+def _numbers(world: World) -> list[str]:
+    """Return some fields of each moving body and spring that can be varied."""
+    found = []
+    for name, entity in entity_names(world).items():
+        kinds = {type(part).__name__ for part in world.components(entity)}
+        if {"Velocity", "Mass"} <= kinds and re.fullmatch(r"\w+", name):
+            found += [f"{name}.Velocity.linear.x", f"{name}.Mass.mass"]
+            found += [f"{name}.Material.restitution"] * ("Material" in kinds)
+        found += [f"{name}.Spring.stiffness"] * ("Spring" in kinds and bool(re.fullmatch(r"\w+", name)))
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "scene", ["newtons_cradle", "pendulum", "two_planets", "billiards", "spring_chain", "carts"]
+)
+def test_rows_of_other_scenes_have_the_bits_of_fresh_worlds(scene: str) -> None:
+    world = load_scene(scene)
+    for path in _numbers(world)[:6]:
+        task = task_of(scene, {path: [0.2, 0.9]}, measure="numerical", seconds=0.5)
+        result = ensemble(scene, {path: [0.2, 0.9]}, measure="numerical", seconds=0.5, executor="serial")
+        assert not result.failures, (path, result.failures)
+        for row in range(2):
+            fresh = task.world(row)
+            fresh.run(seconds=0.5)
+            from physicslab.diagnostics.quantities import Reading
+
+            assert result.columns["numerical"][row] == Reading(fresh).value("error of energy"), path
+
+
+def test_measures_are_expressions_of_a_run_and_functions_of_its_end() -> None:
+    measure: dict[str, Any] = {
+        "end": "end.ball.y", "position": "ball.position.y", "greatest": "max(ball.y)",
+        "least": "min(ball.vy)", "first": "first_impact.time", "of two": "max(ball.y, 3 m)",
+        "lost": "account.impacts", "number": "collisions", "function": height_at_end,
+    }  # fmt: skip
+    columns = ensemble("drop", {E: [0.7]}, measure=measure, seconds=1.5, executor="serial").columns
+    found = {name: column[0] for name, column in columns.items()}
+    assert found["end"] == found["position"] == found["function"] < 3.0 == found["of two"]
+    assert found["greatest"] == 4.0 and found["number"] == 1.0
+    assert found["first"] == pytest.approx(np.sqrt(2 * 3.75 / 9.81), rel=1e-12)
+    assert found["least"] == pytest.approx(-np.sqrt(2 * 9.81 * 3.75), abs=9.81 / 60)
+    assert found["lost"] == pytest.approx(-9.81 * 3.75 * (1 - 0.7**2) - 1 / 6, rel=1e-9), "it leaves rolling"
+
+
+def test_what_has_no_value_is_nan_and_a_run_that_cannot_be_is_kept_with_its_reason() -> None:
+    space = {M: ("normal", 1.0, 1.0)}
+    measure = {"when": "when(ball.y > 100 m)", "first": "first_impact.time", "y": "ball.y"}
+    result = ensemble("drop", space, samples=12, seed=1, measure=measure, seconds=0.1, executor="serial")
+    mass = result.columns[M]
+    assert 0 < (mass < 0).sum() < 12
+    for row, why in result.failures.items():
+        refused = f'entity "ball": Mass.mass = {float(mass[row])!r}: must be a finite number >= 1e-300 kg'
+        assert (refused if mass[row] < 0 else "that does not happen 1 times within the run") in why
+    assert np.array_equal(np.isnan(result.columns["y"]), mass < 0)
+    assert np.isnan(result.columns["first"]).all(), "the ball is in the air still"
+
+
+@pytest.mark.parametrize("ending", ["npz", "csv"])
+def test_rows_that_were_made_before_a_crash_are_not_made_again(
+    ending: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sink, "PART", 20)
+    arguments: dict[str, Any] = dict(samples=70, measure={"y": "ball.y"}, steps=2, executor="serial")
+    whole = ensemble("drop", DRAWN, **arguments)
+    out = tmp_path / f"sweep.{ending}"
+
+    def crash(share: float) -> None:
+        if share > 0.5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ensemble("drop", DRAWN, out=out, progress=crash, **arguments)
+    parts = sorted((tmp_path / f"sweep.{ending}.parts").iterdir())
+    assert not out.exists() and len(parts) >= 1
+    shares: list[float] = []
+    result = ensemble("drop", DRAWN, out=out, progress=shares.append, **arguments)
+    assert shares[0] > 0.5 and bits(result.columns) == bits(whole.columns)
+    assert not (tmp_path / f"sweep.{ending}.parts").exists()
+    if ending == "npz":
+        with np.load(out) as kept:
+            assert kept["y"].tobytes() == whole.columns["y"].tobytes() and not kept["failure"].any()
+    else:
+        rows = list(csv.DictReader(out.read_text().splitlines()))
+        assert [float(row["y"]) for row in rows] == whole.columns["y"].tolist()
+
+
+def test_parts_of_another_sweep_are_not_taken(tmp_path: Path) -> None:
+    arguments: dict[str, Any] = dict(samples=50, steps=2, executor="serial", out=tmp_path / "a.npz")
+
+    def crash(share: float) -> None:
+        if share == 1.0:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ensemble("drop", DRAWN, measure="ball.y", progress=crash, **arguments)
+    shares: list[float] = []
+    found = ensemble("drop", DRAWN, measure="ball.x", progress=shares.append, **arguments)
+    assert shares[0] < 1.0 and found.columns["ball.x"].max() < 0.0, "it begins at -3 m"
+
+
+@pytest.mark.slow
+def test_serial_threads_and_processes_have_the_same_bits() -> None:
+    arguments: dict[str, Any] = dict(samples=300, measure={"y": "ball.y", "f": height_at_end}, seconds=1.0)
+    serial = ensemble("drop", DRAWN, executor="serial", **arguments)
+    for kind in ("threads", "processes"):
+        other = ensemble("drop", DRAWN, executor=kind, workers=2, **arguments)
+        assert bits(other.columns) == bits(serial.columns)
+
+
+@pytest.mark.peers
+def test_sobol_points_are_those_of_scipy() -> None:
+    from scipy.stats import qmc
+
+    points = qmc.Sobol(DIMENSIONS, scramble=False, bits=32).random_base2(8)
+    ours = np.stack([sobol(np.arange(256), dimension) for dimension in range(DIMENSIONS)], axis=1) / 2.0**32
+    assert np.array_equal(points, ours)
+
+
+REFUSED: tuple[tuple[dict[str, Any], dict[str, Any], str], ...] = (
+    ({"bal.Mass.mass": [1]}, {}, 'there is no such entity; must be one of floor, ball; did you mean "ball"?'),
+    ({"ball.Mass.mas": [1]}, {}, "unknown field"),
+    ({"ball.Mass.mass": [-1.0]}, {}, "Mass.mass = -1.0: must be a finite number >= 1e-300 kg"),
+    ({"ball.Mass.mass": ["2 m"]}, {}, "'2 m' is in m; this is in kg"),
+    ({"ball.Mass.mass": []}, {}, "must be at least one value"),
+    ({"ball.Velocity.linear": [1]}, {}, "must be a part of it, .x or .y"),
+    ({"ball.Mass.mass": ("uniform", 2, 1)}, {"samples": 3}, "must have two numbers a < b"),
+    ({"ball.Mass.mass": ("uniform", 1, 2)}, {}, "samples: must be given"),
+    ({"ball.Mass.mass": [1, 2]}, {"samples": 3}, "samples: no field is drawn at random"),
+    ({"simulation.substeps": ("uniform", 1, 2)}, {"samples": 3}, "takes a list of values"),
+    ({M: [1, 2]}, {"replicas": 2}, "replicas: must have a jitter"),
+    ({M: [1, 2]}, {"jitter": 1e-9}, "jitter: needs replicas"),
+    ({M: ("rows", [1, 2]), E: ("rows", [0.1])}, {}, "must all have as many values"),
+    ({"ball.Velocity.linear.x": [1], "ball.Velocity.linear[0]": [1]}, {}, "is given twice"),
+    ({M: [1]}, {"measure": "ball.q"}, "measure \"ball.q\": 'ball.q' is no quantity"),
+    ({M: [1]}, {"measure": "ball.x +"}, "is no number"),
+    ({M: [1]}, {"measure": "ball.x + ball.vx"}, "m and m s^-1 cannot be added"),
+    ({M: [1]}, {"measure": "__import__(ball.x)"}, "'__import__' is no function"),
+    ({M: [1]}, {"measure": "first_impact.q"}, "an impact has time, x, y, speed, energy_lost"),
+    ({M: [1]}, {"measure": {"f": lambda world: 1.0}}, "a function of a module"),
+    ({M: [1]}, {"measure": {M: "ball.x"}}, "is the name of another column"),
+    ({M: [1]}, {"out": "there/is/none.csv"}, "cannot be written"),
+    ({M: [1]}, {"out": "x.txt"}, "must end in .npz, .csv, .parquet"),
+    ({M: [1]}, {"executor": "process"}, "must be one of processes, threads, serial, or an Executor"),
+)
+
+
+@pytest.mark.parametrize(("space", "more", "line"), REFUSED, ids=[ascii(n) for n in range(len(REFUSED))])
+def test_what_cannot_be_is_refused_by_name_before_anything_begins(
+    space: dict[str, Any], more: dict[str, Any], line: str
+) -> None:
+    arguments = {"measure": "ball.y", "seconds": 1.0, "executor": "serial", **more}
+    with pytest.raises(SceneError) as refused:
+        ensemble("drop", space, **arguments)
+    assert line in str(refused.value) and "\n" not in str(refused.value)
