@@ -121,6 +121,18 @@ def test_the_size_stands_at_the_cursor_and_numbers_typed_take_its_place(desk: De
     assert body.angle == pytest.approx(math.pi / 6.0, rel=1e-12)
 
 
+@pytest.mark.parametrize("typed", ["20 deg", "3 kg, 20 deg"])
+def test_an_angle_is_known_by_its_unit(typed: str, desk: Desk) -> None:
+    draw(desk, "beam", (0.0, 0.0), (2.0, 0.0), typed)
+    assert only(desk.world, Transform).angle == pytest.approx(math.pi / 9.0, rel=1e-12)
+    assert only(desk.world, Shape).width == pytest.approx(2.0, abs=0.01)
+
+
+def test_numbers_in_another_order_are_refused(desk: Desk) -> None:
+    draw(desk, "beam", (0.0, 0.0), (2.0, 0.0), "20 deg, 2 m")
+    assert desk.world.entities() == [] and "in this order: m, deg" in desk.window.notice
+
+
 def test_mass_and_speed_are_typed_with_the_size_and_known_by_their_units(desk: Desk) -> None:
     draw(desk, "box", (0.0, 0.0), (1.0, 0.5), "0.8 x 0.4, 2 kg, -7.2 km/h")
     shape = only(desk.world, Shape)

@@ -13,7 +13,7 @@ from physicslab.components import Graph, GraphLine, Name, Rod, Spring, Transform
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.history import SetField
 from physicslab.prefabs import circle
-from physicslab.theme import DARK
+from physicslab.theme import DARK, THEMES, Theme, contrast
 from physicslab.view.controls import actions, dashboard_actions, file_actions
 from physicslab.view.window.dashboard import GraphShown, LineShown
 from physicslab.view.workbench.graph_readings import colours_of
@@ -359,3 +359,12 @@ def test_a_line_has_the_colour_of_its_body_and_the_next_of_the_same_a_tint() -> 
     colours = colours_of(World(), DARK, graph)
     assert colours[:2] == [DARK.body(9), DARK.body(5)]
     assert colours[2] not in DARK.bodies and len(set(colours)) == 3
+
+
+@pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
+def test_three_lines_of_a_body_are_told_apart(theme: Theme) -> None:
+    for body in range(len(theme.bodies)):
+        lines = tuple(LineShown(20 + n, (body, name)) for n, name in enumerate(("x", "y", "speed")))
+        own, pale, dim = colours_of(World(), theme, GraphShown(1, 1, None, "right", lines))
+        assert contrast(dim, own) > 1.7 and contrast(dim, pale) > 2.0
+        assert contrast(dim, theme.panel) > 3.0 and own != pale

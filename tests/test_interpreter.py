@@ -23,6 +23,7 @@ from both_tiers import compared, name_of, same_bits
 from desk import bits
 
 from physicslab.components import Mass, Molecule, Shape, Transform, Velocity
+from physicslab.contacts.arguments import inverse_in, motion_of, near_in
 from physicslab.desktop import compiling
 from physicslab.desktop.compiling import INTERPRETING_LIMIT, SmallScenes
 from physicslab.diagnostics.energy import measure_account, measure_energy
@@ -50,8 +51,15 @@ from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT, pair_potential
 from physicslab.kernels.forces.pairwise import attract_pairwise
 from physicslab.kernels.forces.tree_pull import MAX_ERROR, attract_by_tree
 from physicslab.kernels.interpreter import interpreted, stand_in, twin_of
+from physicslab.kernels.loading import direct_entry
+from physicslab.kernels.near_counts import ACTIVE
 from physicslab.kernels.ode.dop853 import dop853
+from physicslab.kernels.solver import soft
+from physicslab.kernels.solver.lone_sweep import sweep_contacts
+from physicslab.kernels.solver.sweep import sweep
 from physicslab.kernels.stand_ins import math_functions
+from physicslab.kernels.tiers import natives_within
+from physicslab.kernels.twins import natives
 from physicslab.kernels.warm import Warmup
 from physicslab.state.state import State
 from physicslab.stepping import rigid_motion
@@ -358,6 +366,19 @@ def joints_fields_and_chains() -> None:
     world.run(steps=2)
 
 
+def lone_sweeps() -> None:
+    """Call what runs within an interpreted loop of substeps, on the contacts of a pile that was pushed."""
+    world = load_scene("sandbox")
+    world.run(steps=3)
+    near, motion, inverse = near_in(world), motion_of(world), inverse_in(world)
+    counts, manifolds, points, _, touching, *_ = near
+    contacts = manifolds, points, touching, int(counts[ACTIVE])
+    assert contacts[-1] > 10
+    for backward, booked in ((False, True), (True, False)):
+        motion[2][...] += 0.1
+        sweep_contacts(contacts, motion, inverse, (240.0, 1.0, 0.9, 0.1, 10.0), backward, booked)
+
+
 def recorded() -> None:
     """Record steps, of which each has a digest."""
     History(load_scene("pyramid")).step(steps=3)
@@ -375,6 +396,7 @@ def test_every_kernel_gives_the_same_bits_as_python() -> None:
         drawn,
         joints,
         joints_fields_and_chains,
+        lone_sweeps,
         recorded,
         panels,
     ):
@@ -395,6 +417,25 @@ def test_the_comparison_notices_a_single_bit(one: Any, other: Any) -> None:
     same_bits("it", one, one)
     with pytest.raises(AssertionError):
         same_bits("it", one, other)
+
+
+def test_what_a_loop_spends_its_time_in_is_compiled_before_it_and_changes_no_bit() -> None:
+    assert natives_within(soft.advance) == (sweep_contacts,) and natives_within(sweep_contacts) == ()
+    expected, world, calls = load_scene("sandbox"), load_scene("sandbox"), []
+    compile_kernels((sweep_contacts,))
+    native = direct_entry(sweep_contacts)
+
+    class Noted:
+        compiled = True
+
+        def __call__(self, *arguments: Any) -> Any:
+            calls.append(arguments)
+            return native(*arguments)
+
+    expected.run(steps=3)
+    with interpreted(), patch.dict(natives, {sweep: Noted()}):
+        world.run(steps=3)
+    assert bits(world) == bits(expected) and calls
 
 
 @pytest.mark.parametrize("name", ["drop", "sandbox", "pendulum", "two_planets"])
@@ -622,7 +663,7 @@ def test_the_window_hands_over_what_is_small_and_hurries_it(monkeypatch: pytest.
     hurried: list[str] = []
     monkeypatch.setattr(compiling, "is_warm", lambda: False)
     monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, (sys.executable, "-c", "input()")))
-    monkeypatch.setattr(Warmup, "hurry", lambda _, names: hurried.extend(names))
+    monkeypatch.setattr(Warmup, "hurry", lambda _, spent: hurried.extend(spent))
     with Display.open(WindowConfig(), "test") as display, compiling.Compiling(display) as started:
         started.scenes.follow(load_scene("drop"))
         assert started._ask([motion.drift]) == [motion.drift]

@@ -1,5 +1,6 @@
 """Warmup: kernels are compiled by other processes while the window stays awake."""
 
+import math
 import os
 import shutil
 import subprocess
@@ -269,9 +270,13 @@ def test_while_it_waits_nothing_that_the_user_does_is_forgotten() -> None:
 def test_what_is_needed_is_compiled_first(mark: Path) -> None:
     with Warmup(1, ECHO) as warmup:
         pass
-    last = list(warmup._jobs)[-1]
-    warmup.hurry([last, "no such kernel", last])
-    assert warmup._jobs[0] == last
+    process = warmup._processes[0]
+    *_, cheap, last = sorted(warmup._jobs, key=lambda name: -warmup._costs[name])
+    dear, waited = max(warmup._jobs, key=warmup._costs.__getitem__), list(warmup._jobs)[-3]
+    spent = {dear: 1.0, cheap: 1.0, last: 0.0, "no such kernel": 1.0}
+    warmup.hurry(spent)
+    warmup.hurry({waited: math.inf})
+    assert [warmup._next(process) for _ in range(4)] == [waited, cheap, dear, last]
     assert sorted(set(warmup._jobs)) == sorted(warmup._jobs)
 
 

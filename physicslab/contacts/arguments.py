@@ -13,7 +13,7 @@ from physicslab.kernels.arguments import (
     SoftnessTuple,
 )
 from physicslab.kernels.geometry.shapes import ShapesTuple
-from physicslab.kernels.joints.blocks import MEASURED, JointsTuple
+from physicslab.kernels.joints.blocks import JointsTuple
 from physicslab.kernels.solver import soft
 from physicslab.state.state import State
 
@@ -50,16 +50,10 @@ def joints_in(state: State) -> JointsTuple:
     """Return the rows of joints."""
     joints = state.joints
     joints.refresh(state.entity_index)
-    if len(joints.measured) != len(joints.scale):
-        joints.measured = np.zeros((len(joints.scale), MEASURED))
-    blocks = joints.blocks
-    if len(joints.matrix) != blocks.room:
-        joints.matrix = np.zeros(blocks.room)
     return (
         joints.measure, joints.a, joints.b, joints.anchor_a, joints.anchor_b, joints.axis, joints.scale,
-        joints.second, joints.role, joints.offset, joints.target, joints.strongest, joints.impulse,
-        blocks.order, blocks.ends, blocks.low, blocks.start, joints.matrix, joints.largest,
-        joints.measured,
+        joints.role, joints.offset, joints.target, joints.strongest, joints.impulse, joints.largest,
+        *joints.blocks, *joints.rooms,
     )  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Hashable, Sequence
 from types import TracebackType
@@ -10,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 from physicslab.desktop.progress import PAUSE, draw_corner, draw_progress, draw_waiting
 from physicslab.kernels import KERNELS, ask_before_compiling, interpreter, load
 from physicslab.kernels.solver import soft
+from physicslab.kernels.tiers import natives_within
+from physicslab.kernels.twins import natives
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
 from physicslab.stepping.small import is_small
 from physicslab.theme import DARK, Theme
@@ -75,8 +78,14 @@ class SmallScenes:
         return self.kernels
 
     def notice(self, left: float) -> bool:
-        """Return whether frames are too long, after one that was done ``left`` seconds before it was due."""
-        self._late = self._late + 1 if self.pending() and left < -INTERPRETING_LIMIT else 0
+        """Return whether frames are too long, after one that was done ``left`` seconds before it was due.
+
+        They are not while a kernel is awaited that runs within others: it comes first, and soon.
+        """
+        pending = self.pending()
+        awaits = any(jitted in natives.values() for jitted in pending)
+        late = pending and left < -INTERPRETING_LIMIT and not awaits
+        self._late = self._late + 1 if late else 0
         return self._late >= _IN_TURN
 
     def made_up_for(self, longest: float, loads: bool = False) -> float:
@@ -85,6 +94,11 @@ class SmallScenes:
         It is less where the frame also loads a kernel.
         """
         return min(longest, _STEPS_AND_LOADING if loads else _STEPS) if self.pending() else longest
+
+
+def _seconds_saved(jitted: Any) -> float:
+    """Return how long [s] a kernel was interpreted; what runs within others is the most that they do."""
+    return math.inf if jitted in natives.values() else interpreter.spent_on(jitted)
 
 
 _ROOM = 0.008
@@ -162,8 +176,9 @@ class Compiling:
         """Return which of these kernels are interpreted for now, once the others are compiled."""
         now = self.scenes.interpret(missing)
         if now:
+            self.scenes.interpret([native for jitted in now for native in natives_within(jitted)])
             assert self._warmup is not None
-            self._warmup.hurry([name_of(jitted) for jitted in now])
+            self._warmup.hurry({name_of(jitted): _seconds_saved(jitted) for jitted in self.scenes.pending()})
         else:
             self._wait(missing)
         return now
@@ -185,7 +200,7 @@ class Compiling:
         """
         warmup = self._start()
         names = [name_of(jitted) for jitted in missing]
-        warmup.hurry(names)
+        warmup.hurry(dict.fromkeys(names, math.inf))
         start, waits = time.perf_counter(), False
         self._progress, self._drawn = warmup.poll(), None
         while not (warmup.finished or warmup.has(names)):

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from physicslab.components import Held, Rod, Transform
 from physicslab.diagnostics.step_warnings import ModelWarning
 from physicslab.ecs.sentences import sentence
-from physicslab.kernels.joints.blocks import ACTIVE, GIVES, STATE
+from physicslab.kernels.joints.blocks import ACTIVE, GIVES, ROW, STATE
 from physicslab.kernels.joints.measured import AX, BX, BY, TURN_A
 from physicslab.state.joint_figures import (
     errors_of_rows,
@@ -127,11 +127,13 @@ def _dependent(world: World) -> NDArray[np.bool_]:
     joints = world.joints
     if not isinstance(world.stepper, Soft):
         return joints.dependent
-    if len(joints.measured) != len(joints.scale):
-        return np.zeros(len(joints), np.bool_)  # not before the first step
-    measured, owner = joints.measured[: len(joints)], joints_of_rows(world)
+    owner, (_, state, _) = joints_of_rows(world), joints.rooms
+    gives, acts = np.zeros((2, len(joints) + 1))
+    for place in (1, 0):  # nodes of one row have none in the second place, which is that of another
+        gives[joints.blocks.nodes[:-1, ROW] + place] = state[:, GIVES + place]
+        acts[joints.blocks.nodes[:-1, ROW] + place] = state[:, STATE]
     # A motor that stands at a limit of its own joint holds the same as that, which is meant.
     bounds = joints.role != Role.HOLD
-    acting = np.bincount(owner[bounds & (measured[:, STATE] == ACTIVE)], minlength=len(joints.joints))
-    dependent: NDArray[np.bool_] = (measured[:, GIVES] != 0.0) & ~(bounds & (acting[owner] > 1))
+    acting = np.bincount(owner[bounds & (acts[:-1] == ACTIVE)], minlength=len(joints.joints))
+    dependent: NDArray[np.bool_] = (gives[:-1] != 0.0) & ~(bounds & (acting[owner] > 1))
     return dependent

@@ -96,9 +96,10 @@ class Records:
         Of a dtype with fields.
     """
 
-    __slots__ = ("_columns", "_kind")
+    __slots__ = ("_columns", "_kind", "array")
 
     def __init__(self, array: NDArray[np.void]) -> None:
+        self.array = array
         names: tuple[str, ...] = array.dtype.names or ()
         self._columns = tuple(array[name] for name in names)
         self._kind = _record_of(names)

@@ -12,6 +12,7 @@ bits), and each is compiled when one of these is reached:
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable, Iterator, Sequence
 from types import ModuleType, TracebackType
 from typing import Any
@@ -20,6 +21,7 @@ from numba.extending import is_jitted
 
 from physicslab.kernels import cache, interpreter
 from physicslab.kernels.loading import ask_before_compiling, load
+from physicslab.kernels.twins import natives
 
 _PER_BYTE = 2.0e-4
 """Time [s] to compile a byte of Python's bytecode: 41 s for all kernels on an AMD EPYC of 2026."""
@@ -42,6 +44,15 @@ def _size(jitted: Any, seen: set[Any]) -> int:
         return 0
     seen.add(function)
     return len(function.__code__.co_code) + sum(_size(callee, seen) for callee in _callees(function))
+
+
+@functools.cache
+def natives_within(jitted: Any) -> tuple[Any, ...]:
+    """Return the kernels that run in place of inner functions of a kernel while that is interpreted."""
+    seen: set[Any] = set()
+    _size(jitted, seen)
+    inner = (function for function in natives if function.py_func in seen)
+    return tuple(natives[function] for function in inner if natives[function] is not jitted)
 
 
 def _callees(function: Any) -> Iterator[Any]:

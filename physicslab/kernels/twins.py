@@ -12,7 +12,7 @@ import numpy as np
 from numba.core.extending import _Intrinsic
 from numba.extending import is_jitted
 
-from physicslab.kernels.stand_ins import arithmetic, math_functions, stand_in_of
+from physicslab.kernels.stand_ins import Records, arithmetic, math_functions, stand_in_of
 
 _VECTORS = "physicslab.kernels.float64x8_interpreted"
 """Where the stand-ins of vectors are: they are imported when the first kernel is interpreted."""
@@ -26,6 +26,40 @@ def endless[F: Callable[..., Any]](function: F) -> F:
     """
     _endless.add(function)
     return function
+
+
+natives: dict[Any, Any] = {}
+"""Kernels that do what an inner function does, by that function."""
+
+
+def native_for[F: Callable[..., Any]](inner: Any) -> Callable[[F], F]:
+    """Let twins call a kernel in place of an inner function once it is loaded: the bits are the same.
+
+    So what a scene spends most of its time in is compiled long before the whole that it is a part of.
+    """
+
+    def note(jitted: F) -> F:
+        natives[inner] = jitted
+        return jitted
+
+    return note
+
+
+def _native_or_twin(inner: Any, twin: Callable[..., Any]) -> Callable[..., Any]:
+    def call(*arguments: Any) -> Any:
+        native = natives[inner]
+        if not native.compiled:
+            return twin(*arguments)
+        return _of_float64(native(*map(_as_kernels_take, arguments)))
+
+    return call
+
+
+def _as_kernels_take(value: Any) -> Any:
+    """Return an argument of a twin as Python passes it to a kernel."""
+    if isinstance(value, tuple):
+        return tuple(map(_as_kernels_take, value))
+    return value.array if isinstance(value, Records) else value
 
 
 class Overdue(Exception):
@@ -95,7 +129,8 @@ def _counterpart(value: Any) -> Any:
     if isinstance(value, ModuleType) and value.__name__.startswith(f"{__package__}."):
         return _TwinModule(_names_of(vars(value)))
     if is_jitted(value):
-        return twin_of(value)
+        twin = twin_of(value)
+        return _native_or_twin(value, twin) if value in natives else twin
     if isinstance(value, _Intrinsic):
         return stand_in_of(value)
     return _of_float64(value)

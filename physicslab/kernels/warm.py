@@ -11,7 +11,7 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from types import TracebackType
@@ -24,19 +24,10 @@ from physicslab.kernels.tiers import compile_seconds
 
 _WORKERS_LIMIT = 4
 _FIRST = (
-    "raster",
-    "triangles",
-    "motion",
-    "energy",
-    "fat_boxes",
-    "grid",
-    "near_pairs",
-    "impulse",
-    "slots",
-    "refresh",
-    "soft",
-)
-"""Modules whose kernels almost every scene needs; they are compiled first."""
+    "lone_sweep", "soft", "motion", "fat_boxes", "grid", "near_pairs", "impulse", "slots", "refresh",
+    "raster", "triangles", "energy",
+)  # fmt: skip
+"""Modules whose kernels almost every scene needs, compiled first: what moves it, then its picture."""
 _WORKER = (sys.executable, "-m", "physicslab.kernels", "worker")
 _YIELDING = 15
 """How much higher the priority of a running scene is than that of the workers, as a Unix nice value."""
@@ -130,6 +121,7 @@ class Warmup:
         self._threads: list[threading.Thread] = []
         self._yields = False
         self._costs = {name_of(jitted): compile_seconds(jitted) for jitted in _own()}
+        self._urgent: dict[str, tuple[float, float]] = {}
         self._begun: dict[str, float] = {}
         self._took, self._foreseen = 0.0, 0.0  # what compiling took so far, and should have taken [s]
         self._progress = Progress(len(self._compiled), len(names), share=self._share())
@@ -179,17 +171,26 @@ class Warmup:
 
     def _next(self, process: subprocess.Popen[str]) -> str:
         with self._lock:
-            name = self._jobs.popleft() if self._jobs and process not in self._retired else ""
+            name = ""
+            if self._jobs and process not in self._retired:
+                urgent = [name for name in self._jobs if name in self._urgent]
+                name = max(urgent, key=self._urgent.__getitem__) if urgent else self._jobs[0]
+                self._jobs.remove(name)
             self._begun[name] = time.monotonic()
             return name
 
-    def hurry(self, names: Iterable[str]) -> None:
-        """Compile these kernels before all others, except for those that are being compiled."""
+    def hurry(self, spent: Mapping[str, float]) -> None:
+        """Compile these kernels before all others, except for those that are being compiled.
+
+        Parameters
+        ----------
+        spent : mapping
+            How long [s] each was interpreted so far, infinity for what is waited for: what has cost most for
+            the time that it takes to compile comes first, of equal ones that which takes longest.
+        """
         with self._lock:
-            wanted = [name for name in dict.fromkeys(names) if name in self._jobs]  # two may need the same
-            for name in wanted:
-                self._jobs.remove(name)
-            self._jobs.extendleft(reversed(wanted))
+            for name in spent.keys() & self._costs.keys():
+                self._urgent[name] = spent[name] / self._costs[name], self._costs[name]
 
     def yield_to_others(self, yields: bool) -> None:
         """Lower the priority of the workers, or restore it; it is normal while something waits for a kernel.

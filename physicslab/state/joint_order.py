@@ -1,95 +1,238 @@
 """The order in which rows of joints are solved, and which of them at once."""
 
-from collections import defaultdict
-from collections.abc import Sequence, Set
+import heapq
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.state.ordering import cuthill_mckee
+from physicslab.kernels.joints.blocks import ENTRY, GROUP, NODE, NODE_STATE, OF_NODE
+from physicslab.kernels.joints.soft import HOLD
+from physicslab.state.joint_rows import Row
 
-_LARGEST = 2_000_000
-"""The squared widths of the rows of a block, added up, from which on its joints are solved one by one: more
-takes milliseconds in each substep."""
+_MOST = 100_000
+"""How many updates of a factorisation a block may take, each of 16 multiplications; its joints are solved one
+by one beyond: more takes a millisecond in each substep."""
 
-type _Rows = NDArray[np.int64]
+type _Table = NDArray[np.int64]
 
 
 class Blocks(NamedTuple):
-    """Blocks of rows that are solved at once, each within an envelope.
+    """Nodes of one or two rows, in blocks that are solved at once (:mod:`physicslab.kernels.joints.blocks`).
 
     Attributes
     ----------
-    order : int64 array (n,)
-        The row at each place.
-    ends : int64 array (k,)
-        The place behind each block.
-    low : int64 array (n,)
-        Of each place the first one of its block with which it may share a body, or one between has.
-    start : int64 array (n,)
-        Where the numbers of each place begin, from ``low`` on.
-    room : int
-        How many numbers there are.
+    nodes : int64 array (k + 1, NODE)
+        In the order in which they are eliminated; the last one ends the lists of the one before.
+    terms : int64 array (m, OF_NODE)
+        Those of each node.
+    body : int64 array (e,)
+        The body of each end of a node: those that move, each once.
+    entries : int64 array (l + 1, ENTRY)
+        Where the factor of the matrix is not zero below the diagonal, column by column.
+    shared : int64 array (s, 2)
+        Of an entry pairs of ends, of its row's node and of its column's, which are of one body.
+    targets : int64 array (u,)
+        The entry that changes by each two entries of a column, as that is eliminated.
+    groups : int64 array (b + 1, GROUP)
+        Where the nodes of each block begin.
+    bounded : int64 array (p,)
+        Nodes of limits and motors, block by block.
     """
 
-    order: _Rows
-    ends: _Rows
-    low: _Rows
-    start: _Rows
-    room: int
+    nodes: _Table
+    terms: _Table
+    body: _Table
+    entries: _Table
+    shared: _Table
+    targets: _Table
+    groups: _Table
+    bounded: _Table
 
 
-def order_rows(bodies: Sequence[Set[int]], joints: Sequence[range]) -> Blocks:
-    """Return the blocks for rows between moving ``bodies`` (n sets), which are those of ``joints``.
+class _Node(NamedTuple):
+    """A node: its rows, one or two, and the moving bodies that they act on, in the order of their numbers."""
 
-    Joints that share a moving body are one block, in an order in which rows that share a body stand near each
-    other. A block that would cost too much is one for each joint instead.
+    rows: Sequence[int]
+    bodies: Sequence[int]
+
+
+def order_rows(rows: Sequence[Row], joints: Sequence[range], moves: Sequence[bool]) -> Blocks:
+    """Return the blocks for rows, which are those of ``joints``; ``moves`` tells which bodies may move.
+
+    Joints that share a moving body are one block, in an order in which little has to be computed. A block
+    that would cost too much is one for each joint instead.
     """
-    order: list[int] = []
-    low: list[int] = []
-    ends: list[int] = []
-    for group in _groups(bodies, joints):
-        rows = [row for joint in group for row in joints[joint]]
-        places = _lowest(rows, bodies)
-        if sum((n - place) ** 2 for n, place in enumerate(places)) <= _LARGEST:
-            parts = [(rows, places)]
-        else:
-            own = [list(joints[joint]) for joint in sorted(group)]
-            parts = [(rows, _lowest(rows, bodies)) for rows in own]
-        for part, places in parts:
-            low += [len(order) + place for place in places]
-            order += part
-            ends.append(len(order))
-    lows = np.array(low, np.int64)
-    width = np.arange(1, len(lows) + 1) - lows
-    start = np.cumsum(width) - width
-    return Blocks(np.array(order, np.int64), np.array(ends, np.int64), lows, start, int(width.sum()))
+    nodes = [_nodes_of(joint, rows, moves) for joint in joints]
+    held = [sorted({body for node in own for body in node.bodies}) for own in nodes]
+    made = _Blocks(rows)
+    for group in _groups(held):
+        order = _eliminated(group, held, [len(own) for own in nodes])
+        if order is not None:
+            made.add(order, nodes)
+            continue
+        for joint in group:
+            made.add([(joint, [])], nodes)
+    return made.blocks()
 
 
-def _lowest(rows: Sequence[int], bodies: Sequence[Set[int]]) -> list[int]:
-    """Return of each place the first one of a row with which it shares a body, or itself."""
-    first: dict[int, int] = {}
-    return [min([first.setdefault(body, n) for body in bodies[row]], default=n) for n, row in enumerate(rows)]
+def _nodes_of(joint: range, rows: Sequence[Row], moves: Sequence[bool]) -> list[_Node]:
+    """Return the nodes of a joint: those that have bounds first, which are mostly passed over."""
+    bounded = [[row] for row in joint if rows[row].role != HOLD]
+    holding = [row for row in joint if rows[row].role == HOLD]
+    pairs = [holding[n : n + 2] for n in range(0, len(holding), 2)]
+    return [
+        _Node(
+            own, sorted({end for row in own for term in rows[row].terms for end in term[1:3] if moves[end]})
+        )
+        for own in bounded + pairs
+    ]
 
 
-def _groups(bodies: Sequence[Set[int]], joints: Sequence[range]) -> list[list[int]]:
-    """Return the joints that hold on to each other, each group in an order in which neighbours are near."""
-    held = [set[int]().union(*(bodies[row] for row in rows)) for rows in joints]
-    of: dict[int, set[int]] = defaultdict(set)
+def _groups(held: Sequence[Sequence[int]]) -> list[list[int]]:
+    """Return the joints that hold on to each other, by the bodies that each holds."""
+    of: dict[int, list[int]] = {}
     for joint, own in enumerate(held):
         for body in own:
-            of[body].add(joint)
-    beside = {joint: set[int]().union(*(of[body] for body in own)) for joint, own in enumerate(held)}
+            of.setdefault(body, []).append(joint)
     groups: list[list[int]] = []
     seen: set[int] = set()
-    for joint in cuthill_mckee(beside):
-        if seen.isdisjoint(beside[joint]):
-            groups.append([])
-        groups[-1].append(joint)
-        seen.add(joint)
+    reached: set[int] = set()
+    for first in range(len(held)):
+        if first in seen:
+            continue
+        seen.add(first)
+        group = [first]
+        for joint in group:
+            for body in held[joint]:
+                if body not in reached:
+                    reached.add(body)
+                    group += [other for other in of[body] if other not in seen]
+                    seen.update(of[body])
+        groups.append(sorted(group))
     return groups
 
 
-NO_BLOCKS = order_rows((), ())
+def _eliminated(
+    group: Sequence[int], held: Sequence[Sequence[int]], sizes: Sequence[int]
+) -> list[tuple[int, list[int]]] | None:
+    """Return the joints of a group as they are eliminated, each with the later ones that it then acts on.
+
+    The joint with the fewest neighbours is next (Tinney & Walker, Proc. IEEE 55, 1967, 1801): trees from
+    their tips on. ``None`` where that would take too long.
+    """
+    of: dict[int, set[int]] = {}
+    for joint in group:
+        for body in held[joint]:
+            of.setdefault(body, set()).add(joint)
+    if any(len(beside) ** 3 > 6 * _MOST for beside in of.values()):  # at a body all act on each other
+        return None
+    beside = {joint: set[int]().union(*(of[body] for body in held[joint])) - {joint} for joint in group}
+    waiting = [(len(others), joint) for joint, others in beside.items()]
+    heapq.heapify(waiting)
+    order: list[tuple[int, list[int]]] = []
+    left, cost = set(group), 0
+    while left:
+        size, joint = heapq.heappop(waiting)
+        if joint not in left or size != len(beside[joint]):
+            continue
+        left.discard(joint)
+        later = beside.pop(joint)
+        width = sizes[joint] + sum(sizes[other] for other in later)
+        cost += sizes[joint] * width * width // 2
+        if cost > _MOST:
+            return None
+        order.append((joint, sorted(later)))
+        for other in order[-1][1]:
+            beside[other] |= later
+            beside[other] -= {joint, other}
+            heapq.heappush(waiting, (len(beside[other]), other))
+    return order
+
+
+class _Blocks:
+    """Blocks as they are added one after the other."""
+
+    def __init__(self, rows: Sequence[Row]) -> None:
+        self._rows = rows
+        # The second terms stand behind all first ones, in the order of rows.
+        two = [row for row in range(len(rows)) if len(rows[row].terms) > 1]
+        self._second = {row: len(rows) + n for n, row in enumerate(two)}
+        self._nodes: list[tuple[int, ...]] = []
+        self._terms: list[tuple[int, ...]] = []
+        self._body: list[int] = []
+        self._entries: list[tuple[int, int]] = []
+        self._shared: list[tuple[int, int]] = []
+        self._targets: list[int] = []
+        self._groups: list[tuple[int, int]] = []
+        self._bounded: list[int] = []
+
+    def add(self, order: Sequence[tuple[int, Sequence[int]]], nodes: Sequence[Sequence[_Node]]) -> None:
+        """Add a block of joints in an order, each with those that are later in it and that it acts on."""
+        first, place, ends = len(self._nodes), dict[int, range](), dict[int, dict[int, int]]()
+        self._groups.append((first, len(self._bounded)))
+        for joint, _ in order:
+            place[joint] = range(first, first + len(nodes[joint]))
+            first = place[joint].stop
+        every = [node for joint, _ in order for node in nodes[joint]]
+        begin, body = self._groups[-1][0], len(self._body)
+        for k, node in enumerate(every, begin):
+            ends[k] = {end: body + n for n, end in enumerate(node.bodies)}
+            body += len(node.bodies)
+        entry: dict[tuple[int, int], int] = {}
+        columns: list[tuple[int, list[int]]] = []
+        for joint, later in order:
+            after = sorted(k for other in later for k in place[other])
+            columns += [(k, [*range(k + 1, place[joint].stop), *after]) for k in place[joint]]
+        for k, below in columns:
+            for i in below:
+                entry[i, k] = len(self._entries) + len(entry)
+        for (k, below), node in zip(columns, every, strict=True):
+            self._add_node(node, ends[k])
+            if self._rows[node.rows[0]].role != HOLD:
+                self._bounded.append(k)
+            for i in below:
+                self._entries.append((i, len(self._shared)))
+                self._shared += [(ends[i][end], ends[k][end]) for end in node.bodies if end in ends[i]]
+            self._targets += [entry[i, j] for n, i in enumerate(below) for j in below[:n]]
+
+    def _counts(self) -> tuple[int, ...]:
+        return len(self._terms), len(self._body), len(self._entries), len(self._targets)
+
+    def _add_node(self, node: _Node, ends: dict[int, int]) -> None:
+        """Add a node, whose entries and targets come next."""
+        self._nodes.append((node.rows[0], len(node.rows), *self._counts()))
+        self._body += node.bodies
+        for place, row in enumerate(node.rows):
+            numbers = [row, self._second[row]] if row in self._second else [row]
+            for number, term in zip(numbers, self._rows[row].terms, strict=True):
+                self._terms.append((number, place, ends.get(term.a, -1), ends.get(term.b, -1)))
+
+    def blocks(self) -> Blocks:
+        """Return all that were added."""
+        self._nodes.append((len(self._rows), 0, *self._counts()))
+        self._entries.append((0, len(self._shared)))
+        self._groups.append((len(self._nodes) - 1, len(self._bounded)))
+        return Blocks(
+            _table(self._nodes, NODE), _table(self._terms, OF_NODE), np.array(self._body, np.int64),
+            _table(self._entries, ENTRY), _table(self._shared, 2), np.array(self._targets, np.int64),
+            _table(self._groups, GROUP), np.array(self._bounded, np.int64),
+        )  # fmt: skip
+
+
+def _table(lines: Sequence[Sequence[int]], width: int) -> _Table:
+    return np.array(lines, np.int64).reshape(-1, width)
+
+
+def rooms_of(blocks: Blocks) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return arrays for the gradients of ends (e, 6), the states of nodes (k, NODE_STATE), entries (l, 8)."""
+    return (
+        np.zeros((len(blocks.body), 6)),
+        np.zeros((len(blocks.nodes) - 1, NODE_STATE)),
+        np.zeros((len(blocks.entries) - 1, 8)),
+    )
+
+
+NO_BLOCKS = order_rows((), (), ())
 """Those without joints."""

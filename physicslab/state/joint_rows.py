@@ -13,7 +13,7 @@ from physicslab.components.quantities import JOINT
 from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.table import Table
 from physicslab.kernels.joints import soft, terms
-from physicslab.kernels.joints.terms import MeasuredTerm, TermEnd, measure_term
+from physicslab.kernels.joints.terms import MeasuredTerm, TermEnd, measure_turned
 
 
 class Measure(IntEnum):
@@ -200,8 +200,9 @@ def measured(term: Term, index: EntityIndex) -> MeasuredTerm:
         return TermEnd(x, y, float(transform["angle"][body]), 0.0, 0.0, 0.0, *anchor)
 
     ends = end(term.a, term.anchor_a), end(term.b, term.anchor_b)
-    in_python: Any = measure_term
-    found: MeasuredTerm = in_python.py_func(int(term.measure), *ends, *term.axis)
+    turned = [turn(end.angle) for end in ends for turn in (math.cos, math.sin)]
+    in_python: Any = measure_turned
+    found: MeasuredTerm = in_python.py_func(int(term.measure), *ends, *turned, *term.axis)
     return found
 
 

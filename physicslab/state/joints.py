@@ -13,7 +13,7 @@ from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.sentences import sentence
 from physicslab.languages.sentence import Sentence
 from physicslab.state.entities import label_in_context
-from physicslab.state.joint_order import NO_BLOCKS, order_rows
+from physicslab.state.joint_order import NO_BLOCKS, order_rows, rooms_of
 from physicslab.state.joint_rows import KINDS, Joined, Measure, Role, Row, Term, ends_of, measured
 
 
@@ -67,8 +67,8 @@ class Joints:
         At the end of the last step, or as its mean [N or N m].
     largest : float64 array (n,)
         The largest error so far, as far as soft constraints solved it [m or rad].
-    measured, matrix : float64 arrays (m, k), (l,)
-        Room for what soft constraints measure of a term, and for the matrices of blocks
+    rooms : tuple of float64 arrays
+        Room for what is computed of the ends, nodes and entries of blocks
         (:mod:`physicslab.kernels.joints.blocks`).
     beside_contacts : bool
         Whether contacts are solved at all, and joints with them.
@@ -85,12 +85,12 @@ class Joints:
 
     def __init__(self) -> None:
         self._take([], [])
-        self._settings, self.beside_contacts = b"", False
+        self._settings, self.beside_contacts = list[bytes](), False
         self._joined: tuple[Any, ...] = ()
         self.wholes: dict[int, int] = {}
 
     def _take(self, joints: Sequence[Joint], rows: Sequence[Row]) -> None:
-        self.joints = tuple(joints)
+        self.joints, self._kinds = tuple(joints), {joint.kind for joint in joints}
         self.second = np.full(len(rows), -1, np.int64)
         self.second[[len(row.terms) > 1 for row in rows]] = len(rows) + np.arange(
             sum(len(row.terms) > 1 for row in rows)
@@ -106,8 +106,7 @@ class Joints:
             np.array([row[n] for row in rows], np.float64) for n in range(2, 5)
         )
         self.impulse, self.force, self.largest = np.zeros((3, len(rows)))
-        self.measured: NDArray[np.float64] = np.zeros((0, 0))
-        self.matrix, self.blocks = np.zeros(0), NO_BLOCKS
+        self.blocks, self.rooms = NO_BLOCKS, rooms_of(NO_BLOCKS)
         self.edges, self.apart = np.zeros((2, 0, 2), np.int64)
         self.dependent = np.zeros(len(rows), np.bool_)
 
@@ -155,8 +154,9 @@ class Joints:
         self.wholes = {int(entities[one]): int(entities[min(whole)]) for one, whole in welded.items()}
         self._take(joints, rows)
         moves = index.table(Velocity).present
-        moving = [{end for term in row.terms for end in (term.a, term.b) if moves[end]} for row in rows]
-        self.blocks = order_rows(moving, [range(joint.first, joint.first + joint.size) for joint in joints])
+        own_rows = [range(joint.first, joint.first + joint.size) for joint in joints]
+        self.blocks = order_rows(rows, own_rows, moves.tolist())
+        self.rooms = rooms_of(self.blocks)
         self.edges = np.array(sorted(edges), np.int64).reshape(-1, 2)
         self.apart = np.array(sorted(apart), np.int64).reshape(-1, 2)
         for joint in joints:
@@ -164,7 +164,7 @@ class Joints:
             if before_it and len(before_it[0]) == joint.size:
                 for array, values in zip(self._carried, before_it, strict=True):
                     array[joint.own] = values
-        self._settings = self.settings(index)
+        self._settings = self._columns(index)
         self._joined = tuple(
             (joint.entity, joint.kind, int(entities[joint.a]), int(entities[joint.b])) for joint in joints
         )
@@ -177,13 +177,16 @@ class Joints:
 
     def settings(self, index: EntityIndex) -> bytes:
         """Return the numbers of all joints, bit by bit."""
-        kinds = {joint.kind for joint in self.joints}
-        tables = [index.table(kind) for kind in KINDS if kind in kinds]
-        return b"".join(column.tobytes() for table in tables for column in table.columns)
+        return b"".join(self._columns(index))
+
+    def _columns(self, index: EntityIndex) -> list[bytes]:
+        """Return the same column by column: in one piece they take many times as long."""
+        tables = [index.table(kind) for kind in KINDS if kind in self._kinds]
+        return [column.tobytes() for table in tables for column in table.columns]
 
     def refresh(self, index: EntityIndex) -> bool:
         """Take the numbers of joints where they were changed; return whether they were."""
-        if not self.joints or self.settings(index) == self._settings:
+        if not self.joints or self._columns(index) == self._settings:
             return False
         self.rebuild(index)
         return True

@@ -27,8 +27,9 @@ def is_any_apart(state: State) -> bool:
 def may_touch(state: State, a: NDArray[Any], b: NDArray[Any]) -> NDArray[np.bool_]:
     """Return of pairs of rows (n,) which of them no joint and no layer keeps from touching each other."""
     low, high = np.minimum(a, b).astype(np.int64), np.maximum(a, b).astype(np.int64)
-    apart = state.joints.apart
-    touching = ~np.isin((low << 32) | high, (apart[:, 0] << 32) | apart[:, 1])
+    apart, pairs = state.joints.apart, (low << 32) | high
+    keys = np.append((apart[:, 0] << 32) | apart[:, 1], -1)  # sorted, but for one that no pair has
+    touching: NDArray[np.bool_] = keys[np.searchsorted(keys[:-1], pairs)] != pairs
     if len(state.batch(Layer)):
         touching &= _touches(state, low, high) & _touches(state, high, low)
     return touching

@@ -1,32 +1,58 @@
 """The direct solution of blocks of joint rows: how impulses of some rows change the speeds of all of a block.
 
-A = J M^-1 J^T of a block is factorised within its envelope, A = L L^T. Its rows stand in an order in which
-rows that share a body are near each other (:mod:`physicslab.state.joint_order`): a chain costs as much as it
-has links, and a load of 10,000 times its mass hangs on it as on one link.
+A = J M^-1 J^T of a block is factorised as L D L^T, in pieces of 2 x 2. A *node* is one row, or two that hold
+the same bodies, as the two of a point; the order of nodes and all places where L is not zero are found once
+(:mod:`physicslab.state.joint_order`). Joints that form a tree have no more such places than A: a chain costs
+as much as it has links, and a load of 10,000 times its mass hangs on it as on one link. Nodes that are not
+active, as limits that are not reached, are passed over.
 """
 
-import math
-from typing import NamedTuple
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+from numba import int64
+from numpy.typing import NDArray
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Inverse
 
+Tables = Annotated[NDArray[np.int64], int64[:, ::1]]
+"""An int64 array (n, k), contiguous."""
+
 _DEPENDENT = 1e-13
 """Share of its diagonal below which a pivot is rounding: the row depends on those before it."""
-A_X, A_Y, A_TURN, B_X, B_Y, B_TURN, ERROR, BEFORE, NOTED, CHANGE, DIAGONAL, GIVES, STATE, MEASURED = range(14)
-"""The measures of a term: its gradient by x, y and the angle of A, and of B. Those of a row, beside its first
-term: the error [m or rad]; its speed before the impulses and its impulse then [N s]; how the impulse changes;
-how a unit impulse changes its own speed; how soft a dependent row is; whether it is ``ACTIVE``."""
+ROW, WIDTH, TERMS, ENDS, BELOW, UPDATES, NODE = range(7)
+"""The numbers of a node: its first row, and how many it has; where its terms, its ends, the entries below its
+diagonal and the targets of its updates begin, which end where those of the next node begin."""
+TERM, PLACE, END_A, END_B, OF_NODE = range(5)
+"""The numbers of a term: which it is, whether of the first or the second row of its node, and the ends that
+it acts at, or -1 for what never moves."""
+LOWER, SHARED, ENTRY = range(3)
+"""The numbers of an entry: the node of its row, and where its pairs of ends begin that are of one body."""
+FIRST, BOUNDED, GROUP = range(3)
+"""Where the nodes of a block begin, and in the list of those that have bounds its own."""
+(
+    STATE, INVERSE_1, RATIO, INVERSE_2, D_1, D_12, D_2, ERROR, _, BEFORE, _, NOTED, _, CHANGE, _, GIVES,
+    _, DIAGONAL, _, CAP, NODE_STATE,
+) = range(21)  # fmt: skip
+"""The state of a node: whether it is ``ACTIVE``; its pivots, as they are used and as they are summed up. Of
+both rows: the error [m or rad]; the speed before the impulses, and the impulse then [N s]; how the impulse
+changes; how soft a dependent row is; how a unit impulse changes its own speed. Last, the bound of the
+impulse."""
 OFF, ACTIVE = 0.0, 1.0
-"""A row that moves nothing, or whose impulse is at its bound; one that is solved."""
+"""A node that moves nothing, or whose impulse is at its bound; one that is solved."""
+_L = 4
+"""Where the numbers of L begin in those of an entry, behind those that are summed up."""
+_unsigned: Any = np.uint64
+"""Makes an index of which no loop tests whether it counts from the end."""
 
 
 class Joints(NamedTuple):
-    """The rows of joints (n,) and their terms (m,), as :class:`physicslab.state.joints.Joints` has them.
+    """The terms (m,) and rows (n,) of joints, as :class:`physicslab.state.joints.Joints` has them.
 
-    Behind the impulses: the ``order`` of rows in blocks, where each block ``ends``, at which place the
-    envelope of a row begins (``low``) and where its numbers in the ``matrix``; the ``largest`` error of each
-    row so far, and the room for measures.
+    Behind the ``largest`` error of each row so far: nodes, and what belongs to them, as
+    :class:`physicslab.state.joint_order.Blocks` has it; and the room for what is computed of ends, nodes and
+    entries.
     """
 
     measure: Rows
@@ -36,112 +62,162 @@ class Joints(NamedTuple):
     anchor_b: Vectors
     axis: Vectors
     scale: Numbers
-    second: Rows
     role: Rows
     offset: Numbers
     target: Numbers
     strongest: Numbers
     impulse: Numbers
-    order: Rows
-    ends: Rows
-    low: Rows
-    start: Rows
-    matrix: Numbers
     largest: Numbers
-    measured: Vectors
+    nodes: Tables
+    terms: Tables
+    body: Rows
+    entries: Tables
+    shared: Tables
+    targets: Rows
+    groups: Tables
+    bounded: Rows
+    gradient: Vectors
+    state: Vectors
+    matrix: Vectors
 
 
 JointsTuple = tuple[
-    Rows, Rows, Rows, Vectors, Vectors, Vectors, Numbers, Rows, Rows, Numbers, Numbers, Numbers, Numbers,
-    Rows, Rows, Rows, Rows, Numbers, Numbers, Vectors,
+    Rows, Rows, Rows, Vectors, Vectors, Vectors, Numbers, Rows, Numbers, Numbers, Numbers, Numbers, Numbers,
+    Tables, Tables, Rows, Tables, Tables, Rows, Tables, Rows, Vectors, Vectors, Vectors,
 ]  # fmt: skip
-"""The rows without names."""
+"""The same, without names."""
 
 
 @always_inlined
-def _common(joints: Joints, p: int, q: int, inverse: Inverse) -> float:
-    """Return how a unit impulse of term q changes the speed of term p: by bodies that they have in common."""
-    total, measured = 0.0, joints.measured
-    for one in range(2):
-        body = joints.b[p] if one == 1 else joints.a[p]
-        for other in range(2):
-            if (joints.b[q] if other == 1 else joints.a[q]) == body:
-                i, j = 3 * one, 3 * other
-                moved = measured[p, i] * measured[q, j] + measured[p, i + 1] * measured[q, j + 1]
-                turned = measured[p, i + 2] * measured[q, j + 2]
-                total += inverse.mass[body] * moved + inverse.inertia[body] * turned
-    return total
+def _assemble(joints: Joints, k: int, inverse: Inverse) -> None:
+    """Write the diagonal of A at an active node, and the entries below it."""
+    nodes, g, state, body = joints.nodes, joints.gradient, joints.state, joints.body
+    d1, d12, d2 = 0.0, 0.0, 0.0
+    for e in range(nodes[k, ENDS], nodes[k + 1, ENDS]):
+        mass, inertia = inverse.mass[body[e]], inverse.inertia[body[e]]
+        d1 += mass * (g[e, 0] * g[e, 0] + g[e, 1] * g[e, 1]) + inertia * g[e, 2] * g[e, 2]
+        d12 += mass * (g[e, 0] * g[e, 3] + g[e, 1] * g[e, 4]) + inertia * g[e, 2] * g[e, 5]
+        d2 += mass * (g[e, 3] * g[e, 3] + g[e, 4] * g[e, 4]) + inertia * g[e, 5] * g[e, 5]
+    state[k, D_1], state[k, D_12], state[k, D_2] = d1, d12, d2
+    state[k, DIAGONAL], state[k, DIAGONAL + 1] = d1, d2
+    for n in range(nodes[k, BELOW], nodes[k + 1, BELOW]):
+        if state[joints.entries[n, LOWER], STATE] != ACTIVE:
+            continue
+        a11, a12, a21, a22 = 0.0, 0.0, 0.0, 0.0
+        for s in range(joints.entries[n, SHARED], joints.entries[n + 1, SHARED]):
+            p, q = _unsigned(joints.shared[s, 0]), _unsigned(joints.shared[s, 1])
+            mass, inertia = inverse.mass[body[p]], inverse.inertia[body[p]]
+            x, y, turn = mass * g[q, 0], mass * g[q, 1], inertia * g[q, 2]
+            a11 += g[p, 0] * x + g[p, 1] * y + g[p, 2] * turn
+            a21 += g[p, 3] * x + g[p, 4] * y + g[p, 5] * turn
+            x, y, turn = mass * g[q, 3], mass * g[q, 4], inertia * g[q, 5]
+            a12 += g[p, 0] * x + g[p, 1] * y + g[p, 2] * turn
+            a22 += g[p, 3] * x + g[p, 4] * y + g[p, 5] * turn
+        matrix = joints.matrix
+        matrix[n, 0], matrix[n, 1], matrix[n, 2], matrix[n, 3] = a11, a12, a21, a22
 
 
 @always_inlined
-def _response(joints: Joints, i: int, j: int, inverse: Inverse) -> float:
-    """Return how a unit impulse of row j changes the speed of row i: an element of A."""
-    total, p = 0.0, i
-    while p >= 0:
-        q = j
-        while q >= 0:
-            total += _common(joints, p, q, inverse)
-            q = joints.second[j] if q == j else -1
-        p = joints.second[i] if p == i else -1
-    return total
+def _pivot(state: Vectors, k: int, row: int, left: float, softness: float) -> float:
+    """Return the inverse of a pivot; a row that depends on those before it gets a spring."""
+    diagonal = state[k, DIAGONAL + row]
+    state[k, GIVES + row] = 0.0
+    if left <= _DEPENDENT * diagonal:
+        state[k, GIVES + row] = softness * diagonal
+        left = max(left, 0.0) + softness * diagonal
+    return 1.0 / left if left > 0.0 else 0.0
+
+
+@always_inlined
+def _eliminate(joints: Joints, k: int, softness: float) -> None:
+    """Find the pivots of a node and its column of L; take that from what is below and to the right."""
+    nodes, state, matrix, entries = joints.nodes, joints.state, joints.matrix, joints.entries
+    d12 = state[k, D_12]
+    i1 = _pivot(state, k, 0, state[k, D_1], softness)
+    ratio, i2 = d12 * i1, 0.0
+    if nodes[k, WIDTH] == 2:
+        i2 = _pivot(state, k, 1, state[k, D_2] - d12 * ratio, softness)
+    state[k, INVERSE_1], state[k, RATIO], state[k, INVERSE_2] = i1, ratio, i2
+    begin, target = nodes[k, BELOW], nodes[k, UPDATES]
+    for n in range(begin, nodes[k + 1, BELOW]):
+        i = _unsigned(entries[n, LOWER])
+        if state[i, STATE] != ACTIVE:
+            target += n - begin
+            continue
+        u11, u12, u21, u22 = matrix[n, 0], matrix[n, 1], matrix[n, 2], matrix[n, 3]
+        l12, l22 = (u12 - ratio * u11) * i2, (u22 - ratio * u21) * i2
+        l11, l21 = u11 * i1 - ratio * l12, u21 * i1 - ratio * l22
+        matrix[n, _L], matrix[n, _L + 1], matrix[n, _L + 2], matrix[n, _L + 3] = l11, l12, l21, l22
+        for m in range(begin, n):
+            if state[entries[m, LOWER], STATE] == ACTIVE:
+                t = joints.targets[target]
+                matrix[t, 0] -= l11 * matrix[m, 0] + l12 * matrix[m, 1]
+                matrix[t, 1] -= l11 * matrix[m, 2] + l12 * matrix[m, 3]
+                matrix[t, 2] -= l21 * matrix[m, 0] + l22 * matrix[m, 1]
+                matrix[t, 3] -= l21 * matrix[m, 2] + l22 * matrix[m, 3]
+            target += 1
+        state[i, D_1] -= l11 * u11 + l12 * u12
+        state[i, D_12] -= l11 * u21 + l12 * u22
+        state[i, D_2] -= l21 * u21 + l22 * u22
 
 
 @inlined
 def factorise(joints: Joints, first: int, end: int, inverse: Inverse, softness: float) -> None:
-    """Factorise A of the active rows of a block, from place ``first`` to before ``end``.
+    """Factorise A of the active nodes of a block, from node ``first`` to before ``end``.
 
     A row that depends on those before it gets a spring of its own, ``softness`` times its diagonal.
     """
-    matrix, low, start, measured = joints.matrix, joints.low, joints.start, joints.measured
     for k in range(first, end):
-        i, row = joints.order[k], joints.start[k] - joints.low[k]
-        measured[i, GIVES] = 0.0
-        if measured[i, STATE] == OFF:
-            for n in range(low[k], k + 1):
-                matrix[row + n] = 0.0
-            continue
-        for n in range(low[k], k + 1):
-            column = start[n] - low[n]
-            diagonal = _response(joints, i, joints.order[n], inverse)
-            left = diagonal
-            for between in range(max(low[k], low[n]), n):
-                left -= matrix[row + between] * matrix[column + between]
-            if n < k:
-                pivot = matrix[column + n]
-                matrix[row + n] = left / pivot if pivot > 0.0 else 0.0
-                continue
-            measured[i, DIAGONAL] = diagonal
-            if left <= _DEPENDENT * diagonal:
-                measured[i, GIVES] = softness * diagonal
-                left = max(left, 0.0) + softness * diagonal
-            matrix[row + k] = math.sqrt(left)
+        if joints.state[k, STATE] == ACTIVE:
+            _assemble(joints, k, inverse)
+        else:
+            joints.state[k, GIVES] = joints.state[k, GIVES + 1] = 0.0
+    for k in range(first, end):
+        if joints.state[k, STATE] == ACTIVE:
+            _eliminate(joints, k, softness)
 
 
 @inlined
-def substitute(joints: Joints, first: int, end: int) -> None:
-    """Turn the changes of speeds that are wanted into those of impulses: L L^T x = b, in place."""
-    matrix, measured = joints.matrix, joints.measured
+def substitute_forward(joints: Joints, first: int, end: int) -> float:
+    """Turn changes of speeds b that are wanted into D^-1 L^-1 b, in place; return b^T A^-1 b."""
+    nodes, state, matrix, total = joints.nodes, joints.state, joints.matrix, 0.0
     for k in range(first, end):
-        i, row = joints.order[k], joints.start[k] - joints.low[k]
-        left, pivot = measured[i, CHANGE], matrix[row + k]
-        for n in range(joints.low[k], k):
-            left -= matrix[row + n] * measured[joints.order[n], CHANGE]
-        measured[i, CHANGE] = left / pivot if pivot > 0.0 else 0.0
+        if state[k, STATE] != ACTIVE:
+            continue
+        x, y = state[k, CHANGE], state[k, CHANGE + 1]
+        for n in range(nodes[k, BELOW], nodes[k + 1, BELOW]):
+            i = _unsigned(joints.entries[n, LOWER])
+            if state[i, STATE] == ACTIVE:
+                state[i, CHANGE] -= matrix[n, _L] * x + matrix[n, _L + 1] * y
+                state[i, CHANGE + 1] -= matrix[n, _L + 2] * x + matrix[n, _L + 3] * y
+        second = (y - state[k, RATIO] * x) * state[k, INVERSE_2]
+        first_part = x * state[k, INVERSE_1] - state[k, RATIO] * second
+        state[k, CHANGE], state[k, CHANGE + 1] = first_part, second
+        total += x * first_part + y * second
+    return total
+
+
+@inlined
+def substitute_back(joints: Joints, first: int, end: int) -> None:
+    """Turn D^-1 L^-1 b into the changes of impulses A^-1 b, in place."""
+    nodes, state, matrix = joints.nodes, joints.state, joints.matrix
     for back in range(end - first):
         k = end - 1 - back
-        i, row = joints.order[k], joints.start[k] - joints.low[k]
-        pivot = matrix[row + k]
-        solved = measured[i, CHANGE] / pivot if pivot > 0.0 else 0.0
-        measured[i, CHANGE] = solved
-        for n in range(joints.low[k], k):
-            measured[joints.order[n], CHANGE] -= matrix[row + n] * solved
+        if state[k, STATE] != ACTIVE:
+            continue
+        x, y = state[k, CHANGE], state[k, CHANGE + 1]
+        for n in range(nodes[k, BELOW], nodes[k + 1, BELOW]):
+            i = _unsigned(joints.entries[n, LOWER])
+            if state[i, STATE] == ACTIVE:
+                x -= matrix[n, _L] * state[i, CHANGE] + matrix[n, _L + 2] * state[i, CHANGE + 1]
+                y -= matrix[n, _L + 1] * state[i, CHANGE] + matrix[n, _L + 3] * state[i, CHANGE + 1]
+        state[k, CHANGE], state[k, CHANGE + 1] = x, y
 
 
 @always_inlined
-def can_move(joints: Joints, i: int, inverse: Inverse) -> bool:
-    """Whether a row acts on any body that moves: not on fixed ones alone, or such as sleep."""
-    total, k = 0.0, i
-    while k >= 0:
-        total += inverse.mass[joints.a[k]] + inverse.mass[joints.b[k]]
-        k = joints.second[i] if k == i else -1
+def can_move(joints: Joints, k: int, inverse: Inverse) -> bool:
+    """Whether a node acts on any body that moves: not on fixed ones alone, or such as sleep."""
+    total = 0.0
+    for e in range(joints.nodes[k, ENDS], joints.nodes[k + 1, ENDS]):
+        total += inverse.mass[joints.body[e]]
     return total > 0.0

@@ -10,31 +10,38 @@ strongest is found by trying: an impulse beyond its bound is set to it, and the 
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
-from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, MOTORS, PX, PY, SPIN
+from physicslab.kernels import Vectors, always_inlined, inlined
+from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, MOTORS, book
 from physicslab.kernels.arguments import Acting, Inverse, Motion
 from physicslab.kernels.joints.blocks import (
-    A_TURN,
-    A_X,
-    A_Y,
     ACTIVE,
-    B_TURN,
-    B_X,
-    B_Y,
     BEFORE,
+    BOUNDED,
+    CAP,
     CHANGE,
     DIAGONAL,
+    END_A,
+    END_B,
+    ENDS,
     ERROR,
+    FIRST,
     GIVES,
     NOTED,
     OFF,
+    PLACE,
+    ROW,
     STATE,
+    TERM,
+    TERMS,
+    WIDTH,
     Joints,
+    _unsigned,
     can_move,
     factorise,
-    substitute,
+    substitute_back,
+    substitute_forward,
 )
-from physicslab.kernels.joints.terms import TermEnd, measure_term
+from physicslab.kernels.joints.terms import TermEnd, measure_turned
 
 HOLD, LIMIT, MOTOR = range(3)
 """What a row demands (:class:`physicslab.state.joint_rows.Role`)."""
@@ -63,108 +70,151 @@ def joint_softness(h: float) -> JointSoftness:
 
 
 @always_inlined
-def _along(joints: Joints, k: int, linear: Vectors, angular: Numbers) -> float:
-    """Return the product of the gradient of a term with velocities."""
-    a, b, at = joints.a[k], joints.b[k], joints.measured
-    at_a = at[k, A_X] * linear[a, 0] + at[k, A_Y] * linear[a, 1] + at[k, A_TURN] * angular[a]
-    at_b = at[k, B_X] * linear[b, 0] + at[k, B_Y] * linear[b, 1] + at[k, B_TURN] * angular[b]
-    return at_a + at_b  # type: ignore[no-any-return]
+def _speeds(joints: Joints, k: int, motion: Motion) -> tuple[float, float]:
+    """Return how fast the quantities of a node grow [m/s or rad/s]."""
+    g, linear, first, second = joints.gradient, motion.linear, 0.0, 0.0
+    for e in range(joints.nodes[k, ENDS], joints.nodes[k + 1, ENDS]):
+        body = _unsigned(joints.body[e])
+        x, y, spin = linear[body, 0], linear[body, 1], motion.angular[body]
+        first += g[e, 0] * x + g[e, 1] * y + g[e, 2] * spin
+        second += g[e, 3] * x + g[e, 4] * y + g[e, 5] * spin
+    return first, second
 
 
 @always_inlined
-def _speed(joints: Joints, i: int, motion: Motion) -> float:
-    """Return how fast the quantity of a row grows [m/s or rad/s]."""
-    total, k = 0.0, i
-    while k >= 0:
-        total += _along(joints, k, motion.linear, motion.angular)
-        k = joints.second[i] if k == i else -1
-    return total
+def _apply(joints: Joints, k: int, motion: Motion, inverse: Inverse, first: float, second: float) -> None:
+    """Change velocities by the impulses of a node."""
+    g, linear = joints.gradient, motion.linear
+    for e in range(joints.nodes[k, ENDS], joints.nodes[k + 1, ENDS]):
+        body = _unsigned(joints.body[e])
+        mass, inertia = inverse.mass[body], inverse.inertia[body]
+        linear[body, 0] += mass * (first * g[e, 0] + second * g[e, 3])
+        linear[body, 1] += mass * (first * g[e, 1] + second * g[e, 4])
+        motion.angular[body] += inertia * (first * g[e, 2] + second * g[e, 5])
 
 
 @always_inlined
-def _push(joints: Joints, k: int, motion: Motion, inverse: Inverse, impulse: float) -> None:
-    """Change velocities by an impulse at a term."""
-    a, b, at = joints.a[k], joints.b[k], joints.measured
-    motion.linear[a, 0] += inverse.mass[a] * impulse * at[k, A_X]
-    motion.linear[a, 1] += inverse.mass[a] * impulse * at[k, A_Y]
-    motion.angular[a] += inverse.inertia[a] * impulse * at[k, A_TURN]
-    motion.linear[b, 0] += inverse.mass[b] * impulse * at[k, B_X]
-    motion.linear[b, 1] += inverse.mass[b] * impulse * at[k, B_Y]
-    motion.angular[b] += inverse.inertia[b] * impulse * at[k, B_TURN]
+def _impulses(joints: Joints, k: int) -> tuple[float, float]:
+    """Return the impulses of a node."""
+    row = joints.nodes[k, ROW]
+    second = joints.impulse[row + 1] if joints.nodes[k, WIDTH] == 2 else 0.0
+    return joints.impulse[row], second
 
 
 @always_inlined
-def _apply(joints: Joints, i: int, motion: Motion, inverse: Inverse, impulse: float) -> None:
-    """Change velocities by an impulse of a row."""
-    k = i
-    while k >= 0:
-        _push(joints, k, motion, inverse, impulse)
-        k = joints.second[i] if k == i else -1
+def _set_impulses(joints: Joints, k: int, first: float, second: float) -> None:
+    """Set the impulses of a node."""
+    row = joints.nodes[k, ROW]
+    joints.impulse[row] = first
+    if joints.nodes[k, WIDTH] == 2:
+        joints.impulse[row + 1] = second
 
 
 @always_inlined
-def _end(motion: Motion, body: int, anchors: Vectors, i: int) -> TermEnd:
+def _end(motion: Motion, body: int, anchors: Vectors, n: int) -> TermEnd:
     """Return a body at an end of a term."""
     position, linear = motion.position, motion.linear
     return TermEnd(
         position[body, 0], position[body, 1], motion.angle[body], linear[body, 0], linear[body, 1],
-        motion.angular[body], anchors[i, 0], anchors[i, 1],
+        motion.angular[body], anchors[n, 0], anchors[n, 1],
     )  # fmt: skip
 
 
 @always_inlined
-def _given(joints: Joints, k: int, inverse: Inverse, acting: Acting) -> float:
-    """Return how forces accelerate the measure of a term."""
-    at, force, torque, given = joints.measured, acting.force, acting.torque, 0.0
-    for end in range(2):
-        body = joints.b[k] if end == 1 else joints.a[k]
-        if not acting.unkicked[body]:
-            pull = at[k, 3 * end] * force[body, 0] + at[k, 3 * end + 1] * force[body, 1]
-            given += inverse.mass[body] * pull + inverse.inertia[body] * torque[body] * at[k, 3 * end + 2]
-    return given
-
-
-@inlined
-def begin_joints(joints: Joints, motion: Motion, inverse: Inverse, acting: Acting, h: float) -> None:
-    """Measure all terms where bodies are, and note speeds and impulses.
-
-    The speeds are less than now by what ``h`` seconds of forces give (:mod:`physicslab.kernels.solver.work`).
-    """
-    at, scale = joints.measured, joints.scale
-    for k in range(len(scale)):
-        ends = _end(motion, joints.a[k], joints.anchor_a, k), _end(motion, joints.b[k], joints.anchor_b, k)
-        one = measure_term(joints.measure[k], ends[0], ends[1], joints.axis[k, 0], joints.axis[k, 1])
-        at[k, A_X], at[k, A_Y], at[k, A_TURN] = scale[k] * one.ax, scale[k] * one.ay, scale[k] * one.turn_a
-        at[k, B_X], at[k, B_Y], at[k, B_TURN] = scale[k] * one.bx, scale[k] * one.by, scale[k] * one.turn_b
-        at[k, ERROR] = scale[k] * one.value
-    for i in range(len(joints.impulse)):
-        k, given = joints.second[i], 0.0
-        at[i, ERROR] += (at[k, ERROR] if k >= 0 else 0.0) - joints.offset[i]
-        k = i if acting.any and h > 0.0 else -1
-        while k >= 0:
-            given += _given(joints, k, inverse, acting)
-            k = joints.second[i] if k == i else -1
-        at[i, BEFORE], at[i, NOTED] = _speed(joints, i, motion) - h * given, joints.impulse[i]
-        if joints.role[i] != MOTOR:
-            off = -at[i, ERROR] if joints.role[i] == LIMIT else abs(at[i, ERROR])
-            joints.largest[i] = max(joints.largest[i], off)
+def _turn(rotations: Vectors, body: int, angle: float) -> None:
+    """Keep the cosine and the sine of a body's angle."""
+    if rotations[body, 0] != angle:
+        rotations[body, 0] = angle
+        rotations[body, 1], rotations[body, 2] = math.cos(angle), math.sin(angle)
 
 
 @always_inlined
-def _bounded(joints: Joints, i: int, impulse: float, h: float) -> float:
-    """Return the impulse of a row, which a limit only pushes and a motor has not without bounds."""
-    if joints.role[i] == HOLD:
+def _measure(joints: Joints, k: int, t: int, motion: Motion, rotations: Vectors) -> None:
+    """Add what a term measures, and its gradient, to those of its node."""
+    terms, g = joints.terms, joints.gradient
+    n, place = terms[t, TERM], terms[t, PLACE]
+    i, j, scale, e = joints.a[n], joints.b[n], joints.scale[n], terms[t, END_A]
+    _turn(rotations, i, motion.angle[i])
+    _turn(rotations, j, motion.angle[j])
+    one = measure_turned(
+        joints.measure[n], _end(motion, i, joints.anchor_a, n), _end(motion, j, joints.anchor_b, n),
+        rotations[i, 1], rotations[i, 2], rotations[j, 1], rotations[j, 2],
+        joints.axis[n, 0], joints.axis[n, 1],
+    )  # fmt: skip
+    joints.state[k, ERROR + place] += scale * one.value
+    if e >= 0:
+        g[e, 3 * place] += scale * one.ax
+        g[e, 3 * place + 1] += scale * one.ay
+        g[e, 3 * place + 2] += scale * one.turn_a
+    e = terms[t, END_B]
+    if e >= 0:
+        g[e, 3 * place] += scale * one.bx
+        g[e, 3 * place + 1] += scale * one.by
+        g[e, 3 * place + 2] += scale * one.turn_b
+
+
+@always_inlined
+def _given(joints: Joints, k: int, inverse: Inverse, acting: Acting) -> tuple[float, float]:
+    """Return how forces accelerate the quantities of a node."""
+    g, force, first, second = joints.gradient, acting.force, 0.0, 0.0
+    for e in range(joints.nodes[k, ENDS], joints.nodes[k + 1, ENDS]):
+        body = _unsigned(joints.body[e])
+        if not acting.unkicked[body]:
+            x, y = inverse.mass[body] * force[body, 0], inverse.mass[body] * force[body, 1]
+            spin = inverse.inertia[body] * acting.torque[body]
+            first += g[e, 0] * x + g[e, 1] * y + g[e, 2] * spin
+            second += g[e, 3] * x + g[e, 4] * y + g[e, 5] * spin
+    return first, second
+
+
+@inlined
+def begin_joints(
+    joints: Joints, motion: Motion, rotations: Vectors, inverse: Inverse, acting: Acting, h: float
+) -> None:
+    """Measure all rows where bodies are, and note speeds and impulses.
+
+    The speeds are less than now by what ``h`` seconds of forces give (:mod:`physicslab.kernels.solver.work`).
+    """
+    nodes, state, g = joints.nodes, joints.state, joints.gradient
+    for k in range(len(state)):
+        for e in range(nodes[k, ENDS], nodes[k + 1, ENDS]):
+            g[e, 0] = g[e, 1] = g[e, 2] = g[e, 3] = g[e, 4] = g[e, 5] = 0.0
+        state[k, ERROR] = state[k, ERROR + 1] = 0.0
+        for t in range(nodes[k, TERMS], nodes[k + 1, TERMS]):
+            _measure(joints, k, t, motion, rotations)
+        row = nodes[k, ROW]
+        for place in range(nodes[k, WIDTH]):
+            state[k, ERROR + place] -= joints.offset[row + place]
+            if joints.role[row] != MOTOR:
+                error = state[k, ERROR + place]
+                off = -error if joints.role[row] == LIMIT else abs(error)
+                joints.largest[row + place] = max(joints.largest[row + place], off)
+        first, second = _speeds(joints, k, motion)
+        if acting.any:
+            given, also = _given(joints, k, inverse, acting)
+            first, second = first - h * given, second - h * also
+        state[k, BEFORE], state[k, BEFORE + 1] = first, second
+        state[k, NOTED], state[k, NOTED + 1] = _impulses(joints, k)
+
+
+@always_inlined
+def _bounded(joints: Joints, k: int, impulse: float) -> float:
+    """Return the impulse of a node, which a limit only pushes and a motor has not without bounds."""
+    role, cap = joints.role[joints.nodes[k, ROW]], joints.state[k, CAP]
+    if role == HOLD:
         return impulse
-    cap = h * joints.strongest[i]
-    return max(0.0 if joints.role[i] == LIMIT else -cap, min(cap, impulse))  # type: ignore[no-any-return]
+    return max(0.0 if role == LIMIT else -cap, min(cap, impulse))  # type: ignore[no-any-return]
 
 
 @inlined
 def warm_start_joints(joints: Joints, motion: Motion, inverse: Inverse, scale: float, h: float) -> None:
-    """Apply the impulses of the last substep, ``scale`` times as large."""
-    for i in range(len(joints.impulse)):
-        joints.impulse[i] = _bounded(joints, i, scale * joints.impulse[i], h)
-        _apply(joints, i, motion, inverse, joints.impulse[i])
+    """Apply the impulses of the last substep, ``scale`` times as large, as far as ``h`` seconds allow."""
+    for k in range(len(joints.state)):
+        joints.state[k, CAP] = h * joints.strongest[joints.nodes[k, ROW]]
+        first, second = _impulses(joints, k)
+        first, second = _bounded(joints, k, scale * first), scale * second
+        _set_impulses(joints, k, first, second)
+        _apply(joints, k, motion, inverse, first, second)
 
 
 @inlined
@@ -175,126 +225,131 @@ def _limit_correction(joints: Joints, first: int, end: int, inverse: Inverse, so
     it is, the faster its links would have to move, without a bound. What a light link holds may be heavy: its
     spring is as stiff as for the heaviest body of the block.
     """
-    at, stored, given, stiffness = joints.measured, 0.0, 0.0, soft.rate / (soft.h * soft.spring)
+    nodes, state, stored, stiffness = joints.nodes, joints.state, 0.0, soft.rate / (soft.h * soft.spring)
     lightest, heaviest = 0.0, math.inf
-    for n in range(first, end):
-        i = joints.order[n]
-        corrected = at[i, STATE] == ACTIVE and joints.role[i] != MOTOR and at[i, DIAGONAL] > 0.0
-        if not corrected or (joints.role[i] == LIMIT and at[i, ERROR] > 0.0):
-            at[i, CHANGE] = 0.0
+    for k in range(first, end):
+        role = joints.role[nodes[k, ROW]]
+        state[k, CHANGE] = state[k, CHANGE + 1] = 0.0
+        if state[k, STATE] != ACTIVE or role == MOTOR or (role == LIMIT and state[k, ERROR] > 0.0):
             continue
-        for body in (joints.a[i], joints.b[i]):
-            if inverse.mass[body] > 0.0:
-                lightest = max(lightest, inverse.mass[body])
-                heaviest = min(heaviest, inverse.mass[body])
-        at[i, CHANGE] = -soft.rate * at[i, ERROR]
-        stored += stiffness * at[i, ERROR] * at[i, ERROR] / at[i, DIAGONAL]
+        for e in range(nodes[k, ENDS], nodes[k + 1, ENDS]):
+            mass = inverse.mass[joints.body[e]]
+            if mass > 0.0:
+                lightest, heaviest = max(lightest, mass), min(heaviest, mass)
+        for place in range(nodes[k, WIDTH]):
+            error, diagonal = state[k, ERROR + place], state[k, DIAGONAL + place]
+            state[k, CHANGE + place] = -soft.rate * error
+            if diagonal > 0.0:
+                stored += stiffness * error * error / diagonal
     if stored == 0.0:
         return
     stored *= lightest / heaviest
-    substitute(joints, first, end)
-    for n in range(first, end):
-        given -= soft.rate * at[joints.order[n], ERROR] * at[joints.order[n], CHANGE]
+    given = substitute_forward(joints, first, end)
     if given > stored:
         share = math.sqrt(stored / given)
-        for n in range(first, end):
-            i = joints.order[n]
-            if joints.role[i] == HOLD or at[i, ERROR] < 0.0:
-                at[i, ERROR] *= share
+        for k in range(first, end):
+            if joints.role[nodes[k, ROW]] == HOLD or state[k, ERROR] < 0.0:
+                state[k, ERROR], state[k, ERROR + 1] = share * state[k, ERROR], share * state[k, ERROR + 1]
 
 
 @inlined
 def factorise_joints(joints: Joints, inverse: Inverse, soft: JointSoftness) -> None:
-    """Choose the rows that act as far as is known, and factorise all blocks; limit what is corrected."""
-    first, at = 0, joints.measured
-    for i in range(len(joints.impulse)):
-        acts = can_move(joints, i, inverse)
-        if joints.role[i] == LIMIT:
-            acts = acts and joints.impulse[i] > 0.0
-        elif joints.role[i] == MOTOR:
-            acts = acts and abs(joints.impulse[i]) < soft.h * joints.strongest[i]
-        at[i, STATE] = ACTIVE if acts else OFF
-    for block in range(len(joints.ends)):
-        factorise(joints, first, joints.ends[block], inverse, soft.spring)
+    """Choose the nodes that act as far as is known, and factorise all blocks; limit what is corrected."""
+    for k in range(len(joints.state)):
+        row, acts = joints.nodes[k, ROW], can_move(joints, k, inverse)
+        if joints.role[row] == LIMIT:
+            acts = acts and joints.impulse[row] > 0.0
+        elif joints.role[row] == MOTOR:
+            acts = acts and abs(joints.impulse[row]) < joints.state[k, CAP]
+        joints.state[k, STATE] = ACTIVE if acts else OFF
+    for block in range(len(joints.groups) - 1):
+        first, end = joints.groups[block, FIRST], joints.groups[block + 1, FIRST]
+        factorise(joints, first, end, inverse, soft.spring)
         if soft.rate > 0.0:
-            _limit_correction(joints, first, joints.ends[block], inverse, soft)
-        first = joints.ends[block]
+            _limit_correction(joints, first, end, inverse, soft)
 
 
 @always_inlined
-def _wanted(joints: Joints, i: int, soft: JointSoftness) -> float:
-    """Return how fast the quantity of a row is to grow [m/s or rad/s]."""
-    if joints.role[i] == MOTOR:
-        return joints.target[i]  # type: ignore[no-any-return]
-    error = joints.measured[i, ERROR]
-    if joints.role[i] == LIMIT and error > 0.0:
+def _wanted(joints: Joints, k: int, place: int, soft: JointSoftness) -> float:
+    """Return how fast a quantity of a node is to grow [m/s or rad/s]."""
+    row, error = joints.nodes[k, ROW], joints.state[k, ERROR + place]
+    if joints.role[row] == MOTOR:
+        return joints.target[row]  # type: ignore[no-any-return]
+    if joints.role[row] == LIMIT and error > 0.0:
         return -error / soft.h  # type: ignore[no-any-return]
     return -soft.rate * error  # type: ignore[no-any-return]
 
 
 @always_inlined
-def _set_bounds(joints: Joints, first: int, end: int, motion: Motion, inverse: Inverse, h: float) -> bool:
+def _set_bounds(joints: Joints, block: int, motion: Motion, inverse: Inverse) -> bool:
     """Set impulses to their bounds that would go beyond; return whether any was."""
-    at, found = joints.measured, False
-    for n in range(first, end):
-        i = joints.order[n]
-        if joints.role[i] == HOLD or at[i, STATE] == OFF:
+    state, found = joints.state, False
+    for n in range(joints.groups[block, BOUNDED], joints.groups[block + 1, BOUNDED]):
+        k = joints.bounded[n]
+        if state[k, STATE] == OFF:
             continue
-        target = joints.impulse[i] + at[i, CHANGE]
-        bound = _bounded(joints, i, target, h)
+        now = joints.impulse[joints.nodes[k, ROW]]
+        target = now + state[k, CHANGE]
+        bound = _bounded(joints, k, target)
         if bound != target:
-            _apply(joints, i, motion, inverse, bound - joints.impulse[i])
-            joints.impulse[i], at[i, STATE], found = bound, OFF, True
+            _apply(joints, k, motion, inverse, bound - now, 0.0)
+            joints.impulse[joints.nodes[k, ROW]], state[k, STATE], found = bound, OFF, True
     return found
 
 
 @always_inlined
-def _free(
-    joints: Joints, first: int, end: int, motion: Motion, inverse: Inverse, soft: JointSoftness
-) -> bool:
-    """Let rows act again whose bound does not hold any more; return whether any does."""
-    at, found = joints.measured, False
-    for n in range(first, end):
-        i = joints.order[n]
-        if joints.role[i] == HOLD or at[i, STATE] != OFF:
+def _free(joints: Joints, block: int, motion: Motion, inverse: Inverse, soft: JointSoftness) -> bool:
+    """Let nodes act again whose bound does not hold any more; return whether any does."""
+    state, found = joints.state, False
+    for n in range(joints.groups[block, BOUNDED], joints.groups[block + 1, BOUNDED]):
+        k = joints.bounded[n]
+        if state[k, STATE] != OFF:
             continue
-        left = _wanted(joints, i, soft) - _speed(joints, i, motion)
-        inwards = left > 0.0 if joints.role[i] == LIMIT else left * joints.impulse[i] < 0.0
-        if joints.role[i] == MOTOR and joints.impulse[i] == 0.0:
-            inwards = left != 0.0 and joints.strongest[i] > 0.0
-        if inwards and can_move(joints, i, inverse):
-            at[i, STATE], found = ACTIVE, True
+        speed, _ = _speeds(joints, k, motion)
+        left, row = _wanted(joints, k, 0, soft) - speed, joints.nodes[k, ROW]
+        inwards = left > 0.0 if joints.role[row] == LIMIT else left * joints.impulse[row] < 0.0
+        if joints.role[row] == MOTOR and joints.impulse[row] == 0.0:
+            inwards = left != 0.0 and joints.strongest[row] > 0.0
+        if inwards and can_move(joints, k, inverse):
+            state[k, STATE], found = ACTIVE, True
     return found
 
 
+@always_inlined
+def _solve_once(joints: Joints, first: int, end: int, motion: Motion, soft: JointSoftness) -> None:
+    """Find by how much the impulses of a block's active nodes are to change."""
+    state = joints.state
+    for k in range(first, end):
+        if state[k, STATE] == ACTIVE:
+            speed, also = _speeds(joints, k, motion)
+            held, second = _impulses(joints, k) if soft.rate > 0.0 else (0.0, 0.0)
+            state[k, CHANGE] = _wanted(joints, k, 0, soft) - speed - state[k, GIVES] * held
+            state[k, CHANGE + 1] = _wanted(joints, k, 1, soft) - also - state[k, GIVES + 1] * second
+    substitute_forward(joints, first, end)
+    substitute_back(joints, first, end)
+
+
 @inlined
-def _solve_block(
-    joints: Joints, first: int, end: int, motion: Motion, inverse: Inverse, soft: JointSoftness
-) -> bool:
+def _solve_block(joints: Joints, block: int, motion: Motion, inverse: Inverse, soft: JointSoftness) -> bool:
     """Solve the rows of a block at once; return whether impulses still change."""
-    at, impulse, changed, size, trials = joints.measured, joints.impulse, 0.0, 0.0, 0
+    first, end = joints.groups[block, FIRST], joints.groups[block + 1, FIRST]
+    state, changed, size, trials = joints.state, 0.0, 0.0, 0
     while trials < _TRIALS:
         trials += 1
-        for n in range(first, end):
-            i = joints.order[n]
-            at[i, CHANGE] = 0.0
-            if at[i, STATE] == ACTIVE:
-                gives = at[i, GIVES] * impulse[i] if soft.rate > 0.0 else 0.0
-                at[i, CHANGE] = _wanted(joints, i, soft) - _speed(joints, i, motion) - gives
-        substitute(joints, first, end)
-        if trials < _TRIALS and _set_bounds(joints, first, end, motion, inverse, soft.h):
+        _solve_once(joints, first, end, motion, soft)
+        if trials < _TRIALS and _set_bounds(joints, block, motion, inverse):
             factorise(joints, first, end, inverse, soft.spring)
             changed = 1.0
             continue
-        for n in range(first, end):
-            i = joints.order[n]
-            if at[i, STATE] == ACTIVE:
-                before = impulse[i]
-                impulse[i] = _bounded(joints, i, before + at[i, CHANGE], soft.h)
-                _apply(joints, i, motion, inverse, impulse[i] - before)
-                changed += abs(impulse[i] - before)
-                size += abs(impulse[i])
-        if not _free(joints, first, end, motion, inverse, soft):
+        for k in range(first, end):
+            if state[k, STATE] == ACTIVE:
+                before, held = _impulses(joints, k)
+                now, other = _bounded(joints, k, before + state[k, CHANGE]), held + state[k, CHANGE + 1]
+                _set_impulses(joints, k, now, other)
+                _apply(joints, k, motion, inverse, now - before, other - held)
+                changed += abs(now - before) + abs(other - held)
+                size += abs(now) + abs(other)
+        if not _free(joints, block, motion, inverse, soft):
             break
         factorise(joints, first, end, inverse, soft.spring)
         changed += size
@@ -304,19 +359,20 @@ def _solve_block(
 @inlined
 def sweep_joints(joints: Joints, motion: Motion, inverse: Inverse, soft: JointSoftness) -> bool:
     """Solve all blocks once; return whether impulses still change."""
-    unsettled, first = False, 0
-    for block in range(len(joints.ends)):
-        loose = _solve_block(joints, first, joints.ends[block], motion, inverse, soft)
-        unsettled, first = unsettled or loose, joints.ends[block]
+    unsettled = False
+    for block in range(len(joints.groups) - 1):
+        loose = _solve_block(joints, block, motion, inverse, soft)
+        unsettled = unsettled or loose
     return unsettled
 
 
 @inlined
 def note_joints(joints: Joints, motion: Motion) -> None:
     """Note speeds and impulses as they are now."""
-    at = joints.measured
-    for i in range(len(joints.impulse)):
-        at[i, BEFORE], at[i, NOTED] = _speed(joints, i, motion), joints.impulse[i]
+    state = joints.state
+    for k in range(len(state)):
+        state[k, BEFORE], state[k, BEFORE + 1] = _speeds(joints, k, motion)
+        state[k, NOTED], state[k, NOTED + 1] = _impulses(joints, k)
 
 
 @inlined
@@ -325,11 +381,14 @@ def book_work(joints: Joints, motion: Motion, account: Vectors, whole: bool) -> 
 
     Of the ``whole`` impulses, or of what they have changed by since they were noted.
     """
-    at = joints.measured
-    for i in range(len(joints.impulse)):
-        impulse = joints.impulse[i] - (0.0 if whole else at[i, NOTED])
-        cause = MOTORS if joints.role[i] == MOTOR else JOINTS
-        account[cause, ENERGY] += 0.5 * impulse * (at[i, BEFORE] + _speed(joints, i, motion))
+    state = joints.state
+    for k in range(len(state)):
+        impulse, second = _impulses(joints, k)
+        speed, also = _speeds(joints, k, motion)
+        made = (impulse - (0.0 if whole else state[k, NOTED])) * (state[k, BEFORE] + speed)
+        made += (second - (0.0 if whole else state[k, NOTED + 1])) * (state[k, BEFORE + 1] + also)
+        cause = MOTORS if joints.role[joints.nodes[k, ROW]] == MOTOR else JOINTS
+        account[cause, ENERGY] += 0.5 * made
 
 
 @inlined
@@ -338,28 +397,26 @@ def book_momentum(joints: Joints, motion: Motion, inverse: Inverse, account: Vec
 
     Of the ``whole`` impulses, or of what they have changed by since they were noted.
     """
-    position, linear, angular, at = motion.position, motion.linear, motion.angular, joints.measured
-    for n in range(2 * len(joints.impulse)):
-        i = n // 2
-        k = joints.second[i] if n % 2 == 1 else i
-        if k < 0:
-            continue
-        impulse = joints.impulse[i] - (0.0 if whole else at[i, NOTED])
-        cause = MOTORS if joints.role[i] == MOTOR else JOINTS
-        for end in range(2):
-            body = joints.b[k] if end == 1 else joints.a[k]
-            px, py, turn = (
-                impulse * at[k, 3 * end],
-                impulse * at[k, 3 * end + 1],
-                impulse * at[k, 3 * end + 2],
-            )
+    position, linear, state, g = motion.position, motion.linear, joints.state, joints.gradient
+    for k in range(len(state)):
+        first, second = _impulses(joints, k)
+        if not whole:
+            first, second = first - state[k, NOTED], second - state[k, NOTED + 1]
+        x, y, spin, driven = 0.0, 0.0, 0.0, 0.0
+        for e in range(joints.nodes[k, ENDS], joints.nodes[k + 1, ENDS]):
+            body = _unsigned(joints.body[e])
+            px = first * g[e, 0] + second * g[e, 3]
+            py = first * g[e, 1] + second * g[e, 4]
+            turn = first * g[e, 2] + second * g[e, 5]
             if inverse.mass[body] > 0.0:
-                account[cause, PX] += px
-                account[cause, PY] += py
-                account[cause, SPIN] += position[body, 0] * py - position[body, 1] * px
+                x, y = x + px, y + py
+                spin += position[body, 0] * py - position[body, 1] * px
             else:
-                account[HAND, ENERGY] -= px * linear[body, 0] + py * linear[body, 1]
+                driven += px * linear[body, 0] + py * linear[body, 1]
             if inverse.inertia[body] > 0.0:
-                account[cause, SPIN] += turn
+                spin += turn
             else:
-                account[HAND, ENERGY] -= turn * angular[body]
+                driven += turn * motion.angular[body]
+        cause = MOTORS if joints.role[joints.nodes[k, ROW]] == MOTOR else JOINTS
+        book(account[cause], 0, 0.0, x, y, spin)
+        account[HAND, ENERGY] -= driven

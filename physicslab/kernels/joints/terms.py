@@ -49,9 +49,18 @@ def measure_term(measure: int, a: TermEnd, b: TermEnd, axis_x: float, axis_y: fl
     ``axis_x`` and ``axis_y`` are the axis of ``ALONG``, in the world, or of ``ALONG_A``, in A's frame. A
     distance of zero has no direction: its gradient is zero.
     """
+    ca, sa, cb, sb = math.cos(a.angle), math.sin(a.angle), math.cos(b.angle), math.sin(b.angle)
+    return measure_turned(measure, a, b, ca, sa, cb, sb, axis_x, axis_y)
+
+
+@always_inlined
+def measure_turned(
+    measure: int, a: TermEnd, b: TermEnd, ca: float, sa: float, cb: float, sb: float, axis_x: float,
+    axis_y: float,
+) -> MeasuredTerm:  # fmt: skip
+    """Return the same, with the cosines and sines of both angles."""
     if measure == ANGLE:
         return MeasuredTerm(b.angle - a.angle, 0.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0)
-    ca, sa, cb, sb = math.cos(a.angle), math.sin(a.angle), math.cos(b.angle), math.sin(b.angle)
     rax, ray = ca * a.anchor_x - sa * a.anchor_y, sa * a.anchor_x + ca * a.anchor_y
     rbx, rby = cb * b.anchor_x - sb * b.anchor_y, sb * b.anchor_x + cb * b.anchor_y
     dx, dy = (b.x - a.x) + (rbx - rax), (b.y - a.y) + (rby - ray)

@@ -105,7 +105,7 @@ def solve(
     """
     joined, loose, stiff = len(joints.impulse) > 0, False, joint_softness(h)
     if joined:
-        begin_joints(joints, motion, inverse, acting, h)
+        begin_joints(joints, motion, near.rotations, inverse, acting, h)
         warm_start_joints(joints, motion, inverse, warm_start_scale, h)
         factorise_joints(joints, inverse, stiff)
     _warm_start(contacts, motion, inverse, warm_start_scale)
@@ -155,11 +155,11 @@ def relax(
     joined, loose, stiff = len(joints.impulse) > 0, False, JointSoftness(h, 0.0, 1.0)
     if joined:
         book_work(joints, motion, near.account, True)
-        begin_joints(joints, motion, inverse, acting, 0.0)
+        begin_joints(joints, motion, near.rotations, inverse, acting, 0.0)
         factorise_joints(joints, inverse, stiff)
     for n in range(sweeps):
         if joined:
-            if crowd:
+            if crowd and n > 0:
                 note_joints(joints, motion)
             loose = sweep_joints(joints, motion, inverse, stiff)
             if crowd:

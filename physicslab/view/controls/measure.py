@@ -58,14 +58,31 @@ class Measure(NamedTuple):
         if len(parts) > len(self.units):
             raise InvalidText(f"it takes {len(self.units)} number{'s' * (len(self.units) > 1)} at most")
         numbers = list(self.numbers(way))
-        for n, part in enumerate(parts):
+        place = 0
+        for part in parts:
             if part:
-                numbers[n] = evaluate(part, self.units[n])
+                place, numbers[place] = self._placed(part, place)
+            place += 1
         if numbers[0] <= 0.0 or not all(map(math.isfinite, numbers)):
             raise InvalidText("a length is above 0")
         if "1" in self.units and math.prod(numbers) > MOST:
             raise InvalidText(f"at most {MOST:,} in all")
         return self.way(numbers, way)
+
+    def _placed(self, part: str, first: int) -> tuple[int, float]:
+        """Return which number a text is, and its value: by its unit, the angle may be typed alone.
+
+        Raises
+        ------
+        InvalidText
+            If it is none from the ``first`` on: what it is not as that one.
+        """
+        for place in range(first, len(self.units)):
+            with contextlib.suppress(InvalidText):
+                return place, evaluate(part, self.units[place])
+        if first == len(self.units):
+            raise InvalidText("numbers stand in this order: " + ", ".join(self.units))
+        return first, evaluate(part, self.units[first])
 
     def refusal(self, text: str, way: Vector2) -> str:
         """Return why no way is written with typed numbers; empty where one is, or nothing is typed."""

@@ -1,5 +1,6 @@
 """Elements of panels: buttons, rows, bars and menus, each identified by its label."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -14,6 +15,17 @@ from physicslab.view.toolkit.windows import Spoken, Windows, widget_label
 
 _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
 
+_BEFORE_A_UNIT = re.compile(r"(?<=\d) (?=[A-Za-z°]{1,3}\b)")
+
+
+def _with_units(words: str) -> str:
+    """Return words in which no line ends between a number and its unit.
+
+    >>> _with_units("9.81 m/s² down, 2 J").split("\N{NO-BREAK SPACE}")
+    ['9.81', 'm/s² down, 2', 'J']
+    """
+    return _BEFORE_A_UNIT.sub("\N{NO-BREAK SPACE}", words)
+
 
 class Ui(Windows):
     """The widgets of one frame. Each is noted: where it is, by its words, and all that is written."""
@@ -24,7 +36,7 @@ class Ui(Windows):
 
     def height(self, words: str, room: float) -> float:
         """Return how high they are, broken to a width [px]."""
-        return float(imgui.calc_text_size(self.said(words), wrap_width=room).y)
+        return float(imgui.calc_text_size(_with_units(self.said(words)), wrap_width=room).y)
 
     # ---- words ---------------------------------------------------------------------------------------------
 
@@ -35,7 +47,7 @@ class Ui(Windows):
         imgui.push_style_color(imgui.Col_.text, packed(colour or self.theme.text))
         if wrapped:
             imgui.push_text_wrap_pos(0.0)
-        imgui.text_unformatted(words)
+        imgui.text_unformatted(_with_units(words) if wrapped else words)
         if wrapped:
             imgui.pop_text_wrap_pos()
         imgui.pop_style_color()

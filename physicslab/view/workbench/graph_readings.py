@@ -120,8 +120,8 @@ def _offered(world: World, window: Window, marked: set[Key]) -> list[int]:
 
 _VALUE = "-0.0000"
 """As wide as most values are: what follows stays in its place while they change."""
-_TINT = 0.6
-"""Share of a colour in its tint: what a body's next line has."""
+_PALE, _DIM, _TINT = 0.45, 0.65, 0.6
+"""Share of a colour in its tints: what a body's second line has, its third, and those that follow."""
 _MARK = 1.1
 """Length of the mark in a line's colour, in heights of the text."""
 
@@ -132,6 +132,8 @@ def colours_of(world: World, theme: Theme, graph: GraphShown) -> list[Colour]:
     for n, line in enumerate(graph.lines):
         body = line.key[0]
         colour = own = theme.body(n) if body is None else named_colour(world, theme, body)
+        for towards, share in ((theme.text, _PALE), (theme.panel, _DIM)):
+            colour = mixed(towards, own, share) if colour in found else colour
         while colour in found and colour != theme.text:
             colour = mixed(theme.text, colour, _TINT)
         found.append(colour if colour != theme.text else own)
