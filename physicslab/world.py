@@ -404,7 +404,8 @@ class World(Facade):
         Systems are chosen again unless that was not done since they were ``remade`` so often.
         """
         with self.active():
-            if self.schedule.remade == remade and self.plan is plan:
+            if self.schedule.remade == remade and self.plan == plan:
+                self.plan = plan
                 self.steppers = restart(self, self.schedule, plan, self.steppers)
             else:
                 self.plan, self.steppers = remake(self, self.schedule, plan)

@@ -1,5 +1,6 @@
 """The benchmark: what it measures, prints and writes. How fast anything is, is never asserted."""
 
+import contextlib
 import dataclasses
 import itertools
 import json
@@ -8,12 +9,15 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from desk import bits
 
 from physicslab import cli
+from physicslab.lab.bench import random_scenes
 from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
 from physicslab.lab.bench.costs import UNUSED, measure_memory, measure_unused
 from physicslab.lab.bench.engine import Engine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
+from physicslab.lab.bench.random_scenes import random_scene
 from physicslab.lab.bench.result import TURN, SceneResult, exponent, growths, take_turns
 from physicslab.lab.bench.scene import BenchScene, Quality
 from physicslab.lab.bench.targets import Check
@@ -21,6 +25,7 @@ from physicslab.lab.case import Catalogue
 from physicslab.lab.document import machine_text
 from physicslab.lab.jobs import result_of
 from physicslab.lab.peers.mirrors import PymunkMirror
+from physicslab.lab.peers.peer import find_contacts
 from physicslab.state.masses import Diverged
 from physicslab.world import World
 
@@ -247,3 +252,51 @@ def test_large_scenes_are_run_without_peers_unless_they_are_named(
     assert cli.main(["bench", "piles", "--peers"]) == 0
     five, ten, _ = (line for line in capsys.readouterr().err.splitlines() if line)
     assert "Box2D 2.3" in five and "Box2D 2.3" not in ten and "Box2D 3" in ten
+
+
+# ---- scenes drawn at random --------------------------------------------------------------------------------
+
+
+def test_a_random_scene_is_the_same_wherever_it_is_drawn() -> None:
+    small = [number for number in range(60) if random_scene(3, number)[0].size <= 40]
+    for number in small[:4]:
+        (scene, features), (again, _) = random_scene(3, number), random_scene(3, number)
+        one, other = scene.build(), again.build()
+        assert bits(one) == bits(other)
+        assert features and (scene.name, scene.group) == (f"3:{number}", again.group)
+    assert bits(random_scene(4, small[0])[0].build()) != bits(random_scene(3, small[0])[0].build())
+
+
+def test_random_scenes_are_of_every_family_and_of_all_sizes() -> None:
+    drawn = [random_scene(1, number) for number in range(200)]
+    assert {scene.group for scene, _ in drawn} == set(random_scenes._FAMILIES)
+    sizes = [scene.size for scene, _ in drawn]
+    assert min(sizes) < 20 and max(sizes) > 5_000 and 150 < sorted(sizes)[100] < 700
+    seen = {feature for _, features in drawn for feature in features}
+    assert {"springs", "dampers", "arms", "drag", "mover", "no gravity", "masses > 10", "sizes > 3"} <= seen
+
+
+def test_nothing_overlaps_deeply_where_it_is_drawn() -> None:
+    for number in range(40):
+        scene, _ = random_scene(2, number)
+        if scene.size <= 60:
+            world = scene.build()
+            find_contacts(world)
+            assert world.contacts.max_penetration < 0.05, scene.name
+
+
+def test_the_command_runs_random_scenes_and_says_what_they_have(capsys: pytest.CaptureFixture[str]) -> None:
+    number = next(number for number in range(99) if random_scene(5, number)[0].size <= 20)
+    assert cli.main(["bench", "--random", "1", "--seed", f"5:{number}", "--json", "-"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    (scene,) = document["scenes"]
+    assert (document["format"], scene["name"]) == ("physicslab-bench-random/1", f"5:{number}")
+    assert scene["path"] and scene["features"] and scene["systems_ms"]["beside systems"] >= 0.0
+
+
+@pytest.mark.parametrize(
+    "given", [["--seed", "x"], ["--seed", "1:"], ["--random", "0"], ["--random", "1", "heap"]]
+)
+def test_random_scenes_that_cannot_be_are_refused(given: list[str]) -> None:
+    with contextlib.suppress(SystemExit):
+        assert cli.main(["bench", *given]) == 2

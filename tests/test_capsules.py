@@ -19,7 +19,8 @@ from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.prefabs import box, capsule, circle
+from physicslab.lab.worlds import open_space
+from physicslab.prefabs import box, capsule, circle, container
 from physicslab.systems.standard import standard_systems
 from physicslab.view.canvas.canvas import Look, Rounded
 from physicslab.view.canvas.plain_shapes import draw_rounded
@@ -129,6 +130,23 @@ def test_impact_and_friction_take_what_the_accounts_say() -> None:
     assert account.energy["impacts"] < 0.0
     assert account.energy["friction"] < 0.0
     assert abs(account.energy["numerical"]) < 1e-9 * abs(account.change)
+
+
+def test_a_heap_of_them_comes_to_rest_and_sleeps_and_the_budget_closes() -> None:
+    """Points that were found again in each substep let it rock at 10 mm/s for ever."""
+    world, random = open_space(sleeping=True), np.random.default_rng(0)
+    container(world, width=4.0, height=12.0)
+    for i, turn in enumerate(random.uniform(0.0, 2.0 * math.pi, 120).tolist()):
+        at = -1.6 + 0.36 * (i % 10), 0.4 + 0.36 * (i // 10)
+        capsule(world, at, length=0.15, radius=0.08, angle=turn, mass=1.0)
+    before = measure_energy(world).total
+    world.run(seconds=2.0)
+    assert world.contacts.wide.filled > 64
+    account = measure_account(world).energy
+    assert measure_energy(world).total - before == pytest.approx(sum(account.values()), rel=1e-9)
+    assert abs(account["numerical"]) < 1e-9 * before
+    world.run(seconds=6.0)
+    assert world.sleep.asleep.sum() == 120
 
 
 def test_in_bounds_it_bounces_and_stays() -> None:

@@ -85,6 +85,23 @@ def test_nothing_goes_through_a_valley(
     assert world.collisions > 0
 
 
+def test_a_crowd_that_slides_over_hills_keeps_its_energy() -> None:
+    """Many contacts are followed within a step: not beyond the end of a segment."""
+    world = World(simulation=SimulationConfig(contacts="soft", collisions="step", sleeping=False))
+    ground(world, [(50.0 - 0.5 * k, 0.4 * math.cos(0.25 * (50.0 - 0.5 * k))) for k in range(200)], friction=0)
+    for i in range(80):
+        x, speed = i - 40.0, 0.3
+        slope = math.atan(-0.1 * math.sin(0.25 * x))
+        aside = Vector2(-math.sin(slope), math.cos(slope)) * 0.2
+        at = Vector2(x, 0.4 * math.cos(0.25 * x)) + aside
+        along = Vector2(math.cos(slope), math.sin(slope)) * speed
+        box(world, at, width=0.4, height=0.4, angle=slope, velocity=along, friction=0.0)
+    before = measure_energy(world)
+    world.run(seconds=1.0)
+    assert world.contacts.wide.filled > 0
+    assert measure_energy(world).total == pytest.approx(before.total, abs=0.03 * before.kinetic)
+
+
 def test_it_is_solid_on_its_left_alone() -> None:
     for turned, stays in ((False, True), (True, False)):
         world = World()

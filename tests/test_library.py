@@ -1,9 +1,12 @@
 """The package as a library: texts with units, ids in place of numbers, scenes as dicts, public names."""
 
 import math
+import os
 import pickle
+import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -148,3 +151,45 @@ def test_the_slowest_throw_is_found_by_scipy() -> None:
     assert best.fun == pytest.approx(11.1, abs=2.0)
     for angle in (best.x - 0.02, best.x + 0.02):
         assert height(best.fun, angle) < 1.0, "no other angle reaches it at this speed"
+
+
+def test_every_public_name_is_in_the_reference() -> None:
+    text = Path(__file__).parents[1].joinpath("docs", "reference.md").read_text("utf-8")
+    listed = re.findall(r"^::: physicslab\.(\S+)$", text, re.MULTILINE)
+    assert sorted(path.rpartition(".")[2] for path in listed) == physicslab.__all__
+    for path in listed:
+        module, _, name = path.rpartition(".")
+        assert getattr(import_module(f"physicslab.{module}"), name) is getattr(physicslab, name)
+
+
+MISTAKES = {
+    "Mass(mas=3)": 'Unexpected keyword argument "mas" for "Mass"; did you mean "mass"?',
+    "Mass([1.0])": 'Argument 1 to "Mass" has incompatible type "list[float]"',
+    "world.run(3.0)": 'Argument 1 to "run" of "World" has incompatible type "float"; expected "Never"',
+    'world.component("ball", "Shape")': 'Argument 2 to "component" of "Entities" has incompatible type "str"',
+    'world.component("ball", Mass).masss': '"Mass" has no attribute "masss"; maybe "mass"?',
+    "world.gravty = (0, -1)": '"World" has no attribute "gravty"',
+    'world.record("3 s", every=[1])': 'Argument "every" to "record" of "Facade" has incompatible type',
+    'world.record(3.0).column["ball.x"]': '"Run" has no attribute "column"; maybe "columns"?',
+    "world.energy.totl": '"Energy" has no attribute "totl"; maybe "total"?',
+    "load_scene(3)": 'Argument 1 to "load_scene" has incompatible type "int"',
+}
+"""Lines of a user's file, and what mypy says of them."""
+
+
+@pytest.mark.slow
+def test_type_checkers_find_what_a_user_mistypes(tmp_path: Path) -> None:
+    pytest.importorskip("mypy")
+    head = "from physicslab import World, circle, load_scene\nfrom physicslab.components import Mass\n"
+    right = 'world: World = load_scene("drop")\ncircle(world, (0, 1), mass=2.0, name="bob")\n'
+    right += 'height: float = world.record(1.0, until="bob.y < 0").columns["bob.y"].max()\n'
+    (tmp_path / "user.py").write_text(head + right + "\n".join(MISTAKES) + "\n", encoding="utf-8")
+    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path / "cache"), "user.py"]
+    environment = {**os.environ, "MYPYPATH": str(Path(physicslab.__file__).parents[1])}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    said = [line for line in done.stdout.splitlines() if line.startswith("user.py") and "note:" not in line]
+    lines = {int(line.split(":")[1]) for line in said}
+    first = len((head + right).splitlines()) + 1
+    assert lines == set(range(first, first + len(MISTAKES))), done.stdout
+    for words in MISTAKES.values():
+        assert any(words in line for line in said), (words, done.stdout)

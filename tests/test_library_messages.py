@@ -16,7 +16,16 @@ import numpy as np
 import pytest
 
 import physicslab
-from physicslab import InvalidValue, SceneError, World, load_scene, save_scene
+from physicslab import (
+    InvalidValue,
+    PhysicsConfig,
+    SceneError,
+    SimulationConfig,
+    World,
+    circle,
+    load_scene,
+    save_scene,
+)
 from physicslab import world as world_module
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import COMPONENTS
@@ -79,6 +88,30 @@ WRONG: dict[str, tuple[Callable[[World], object], type[Exception], str]] = {
     "document": (lambda world: load_scene({"a": 1}), SceneError, "the scene"),
     "path": (lambda world: save_scene(world, 3), TypeError, "a scene has a name or a path; got 3"),  # type: ignore[arg-type]
     "both": (lambda world: World(GravitySystem(), systems=()), TypeError, "not both"),
+    "laws": (change("physics", {"gravity": (0, 1)}), TypeError, "write PhysicsConfig(...)"),
+    "laws of a new world": (
+        lambda world: World(physics=(0, 1)), TypeError, "world.physics is a PhysicsConfig, not (0, 1)"  # type: ignore[arg-type]
+    ),
+    "settings": (change("simulation", 0.1), TypeError, "write SimulationConfig(...)"),
+    "method": (lambda world: SimulationConfig(integrator="euler"), InvalidValue, '"symplectic_euler"'),
+    "gravity in one number": (lambda world: PhysicsConfig(gravity=9.81), InvalidValue, "two finite numbers"),  # type: ignore[arg-type]
+    "no system": (lambda world: World(3), TypeError, "3 is no System"),  # type: ignore[arg-type]
+    "misspelt field": (lambda world: Mass(mas=3), TypeError, "no field 'mas'; it has mass, inertia"),  # type: ignore[call-arg]
+    "mass below zero": (lambda world: Mass(-1), InvalidValue, "Mass.mass = -1: must be"),
+    "place in one number": (lambda world: Transform(3), InvalidValue, "two finite numbers [x, y] m"),  # type: ignore[arg-type]
+    "kind of shape": (lambda world: Shape("triangle"), InvalidValue, '"circle", "box"'),
+    "radius": (lambda world: circle(world, (0, 0), radius=-1), InvalidValue, "Shape.radius = -1"),
+    "two of a kind": (lambda world: world.spawn(Mass(), Mass()), ValueError, "one Mass, not 2"),
+    "id twice": (lambda world: world.spawn(name="ball"), InvalidValue, "entity 1 has this one"),
+    "no such component": (lambda world: world.component("ball", Spring), KeyError, "ball has no Spring"),
+    "scene": (lambda world: load_scene("dorp"), SceneError, 'did you mean "drop"?'),
+    "length of a step": (lambda world: world.step("a"), InvalidValue, "step.dt = 'a'"),  # type: ignore[arg-type]
+    "neither": (lambda world: world.run(), TypeError, "either seconds or steps"),
+    "time below zero": (lambda world: world.run(seconds=-1), InvalidValue, "run.seconds = -1"),
+    "stride": (lambda world: world.stepping(steps=3, stride=0), InvalidValue, "stepping.stride = 0"),
+    "record": (lambda world: world.record(1, 0.1), TypeError, "give every=... or until=... by name"),  # type: ignore[arg-type]
+    "condition": (lambda world: world.record(1, until=3), InvalidValue, "as 'ball.x >= 8 m' is one"),  # type: ignore[arg-type]
+    "no quantity": (lambda world: world.record(1, until="bal.x > 3"), InvalidValue, "one of ball, world"),
 }  # fmt: skip
 
 

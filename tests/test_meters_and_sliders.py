@@ -71,6 +71,17 @@ def mass_of(desk: Desk, ball: int) -> float:
     return desk.world.component(ball, Mass).mass
 
 
+def test_a_slider_may_have_any_range_that_a_file_may_have() -> None:
+    world = empty_world(gravity_mode="none")
+    body = world.spawn(Transform(), Mass(2.0))
+    world.spawn(Slider("Mass.mass", body, 1.0, 1e300))
+    desk = sized((1280, 720), world)
+    pause(desk)
+    slide(desk, "Slider 1", 1.0)
+    assert world.component(body, Mass).mass == pytest.approx(1e300, rel=0.05)
+    assert desk.window.dashboard.sliders
+
+
 def test_a_slider_for_gravity_works_while_time_runs_and_the_run_is_the_same_again(
     desk: Desk, tmp_path: Path
 ) -> None:

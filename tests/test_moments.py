@@ -51,6 +51,16 @@ def test_a_copy_and_what_is_unpickled_go_on_with_the_same_bits(name: str) -> Non
 
 @given(st.integers(0, 2**32), st.integers(1, 60), st.booleans())
 def test_any_scene_that_is_reset_has_the_bits_of_a_fresh_one(seed: int, steps: int, edited: bool) -> None:
+    check_reset(seed, steps, edited)
+
+
+@pytest.mark.slow
+def test_a_thousand_scenes_that_are_reset_have_the_bits_of_fresh_ones() -> None:
+    for seed in range(1000):
+        check_reset(seed, 5 + seed % 40, seed % 2 == 1)
+
+
+def check_reset(seed: int, steps: int, edited: bool) -> None:
     def made() -> World:
         random = np.random.default_rng(seed)
         world = empty_world(gravity=(0.0, -9.81 * random.integers(2)))

@@ -21,7 +21,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.integrators import INTEGRATORS
 from physicslab.kernels import interpreter, twins
 from physicslab.kernels.forces import force_calls, packed_forces
-from physicslab.kernels.ode import classical, dop853, implicit, propagate, splitting, spring_flow
+from physicslab.kernels.ode import classical, damped_flow, dop853, implicit, propagate, splitting, spring_flow
 from physicslab.state.state import State
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import ForceSystem, Stage, at
@@ -263,12 +263,13 @@ def beside_a_floor(*parts: Any, damping: float = 0.0) -> World:
 
 
 @pytest.mark.parametrize("kind", ["kick", "drift", "force"])
-@pytest.mark.parametrize("method", ["spring_splitting", "dop853"])
+@pytest.mark.parametrize("method", ["spring_splitting", "damped", "dop853"])
 def test_beside_contacts_what_is_wrong_between_them_is_an_error(method: str, kind: str) -> None:
     def make() -> World:
-        return beside_a_floor(*([Drag(0.2)] if method == "dop853" else []))
+        damping = 0.3 if method == "damped" else 0.0
+        return beside_a_floor(*([Drag(0.2)] if method == "dop853" else []), damping=damping)
 
-    flow = spring_flow
+    flow, full = spring_flow, damped_flow
     changes: dict[tuple[str, str], tuple[Change, ...]] = {
         ("spring_splitting", "kick"): (
             (flow._kick_and_drift, "speed[i] + kick * (", "speed[i] + 1.001 * kick * ("),
@@ -277,6 +278,9 @@ def test_beside_contacts_what_is_wrong_between_them_is_an_error(method: str, kin
         ("spring_splitting", "drift"): ((flow._kick_and_drift, "drift * v", "1.001 * drift * v"),),
         ("spring_splitting", "force"): ((flow._pull, "fx, fy = share * dx, share * dy",
                                          "fx, fy = 1.001 * share * dx, 1.001 * share * dy"),),
+        ("damped", "kick"): ((full._change, "speed[i] += share", "speed[i] += 1.001 * share"),),
+        ("damped", "drift"): ((full._drift, "+= span * speed[i]", "+= 1.001 * span * speed[i]"),),
+        ("damped", "force"): ((full._evaluate, "pull = tension", "pull = 1.001 * tension"),),
         ("dop853", "kick"): (KICK,),
         ("dop853", "drift"): (DRIFTS[dop853.dop853],),
         ("dop853", "force"): ((packed_forces._pull, "force[a] += fx\n    force[a + 1] += fy",

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.contacts.arguments import motion_of
-from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.json_text import json_text
@@ -147,8 +147,8 @@ def with_planets(world: World) -> None:
     world.physics = PhysicsConfig(gravity_mode="planet", G=1e-3)
 
 
-@pytest.mark.parametrize("change", [with_damper, with_drag, with_anchor, with_damping, with_planets])
-def test_what_is_no_plain_spring_is_followed_as_before(change: Callable[[World], None]) -> None:
+@pytest.mark.parametrize("change", [with_drag, with_damping, with_planets])
+def test_what_is_no_linear_spring_is_followed_as_before(change: Callable[[World], None]) -> None:
     world = chain()
     assert follows(world) and world.plan.split_forces is SPRING_SPLITTING
     change(world)
@@ -232,6 +232,64 @@ def test_a_flow_that_cannot_be_made_changes_nothing() -> None:
         found = flow(Motion(*motion_of(world)), Springs(*split.springs.arrays), 1e-3, world.account.table)
     assert found == TURNS_FAST and not world.account.table.any()
     assert bits(world) == before
+
+
+# ---- dampers, arms, drag -----------------------------------------------------------------------------------
+
+
+def with_both(world: World) -> None:
+    with_damper(world)
+    with_anchor(world)
+    world.spawn(Spring(11, 5, (0.02, 0.03), (0.0, 0.05), rest_length=1.5, stiffness=40.0, damping=0.3))
+
+
+@pytest.mark.parametrize("change", [with_damper, with_anchor, with_both])
+def test_dampers_and_what_turns_bodies_are_followed_as_well(change: Callable[[World], None]) -> None:
+    def build() -> World:
+        world = chain(height=50.0)
+        world.spawn(Spring(2, None, anchor_b=(0.0, 51.0), rest_length=1.0, stiffness=50.0, damping=0.1))
+        change(world)
+        return world
+
+    world = build()
+    assert follows(world) and world.plan.split_forces is SPRING_SPLITTING
+    flow, followed = (after(build, 0.5, adaptive=way) for way in (False, True))
+    assert 0.0 < np.abs(flow - followed).max() < 1e-5
+    world.run(seconds=0.5)
+    account = measure_account(world)
+    assert not world.stepper.hooks  # type: ignore[union-attr]
+    assert account.energy["damping"] < -1e-3
+    assert abs(account.energy["numerical"]) < 1e-7
+    assert abs(account.momentum["numerical"]) < 1e-12 and abs(account.angular_momentum["numerical"]) < 1e-7
+
+
+def test_with_a_damper_and_an_arm_the_order_is_four() -> None:
+    def at_end(substeps: int) -> Any:
+        world = far_floor(open_space())
+        world.simulation = replace(world.simulation, dt=0.5, substeps=substeps)
+        bob = box(world, (1.2, 0.0), width=0.2, height=0.1, mass=1.0, angular_velocity=1.0)
+        world.add(bob, Spring(anchor_a=(0.1, 0.05), rest_length=1.0, stiffness=40.0, damping=2.0))
+        with patch.object(spring_flow, "_SERIES", 1e-15):
+            assert split_of(world)._steps == 1 and follows(world)
+        world.run(seconds=1.0)
+        return np.array((*place(world, bob), world.component(bob, Transform).angle))
+
+    exact = at_end(256)
+    coarse, fine = (np.abs(at_end(substeps) - exact).max() for substeps in (32, 64))
+    assert math.log2(coarse / fine) == pytest.approx(4, abs=0.2)
+
+
+@pytest.mark.parametrize(("linear", "quadratic"), [(2.0, 0.0), (0.0, 1.5)])
+def test_drag_alone_is_followed_to_the_formula(linear: float, quadratic: float) -> None:
+    world = far_floor(open_space(gravity=None))
+    ball = circle(world, (0.0, 0.0), radius=0.1, mass=2.0, velocity=(10.0, 0.0), angular_velocity=1.0)
+    world.add(ball, Drag(linear=2.0 * linear, quadratic=2.0 * quadratic))
+    assert follows(world)
+    world.run(seconds=1.0)
+    way = math.log1p(quadratic * 10.0) / quadratic if quadratic else 10.0 * -math.expm1(-linear) / linear
+    assert place(world, ball).x == pytest.approx(way, rel=1e-8)
+    assert world.component(ball, Transform).angle == pytest.approx(1.0, rel=1e-12)
+    assert abs(measure_account(world).energy["numerical"]) < 1e-5
 
 
 # ---- bits --------------------------------------------------------------------------------------------------

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import ArgumentParser, ArgumentTypeError, Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -11,13 +11,16 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from physicslab.commands import FAILED, CommandError, require_window
+from physicslab.commands.arguments import positive_count
 from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
 from physicslab.ecs.text import printable
+from physicslab.files.checks import shown
 from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT, SCENES, by_default, opened
 from physicslab.lab.bench.costs import UNUSED, Unused, measure_memory, measure_unused
 from physicslab.lab.bench.engine import PEERS, Engine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
 from physicslab.lab.bench.plot import bench_picture
+from physicslab.lab.bench.random_runs import RANDOM_PEERS, RandomReport, random_jobs, random_text
 from physicslab.lab.bench.result import SceneResult
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.bench.tables import BenchReport, report_text, scene_text
@@ -54,6 +57,13 @@ def add_arguments(parser: ArgumentParser) -> None:
         "later); with AVX2 where the processor has it"
     )
     parser.add_argument("--box2d", metavar="DIR", type=Path, help=built)
+    random = (
+        "time N scenes drawn at random instead, beside pymunk with --peers and Box2D in C with --box2d; list "
+        "the slowest and what they have in common"
+    )
+    parser.add_argument("--random", metavar="N", type=positive_count, help=random)
+    series = "the series that they are of (0); S:K begins at its K-th, so that --random 1 runs that one"
+    parser.add_argument("--seed", metavar="S", type=_series, default=(0, 0), help=series)
     parser.epilog = (
         f"groups: {', '.join(SCENES.families)}; --list names the {len(SCENES)} scenes; {_UNUSED}: what a "
         f"step costs more for systems that the scene does not use; {_MEMORY}: bytes a body. dt is 1/60 s, 4 "
@@ -73,6 +83,8 @@ def execute(arguments: Namespace) -> int:
     if arguments.peers:
         _check_peers()
     run = LabRun("bench", arguments, "bench")
+    if arguments.random is not None:
+        return _run_random(run, arguments)
     report = BenchReport(arguments.peers)
     with _other_engines(arguments) as peers:
         results: Iterator[SceneResult | Unused] = run.results(_jobs(scenes, extras, peers, arguments.names))
@@ -92,6 +104,32 @@ def execute(arguments: Namespace) -> int:
         if result.ours.failure:
             raise CommandError(f"{result.scene.name}: {result.ours.failure}", FAILED)
     return 0
+
+
+def _run_random(run: LabRun, arguments: Namespace) -> int:
+    """Time scenes of a series, and print what the slowest of them are."""
+    if arguments.names:
+        raise CommandError(
+            f"--random: draws its scenes, and takes none by name ({shown(arguments.names[0])})"
+        )
+    seed, first = arguments.seed
+    with _other_engines(arguments, RANDOM_PEERS) as peers:
+        report = RandomReport(f"{seed}:{first}", [peer.title for peer in peers])
+        for found in run.results([*random_jobs(seed, first, arguments.random, peers)]):
+            report.found.append(found)
+            _note(run, scene_text(found.result))
+    _note(run, "")
+    run.show(random_text(report))
+    run.write(report.document)
+    return FAILED if any(found.result.ours.failure for found in report.found) else 0
+
+
+def _series(text: str) -> tuple[int, int]:
+    """Return a seed and the number of a scene of its series, of ``S`` or ``S:K``."""
+    seed, colon, first = text.partition(":")
+    if not (seed.isdecimal() and (first.isdecimal() or not colon)):
+        raise ArgumentTypeError(f"{shown(text)}: must be S or S:K, whole numbers from 0 on")
+    return int(seed), int(first or 0)
 
 
 def _opened(extras: list[str], name: str) -> BenchScene | None:
@@ -116,9 +154,11 @@ def _check_peers() -> None:
 
 
 @contextmanager
-def _other_engines(arguments: Namespace) -> Iterator[tuple[type[Peer], ...]]:
+def _other_engines(
+    arguments: Namespace, packages: tuple[type[Peer], ...] = PEERS
+) -> Iterator[tuple[type[Peer], ...]]:
     """Return the engines that take part beside PhysicsLab; a compiled library is deleted afterwards."""
-    peers = PEERS if arguments.peers else ()
+    peers = packages if arguments.peers else ()
     if arguments.box2d is None:
         yield peers
         return

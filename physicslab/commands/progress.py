@@ -1,7 +1,9 @@
 """One line on the terminal: how far a long run is."""
 
+import math
 import time
 from collections.abc import Callable
+from datetime import timedelta
 from typing import TextIO
 
 _DELAY_S = 1.0
@@ -21,6 +23,8 @@ class Progress:
         Whether it is kept in a file or a pipe as well, for a program that reads it.
     clock : callable, optional
         Returns the time [s].
+    foresees : bool
+        Whether it says how long the rest takes.
     """
 
     def __init__(
@@ -30,18 +34,23 @@ class Progress:
         clock: Callable[[], float] = time.monotonic,
         *,
         always: bool = False,
+        foresees: bool = False,
     ) -> None:
         self._label, self._stream, self._clock = label, stream, clock
         seen = stream is not None and (always or stream.isatty())
         self._next = clock() + _DELAY_S if seen else float("inf")
-        self._shown = False
+        self._shown, self._foresees = False, foresees
+        self._first: tuple[float, float] | None = None
 
     def show(self, share: float) -> None:
         """Say that this share of the work, from 0 to 1, is done."""
-        if self._clock() >= self._next:
-            self._next = self._clock() + _INTERVAL_S
-            self._shown = True
-            self._put(f"\r{self._label}: {100.0 * share:.0f} %\x1b[K")
+        now = self._clock()
+        begun, done = self._first = self._first or (now, share)
+        if now >= self._next:
+            self._next, self._shown = now + _INTERVAL_S, True
+            left = (1.0 - share) * (now - begun) / (share - done) if self._foresees and share > done else 0.0
+            words = f", {timedelta(seconds=math.ceil(left))} left" if left else ""
+            self._put(f"\r{self._label}: {100.0 * share:.0f} %{words}\x1b[K")
 
     def clear(self) -> None:
         """Take the line away again."""

@@ -2,6 +2,11 @@
 
 import sys
 from argparse import ArgumentParser, Namespace
+<<<<<<< HEAD
+=======
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+>>>>>>> main
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +24,11 @@ from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.commands.variations import vary
 from physicslab.ecs.text import printable, shortened
+<<<<<<< HEAD
 from physicslab.ensembles.map_picture import map_grids
+=======
+from physicslab.ensembles.cluster import Dask
+>>>>>>> main
 from physicslab.ensembles.result import EnsembleResult
 from physicslab.ensembles.runs import run_task, task_of
 from physicslab.ensembles.task import Task
@@ -78,10 +87,11 @@ def execute(arguments: Namespace) -> int:
         return _open(task, arguments.open)
     picture = _map(arguments, task)
     label = shortened(printable(name_of(world, arguments)))
-    progress = Progress(label, sys.stderr)
-    workers = _workers(arguments)
+    progress = Progress(label, sys.stderr, foresees=True)
+    out = None if output is None else Path(output.path)
     try:
-        result = run_task(task, workers, None if output is None else Path(output.path), progress.show)
+        with _workers(arguments) as workers:
+            result = run_task(task, workers, out, progress.show)
     except OSError as error:
         raise CommandError(f"{label}: {error}", FAILED) from error
     finally:
@@ -152,10 +162,14 @@ def _measures(arguments: Namespace) -> dict[str, str]:
     return found
 
 
-def _workers(arguments: Namespace) -> Workers:
-    if arguments.dask is not None:
-        raise CommandError("--dask: needs the package distributed")
-    return Workers("processes", arguments.workers)
+@contextmanager
+def _workers(arguments: Namespace) -> Iterator[Workers]:
+    """Give who makes the runs: processes of this machine, or a cluster."""
+    if arguments.dask is None:
+        yield Workers("processes", arguments.workers)
+        return
+    with Dask(arguments.dask) as cluster:
+        yield Workers(cluster, None)
 
 
 def _open(task: Task, row: int) -> int:

@@ -94,10 +94,18 @@ class Record:
         """Those until the end."""
         return range(bisect.bisect_right(self.times, self.end))
 
+    def clear(self) -> None:
+        """Forget all samples, for another run of the same world."""
+        self.times.clear()
+        for column in self.columns.values():
+            column.clear()
+
     def add(self) -> None:
         """Take a sample of the world as it is now."""
         self.end = self._world.time
         self.times.append(self.end)
+        if not self._sources:
+            return
         reading = Reading(self._world)
         for column, (quantity, body) in zip(self.columns.values(), self._sources, strict=True):
             value = self._world.collisions if quantity == "collisions" else reading.value(quantity, body)

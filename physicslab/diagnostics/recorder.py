@@ -116,6 +116,8 @@ class _Watch:
 
     def __init__(self, world: World, until: str, reader: ImpactReader, records: list[NDArray[Any]]) -> None:
         self._world, self._reader, self._records, self._text = world, reader, records, until
+        if not isinstance(until, str):
+            raise InvalidValue("record", "until", until, "a condition, as 'ball.x >= 8 m' is one")
         try:
             self._condition = Condition(until)
             self._names = [name for name in dict.fromkeys(self._condition.names()) if name != "time"]
@@ -237,14 +239,14 @@ class _Replay:
 
     def __init__(self, world: World) -> None:
         self._frame, self._name = Keyframe(world), world.title or world.name
-        self._systems = [system.fresh() for system in world.schedule.systems[1:]]
+        self._systems = world.schedule.systems[1:]
         self._view = world.view
         self._made: World | None = None
 
     def _instants(self, run: Run) -> Iterator[World]:
         """Yield the copy at each instant."""
         if self._made is None:
-            self._made = World(systems=self._systems)
+            self._made = World(systems=[system.fresh() for system in self._systems])
             self._frame.fill(self._made)
             self._made.view = self._view
         world = self._made

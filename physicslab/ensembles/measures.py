@@ -174,34 +174,31 @@ class Measures:
         )
         world.contacts.read |= self._impacts
         self.units = {name: self._tried(name) for name in self._names}
-        self._record: Record | None = None
+        self._record, self._ends = Record(world, self._path), Record(world, self._end)
 
     def begin(self) -> None:
         """Note the beginning of a run."""
         self._since = self._world.contacts.logged
-        self._record = Record(self._world, self._path) if self.needs_path else None
+        self._record.clear()
         self.sample()
 
     def sample(self) -> None:
         """Sample the run, where a measure looks at all of it."""
-        if self._record is not None:
+        if self.needs_path:
             self._record.add()
 
     def values(self) -> tuple[list[float], str]:
         """Return the measures of the run that has ended [SI], and why one of them is NaN."""
         impacts = _Impacts(self._world if self._impacts else None, self._since)
-        ends = Record(self._world, self._end)
-        if self._end:
-            ends.add()
-        else:
-            ends.times.append(self._world.time)
-        path = None if self._record is None else Figures(self._record, impacts)
-        end, found, why = Figures(ends, impacts), [], ""
+        self._ends.clear()
+        self._ends.add()
+        path, end = Figures(self._record, impacts), Figures(self._ends, impacts)
+        found, why = [], ""
         for name in self._names:
             if name in self._functions:
                 found.append(float(self._functions[name](self._world)))
                 continue
-            scope = path if name in self._on_path and path is not None else end
+            scope = path if name in self._on_path else end
             try:
                 found.append(self._expressions[name].value(scope).value)
             except Undefined as error:

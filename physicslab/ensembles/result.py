@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import importlib
+import importlib.util
 import io
 import json
 import math
@@ -161,9 +162,14 @@ def write_result(path: Path, columns: Mapping[str, Values], failures: Mapping[in
             rows.writerows(zip(*cells, strict=True))
             text.flush()
             text.detach()
+        else:
+            arrow, parquet = (_package(name, ".parquet") for name in ("pyarrow", "pyarrow.parquet"))
+            parquet.write_table(arrow.table(dict(columns)), file)
 
 
 def check_format(path: Path) -> None:
     """Refuse a file of which the ending names no format that can be written."""
     if path.suffix not in FORMATS:
         raise SceneError(f"out {path}: must end in {', '.join(FORMATS)}")
+    if path.suffix == ".parquet" and importlib.util.find_spec("pyarrow") is None:
+        raise SceneError(f"out {path}: needs pyarrow, which is not installed: pip install pyarrow")

@@ -32,7 +32,7 @@ def _fill(world: World) -> None:
 PISTON = Scene(
     name="piston",
     title="Crank and piston",
-    description="A motor at a steady half turn a second: the piston's way is no sine, but sharper far out.",
+    description="A slider-crank, half a turn a second: the piston's way is no sine, but sharper far out.",
     fill=_fill,
     view=(-1.2, -1.4, 3.2, 1.4),
     teaches=("machines", "circular motion"),

@@ -24,7 +24,7 @@ def _fill(world: World) -> None:
 PULLEYS = Scene(
     name="pulleys",
     title="Pulleys",
-    description="1 kg against 1.2 kg; and 1 kg against 2.4 kg on two lines, by which it could hold 2 kg.",
+    description="Atwood's machine: 1 kg against 1.2 kg; 1 kg on two lines, which balances 2 kg, against 2.4.",
     fill=_fill,
     view=(-3.6, -0.4, 3.6, 3.0),
     teaches=("machines", "forces"),

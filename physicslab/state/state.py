@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
+from physicslab.ecs.text import printable, shortened
 from physicslab.kernels import compile_kernels, seconds_waited
 from physicslab.state.account import Account
 from physicslab.state.bodies import Bodies
@@ -114,8 +115,10 @@ class State(Entities):
     def __init__(
         self, physics: PhysicsConfig | None = None, simulation: SimulationConfig | None = None
     ) -> None:
-        self._physics = physics or PhysicsConfig()
-        self._simulation = simulation or SimulationConfig()
+        self._physics = PhysicsConfig() if physics is None else _checked(physics, PhysicsConfig)
+        self._simulation = (
+            SimulationConfig() if simulation is None else _checked(simulation, SimulationConfig)
+        )
         self.name: str = ""
         self.title: str = ""
         self.description: str = ""
@@ -147,7 +150,7 @@ class State(Entities):
 
     @physics.setter
     def physics(self, physics: PhysicsConfig) -> None:
-        self._physics = physics
+        self._physics = _checked(physics, PhysicsConfig)
         self.stale = self.entity_index.motion_edited = True
 
     @property
@@ -157,7 +160,7 @@ class State(Entities):
 
     @simulation.setter
     def simulation(self, simulation: SimulationConfig) -> None:
-        self._simulation = simulation
+        self._simulation = _checked(simulation, SimulationConfig)
         self.stale = self.entity_index.motion_edited = True
 
     @property
@@ -173,6 +176,14 @@ class State(Entities):
     def compile_s(self) -> float:
         """Seconds that this process has spent on compiling or loading kernels since this world was made."""
         return seconds_waited() - self._waited_before
+
+
+def _checked[C: PhysicsConfig | SimulationConfig](value: C, kind: type[C]) -> C:
+    """Return laws or settings; refuse what is none, as a dict of them."""
+    if isinstance(value, kind):
+        return value
+    words = shortened(printable(repr(value)))
+    raise TypeError(f"world.{kind.section} is a {kind.__name__}, not {words}: write {kind.__name__}(...)")
 
 
 class _Elsewhere:

@@ -65,7 +65,8 @@ class EventDriven:
         self._paths = np.zeros((rows, path.FIELDS))
         moving = state.table(Velocity).present & state.table(Transform).present
         free = moving & (state.bodies.inverse_mass > 0.0)
-        self._mode = np.where(free, events.BALLISTIC, np.where(moving, events.KINEMATIC, events.FIXED))
+        self._modes = np.where(free, events.BALLISTIC, np.where(moving, events.KINEMATIC, events.FIXED))
+        self._mode = self._modes.copy()
         self._ballistic = free
         self._moving = np.flatnonzero(moving)
         self._lows = self._moving[:, None], np.array(_LOW)
@@ -82,6 +83,13 @@ class EventDriven:
         self._paths[:, _ACCELERATION] = free[:, None] * gravity
         internal = (*schedule.forces, schedule.find(ContactSystem), schedule.find(ResolveSystem))
         self._within = [system.name for system in internal if system is not None]
+
+    def forget(self) -> None:
+        """Keep nothing of the steps made, as if it were new: what it was made from is the same."""
+        self._together, self._kept, self._left, self._listed = None, None, -1, -1
+        self._mode[:] = self._modes
+        self._paths[:, : _ACCELERATION.start] = self._paths[:, _ACCELERATION.stop :] = 0.0
+        self._face[:], self._apart[:], self._due[:], self._impact_positions[:] = 0, 0, 0.0, np.nan
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:

@@ -25,7 +25,7 @@ from physicslab.stepping.ballistic import why_not_exact, why_not_worthwhile
 from physicslab.stepping.contact_model import choose_contacts
 from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.split_forces import sees_velocity_in_python, sub_integrated_rows
-from physicslab.stepping.spring_flow import why_no_spring_flow
+from physicslab.stepping.spring_flow import springs_of, why_no_spring_flow
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
@@ -39,6 +39,8 @@ _WELL_RESOLVED = 0.5
 _RESOLVED_BESIDE_CONTACTS = 0.26
 """omega h of the steps of spring_splitting. Its phase is then right to 4e-10, and what it adds to the error
 of contacts within four substeps is 1e-5 of that (docs/decisions/springs-beside-contacts.md)."""
+_DAMPED_BESIDE_CONTACTS = 1.0
+"""The same for rates of decay, whose exponential function a kick has."""
 _CROWD, _RESOLVED_IN_CROWDS = 32, 0.2
 """Number of molecules from which on ``auto`` keeps their energy by leapfrog, and omega h of its steps: the
 energy of 1,000 that collide at once swings by 1e-4 of what is exchanged."""
@@ -350,7 +352,7 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     elif followed:
         method, how = RK4, sentence("velocity_in_python", system=python[0])
     elif why_no_spring_flow(state, forces) is None:
-        method, needed = SPRING_SPLITTING, _steps(rate, half, _RESOLVED_BESIDE_CONTACTS)
+        method, needed = SPRING_SPLITTING, _steps_of_springs(state, forces, half)
         how = sentence("resolved_springs", phase=f"{rate * half / needed:.2g}", method=DOP853.name)
     elif turned and not _sees_velocity(state, [force for force in forces if force.gyration(state) is None]):
         method = BLANES_MOAN if attractors < _SAMPLED_LIMIT else LEAPFROG
@@ -368,6 +370,17 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     return replace(
         kicks, reason=reason, stages=LEAPFROG_WITH_SPLIT_FORCES, split_forces=method, split_steps=needed
     )
+
+
+def _steps_of_springs(state: State, forces: Sequence[ForceSystem], h: float) -> int:
+    """Return the number of steps of a time h that spring_splitting needs; drag alone has its own."""
+    needed = 1
+    for springs in springs_of(forces):
+        swings, decays = (float(bound.max(initial=0.0)) for bound in springs.bounds(state))
+        needed = max(
+            needed, _steps(swings, h, _RESOLVED_BESIDE_CONTACTS), _steps(decays, h, _DAMPED_BESIDE_CONTACTS)
+        )
+    return needed
 
 
 def tolerance_for(state: State, forces: Sequence[ForceSystem]) -> float:

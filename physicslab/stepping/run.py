@@ -122,8 +122,14 @@ def _whole_steps(seconds: float, dt: float) -> tuple[int, float]:
 def strides(
     world: Stepped, seconds: float | None, steps: int | None, stride: int, patience: float
 ) -> Iterator[int]:
-    """Advance by a time or by a number of steps, yielding as :meth:`World.stepping` says."""
-    _STRIDE.check(stride)
+    """Return what advances by a time or a number of steps, and yields as :meth:`World.stepping` says."""
+    run_length(world, seconds, steps)
+    return _strides(world, seconds, steps, _STRIDE.check(stride), patience)
+
+
+def _strides(
+    world: Stepped, seconds: float | None, steps: int | None, stride: int, patience: float
+) -> Iterator[int]:
     due, at_once = time.monotonic() + patience, 1 if patience < math.inf else stride
     length, start, done = run_length(world, seconds, steps), world.time, 0
     if not length.steps:

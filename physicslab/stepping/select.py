@@ -102,9 +102,14 @@ def resume(state: State, schedule: Schedule, kept: tuple[str, str, int]) -> tupl
 def restart(state: State, schedule: Schedule, plan: StepPlan, steppers: Steppers) -> Steppers:
     """Return steppers of the same kinds that keep nothing of the steps made: those that made some are new."""
     state.contacts.stale |= state.event_driven
-    usable = (
-        type(one)(state, schedule, plan) if id(one) in steppers.used else one for one in steppers.usable
-    )
+    usable: list[Stepper] = []
+    for one in steppers.usable:
+        if id(one) in steppers.used:
+            if isinstance(one, EventDriven):
+                one.forget()  # to make one takes as long as a run of some seconds
+            else:
+                one = type(one)(state, schedule, plan)
+        usable.append(one)
     return Steppers(tuple(usable), steppers.left_out)
 
 

@@ -116,7 +116,9 @@ class SplitForces:
         """Take the present forces and masses; they are kept for a step."""
         if self.springs is not None:
             self.springs.begin(state)
-            return  # springs without dampers pull no more gently at another speed
+            if self.springs.changes_with_speed:
+                self._find_predictable(state)
+            return
         self._ode.gather(state)
         self._find_predictable(state)
 

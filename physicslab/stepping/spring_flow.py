@@ -1,44 +1,43 @@
 """Springs between the middles of bodies, beside contacts: packed for a flow of their own."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.ecs.sentences import sentence
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS
 from physicslab.kernels.arguments import SpringsTuple
-from physicslab.kernels.ode.spring_flow import HEAD, KNOWN, WEIGHT
+from physicslab.kernels.ode.spring_flow import HEAD, KNOWN, MOST_TERMS, UNIFORM, WEIGHT
 from physicslab.kernels.wide_layout import WIDE
 from physicslab.state.packed import StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
+from physicslab.systems.drag import DragSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import ForceSystem
 
 _SHORTEST = 0.5
 """Share of its rest length below which a spring is not followed: across it, the pull changes faster."""
+_SERIES = 1e-10
+"""Share of a velocity that is left out of the series of a kick, which dampers and drag make one of."""
 
 
 def why_no_spring_flow(state: State, forces: Sequence[ForceSystem]) -> str | None:
     """Return why the bodies on springs cannot be moved by a :class:`SpringFlow`, or ``None``."""
-    spring, physics = state.table(Spring), state.physics
-    rows, a, b = spring_ends(state)
+    physics, (_, a, b) = state.physics, spring_ends(state)
     for force in forces:
-        if type(force) not in (SpringSystem, GravitySystem):
+        if type(force) not in (SpringSystem, GravitySystem, DragSystem):
             return sentence("acts", system=force.name)
     if physics.gravity_mode == "planet":
         return sentence("planets")
     if physics.linear_damping or physics.angular_damping:
         return sentence("motion_damped")
-    if (spring["damping"][rows] > 0.0).any():
-        return sentence("damper")
-    moves = state.table(Velocity).present
-    for end, anchors in ((a, "anchor_a"), (b, "anchor_b")):
-        if spring[anchors][rows[moves[end]]].any():
-            return sentence("beside_middle")
+    if state.table(Drag).present[np.concatenate((a, b))].any():
+        return sentence("drag_held")
     return None
 
 
@@ -66,8 +65,26 @@ def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], movable: NDArray[np.b
     return np.array([[*block, *[-1] * (WIDE - len(block))] for block in blocks], np.int64).ravel()
 
 
+def springs_of(forces: Sequence[ForceSystem]) -> list[SpringSystem]:
+    """Return the systems of springs among forces."""
+    return [force for force in forces if isinstance(force, SpringSystem)]
+
+
+def _terms(rate: float, h: float) -> NDArray[np.int64]:
+    """Return how many terms of its series each kick of a step takes, damped at a rate [1/s]."""
+    found, least = [], 1 if rate == 0.0 else 2  # with one the work of dampers would be of the order of h
+    for kick in KICKS:
+        phase, terms = abs(kick) * rate * h, least
+        rest = phase ** (least + 1) / math.factorial(least + 1)
+        while rest > _SERIES and terms < MOST_TERMS:
+            terms += 1
+            rest *= phase / (terms + 1)
+        found.append(terms)
+    return np.array(found, np.int64)
+
+
 class SpringFlow:
-    """The springs and bodies of a world as :func:`flow_springs` takes them (kernels/ode/spring_flow.py).
+    """The springs and bodies of a world as :func:`flow_forces` takes them (kernels/ode/damped_flow.py).
 
     Parameters
     ----------
@@ -84,39 +101,86 @@ class SpringFlow:
     ----------
     arrays : SpringsTuple
         All of it, which the flow goes on from.
+    changes_with_speed : bool
+        Whether drag slows a body faster if it is faster.
     """
 
     def __init__(self, state: State, forces: Sequence[ForceSystem], layout: StateLayout, steps: int) -> None:
-        self._forces, self._moving, inverse = tuple(forces), layout.moving, state.bodies.inverse_mass
-        spring, (rows, a, b) = state.table(Spring), spring_ends(state)
-        m, moves = len(layout.moving), state.table(Velocity).present
+        self._forces, (rows, a, b), bodies = tuple(forces), spring_ends(state), state.bodies
+        held = np.isin(layout.moving, np.concatenate((a, b)))
+        moving, alone = layout.moving[held], layout.moving[~held]
+        self._moving, inverse, drag = moving, bodies.inverse_mass[moving], state.table(Drag)
+        (ends_a, ends_b), (p, spare) = self._ends(state, rows, a, b)
+        turns = self._turns(state, rows, a, b)
+        turned = bodies.inverse_inertia[moving] * turns
+        movable = np.zeros(p, np.bool_)
+        movable[: len(moving)] = (inverse > 0.0) | (turned > 0.0)
+        order = _in_blocks(ends_a, ends_b, movable)
+        used = order >= 0
+        slots = [np.where(used, end[order], spare) for end in (ends_a, ends_b)]
+        ends = np.concatenate((np.flatnonzero(inverse == 0.0), np.arange(len(moving), spare)))
+        spring = {
+            name: np.where(used, state.table(Spring)[name][rows[order]], 0.0)
+            for name in ("rest_length", "stiffness", "damping")
+        }
+        damped = bool(spring["damping"].any())
+        parts = [np.zeros(HEAD + 6 * p), np.repeat(inverse, 2), np.zeros(4 * len(moving))]
+        parts += [
+            spring["rest_length"],
+            spring["stiffness"],
+            _SHORTEST * spring["rest_length"],
+            DRIFTS,
+            KICKS,
+        ]
+        if turns or damped:
+            parts += [turned, np.zeros(len(moving) + 4 * p), np.ones(p), np.zeros(5 * p), spring["damping"]]
+            parts += [np.zeros((3 + MOST_TERMS) * len(order)), *_arms(state, rows, order, slots, len(moving))]
+            parts += [np.zeros(4 * len(order))]
+        by_mass = bodies.inverse_mass[alone]
+        parts += [drag["linear"][alone] * by_mass, drag["quadratic"][alone] * by_mass, _reciprocal(by_mass)]
+        sizes = len(moving), p, len(order), len(DRIFTS), steps, turns or damped, turns
+        decays = max((float(one.bounds(state)[1].max()) for one in springs_of(forces)), default=0.0)
+        half = 0.5 * state.simulation.dt / state.simulation.substeps
+        dampers = [2 * np.flatnonzero(used & np.isin(end, ends)) + at_b for at_b, end in enumerate(slots)]
+        whole = [
+            np.array((*sizes, len(alone), len(ends))),
+            moving,
+            *slots,
+            ends,
+            *(dampers if damped else ()),
+        ]
+        whole += [_terms(decays, half / steps), alone]
+        self.changes_with_speed = bool(drag["quadratic"][alone].any())
+        self.arrays: SpringsTuple = np.concatenate(parts), np.concatenate(whole).astype(np.int64)
+        self._place = self.arrays[0][HEAD : HEAD + 2 * p].reshape(-1, 2)
+        first = HEAD + 6 * p + 2 * len(moving)
+        self._gravity, self._weight = self.arrays[0][first : first + 4 * len(moving)].reshape(2, -1)
+        self._physics: object = None
+
+    def _ends(
+        self, state: State, rows: NDArray[np.int64], a: NDArray[np.int64], b: NDArray[np.int64]
+    ) -> tuple[tuple[NDArray[np.int64], NDArray[np.int64]], tuple[int, int]]:
+        """Return the places of both ends of each spring; how many places there are, and that of no spring."""
+        m, moves = len(self._moving), state.table(Velocity).present
         number_of = np.full(len(moves), -1)
-        number_of[layout.moving] = np.arange(m)
+        number_of[self._moving] = np.arange(m)
         ends_a, ends_b = number_of[a], number_of[b]
         fixed_a, fixed_b = np.flatnonzero(~moves[a]), np.flatnonzero(~moves[b])
         ends_a[fixed_a] = m + np.arange(len(fixed_a))
         ends_b[fixed_b] = m + len(fixed_a) + np.arange(len(fixed_b))
         self._fixed = (a[fixed_a], rows[fixed_a], "anchor_a"), (b[fixed_b], rows[fixed_b], "anchor_b")
-        unused = m + len(fixed_a) + len(fixed_b)
-        movable = np.zeros(unused + 1, np.bool_)
-        movable[:m] = inverse[layout.moving] > 0.0
-        order = _in_blocks(ends_a, ends_b, movable)
-        used = order >= 0
-        rest = np.where(used, spring["rest_length"][rows[order]], 0.0)
-        stiffness = np.where(used, spring["stiffness"][rows[order]], 0.0)
-        a, b = (np.where(used, end[order], unused) for end in (ends_a, ends_b))
-        driven = np.flatnonzero(inverse[layout.moving] == 0.0)
-        ends = np.concatenate((driven, np.arange(m, unused)))
-        sizes = m, unused + 1, len(order), len(DRIFTS), steps
-        whole = np.concatenate((sizes, layout.moving, a, b, ends)).astype(np.int64)
-        gain, lengths = np.repeat(inverse[layout.moving], 2), (rest, stiffness, _SHORTEST * rest)
-        state_of, pulls = np.zeros(HEAD + 6 * (unused + 1)), np.zeros(4 * m)
-        numbers = np.concatenate((state_of, gain, pulls, *lengths, DRIFTS, KICKS))
-        self.arrays: SpringsTuple = numbers, whole
-        self._place = numbers[HEAD : HEAD + 2 * (unused + 1)].reshape(-1, 2)
-        first = len(state_of) + 2 * m
-        self._gravity, self._weight = numbers[first : first + 4 * m].reshape(2, -1)
-        self._physics: object = None
+        spare = m + len(fixed_a) + len(fixed_b)
+        return (ends_a, ends_b), (spare + 1, spare)
+
+    def _turns(
+        self, state: State, rows: NDArray[np.int64], a: NDArray[np.int64], b: NDArray[np.int64]
+    ) -> bool:
+        """Whether a spring holds what moves beside its middle."""
+        spring, moves = state.table(Spring), state.table(Velocity).present
+        return any(
+            bool(spring[anchors][rows[moves[end]]].any())
+            for end, anchors in ((a, "anchor_a"), (b, "anchor_b"))
+        )
 
     def begin(self, state: State) -> None:
         """Take gravity, and where springs are attached to what does not move."""
@@ -128,6 +192,7 @@ class SpringFlow:
             self._gravity[:] = np.outer(pulled, (gravity.x, gravity.y)).ravel()
             self._weight[:] = np.outer(mass, (gravity.x, gravity.y)).ravel()
             self.arrays[0][WEIGHT : WEIGHT + 2] = np.array((gravity.x, gravity.y)) * float(mass.sum())
+            self.arrays[0][UNIFORM : UNIFORM + 2] = gravity.x, gravity.y
             self._physics = state.physics
         transform, first = state.table(Transform), len(self._moving)
         for end, springs, anchors in self._fixed:
@@ -137,3 +202,21 @@ class SpringFlow:
                 if not np.array_equal(points, held):
                     held[:], self.arrays[0][KNOWN] = points, 0.0
                 first += len(end)
+
+
+def _reciprocal(numbers: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the reciprocal of each number, and 0 of 0."""
+    return np.divide(1.0, numbers, out=np.zeros_like(numbers), where=numbers > 0.0)
+
+
+def _arms(
+    state: State, rows: NDArray[np.int64], order: NDArray[np.int64], slots: Sequence[NDArray[np.int64]],
+    moving: int,
+) -> list[NDArray[np.float64]]:  # fmt: skip
+    """Return where springs hold what moves, in its frame: x and y at A, and at B, of each slot."""
+    spring = state.table(Spring)
+    return [
+        np.where((order >= 0) & (end < moving), spring[anchor][rows[order], way], 0.0)
+        for end, anchor in zip(slots, ("anchor_a", "anchor_b"), strict=True)
+        for way in (0, 1)
+    ]

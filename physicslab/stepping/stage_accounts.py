@@ -29,6 +29,8 @@ class StageAccounts:
         Whose accounts.
     forces : sequence of ForceSystem
         What acts.
+    flown : bool
+        Whether a compiled flow moves all that forces act on which are not uniform, and books what they do.
 
     Attributes
     ----------
@@ -42,7 +44,7 @@ class StageAccounts:
 
     kernels: tuple[Any, ...] = (work.book_kick, work.book_damping)
 
-    def __init__(self, state: State, forces: Sequence[ForceSystem]) -> None:
+    def __init__(self, state: State, forces: Sequence[ForceSystem], *, flown: bool = False) -> None:
         uniform = [force.uniform_acceleration(state) if force.is_engine else None for force in forces]
         self.gravity = sum((g for g in uniform if g is not None), start=Vector2(0.0, 0.0))
         others = [force for force, g in zip(forces, uniform, strict=True) if g is None]
@@ -50,10 +52,14 @@ class StageAccounts:
         springs = any(isinstance(force, SpringSystem) for force in others)
         self.other = next((force.account for force in (*free, *others)), GRAVITY)
         # Momentum is booked to one cause by kernels: what is another's is then noted by itself.
+        self._storing, others = (
+            [force for force in others if force.potential is not None],
+            others * (not flown),
+        )
+        free, springs = free * (not flown), springs and not flown
         self._apart = [force for force in others if force.account != self.other]
         self._free = free
         self._pulls = {force: np.zeros_like(state.bodies.pull) for force in (*free, *self._apart)}
-        self._storing = [force for force in others if force.potential is not None]
         self._damps = springs and _has_dampers(state)
         self._dampers = np.zeros_like(state.bodies.pull)
         bodies = state.bodies

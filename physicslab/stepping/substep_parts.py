@@ -82,12 +82,12 @@ class SubstepParts:
         # What turns velocities is left to what moves bodies: a contact has no speed to expect from it.
         turned = [f for f in schedule.forces if f.gyration(state) is not None] if self.split else []
         self.forces = [force for force in schedule.forces if force not in turned]
-        self.accounts = StageAccounts(state, self.forces)
+        springs = None if self.split is None else self.split.springs
+        self.accounts = StageAccounts(state, self.forces, flown=springs is not None)
         self._run: Callable[[Stage, State, float], None] = schedule.run
         # Where a system of one's own moves the bodies itself, its error is that of the method.
         if schedule.find(IntegrateSystem) is not None and any(map(acts_unbooked, schedule.running)):
             self._run = lambda stage, state, h: run_measured(stage, schedule, state, h)
-        springs = None if self.split is None else self.split.springs
         self.compiled = schedule.find(ContactSystem) is not None or springs is not None
         self._sleeps = schedule.find(SleepSystem) is not None
         self.uniform, self.packs = True, False

@@ -111,7 +111,11 @@ class SpringSystem(ForceSystem):
         return b"".join(found)
 
     def rates(self, state: State) -> NDArray[np.float64]:
-        """Return for each row a bound on its fastest oscillation or decay [rad/s].
+        """Return for each row a bound on its fastest oscillation or decay [rad/s]."""
+        return np.maximum(*self.bounds(state))
+
+    def bounds(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return for each row a bound on its fastest oscillation [rad/s], and on its fastest decay [1/s].
 
         The stiffnesses of a body's springs add up, weighted with the masses at both ends; no eigenvalue of
         the whole is larger than these sums (Gershgorin).
@@ -128,7 +132,7 @@ class SpringSystem(ForceSystem):
             stiff, damped = (np.where(np.isnan(bound), np.inf, bound) for bound in (stiff, damped))
         fixed = (bodies.inverse_mass[self._a] == 0.0) | (bodies.inverse_mass[self._b] == 0.0)
         share = 0.5 if fixed.all() else 1.0  # no pair of bodies moves against each other
-        return np.maximum(np.sqrt(share * stiff), share * damped)
+        return np.sqrt(share * stiff), share * damped
 
     def rounding_floor(self, state: State) -> float:
         """Return that of a spring as long as its rest length, or as far from the origin as its fixed end."""

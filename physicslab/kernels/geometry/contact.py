@@ -107,18 +107,19 @@ def forget_points(one: Point, two: Point) -> None:
 
 
 @always_inlined
-def on_bend(manifold: Manifold, one: Point, two: Point) -> bool:
-    """Whether a pair touches where a chain turns: its points move along with what slides there."""
-    second = manifold.count == 2 and two.feature >= VERTICES
-    return bool(manifold.wall < -1 and (one.feature >= VERTICES or second))
+def slides_on(manifold: Manifold, one: Point, two: Point, travel: float) -> bool:
+    """Whether a pair has other points on a chain soon: it moves by ``travel`` [m], or is where that turns."""
+    on_bend = one.feature >= VERTICES or (manifold.count == 2 and two.feature >= VERTICES)
+    return bool(manifold.wall < -1 and (on_bend or travel > SWEEP_THRESHOLD * manifold.size))
 
 
 @always_inlined
-def _to_be_swept(manifold: Manifold, points: Points, p: int, fast: bool) -> bool:
-    """Whether the points of a pair that is ``fast`` for its size may be those of a later moment."""
+def _to_be_swept(manifold: Manifold, points: Points, p: int, travel: float, size: float) -> bool:
+    """Whether a pair that moves by ``travel`` [m] in a substep may have points of a later moment in it."""
     one, two = points[2 * p], points[2 * p + 1]
-    load = one.normal_impulse + (two.normal_impulse if manifold.count == 2 else 0.0)
-    return bool(manifold.swept == 1 or (fast and load == 0.0) or on_bend(manifold, one, two))
+    loose = one.normal_impulse + (two.normal_impulse if manifold.count == 2 else 0.0) == 0.0
+    meets = manifold.swept == 1 or (loose and travel > SWEEP_THRESHOLD * size)
+    return bool(meets or slides_on(manifold, one, two, travel))
 
 
 @always_inlined
@@ -148,6 +149,7 @@ def _look_up(
     """
     a, b, half_x, half_y, angle = manifold.a, manifold.b, shapes.half_x, shapes.half_y, motion.angle
     radius = shapes.radius
+    own_ways = has_own_way(shapes, a) and has_own_way(shapes, b)
     size, of_both = 2.0 * shapes.thin[b], 2.0 * half_x[b] + 4.0 * half_y[b]
     if manifold.wall < 0:
         size = min(size, 2.0 * shapes.thin[a])
@@ -158,7 +160,7 @@ def _look_up(
     ahead = travel + swing
     if turns:
         travel = ahead
-        if has_own_way(shapes, a) and has_own_way(shapes, b):
+        if own_ways:
             size = min(max(half_x[a], radius[a]), max(half_x[b], radius[b]))
         else:  # of the same extents there are many polygons
             of_both += 13.0 * _vertices_of(shapes, a, manifold.wall)
@@ -172,6 +174,10 @@ def _look_up(
             # A lower bound of their gap now, however they have moved since.
             turned = abs(turn_a) * (half_x[a] + half_y[a]) + abs(turn_b) * (half_x[b] + half_y[b])
             nearest = manifold.gap - abs(moved_x) - abs(moved_y) - turned - 0.0025 * size
+            if manifold.wall == -1 and not own_ways:  # it is a gap of convex shapes along the normal
+                nx, ny = manifold.normal_x, manifold.normal_y
+                nearest = manifold.gap + moved_x * nx + moved_y * ny - turned - 0.0025 * size
+                ahead = abs(way.ux * nx + way.uy * ny) + swing
             if nearest > CONTACT_MARGIN * size + ahead + speculative_margin:
                 return _APART
         elif (
@@ -180,7 +186,7 @@ def _look_up(
             and abs(turn_a) <= tolerance * CACHE_TURN_TOLERANCE
             and abs(turn_b) <= tolerance * CACHE_TURN_TOLERANCE
             and slow
-            and not (turns and _to_be_swept(manifold, points, p, travel > SWEEP_THRESHOLD * size))
+            and not (turns and _to_be_swept(manifold, points, p, travel, size))
         ):
             follow_pose(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
             return _KEPT

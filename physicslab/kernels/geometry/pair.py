@@ -287,6 +287,7 @@ def touch_rounded(
     before_1, before_2 = _impulses_of(one), _impulses_of(two)
     found = touch_outlines(way, a, b, pool, near + travel, old)
     manifold.count, manifold.swept, manifold.size, manifold.gap = 0, 0, size, found.gap
+    manifold.normal_x, manifold.normal_y = found.nx, found.ny
     fast = travel > SWEEP_THRESHOLD * size and not loaded
     if found.gap > near and not ((fast or swift) and found.gap <= travel + speculative_margin):
         return

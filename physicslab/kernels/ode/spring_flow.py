@@ -7,7 +7,7 @@ on a body is always added up in the same order.
 
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, inlined_by_numba
 from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, SPRINGS, book
 from physicslab.kernels.arguments import Motion, Springs
 from physicslab.kernels.float64x8 import choose, mask_bits, put_vectors, root, take, take_vectors
@@ -19,16 +19,22 @@ MAX_TURN = 0.25
 """Angle [rad] by which a spring with a rest length may turn, or share of its length by which it may change,
 in a step of the method."""
 
-BY_SPRINGS, BY_GRAVITY, BY_HAND, GIVEN = 0, 3, 4, 5
+BY_SPRINGS, BY_GRAVITY, BY_HAND, DISSIPATED, BY_DAMPERS, GIVEN = 0, 3, 4, 5, 6, 9
 """Where in what is given are the momentum (x, y) and the angular momentum that springs bring in [N s, N m s];
-the angular momentum of gravity [N m s]; the work of ends that are driven [J]."""
-SIZES = 5
-"""The whole numbers begin with: how many bodies move, how many places there are, slots for springs, drifts of
-the method, and its steps. Then :attr:`Places.moving`, the springs' ends at A and B, and the ``ends`` that
-springs do not move."""
-KNOWN, WEIGHT, _GIVEN, HEAD = 0, 1, 3, 8
-"""The numbers begin with: whether the pull is known (1,), the weight of all that moves (2,) [N], what is
-given (GIVEN,). Then those of :class:`Places` and of :class:`Links` in order, drifts and kicks."""
+the angular momentum of gravity [N m s]; the work of ends that are driven [J]; what dampers take [J]; the
+momenta that they bring in."""
+MOST_TERMS = 10
+"""Terms of the series of a kick for which there is room."""
+SIZES = 9
+"""The whole numbers begin with: how many bodies move on springs, how many places there are, slots for
+springs, drifts of the method, and its steps; whether there are dampers or arms, and so more numbers behind
+(:mod:`physicslab.kernels.ode.damped_flow`); arms; how many bodies are in drag alone; how many ends springs do
+not move. Then :attr:`Places.moving`, the springs' ends at A and B, and the ``ends`` that springs do not move;
+dampers at these; terms of the series of each kick; bodies in drag alone."""
+KNOWN, WEIGHT, _GIVEN, UNIFORM, HEAD = 0, 1, 3, 12, 16
+"""The numbers begin with: whether the pull is known (1,), the weight of all that moves on springs (2,) [N],
+what is given (GIVEN,), gravity (2,) [m/s^2]. Then those of :class:`Places` and of :class:`Links` in order,
+drifts and kicks, and what dampers and drag need."""
 
 
 class Places(NamedTuple):
@@ -64,7 +70,7 @@ class Links(NamedTuple):
 
 
 @inlined
-def _gather(places: Places, motion: Motion) -> None:
+def gather(places: Places, motion: Motion) -> None:
     """Take the state of what moves; the pull is known no more if anything is elsewhere."""
     same = places.known[0] != 0.0
     for i in range(len(places.moving)):
@@ -77,7 +83,7 @@ def _gather(places: Places, motion: Motion) -> None:
 
 
 @inlined
-def _scatter(places: Places, motion: Motion, span: float) -> None:
+def scatter(places: Places, motion: Motion, span: float) -> None:
     """Put the state back; what moves has turned steadily for ``span`` seconds."""
     for i in range(len(places.moving)):
         row = places.moving[i]
@@ -159,7 +165,7 @@ def _book(places: Places, ends: Rows, kick: float, given: Numbers) -> None:
 
 
 @inlined
-def _torque_of_gravity(places: Places) -> tuple[float, float]:
+def torque_of_gravity(places: Places) -> tuple[float, float]:
     """Return the torque of gravity about the origin [N m], and how fast it grows."""
     place, speed, weight, half = places.place, places.speed, places.weight, len(places.moving) // 2
     torque, rate, other_torque, other_rate = 0.0, 0.0, 0.0, 0.0  # two sums: each waits for itself alone
@@ -174,6 +180,16 @@ def _torque_of_gravity(places: Places) -> tuple[float, float]:
         torque += place[i, 0] * weight[2 * i + 1] - place[i, 1] * weight[2 * i]
         rate += speed[i, 0] * weight[2 * i + 1] - speed[i, 1] * weight[2 * i]
     return torque + other_torque, rate + other_rate
+
+
+@inlined
+def book_gravity(
+    places: Places, h: float, before: float, rate_before: float, given: Numbers
+) -> tuple[float, float]:
+    """Book the angular momentum that gravity gave in a step, by the corrected trapezoidal rule."""
+    torque, rate = torque_of_gravity(places)
+    given[BY_GRAVITY] += 0.5 * h * (before + torque) + h * h / 12.0 * (rate_before - rate)
+    return torque, rate
 
 
 @inlined
@@ -192,7 +208,7 @@ def _advance(
         evaluations = 1
         if not _evaluate(places, links):
             return TURNS_FAST
-    torque, rate = _torque_of_gravity(places)
+    torque, rate = torque_of_gravity(places)
     for _ in range(steps):
         for stage in range(len(drifts)):
             _book(places, ends, kicks[stage] * h, given)
@@ -205,25 +221,15 @@ def _advance(
         _book(places, ends, kick, given)
         for i in range(len(places.gain)):
             speed[i] += kick * (pull[i] * places.gain[i] + places.gravity[i])
-        before, rate_before = torque, rate
-        torque, rate = _torque_of_gravity(places)
-        given[BY_GRAVITY] += 0.5 * h * (before + torque) + h * h / 12.0 * (rate_before - rate)
+        torque, rate = book_gravity(places, h, torque, rate, given)
     return evaluations
 
 
-@inlined
-def flow_springs(motion: Motion, springs: Springs, span: float, account: Vectors) -> int:
-    """Move bodies on springs for ``span`` seconds; return the number of force evaluations.
-
-    A step is kick, drift, kick, ..., drift, kick, with the method's shares of it. What comes in at ends that
-    springs do not move, and by gravity, is booked: its torque as the corrected trapezoidal rule has it, which
-    is of the order of the method.
-
-    Where a spring becomes so short, or turns so fast, that steps of one length do not follow it, nothing is
-    changed, and :data:`TURNS_FAST` returned.
-    """
+@inlined_by_numba
+def named(springs: Springs) -> tuple[Places, Links, Rows, Numbers, Numbers, Numbers, int]:
+    """Return places, links, ends, what is given, drifts, kicks, and where in the numbers there are others."""
     numbers, whole = springs
-    m, p, n, s, steps = whole[0], whole[1], whole[2], whole[3], whole[4]
+    m, p, n, s = whole[0], whole[1], whole[2], whole[3]
     at, links_at, shares_at = HEAD + 6 * p, HEAD + 6 * p + 6 * m, HEAD + 6 * p + 6 * m + 3 * n
     places = Places(
         whole[SIZES : SIZES + m],
@@ -242,17 +248,41 @@ def flow_springs(motion: Motion, springs: Springs, span: float, account: Vectors
         numbers[links_at + n : links_at + 2 * n],
         numbers[links_at + 2 * n : shares_at],
     )
-    given, ends = numbers[_GIVEN:HEAD], whole[SIZES + m + 2 * n : len(whole)]
-    drifts, kicks = numbers[shares_at : shares_at + s], numbers[shares_at + s : len(numbers)]
-    _gather(places, motion)
+    ends = whole[SIZES + m + 2 * n : SIZES + m + 2 * n + whole[8]]
+    given = numbers[_GIVEN : _GIVEN + GIVEN]
+    kicks_at = shares_at + s
+    last = kicks_at + s + 1
+    return places, links, ends, given, numbers[shares_at:kicks_at], numbers[kicks_at:last], last
+
+
+@inlined
+def book_given(given: Numbers, numbers: Numbers, span: float, account: Vectors) -> None:
+    """Book what springs and gravity have given in ``span`` seconds."""
+    book(account[SPRINGS], 0, 0.0, given[BY_SPRINGS], given[BY_SPRINGS + 1], given[BY_SPRINGS + 2])
+    account[HAND, ENERGY] += given[BY_HAND]
+    fallen_x, fallen_y = numbers[WEIGHT] * span, numbers[WEIGHT + 1] * span
+    book(account[GRAVITY], 0, 0.0, fallen_x, fallen_y, given[BY_GRAVITY])
+
+
+@inlined
+def flow_springs(motion: Motion, springs: Springs, span: float, account: Vectors) -> int:
+    """Move bodies on springs for ``span`` seconds; return the number of force evaluations.
+
+    A step is kick, drift, kick, ..., drift, kick, with the method's shares of it. What comes in at ends that
+    springs do not move, and by gravity, is booked: its torque as the corrected trapezoidal rule has it, which
+    is of the order of the method.
+
+    Where a spring becomes so short, or turns so fast, that steps of one length do not follow it, nothing is
+    changed, and :data:`TURNS_FAST` returned.
+    """
+    numbers, whole = springs
+    places, links, ends, given, drifts, kicks, _ = named(springs)
+    gather(places, motion)
     for i in range(GIVEN):
         given[i] = 0.0
-    made = _advance(places, links, drifts, kicks, span / steps, steps, ends, given)
+    made = _advance(places, links, drifts, kicks, span / whole[4], whole[4], ends, given)
     places.known[0] = 1.0 if made >= 0 else 0.0
     if made >= 0:
-        _scatter(places, motion, span)
-        book(account[SPRINGS], 0, 0.0, given[BY_SPRINGS], given[BY_SPRINGS + 1], given[BY_SPRINGS + 2])
-        account[HAND, ENERGY] += given[BY_HAND]
-        fallen_x, fallen_y = numbers[WEIGHT] * span, numbers[WEIGHT + 1] * span
-        book(account[GRAVITY], 0, 0.0, fallen_x, fallen_y, given[BY_GRAVITY])
+        scatter(places, motion, span)
+        book_given(given, numbers, span, account)
     return made

@@ -46,7 +46,7 @@ from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.joints.blocks import Joints, JointsTuple
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
 from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
-from physicslab.kernels.ode.spring_flow import flow_springs
+from physicslab.kernels.ode.damped_flow import flow_forces
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.edits import find_pushed
 from physicslab.kernels.sleep.islands import count_rest, find_touched
@@ -194,7 +194,7 @@ def _advance(
                 weighed = False
                 now = charge(cost, INTEGRATE, now)
             elif what == SPRINGS:
-                made = flow_springs(motion, springs, span, account)
+                made = flow_forces(motion, springs, span, account)
                 evaluations += max(0, made)
                 why = ALL if made >= 0 else PYTHON
                 weighed = False

@@ -15,7 +15,7 @@ from physicslab.kernels.arguments import (
     named_near,
 )
 from physicslab.kernels.broad.near_pairs import sort_scalar
-from physicslab.kernels.geometry.contact import note_pose, on_bend
+from physicslab.kernels.geometry.contact import note_pose, slides_on
 from physicslab.kernels.geometry.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.near_counts import (
@@ -112,8 +112,9 @@ def _may_enter(
     i, j = manifold.a, manifold.b
     if manifold.wall >= 0 or not is_of_kind(slots.kind, shapes, i, j):
         return False
-    one, two = near.points[2 * p], near.points[2 * p + 1]
-    if asleep[i] or asleep[j] or on_bend(manifold, one, two):
+    one, two, linear = near.points[2 * p], near.points[2 * p + 1], motion.linear
+    travel = h * (abs(linear[j, 0] - linear[i, 0]) + abs(linear[j, 1] - linear[i, 1]))
+    if asleep[i] or asleep[j] or slides_on(manifold, one, two, travel):
         return False
     return _is_steady(manifold, one, two, motion.linear, h)
 

@@ -21,7 +21,7 @@ from physicslab.kernels.geometry.contact import (
     effective_masses,
     forget_points,
     note_pose,
-    on_bend,
+    slides_on,
     touch,
 )
 from physicslab.kernels.geometry.outline import Way
@@ -132,7 +132,8 @@ def _find_again(
     )  # fmt: skip
     manifold.offset_x, manifold.offset_y = way.dx, way.dy
     touch(manifold, one, two, way, motion, shapes, bounds, near.rotations, h, start, speculative_margin)
-    if manifold.count == 0 or manifold.swept != 0 or on_bend(manifold, one, two):
+    slides = slides_on(manifold, one, two, abs(way.ux) + abs(way.uy))
+    if manifold.count == 0 or manifold.swept != 0 or slides:
         if manifold.count == 0:
             forget_points(one, two)
         manifold.found, manifold.slot = 0, -1

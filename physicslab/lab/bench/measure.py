@@ -41,7 +41,7 @@ def measure_scene(
     result = SceneResult(scene)
     result.engines[ours.title] = EngineResult(ours.title)
     engines = [prepared(engine, scene) for engine in (ours, *_others(scene, peers, result))]
-    _load_kernels(ours.world)
+    load_kernels(ours.world)
     judge = Judge(result)
     settling, begin = round(scene.seconds / ours.dt), math.ceil(_BEGIN_S / ours.dt)
     total = settling + scene.steps
@@ -55,7 +55,7 @@ def measure_scene(
         judge.look(engines, "settled")
         engines = [engine for engine in engines if not result.engines[engine.title].failure]
         judge.begin(engines)
-        before = _spent(ours.world)
+        before = spent_by_system(ours.world)
         block = _BLOCK if scene.compiled_runs else 0
         for times in take_turns(engines, math.ceil(scene.steps / max(1, block)), block):
             judge.look(engines, "throughout")
@@ -66,11 +66,11 @@ def measure_scene(
         judge.look(engines, "end")
         _summarise(result, engines, times)
         result.contacts = ours.world.contacts.count
-        result.systems = _shares(before, _spent(ours.world), times[0])
+        result.systems = _shares(before, spent_by_system(ours.world), times[0])
     return result
 
 
-def _load_kernels(world: World) -> None:
+def load_kernels(world: World) -> None:
     """Load what a world's steppers call: the first steps would be timed with it."""
     world.synchronise()
     for stepper in world.steppers.usable:
@@ -89,7 +89,7 @@ def _others(scene: BenchScene, peers: Sequence[type[Peer]], result: SceneResult)
     return others
 
 
-def _spent(world: World) -> dict[str, int]:
+def spent_by_system(world: World) -> dict[str, int]:
     """Return what each system has cost so far in steps [ns]."""
     of_frames = {system.name for system in world.schedule.systems if OF_FRAMES & system.marked().keys()}
     return {

@@ -73,7 +73,9 @@ _PORTION = 12
 """Turns between two reports of progress: a whole number of times through the orders of three."""
 
 
-def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterator[list[Times]]:
+def take_turns(
+    engines: Sequence[Engine], rounds: int, block: int = 0, portion: int = _PORTION
+) -> Iterator[list[Times]]:
     """Advance all engines ``rounds`` times, in every order in turn; yield the times so far now and then.
 
     Parameters
@@ -85,14 +87,16 @@ def take_turns(engines: Sequence[Engine], rounds: int, block: int = 0) -> Iterat
     block : int
         Steps of a block, in one call that is a turn; 0 for single ones, ``TURN`` in a turn, after each of
         which the state is read back as well.
+    portion : int
+        Turns between two of what is yielded.
     """
     times = [Times() for _ in engines]
     orders = itertools.cycle(itertools.permutations(range(len(engines))))
     turns = [1] * rounds if block else [TURN] * (rounds // TURN) + [rounds % TURN] * (rounds % TURN > 0)
-    for start in range(0, len(turns), _PORTION):
+    for start in range(0, len(turns), portion):
         gc.collect()
         with uncollected():  # it would slow one engine and not the other
-            for turn, order in zip(turns[start : start + _PORTION], orders, strict=False):
+            for turn, order in zip(turns[start : start + portion], orders, strict=False):
                 for i in order:
                     for _ in range(turn):
                         _advance(engines[i], times[i], block)

@@ -115,6 +115,12 @@ void scene_mass( Scene* scene, int body, double mass, double inertia )
 	b2Body_SetMassData( scene->bodies[body], data );
 }
 
+/* The share of its velocity that a body loses a second. */
+void scene_drag( Scene* scene, int body, double rate )
+{
+	b2Body_SetLinearDamping( scene->bodies[body], (float)rate );
+}
+
 /* anchors: x, y in the first body's frame, x, y in the other's */
 void scene_spring( Scene* scene, int a, int b, const double* anchors, double length, double hertz, double damping )
 {

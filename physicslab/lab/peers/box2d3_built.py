@@ -77,6 +77,10 @@ class BuiltBox2D(Peer):
         self.library.scene_mass(self.space, body, mass, inertia)
 
     @override
+    def add_drag(self, body: int, rate: float) -> None:
+        self.library.scene_drag(self.space, body, rate)
+
+    @override
     def add_spring(self, spring: Spring, ends: Sequence[int], entity: int) -> None:
         anchors = _array((*spring.anchor_a, *spring.anchor_b))
         numbers = spring.rest_length, *self.frequency(entity, spring)
@@ -180,7 +184,8 @@ def _loaded(library: Path) -> ctypes.CDLL:
         "close": (), "gravity": (number,) * 2, "body": (whole, _Numbers), "disc": (whole, *(number,) * 3),
         "polygon": (whole, _Numbers, whole, *(number,) * 3), "joint": (*(whole,) * 5, _Numbers),
         "wall": (whole, _Numbers, number, number),
-        "mass": (whole, number, number), "spring": (whole, whole, _Numbers, *(number,) * 3),
+        "mass": (whole, number, number), "drag": (whole, number),
+        "spring": (whole, whole, _Numbers, *(number,) * 3),
         "step": (number, whole, whole), "state": (_Numbers,),
     }.items():  # fmt: skip
         function = getattr(loaded, f"scene_{name}")

@@ -66,6 +66,14 @@ class PymunkMirror(Peer):
         self.space.add(made)
 
     @override
+    def add_drag(self, body: Any, rate: float) -> None:
+        """Let Python change the body's velocity, as pymunk has no damping of single bodies."""
+        update = self.engine.Body.update_velocity
+        body.velocity_func = lambda moved, gravity, damping, dt: update(
+            moved, gravity, damping * math.exp(-rate * dt), dt
+        )
+
+    @override
     def add_spring(self, spring: Spring, ends: Sequence[Any], entity: int) -> None:
         anchors = tuple(spring.anchor_a), tuple(spring.anchor_b)
         numbers = spring.rest_length, spring.stiffness, spring.damping

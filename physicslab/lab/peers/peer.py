@@ -135,7 +135,7 @@ class Peer(ABC):
         world.synchronise()
         self.world = world
         if world.physics.gravity_mode == "planet" or any(
-            len(world.batch(force)) for force in (Charge, Drag, Thrust)
+            len(world.batch(force)) for force in (Charge, Thrust)
         ):
             raise CannotBuild("no such force")
         self.gravity = world.physics.gravity if world.physics.gravity_mode == "linear" else Vector2()
@@ -152,6 +152,11 @@ class Peer(ABC):
                 self.add_shape(made, shape, surface)
             if body.kind == "dynamic":  # after its shape, which changes its mass
                 self.weigh(made, body.mass, body.inertia)
+        for entity in world.batch(Drag).entities.tolist():
+            drag = world.component(entity, Drag)
+            if drag.quadratic:
+                raise CannotBuild("no drag by the square of speed")
+            self.add_drag(self._bodies[entity], drag.linear / world.component(entity, Mass).mass)
         for entity in world.batch(Spring).entities.tolist():
             spring = world.component(entity, Spring)
             ends = [self._bodies[end] if end else self.ground for end in (spring.a or entity, spring.b)]
@@ -221,6 +226,10 @@ class Peer(ABC):
 
     def weigh(self, body: Any, mass: float, inertia: float) -> None:  # noqa: B027 (not all need it)
         """Set the mass [kg] and inertia [kg m^2] of a dynamic body, the second 0 where it does not turn."""
+
+    def add_drag(self, body: Any, rate: float) -> None:
+        """Slow a body by a share of its velocity a second [1/s]."""
+        raise CannotBuild("no drag of single bodies")
 
     @abstractmethod
     def add_spring(self, spring: Spring, ends: Sequence[Any], entity: int) -> None:

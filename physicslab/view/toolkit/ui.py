@@ -348,15 +348,20 @@ class Ui(Windows):
     def slider(
         self, label: str, value: float, low: float, high: float, shown: str, width: float = -1.0
     ) -> float | None:
-        """Draw a slider with words on it, and return the new value if it was moved."""
+        """Draw a slider with words on it, and return the new value if it was moved.
+
+        It slides a share: Dear ImGui takes float32, and ends the program where a range is beyond that.
+        """
         shown = self.said(shown)
         self.words.append(shown)
         imgui.set_next_item_width(width)
         flags = imgui.SliderFlags_.no_input  # Ctrl-click would make a field of it, without units
         words = shown.replace("%", "%%")
-        moved, new = imgui.slider_float(self.held(label), value, low, high, words, flags)
+        room = 0.5 * high - 0.5 * low
+        share = min(max((0.5 * value - 0.5 * low) / room, 0.0), 1.0) if room > 0.0 else 0.0
+        moved, new = imgui.slider_float(self.held(label), share, 0.0, 1.0, words, flags)
         self.note(label, "slider", shown)
-        return float(new) if moved else None
+        return low * (1.0 - new) + high * new if moved else None
 
     def field(
         self, label: str, text: str, width: float = -1.0, *, wrong: bool = False, lines: int = 1

@@ -1,0 +1,457 @@
+"""The flow of springs with dampers, of springs that turn bodies, and of drag, beside contacts.
+
+It is the splitting of :mod:`physicslab.kernels.ode.spring_flow`, whose kicks are here the motion of
+velocities while all places stay: it is linear in them, and followed by its Taylor series. The splitting is
+symmetric, so that it is of order 4 for these kicks as well. Springs are taken eight at a time, as there.
+
+What dampers take is the integral of their power over the same series. Bodies that only drag and gravity act
+on are followed each by itself (:func:`_fall`).
+"""
+
+import math
+from typing import NamedTuple
+
+from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, inlined_by_numba
+from physicslab.kernels.accounts import DAMPING, GRAVITY, book
+from physicslab.kernels.arguments import Motion, Springs
+from physicslab.kernels.float64x8 import (
+    Wide,
+    choose,
+    everywhere,
+    mask_bits,
+    put,
+    put_numbers,
+    put_vectors,
+    root,
+    sum_of,
+    take,
+    take_numbers,
+    take_vectors,
+)
+from physicslab.kernels.ode.spring_flow import (
+    BY_DAMPERS,
+    BY_HAND,
+    BY_SPRINGS,
+    DISSIPATED,
+    MAX_TURN,
+    MOST_TERMS,
+    SIZES,
+    TURNS_FAST,
+    UNIFORM,
+    Links,
+    Places,
+    book_given,
+    book_gravity,
+    flow_springs,
+    gather,
+    named,
+    scatter,
+    torque_of_gravity,
+)
+from physicslab.kernels.wide_layout import WIDE
+
+_FOLLOWED = 0.05
+"""Largest rate times step of what drag alone slows: a step is then right to 3e-9."""
+
+
+class Full(NamedTuple):
+    """What dampers and arms need beside :class:`Places` and :class:`Links`.
+
+    It is of p places, m bodies and n springs. ``spin_gain`` (m,) is the inverse inertia, 0 where no spring
+    may turn a body; ``angle`` (m,) [rad] and ``spin`` (p,) [rad/s], ``cosine`` and ``sine`` (p,) of it.
+    ``rate`` (p, 2) and ``spin_rate`` (p,) are the last derivatives of velocities that were taken; ``push``
+    (p, 2) and ``twist_push`` (p,) impulses of a kick; ``twist`` (p,) torques. ``damping`` (n,); ``along_x``,
+    ``along_y`` (n,) directions, ``tension`` (n,) without dampers; ``opening`` (MOST_TERMS * n,) the
+    derivatives of how fast springs lengthen; ``arm_a``, ``arm_b`` (2 n,) in the frames of bodies, x first,
+    ``turned_a``, ``turned_b`` in that of the world.
+    """
+
+    spin_gain: Numbers
+    angle: Numbers
+    rate: Vectors
+    push: Vectors
+    cosine: Numbers
+    sine: Numbers
+    spin: Numbers
+    spin_rate: Numbers
+    twist: Numbers
+    twist_push: Numbers
+    damping: Numbers
+    along_x: Numbers
+    along_y: Numbers
+    tension: Numbers
+    opening: Numbers
+    arm_a: Numbers
+    arm_b: Numbers
+    turned_a: Numbers
+    turned_b: Numbers
+
+
+@inlined_by_numba
+def _full(numbers: Numbers, at: int, m: int, p: int, n: int) -> Full:
+    """Return the arrays that begin at a place of the numbers."""
+    places, links = at + 2 * m, at + 2 * m + 9 * p
+    arms = links + p + (4 + MOST_TERMS) * n
+    return Full(
+        numbers[at : at + m],
+        numbers[at + m : places],
+        numbers[places : places + 2 * p].reshape(p, 2),
+        numbers[places + 2 * p : places + 4 * p].reshape(p, 2),
+        numbers[places + 4 * p : places + 5 * p],
+        numbers[places + 5 * p : places + 6 * p],
+        numbers[places + 6 * p : places + 7 * p],
+        numbers[places + 7 * p : places + 8 * p],
+        numbers[places + 8 * p : links],
+        numbers[links : links + p],
+        numbers[links + p : links + p + n],
+        numbers[links + p + n : links + p + 2 * n],
+        numbers[links + p + 2 * n : links + p + 3 * n],
+        numbers[links + p + 3 * n : links + p + 4 * n],
+        numbers[links + p + 4 * n : arms],
+        numbers[arms : arms + 2 * n],
+        numbers[arms + 2 * n : arms + 4 * n],
+        numbers[arms + 4 * n : arms + 6 * n],
+        numbers[arms + 6 * n : arms + 8 * n],
+    )
+
+
+@always_inlined
+def _turned(full: Full, rows: Rows, arm: Numbers, to: Numbers, at: int) -> tuple[Wide, Wide]:
+    """Return and note where eight ends are on turned bodies."""
+    n = len(rows)
+    c, s = take_numbers(full.cosine, rows, at), take_numbers(full.sine, rows, at)
+    x, y = take(arm, at), take(arm, n + at)
+    rx, ry = c * x - s * y, s * x + c * y
+    put(to, at, rx)
+    put(to, n + at, ry)
+    return rx, ry
+
+
+@always_inlined
+def _apart(places: Places, links: Links, full: Full, turns: bool, at: int) -> tuple[Wide, Wide]:
+    """Return from where to where eight springs go, and note where their ends are on turned bodies."""
+    xa, ya = take_vectors(places.place, links.a, at)
+    xb, yb = take_vectors(places.place, links.b, at)
+    dx, dy = xb - xa, yb - ya
+    if turns:
+        ax, ay = _turned(full, links.a, full.arm_a, full.turned_a, at)
+        bx, by = _turned(full, links.b, full.arm_b, full.turned_b, at)
+        dx, dy = dx + (bx - ax), dy + (by - ay)
+    return dx, dy
+
+
+@always_inlined
+def _opening(
+    linear: Vectors, angular: Numbers, links: Links, full: Full, turns: bool, at: int
+) -> tuple[Wide, Wide]:
+    """Return the velocities, or their derivatives, of the ends of eight springs at B against those at A."""
+    uxa, uya = take_vectors(linear, links.a, at)
+    uxb, uyb = take_vectors(linear, links.b, at)
+    ux, uy = uxb - uxa, uyb - uya
+    if turns:
+        n = len(links.a)
+        wa, wb = take_numbers(angular, links.a, at), take_numbers(angular, links.b, at)
+        ux = ux + (wa * take(full.turned_a, n + at) - wb * take(full.turned_b, n + at))
+        uy = uy + (wb * take(full.turned_b, at) - wa * take(full.turned_a, at))
+    return ux, uy
+
+
+@always_inlined
+def _pull_ends(places: Places, links: Links, full: Full, turns: bool, at: int, fx: Wide, fy: Wide) -> None:
+    """Add the pull of eight springs to both ends."""
+    pull_x, pull_y = take_vectors(places.pull, links.a, at)
+    put_vectors(places.pull, links.a, at, pull_x + fx, pull_y + fy)
+    pull_x, pull_y = take_vectors(places.pull, links.b, at)
+    put_vectors(places.pull, links.b, at, pull_x - fx, pull_y - fy)
+    if turns:
+        n = len(links.a)
+        torque = take(full.turned_a, at) * fy - take(full.turned_a, n + at) * fx
+        put_numbers(full.twist, links.a, at, take_numbers(full.twist, links.a, at) + torque)
+        torque = take(full.turned_b, at) * fy - take(full.turned_b, n + at) * fx
+        put_numbers(full.twist, links.b, at, take_numbers(full.twist, links.b, at) - torque)
+
+
+@inlined
+def _evaluate(places: Places, links: Links, full: Full, turns: bool) -> bool:
+    """Compute the pull of all springs and dampers; return whether each spring is long enough."""
+    short = 0
+    for at in range(0, len(links.a), WIDE):
+        dx, dy = _apart(places, links, full, turns, at)
+        length = root(dx * dx + dy * dy)
+        share = choose(length > 0.0, 1.0 / length, 0.0)
+        nx, ny = dx * share, dy * share
+        tension = take(links.stiffness, at) * (length - take(links.rest, at))
+        put(full.along_x, at, nx)
+        put(full.along_y, at, ny)
+        put(full.tension, at, tension)
+        ux, uy = _opening(places.speed, full.spin, links, full, turns, at)
+        opening = nx * ux + ny * uy
+        put(full.opening, at, opening)
+        pull = tension + take(full.damping, at) * opening
+        _pull_ends(places, links, full, turns, at, pull * nx, pull * ny)
+        short |= mask_bits(length < take(links.shortest, at))
+    return short == 0
+
+
+@inlined
+def _resist(places: Places, links: Links, full: Full, term: int, turns: bool) -> None:
+    """Compute the pull of dampers for ``full.rate``, the derivative of velocities of an order."""
+    n = len(links.a)
+    for at in range(0, n, WIDE):
+        ux, uy = _opening(full.rate, full.spin_rate, links, full, turns, at)
+        nx, ny = take(full.along_x, at), take(full.along_y, at)
+        opening = nx * ux + ny * uy
+        put(full.opening, term * n + at, opening)
+        pull = take(full.damping, at) * opening
+        _pull_ends(places, links, full, turns, at, pull * nx, pull * ny)
+
+
+@inlined
+def _change(places: Places, full: Full, first: bool, share: float, turns: bool) -> None:
+    """Change velocities by a derivative of them, which is computed from the pull, and forget the pull.
+
+    The first is of the velocities themselves, and gravity has part in it. ``share`` is that of the derivative
+    in the change, and of the pull in the impulse that is given to ends.
+    """
+    speed, rate = places.speed.reshape(places.speed.size), full.rate.reshape(full.rate.size)
+    pull, push = places.pull.reshape(places.pull.size), full.push.reshape(full.push.size)
+    gain, gravity = places.gain, places.gravity
+    for i in range(len(pull)):
+        push[i] = share * pull[i] if first else push[i] + share * pull[i]
+    for i in range(len(gain)):
+        rate[i] = pull[i] * gain[i] + gravity[i] if first else pull[i] * gain[i]
+    for i in range(len(gain)):
+        speed[i] += share * rate[i]
+    for i in range(len(pull)):
+        pull[i] = 0.0
+    if turns:
+        for i in range(len(full.twist)):
+            kept = 0.0 if first else full.twist_push[i]
+            full.twist_push[i] = kept + share * full.twist[i]
+        for i in range(len(full.spin_gain)):
+            full.spin_rate[i] = full.twist[i] * full.spin_gain[i]
+            full.spin[i] += share * full.spin_rate[i]
+        for i in range(len(full.twist)):
+            full.twist[i] = 0.0
+
+
+@inlined
+def _dissipated(links: Links, full: Full, span: float, terms: int) -> float:
+    """Return what dampers take in a kick [J]: the integral of c r^2, r being the series of how they open."""
+    n, taken, first = len(links.a), everywhere(0.0), 1.0  # span^j / j!
+    for j in range(terms):
+        second = first
+        for k in range(j, terms):
+            share = first * second * span / (j + k + 1) * (1.0 if j == k else 2.0)
+            second *= span / (k + 1)
+            for at in range(0, n, WIDE):
+                product = take(full.opening, j * n + at) * take(full.opening, k * n + at)
+                taken = taken + share * take(full.damping, at) * product
+        first *= span / (j + 1)
+    return sum_of(taken)
+
+
+@inlined
+def _book(
+    places: Places, links: Links, full: Full, span: float, ends: Rows, held: Rows, turns: bool,
+    given: Numbers,
+) -> None:  # fmt: skip
+    """Book what springs and dampers have given in a kick by ends that they do not move.
+
+    ``held`` are the slots of dampers at these ends, twice the slot, and one more where B is the end: what is
+    not of the spring is of the damper.
+    """
+    for k in range(len(held)):
+        slot, at_b = held[k] // 2, held[k] % 2 == 1
+        impulse = -span * full.tension[slot] if at_b else span * full.tension[slot]
+        i = links.b[slot] if at_b else links.a[slot]
+        x, y = impulse * full.along_x[slot], impulse * full.along_y[slot]
+        turn = places.place[i, 0] * y - places.place[i, 1] * x
+        for account, share in ((BY_SPRINGS, -1.0), (BY_DAMPERS, 1.0)):
+            given[account] += share * x
+            given[account + 1] += share * y
+            given[account + 2] += share * turn
+    to = BY_DAMPERS if len(held) > 0 else BY_SPRINGS
+    for k in range(len(ends)):
+        i = ends[k]
+        x, y = full.push[i, 0], full.push[i, 1]
+        given[to] -= x
+        given[to + 1] -= y
+        given[to + 2] -= places.place[i, 0] * y - places.place[i, 1] * x
+        given[BY_HAND] -= x * places.speed[i, 0] + y * places.speed[i, 1]
+    if turns:
+        for i in range(len(full.spin_gain)):
+            if full.spin_gain[i] == 0.0:
+                given[BY_SPRINGS + 2] -= full.twist_push[i]
+                given[BY_HAND] -= full.twist_push[i] * full.spin[i]
+
+
+@inlined
+def _kick(
+    places: Places, links: Links, full: Full, span: float, terms: int, turns: bool, ends: Rows, held: Rows,
+    given: Numbers,
+) -> None:  # fmt: skip
+    """Change velocities by what acts for ``span`` seconds at these places, of which the pull is computed."""
+    share = span
+    _change(places, full, True, share, turns)
+    for term in range(1, terms):
+        share *= span / (term + 1)
+        _resist(places, links, full, term, turns)
+        _change(places, full, False, share, turns)
+    _book(places, links, full, span, ends, held, turns, given)
+    if terms > 1:  # else nothing is damped
+        given[DISSIPATED] += _dissipated(links, full, span, terms)
+
+
+@inlined
+def _drift(places: Places, full: Full, span: float, turns: bool) -> None:
+    """Move and turn what moves for ``span`` seconds."""
+    place, speed = places.place.reshape(places.place.size), places.speed.reshape(places.speed.size)
+    for i in range(len(places.gain)):
+        place[i] += span * speed[i]
+    if turns:
+        for i in range(len(full.angle)):
+            full.angle[i] += span * full.spin[i]
+            full.cosine[i], full.sine[i] = math.cos(full.angle[i]), math.sin(full.angle[i])
+
+
+@inlined
+def _follows(places: Places, links: Links, full: Full, turns: bool, h: float) -> bool:
+    """Whether no spring turns too far, or changes too much, in ``h`` seconds."""
+    fast = 0
+    for at in range(0, len(links.a), WIDE):
+        dx, dy = _apart(places, links, full, turns, at)
+        ux, uy = _opening(places.speed, full.spin, links, full, turns, at)
+        far = (ux * ux + uy * uy) * (h * h) > (dx * dx + dy * dy) * (MAX_TURN * MAX_TURN)
+        fast |= mask_bits(far & (take(links.rest, at) > 0.0))
+    return fast == 0
+
+
+@inlined
+def _advance(
+    places: Places, links: Links, full: Full, drifts: Numbers, kicks: Numbers, h: float, steps: int,
+    terms: Rows, turns: bool, ends: Rows, held: Rows, given: Numbers,
+) -> int:  # fmt: skip
+    """Advance what was gathered, as :func:`flow_forces` does."""
+    for i in range(len(places.pull)):
+        places.pull[i, 0], places.pull[i, 1], full.twist[i] = 0.0, 0.0, 0.0
+    if not _follows(places, links, full, turns, h):
+        return TURNS_FAST
+    evaluations = 0
+    torque, torque_rate = torque_of_gravity(places)
+    for _ in range(steps):
+        for stage in range(len(kicks)):
+            evaluations += 1
+            if not _evaluate(places, links, full, turns):
+                return TURNS_FAST
+            _kick(places, links, full, kicks[stage] * h, terms[stage], turns, ends, held, given)
+            if stage < len(drifts):
+                _drift(places, full, drifts[stage] * h, turns)
+        torque, torque_rate = book_gravity(places, h, torque, torque_rate, given)
+    return evaluations
+
+
+@inlined
+def _take_spins(places: Places, full: Full, motion: Motion) -> None:
+    for i in range(len(full.angle)):
+        row = places.moving[i]
+        full.angle[i], full.spin[i] = motion.angle[row], motion.angular[row]
+        full.cosine[i], full.sine[i] = math.cos(full.angle[i]), math.sin(full.angle[i])
+
+
+@inlined
+def _put_spins(places: Places, full: Full, motion: Motion) -> None:
+    for i in range(len(full.angle)):
+        row = places.moving[i]
+        motion.angle[row], motion.angular[row] = full.angle[i], full.spin[i]
+
+
+@always_inlined
+def _slowed(x: float, y: float, linear: float, quadratic: float) -> float:
+    """Return the share of its velocity that drag takes from a body in a second."""
+    return linear + quadratic * math.sqrt(x * x + y * y) if quadratic > 0.0 else linear
+
+
+@inlined
+def _fall(
+    motion: Motion, rows: Rows, drag: Numbers, gx: float, gy: float, span: float, account: Vectors
+) -> None:
+    """Move bodies that only drag and gravity act on, by steps of order 4, as many as each needs.
+
+    ``drag`` (3 d,) has of each drag by speed and by its square, of its mass, and the mass. What drag takes is
+    integrated beside the motion, by the same method.
+    """
+    n, sixth = len(rows), 1.0 / 6.0
+    taken, px, py, turned, fallen, weight = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(n):
+        row, linear, quadratic, mass = rows[i], drag[i], drag[n + i], drag[2 * n + i]
+        x, y = motion.position[row, 0], motion.position[row, 1]
+        vx, vy = motion.linear[row, 0], motion.linear[row, 1]
+        steps = 1 + int(_slowed(vx, vy, linear, 2.0 * quadratic) * span / _FOLLOWED)
+        h = span / steps
+        for _ in range(steps):
+            to_x, to_y, to_vx, to_vy = 0.0, 0.0, 0.0, 0.0
+            at_x, at_y, ux, uy = x, y, vx, vy
+            for stage in range(4):
+                share = sixth * h if stage == 0 or stage == 3 else 2.0 * sixth * h
+                slowed = _slowed(ux, uy, linear, quadratic)
+                fx, fy = -slowed * ux, -slowed * uy
+                taken -= share * mass * (fx * ux + fy * uy)
+                px += share * mass * fx
+                py += share * mass * fy
+                turned += share * mass * (at_x * fy - at_y * fx)
+                to_x += share * ux
+                to_y += share * uy
+                to_vx += share * (gx + fx)
+                to_vy += share * (gy + fy)
+                ahead = h if stage == 2 else 0.5 * h
+                at_x, at_y = x + ahead * ux, y + ahead * uy
+                ux, uy = vx + ahead * (gx + fx), vy + ahead * (gy + fy)
+            mean_x = h * (x + 0.5 * to_x) - h * h / 12.0 * to_vx
+            mean_y = h * (y + 0.5 * to_y) - h * h / 12.0 * to_vy
+            fallen += mass * (mean_x * gy - mean_y * gx)
+            x, y, vx, vy = x + to_x, y + to_y, vx + to_vx, vy + to_vy
+        weight += mass
+        motion.position[row, 0], motion.position[row, 1] = x, y
+        motion.linear[row, 0], motion.linear[row, 1] = vx, vy
+        motion.angle[row] += span * motion.angular[row]
+    book(account[DAMPING], 0, -taken, px, py, turned)
+    book(account[GRAVITY], 0, 0.0, weight * gx * span, weight * gy * span, fallen)
+
+
+@inlined
+def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors) -> int:
+    """Move bodies on springs and in drag for ``span`` seconds; return the number of force evaluations.
+
+    Plain springs between middles are left to :func:`flow_springs`. Where a spring becomes so short, or turns
+    so fast, that steps of one length do not follow it, nothing is changed, and :data:`TURNS_FAST` returned.
+    """
+    numbers, whole = springs
+    m, p, n, s, steps = whole[0], whole[1], whole[2], whole[3], whole[4]
+    turns, alone, last, made = whole[6] != 0, whole[7], len(whole), 0
+    if whole[5] == 0:
+        made = flow_springs(motion, springs, span, account)
+    else:
+        places, links, ends, given, drifts, kicks, at = named(springs)
+        full, terms = _full(numbers, at, m, p, n), whole[last - alone - s - 1 : last - alone]
+        held = whole[SIZES + m + 2 * n + whole[8] : last - alone - s - 1]
+        gather(places, motion)
+        _take_spins(places, full, motion)
+        for i in range(len(given)):
+            given[i] = 0.0
+        made = _advance(
+            places, links, full, drifts, kicks, span / steps, steps, terms, turns, ends, held, given
+        )
+        if made >= 0:
+            if turns:
+                _put_spins(places, full, motion)
+            scatter(places, motion, 0.0 if turns else span)
+            book_given(given, numbers, span, account)
+            book(
+                account[DAMPING], 0, -given[DISSIPATED], given[BY_DAMPERS], given[BY_DAMPERS + 1],
+                given[BY_DAMPERS + 2],
+            )  # fmt: skip
+    if made >= 0 and alone > 0:
+        drag = numbers[len(numbers) - 3 * alone :]
+        _fall(motion, whole[last - alone :], drag, numbers[UNIFORM], numbers[UNIFORM + 1], span, account)
+    return made

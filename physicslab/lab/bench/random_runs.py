@@ -1,0 +1,264 @@
+"""Short runs of random scenes beside other engines, and what the slowest of them have in common."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from physicslab.lab.bench.engine import OURS, Engine, OtherEngine
+from physicslab.lab.bench.measure import Judge, load_kernels, spent_by_system
+from physicslab.lab.bench.random_scenes import random_scene
+from physicslab.lab.bench.result import EngineResult, SceneResult, Spread, Times, take_turns
+from physicslab.lab.document import lab_document, machine_text
+from physicslab.lab.jobs import Job
+from physicslab.lab.peers.mirrors import PymunkMirror
+from physicslab.lab.peers.peer import CannotBuild, Peer
+from physicslab.lab.table import cell, table
+from physicslab.state.masses import Diverged
+from physicslab.world import World
+
+_BLOCK, _LONGEST = 5, 240
+"""Steps of a turn, and most steps of a scene."""
+_PORTION = 2
+"""Turns between two looks at the clock: scenes that no engine is fit for take seconds a step."""
+_WARM = 2
+"""Steps before the timing: kernels are loaded in them, and pairs are listed for the first time."""
+_BUDGET_MS = 1_500.0
+"""CPU time of all engines together after which a scene takes no more turns."""
+_SHOWN = 10
+"""The slowest scenes that are listed."""
+_FEW = 4
+"""Scenes of a feature from which on their median says something."""
+BESIDE = "beside systems"
+"""What steps take in no system: packing, choosing and calling."""
+
+
+@dataclass(frozen=True, slots=True)
+class RandomResult:
+    """What a run of a random scene showed.
+
+    Attributes
+    ----------
+    result : SceneResult
+        Times and quality; ``times_ours`` are ratios of whole times.
+    features : list of str
+        What the scene has.
+    path : str
+        The steppers, what moves bodies on springs and in drag, and the substeps of a step.
+    scalar, wide : int
+        How many contacts were solved one by one at the end, and how many eight at a time.
+    """
+
+    result: SceneResult
+    features: list[str] = field(default_factory=list)
+    path: str = ""
+    scalar: int = 0
+    wide: int = 0
+
+    def speed(self, engine: str) -> float | None:
+        """Return how many times as long an engine took, if it ran."""
+        found = self.result.engines.get(engine)
+        return None if found is None else found.times_ours
+
+    @property
+    def dearest(self) -> tuple[str, float]:
+        """What took most of the time, and its share of it."""
+        whole = sum(self.result.systems.values()) or 1.0
+        name, spent = max(self.result.systems.items(), key=lambda item: item[1], default=("-", 0.0))
+        return name.removesuffix("System"), spent / whole
+
+
+def measure_random(seed: int, number: int, peers: Sequence[type[Peer]]) -> Job[RandomResult]:
+    """Time a scene of the series of a seed; yield the share that is done now and then."""
+    scene, features = random_scene(seed, number)
+    ours = Engine(scene.build())
+    result = SceneResult(scene, engines={OURS: EngineResult(OURS)})
+    engines = [ours]
+    for peer in peers:
+        result.engines[peer.title] = EngineResult(peer.title)
+        try:
+            engines.append(OtherEngine(scene.build(), peer))
+        except CannotBuild as error:
+            result.engines[peer.title].failure = str(error)
+    load_kernels(ours.world)
+    judge = Judge(result)
+    try:
+        for engine in engines:
+            engine.run(_WARM)
+        judge.begin(engines)
+        before = spent_by_system(ours.world)
+        times: list[Times] = []
+        for times in take_turns(engines, _LONGEST // _BLOCK, _BLOCK, _PORTION):
+            if sum(sum(spent.step) for spent in times) * _BLOCK > _BUDGET_MS:
+                break
+            yield len(times[0].step) * _BLOCK / _LONGEST
+    except Diverged as error:
+        result.ours.failure = str(error)
+        return RandomResult(result, features)
+    judge.look(engines, "settled")
+    _note(result, engines, times, before)
+    contacts = ours.world.contacts
+    wide = sum(part.contacts.wide.filled for part in ours.world.parts)
+    result.contacts = contacts.count
+    return RandomResult(result, features, _path(ours.world), contacts.count - wide, wide)
+
+
+def _note(
+    result: SceneResult, engines: Sequence[Engine], times: Sequence[Times], before: dict[str, int]
+) -> None:
+    """Write times, their ratios, and what each system took of a mean step [ms] into the result."""
+    whole = sum(times[0].step)
+    for engine, spent in zip(engines, times, strict=True):
+        found = result.engines[engine.title]
+        found.step_ms, found.times_ours = Spread.of(spent.step), sum(spent.step) / whole
+    steps = len(times[0].step) * _BLOCK
+    after = spent_by_system(engines[0].world)
+    result.systems = {name: (after[name] - before.get(name, 0)) / 1e6 / steps for name in after}
+    rest = times[0].wall_ms / steps - sum(result.systems.values())
+    result.systems[BESIDE] = max(0.0, rest)
+
+
+def _path(world: World) -> str:
+    """Return the steppers of a world's islands, and what their substeps are."""
+    found: dict[str, int] = {}
+    for part in world.parts:
+        words = [] if part.stepper is None else [part.stepper.name]
+        if part.plan.split_forces is not None:
+            words.append(part.plan.split_forces.name)
+        if part.substeps > part.simulation.substeps:
+            words.append(f"{part.substeps} substeps")
+        name = " + ".join(words)
+        found[name] = found.get(name, 0) + 1
+    return ", ".join(name if count == 1 else f"{count} x {name}" for name, count in found.items())
+
+
+# ---- the report ----------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class RandomReport:
+    """All runs of random scenes.
+
+    Attributes
+    ----------
+    seed : str
+        The series, and where in it the scenes begin.
+    peers : list of str
+        The other engines.
+    found : list of RandomResult
+        Scene by scene.
+    """
+
+    seed: str
+    peers: list[str]
+    found: list[RandomResult] = field(default_factory=list)
+
+    def ratios(self, peer: str, found: Sequence[RandomResult] | None = None) -> list[float]:
+        """Return how many times as long a peer took, in the scenes that it ran, the smallest first."""
+        speeds = [one.speed(peer) for one in (self.found if found is None else found)]
+        return sorted(speed for speed in speeds if speed is not None)
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """Every figure, and the machine."""
+        return lab_document(
+            "bench-random", peers=True, seed=self.seed, scenes=[_scene(one) for one in self.found]
+        )
+
+
+def _scene(one: RandomResult) -> dict[str, Any]:
+    result = one.result
+    return {
+        "name": result.scene.name, "family": result.scene.group, "bodies": result.scene.size,
+        "features": one.features, "path": one.path, "scalar": one.scalar, "wide": one.wide,
+        "systems_ms": result.systems, "engines": [*result.engines.values()],
+    }  # fmt: skip
+
+
+def random_text(report: RandomReport) -> str:
+    """Return the tables of a run: the whole, the slowest beside each peer, medians by feature."""
+    blocks = [machine_text(peers=True), _whole(report)]
+    for peer in report.peers:
+        ran = [one for one in report.found if one.speed(peer) is not None]
+        worst = sorted(ran, key=lambda one: one.speed(peer) or 0.0)[:_SHOWN]
+        if worst:
+            blocks.append(f"the slowest beside {peer}\n{_worst(report, worst)}")
+    blocks.append(f"medians by feature: time of the other by ours\n{_common(report)}")
+    failed = [
+        f"{one.result.scene.name}: {one.result.ours.failure}"
+        for one in report.found
+        if one.result.ours.failure
+    ]
+    return "\n\n".join([*blocks, *failed])
+
+
+def _whole(report: RandomReport) -> str:
+    rows = [["time of the other by ours", "scenes", "least", "a tenth", "median", "nine tenths", "below 1"]]
+    for peer in report.peers:
+        ratios = report.ratios(peer)
+        if ratios:
+            shares = (f"{share:.2f}" for share in np.quantile(ratios, (0.0, 0.1, 0.5, 0.9)))
+            rows.append([peer, f"{len(ratios)}", *shares, f"{sum(ratio < 1.0 for ratio in ratios)}"])
+    lines = [table(rows)]
+    for name in (OURS, *report.peers):
+        deep = [
+            one.result.engines[name].quality.get("deepest overlap")
+            for one in report.found
+            if name in one.result.engines
+        ]
+        known = [depth for depth in deep if depth is not None]
+        if known:
+            middle, most = np.quantile(known, (0.5, 1.0))
+            lines.append(f"deepest overlap, {name}: median {middle:.2g} m, most {most:.2g} m")
+    return "\n".join(lines)
+
+
+def _worst(report: RandomReport, worst: Sequence[RandomResult]) -> str:
+    rows = [
+        ["scene", "family", "bodies", "scalar", "wide", "ms", *report.peers, "most of it", "path", "features"]
+    ]
+    for one in worst:
+        result, (name, share) = one.result, one.dearest
+        ms = result.ours.step_ms
+        rows.append([
+            result.scene.name, result.scene.group, f"{result.scene.size}", f"{one.scalar}", f"{one.wide}",
+            cell(None if ms is None else ms.mean, ".3g"),
+            *(cell(one.speed(peer), ".2f") for peer in report.peers), f"{name} {share:.0%}", one.path,
+            ", ".join(one.features),
+        ])  # fmt: skip
+    return table(rows, words=(0, 1, *range(6 + len(report.peers), 9 + len(report.peers))))
+
+
+def _common(report: RandomReport) -> str:
+    """Return a line for each feature and family, those with the smallest median first."""
+    groups: dict[str, list[RandomResult]] = {}
+    for one in report.found:
+        for feature in (one.result.scene.group, *one.features):
+            groups.setdefault(feature, []).append(one)
+    lines = []
+    for name, group in groups.items():
+        medians = [
+            float(np.median(found)) if (found := report.ratios(peer, group)) else None
+            for peer in report.peers
+        ]
+        if len(group) >= _FEW:
+            lines.append(
+                (medians[0] if medians and medians[0] is not None else 0.0, name, len(group), medians)
+            )
+    rows = [["feature", "scenes", *report.peers]]
+    for _, name, count, medians in sorted(lines, key=lambda line: line[:2]):
+        rows.append([name, f"{count}", *(cell(median, ".2f") for median in medians)])
+    return table(rows)
+
+
+def random_jobs(
+    seed: int, first: int, count: int, peers: Sequence[type[Peer]]
+) -> Iterator[tuple[float, Job[RandomResult]]]:
+    """Yield the work: ``count`` scenes of a series from the ``first`` on, each with its bodies."""
+    for number in range(first, first + count):
+        yield float(random_scene(seed, number)[0].size), measure_random(seed, number, peers)
+
+
+RANDOM_PEERS: tuple[type[Peer], ...] = (PymunkMirror,)
+"""The packages that random scenes are run beside: the others are slower, or the same in C."""

@@ -1,0 +1,175 @@
+"""Ensembles on a cluster, and ensembles of which processes are killed."""
+
+import os
+import random
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from physicslab import World, ensemble
+from physicslab.components import Mass
+
+SWEEP = (
+    "drop", "--sample", "ball.Material.restitution=normal:0.7:0.2", "--samples", "4000",
+    "--measure", "y=ball.y", "--measure", "n=collisions", "--seconds", "2",
+)  # fmt: skip
+"""Some runs are refused: a restitution is at most 1."""
+
+
+def command(*arguments: str) -> list[str]:
+    return [sys.executable, "-m", "physicslab", "sweep", *SWEEP, *arguments]
+
+
+def kept(path: Path) -> dict[str, bytes]:
+    """Return the bytes of every column but the time that runs took."""
+    with np.load(path) as columns:
+        return {name: columns[name].tobytes() for name in columns.files if name != "wall_s"}
+
+
+@contextmanager
+def scheduler(workers: int) -> Iterator[str]:
+    """Start a scheduler and workers on this machine; give its address."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        address = f"tcp://127.0.0.1:{free.getsockname()[1]}"
+    dask = [sys.executable, "-W", "ignore", "-m", "distributed.cli"]
+    quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    port = address.rpartition(":")[2]
+    begun = [
+        subprocess.Popen(
+            [
+                *dask[:-1],
+                "distributed.cli.dask_scheduler",
+                "--host",
+                "127.0.0.1",
+                "--port",
+                port,
+                "--no-dashboard",
+            ],
+            **quiet,
+        )
+    ]
+    begun += [
+        subprocess.Popen(
+            [
+                *dask[:-1],
+                "distributed.cli.dask_worker",
+                address,
+                "--nthreads",
+                "1",
+                "--no-dashboard",
+                "--no-nanny",
+            ],
+            **quiet,
+        )
+        for _ in range(workers)
+    ]
+    try:
+        yield address
+    finally:
+        for process in begun:
+            process.kill()
+            process.wait()
+
+
+@pytest.mark.cluster
+def test_a_cluster_makes_the_rows_that_one_process_makes(tmp_path: Path) -> None:
+    import distributed
+
+    one, many = tmp_path / "one.npz", tmp_path / "many.npz"
+    subprocess.run(command("--out", str(one), "--workers", "1"), check=True, timeout=900)
+    with scheduler(2) as address:
+        client = distributed.Client(address, timeout=60)
+        client.wait_for_workers(2, timeout=120)
+        client.close()
+        subprocess.run(command("--out", str(many), "--dask", address), check=True, timeout=900)
+    assert kept(one) == kept(many)
+
+
+@pytest.mark.cluster
+def test_a_scheduler_that_is_not_there_is_refused_in_one_line(tmp_path: Path) -> None:
+    arguments = command("--out", str(tmp_path / "x.npz"), "--dask", "tcp://127.0.0.1:1")
+    done = subprocess.run(arguments, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 2 and not done.stdout and not [*tmp_path.iterdir()]
+    assert done.stderr.count("\n") == 1 and "no scheduler answers there" in done.stderr
+
+
+@pytest.mark.cluster
+def test_results_are_tables_of_pandas_xarray_and_parquet(tmp_path: Path) -> None:
+    import pyarrow.parquet as parquet
+
+    space: dict[str, Any] = {"ball.Mass.mass": [1.0, 2.0], "ball.Material.restitution": [0.5, 0.7, 0.9]}
+    out = tmp_path / "x.parquet"
+    result = ensemble("drop", space, measure={"y": "ball.y"}, seconds=1.0, executor="serial", out=out)
+    assert result.to_pandas()["y"].tolist() == result.columns["y"].tolist()
+    cube = result.to_xarray()
+    assert cube["y"].shape == (2, 3)
+    assert (
+        float(cube["y"].sel({"ball.Mass.mass": 2.0, "ball.Material.restitution": 0.9}))
+        == result.columns["y"][5]
+    )
+    assert parquet.read_table(out).to_pydict()["y"] == result.columns["y"].tolist()
+
+
+def children(process: int) -> list[int]:
+    """Return the worker processes that a process has started."""
+    listed = Path(f"/proc/{process}/task/{process}/children").read_text().split()
+    spawned = [int(child) for child in listed if "spawn_main" in Path(f"/proc/{child}/cmdline").read_text()]
+    return spawned
+
+
+def killed_and_resumed(out: Path, kills: int, rng: random.Random) -> None:
+    """Run the sweep, kill a worker or the sweep itself at random moments, and let it come to its end."""
+    while True:
+        process = subprocess.Popen(command("--out", str(out), "--workers", "2"), stdout=subprocess.DEVNULL)
+        while process.poll() is None and kills:
+            time.sleep(rng.uniform(0.5, 6.0))
+            victim = process.pid
+            if rng.random() < 0.5:
+                try:
+                    victim = rng.choice(children(process.pid) or [process.pid])
+                except OSError:
+                    continue
+            if process.poll() is None:
+                try:
+                    os.kill(victim, signal.SIGKILL)
+                except ProcessLookupError:
+                    continue
+                kills -= 1
+        if process.wait(timeout=900) == 0:
+            return
+        assert process.returncode == -signal.SIGKILL
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="children are listed in /proc")
+def test_killed_at_random_moments_it_comes_to_the_same_bytes(tmp_path: Path) -> None:
+    whole, out = tmp_path / "whole.npz", tmp_path / "killed.npz"
+    subprocess.run(command("--out", str(whole), "--workers", "1"), check=True, timeout=900)
+    killed_and_resumed(out, int(os.environ.get("PHYSICSLAB_KILLS", "4")), random.Random(1))
+    assert kept(whole) == kept(out)
+    assert not (tmp_path / "killed.npz.parts").exists()
+
+
+def ends_its_process(world: World) -> float:
+    mass = world.component("ball", Mass).mass
+    if mass == 3.0:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return mass
+
+
+@pytest.mark.slow
+def test_the_run_that_ends_its_process_is_found_and_kept_as_a_failure() -> None:
+    space = {"ball.Mass.mass": [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]}
+    result = ensemble("drop", space, measure={"m": ends_its_process}, seconds=0.1, workers=2)
+    assert result.failures == {2: "the process that made this run ended"}
+    assert np.isnan(result.columns["m"][2]) and np.nansum(result.columns["m"]) == 25.0
