@@ -2,11 +2,8 @@
 
 import sys
 from argparse import ArgumentParser, Namespace
-<<<<<<< HEAD
-=======
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
->>>>>>> main
 from pathlib import Path
 from typing import Any
 
@@ -24,11 +21,8 @@ from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.commands.variations import vary
 from physicslab.ecs.text import printable, shortened
-<<<<<<< HEAD
-from physicslab.ensembles.map_picture import map_grids
-=======
 from physicslab.ensembles.cluster import Dask
->>>>>>> main
+from physicslab.ensembles.map_picture import map_grids
 from physicslab.ensembles.result import EnsembleResult
 from physicslab.ensembles.runs import run_task, task_of
 from physicslab.ensembles.task import Task

@@ -163,7 +163,7 @@ def write_result(path: Path, columns: Mapping[str, Values], failures: Mapping[in
             text.flush()
             text.detach()
         else:
-            arrow, parquet = (_package(name, ".parquet") for name in ("pyarrow", "pyarrow.parquet"))
+            arrow, parquet = (package(name, ".parquet") for name in ("pyarrow", "pyarrow.parquet"))
             parquet.write_table(arrow.table(dict(columns)), file)
 
 
