@@ -1,15 +1,14 @@
 """The commands of the contract: ``physicslab [SCENE]``, ``physicslab run SCENE``, ``physicslab scenes``."""
 
-import argparse
 import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib.metadata import PackageNotFoundError
-from typing import NoReturn
 
 import physicslab
 from physicslab.commands import COMMANDS, FAILED, USAGE, CommandError, command, require_window
+from physicslab.commands.parsers import WindowParser, completion, manual, parser_of
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import SceneError
@@ -20,27 +19,6 @@ _LINE_LIMIT = 4_000
 _INTERRUPTED = 130
 _PIPE_CLOSED = 141
 """What a shell reports of a program that a signal ended: 128 and the signal's number."""
-
-
-class _Parser(argparse.ArgumentParser):
-    """Refuses bad usage in one line, and takes no option by half its name."""
-
-    def __init__(self, prog: str, description: str | None) -> None:
-        super().__init__(prog=prog, description=description, allow_abbrev=False)
-
-    def error(self, message: str) -> NoReturn:
-        raise CommandError(f"{message} (see {self.prog} --help)")
-
-
-class _WindowParser(_Parser):
-    """Lists the commands in its help alone, a line each; a window does not wait for their import."""
-
-    def format_help(self) -> str:
-        self.usage = "physicslab [SCENE] | physicslab COMMAND ... (physicslab COMMAND --help says more)"
-        width = max(map(len, COMMANDS))
-        summaries = ((command(name).__doc__ or "").splitlines()[0] for name in COMMANDS)
-        lines = (f"  {name:<{width}}  {said}" for name, said in zip(COMMANDS, summaries, strict=True))
-        return super().format_help() + "\n".join(["\ncommands:", *lines, ""])
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -85,20 +63,16 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _dispatch(arguments: list[str]) -> int:
     if arguments and arguments[0] in COMMANDS:
         name, *rest = arguments
-        named = command(name)
-        parser = _Parser(f"physicslab {name}", named.__doc__)
-        named.add_arguments(parser)
-        return named.execute(parser.parse_args(rest))
-    return _open(arguments)
+        return command(name).execute(parser_of(name).parse_args(rest))
+    given = WindowParser(_version()).parse_args(arguments)
+    if given.print_completion is not None or given.print_manual:
+        print(manual(_version()) if given.print_manual else completion(given.print_completion), end="")
+        return 0
+    return _open(given.scene)
 
 
-def _open(arguments: list[str]) -> int:
+def _open(scene: str | None) -> int:
     """Open the window, on a scene if one is named."""
-    parser = _WindowParser("physicslab", "Open the desktop sandbox, or do one of the commands.")
-    words = "a built-in scene's name, or a path; or that of a lesson, which ends in .md"
-    parser.add_argument("scene", metavar="SCENE", nargs="?", help=words)
-    parser.add_argument("--version", action="version", version=_version())
-    scene = parser.parse_args(arguments).scene
     require_window("the window")
     if scene is not None and scene.endswith(".md"):
         from physicslab.lessons.reader import read_lesson

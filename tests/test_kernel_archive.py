@@ -203,6 +203,44 @@ def test_kernels_of_one_process_are_loaded_by_another(
     assert hits(other) == 1
 
 
+STACK = """
+import hashlib, pathlib, sys
+from physicslab.kernels.archive import pack, unpack
+path = pathlib.Path(sys.argv[2])
+if sys.argv[1] == "unpack":
+    unpack(path)
+from physicslab import load_scene
+from physicslab.components import Transform, Velocity
+from physicslab.kernels import KERNELS
+from physicslab.kernels.keys import platform_key
+world = load_scene("newtons_cradle")
+world.run(seconds=1.0)
+if sys.argv[1] == "pack":
+    path.write_bytes(pack())
+bits = [world.table(Transform)["position"], world.table(Transform)["angle"], world.table(Velocity)["linear"]]
+digest = hashlib.sha256(b"".join(column.tobytes() for column in bits)).hexdigest()
+print(digest, sum(sum(k.stats.cache_misses.values()) for k in KERNELS), platform_key()["processor"])
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif("x86-64-v2" not in keys.supported_levels(), reason="this processor has no levels")
+def test_kernels_for_a_kind_of_processors_give_the_same_bits_on_this_one(tmp_path: Path) -> None:
+    """A processor without AVX and FMA compiles them, any other loads them."""
+
+    def run(what: str, **variables: str) -> list[str]:
+        command = [sys.executable, "-c", STACK, what, str(tmp_path / "kernels.zip")]
+        done = subprocess.run(command, env=os.environ | variables, capture_output=True, text=True, check=True)
+        return done.stdout.split()
+
+    one, other = {cache.VARIABLE: str(tmp_path / "one")}, {cache.VARIABLE: str(tmp_path / "other")}
+    digest, _, native = run("neither")
+    assert native not in keys.LEVELS
+    old = run("pack", NUMBA_CPU_NAME="x86-64-v2", NUMBA_CPU_FEATURES="", **one)
+    assert old[0] == digest and int(old[1]) > 3 and old[2] == "x86-64-v2"
+    assert run("unpack", **other) == [digest, "0", "x86-64-v2"]
+
+
 # ---- the command -------------------------------------------------------------------------------------------
 
 

@@ -7,6 +7,8 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -140,7 +142,7 @@ def test_another_numba_python_or_processor_has_folders_of_its_own(
 ) -> None:
     before = keys.folder_of("physicslab.kernels.motion")
     other = keys.platform_key() | {changed: "another"}
-    monkeypatch.setattr(keys, "platform_key", lambda: other)
+    monkeypatch.setattr(keys, "platform_key", lambda level: other)
     assert keys.folder_of.__wrapped__("physicslab.kernels.motion") != before
 
 
@@ -290,13 +292,53 @@ def test_one_that_cannot_be_written_is_used_if_it_holds_every_kernel(
     places: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As where an administrator has compiled them for a classroom, or a container was built as root."""
-    shared = places / "shared"
-    shared.mkdir(mode=0o755)
+    shared, name = places / "shared", cache._mark_name()
+    folder = keys.folder_of("physicslab.kernels.motion")
+    (shared / folder).mkdir(parents=True, mode=0o755)
     monkeypatch.setenv("PHYSICSLAB_KERNELS", str(shared))
     monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != shared)
-    assert cache._first_private() != shared, "what is missing could not be kept there"
+    with fresh_directory(monkeypatch):
+        assert cache.place_of(folder).is_relative_to(places / "temporary"), "one would be compiled each time"
+    (shared / name).write_text("")
+    with fresh_directory(monkeypatch):
+        assert cache.cache_directory() == places / "physicslab" / "kernels", "those of users' own go there"
+        assert cache.place_of(folder) == shared / folder and cache.mark() == shared / name
+        assert cache.place_of("other.force-1") == places / "physicslab" / "kernels" / "other.force-1"
+    shared.chmod(0o777)
+    with fresh_directory(monkeypatch):
+        assert shared not in cache.place_of(folder).parents, "anyone could have filled it"
+
+
+@posix
+def test_those_that_came_with_python_are_used(places: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "prefix", str(places / "python"))
+    shared = places / "python" / "share" / "physicslab" / "kernels"
+    shared.mkdir(parents=True, mode=0o755)
     (shared / cache._mark_name()).write_text("")
-    assert cache._first_private() == shared
+    with fresh_directory(monkeypatch):
+        assert cache.mark().parent == shared
+
+
+@contextmanager
+def fresh_directory(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Let the folders be chosen again, as at the start of a process."""
+    with monkeypatch.context() as patch:
+        patch.setattr(cache, "_directory", None)
+        patch.setattr(cache, "_shared", None)
+        yield
+
+
+@posix
+@pytest.mark.skipif(not keys.supported_levels(), reason="this processor has no levels")
+def test_those_for_a_kind_of_processors_are_used_where_there_are_none_for_this_one(tmp_path: Path) -> None:
+    code = "from physicslab.kernels import cache, keys; cache.cache_directory(); "
+    code += "print(keys.platform_key()['processor'], cache._mark_name(), cache._mark_name('x86-64-v2'))"
+    native, mark, other = run(code, PHYSICSLAB_KERNELS=str(tmp_path)).split()
+    assert native not in keys.LEVELS and other.startswith("complete-x86-64-v2-")
+    (tmp_path / other).write_text("")
+    assert run(code, PHYSICSLAB_KERNELS=str(tmp_path)).split() == ["x86-64-v2", other, other]
+    (tmp_path / mark).write_text("")
+    assert run(code, PHYSICSLAB_KERNELS=str(tmp_path)).split()[0] == native
 
 
 @posix

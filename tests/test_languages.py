@@ -4,12 +4,14 @@ import ast
 import re
 from dataclasses import replace
 from gettext import NullTranslations
+from pathlib import Path
 
 import pygame
 import pytest
 from desk import SETTLED, click, sized, tap
 from window_texts import is_known, tables, without_translation, written
 
+import physicslab
 from physicslab.files.scene import load_scene
 from physicslab.languages.catalogue import FOLDER, SOURCE, languages, messages, translations
 from physicslab.languages.language import Language, language
@@ -17,7 +19,7 @@ from physicslab.lessons.catalogue import find_lesson
 from physicslab.lessons.worksheet import worksheet
 from physicslab.view.controls.tools import PALETTE
 
-PACKAGE = FOLDER.parent
+PACKAGE = Path(physicslab.__path__[0])
 SAYING = {"say": 1, "say_count": 2}
 """What translates, and how many texts it takes."""
 GAP = re.compile(r"\{[a-z_]+\}")

@@ -1,16 +1,21 @@
 """The wheel in a fresh environment: the base computes without a display, the extra ``window`` opens one."""
 
+import compileall
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
+import zipapp
 import zipfile
 from pathlib import Path
 
 import pytest
 from screens import ROOT, Screen, needs_screen
 from screens import screen as screen
+
+from physicslab.kernels.program import own_command
 
 UV = os.environ.get("UV") or shutil.which("uv")
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(UV is None, reason="uv is not installed")]
@@ -91,3 +96,93 @@ def test_with_the_extra_the_window_opens(wheel: Path, tmp_path: Path, screen: Sc
     assert installed.run("run", "drop", "--seconds", "1", "--png", "drop.png").returncode == 0
     program = screen.launch("drop", command=[installed.command])
     screen.leave(program)
+
+
+# ---- without sources ---------------------------------------------------------------------------------------
+
+KERNEL = "physicslab.kernels.motion.clear"
+RUN = ("run", "drop", "--seconds", "1", "--json", "-")
+
+
+@pytest.fixture(scope="module")
+def compiled(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with the package as compiled modules, and the main script of an archive."""
+    folder = tmp_path_factory.mktemp("compiled")
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(folder)
+    assert compileall.compile_dir(folder, quiet=2, legacy=True)
+    for source in folder.rglob("*.py"):
+        source.unlink()
+    shutil.copy(ROOT / "physicslab" / "__main__.py", folder)
+    return folder
+
+
+@pytest.mark.parametrize("way", ["modules", "archive"])
+def test_without_sources_it_gives_the_same_bits_and_keeps_kernels(
+    way: str, compiled: Path, tmp_path: Path
+) -> None:
+    command, path = [sys.executable, "-m", "physicslab"], str(compiled)
+    if way == "archive":
+        command, path = [sys.executable, str(tmp_path / "physicslab.pyz")], ""
+        zipapp.create_archive(compiled, command[1])
+    environment = {**os.environ, "PYTHONPATH": path, "PHYSICSLAB_KERNELS": str(tmp_path / "kernels")}
+
+    def run(*arguments: str, stdin: str = "") -> str:
+        done = subprocess.run(
+            [*command, *arguments], input=stdin, cwd=tmp_path, env=environment, text=True,
+            capture_output=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    ours = subprocess.run([sys.executable, "-m", "physicslab", *RUN], capture_output=True, check=True)
+    assert json.loads(run(*RUN))["entities"] == json.loads(ours.stdout)["entities"]
+    assert run("kernels", "worker", stdin=f"{KERNEL}\n") == f"{KERNEL}\n"
+    (kept,) = (tmp_path / "kernels").glob("motion-*/*.nbc")
+    before = kept.stat().st_mtime_ns
+    assert run("kernels", "worker", stdin=f"{KERNEL}\n") == f"{KERNEL}\n"
+    assert kept.stat().st_mtime_ns == before, "it is loaded, and not compiled again"
+    assert "Wie weit" in run("lesson", "projectile", "--language", "de", "--json", "-")
+    assert run("export", "drop", "--seconds", "0.1", "--html", "-").startswith("<!DOCTYPE html>")
+
+
+def test_a_program_without_python_starts_itself_by_its_own_name(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert own_command("run") == (sys.executable, "-m", "physicslab", "run")
+    monkeypatch.setattr(sys, "frozen", True, raising=False)
+    assert own_command("run") == (sys.executable, "run"), "-m would open its window"
+    started = re.compile(r"sys\.executable")
+    found = [
+        path.name for path in (ROOT / "physicslab").rglob("*.py") if started.search(path.read_text("utf-8"))
+    ]
+    assert found == ["program.py"], "all else goes by own_command"
+
+
+@pytest.fixture(scope="module")
+def bundle(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder that PyInstaller makes."""
+    pytest.importorskip("PyInstaller", reason="needs the group: uv run --group bundle pytest -m slow")
+    place = tmp_path_factory.mktemp("bundle")
+    options = [
+        "--noconfirm",
+        "--log-level",
+        "ERROR",
+        "--distpath",
+        str(place),
+        "--workpath",
+        str(place / "work"),
+    ]
+    command = [sys.executable, "-m", "PyInstaller", *options, "bundle.spec"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return place / "physicslab"
+
+
+@needs_screen
+def test_a_frozen_program_opens_its_window_and_works_in_processes(bundle: Path, screen: Screen) -> None:
+    assert not list(bundle.rglob("physicslab/**/*.py"))
+    command = str(bundle / "physicslab")
+    screen.leave(screen.launch("drop", command=[command]))
+    vary = ["--vary", "ball.Mass.mass=1:5:9"]
+    page = [command, "export", "drop", "--seconds", "0.1", *vary, "--html", "page.html"]
+    done = subprocess.run(page, cwd=screen.folder, env=screen.environment, capture_output=True, text=True)
+    assert done.returncode == 0 and "9 runs" in done.stdout, done.stderr

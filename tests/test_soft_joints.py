@@ -79,7 +79,7 @@ def test_a_chain_of_100_links_carries_10_000_times_the_mass_of_one() -> None:
     assert largest(world) < 0.01 * 0.5
 
 
-@pytest.mark.parametrize(("heavy", "spin", "factor"), [(20.0, 60.0, 2), (1e4, 60.0, 8), (5.0, 60.0, 1)])
+@pytest.mark.parametrize(("heavy", "spin", "factor"), [(20.0, 60.0, 8), (1e4, 60.0, 8), (5.0, 60.0, 1)])
 def test_links_that_whip_get_shorter_substeps(heavy: float, spin: float, factor: int) -> None:
     world = bench()
     bar = bars(world, 2, Pin, end=heavy)

@@ -19,7 +19,8 @@ from physicslab.desktop.compiling import Compiling, Left
 from physicslab.desktop.progress import draw_progress
 from physicslab.ecs.config import WindowConfig
 from physicslab.kernels import cache, keys, motion, warm
-from physicslab.kernels.warm import Progress, Warmup, is_warm, load_all, mark_warm, name_of
+from physicslab.kernels.program import own_command
+from physicslab.kernels.warm import WORKER, Progress, Warmup, is_warm, load_all, mark_warm, name_of
 from physicslab.theme import DARK
 from physicslab.view.canvas.display import Display, forget_clicks, wants_to_leave
 
@@ -121,7 +122,8 @@ def test_the_mark_says_that_every_kernel_is_kept(tmp_path: Path, monkeypatch: py
 
 def test_the_mark_depends_on_the_sources(monkeypatch: pytest.MonkeyPatch) -> None:
     before = cache.mark()
-    monkeypatch.setattr(cache, "current_folders", lambda: keys.current_folders() | {"motion": "motion-0"})
+    other = keys.current_folders() | {"motion": "motion-0"}
+    monkeypatch.setattr(cache, "current_folders", lambda level: other)
     assert cache.mark() != before
 
 
@@ -219,7 +221,7 @@ def test_a_window_that_loads_is_drawn_where_it_changes(monkeypatch: pytest.Monke
 def test_a_worker_compiles_what_it_is_given() -> None:
     name = "physicslab.kernels.motion.clear"
     done = subprocess.run(
-        [sys.executable, "-m", "physicslab.kernels", "worker"],
+        own_command("kernels", WORKER),
         input=f"{name}\n", capture_output=True, text=True, check=True,
     )  # fmt: skip
     assert done.stdout == f"{name}\n"

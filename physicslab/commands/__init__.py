@@ -70,11 +70,16 @@ class Command(Protocol):
 
 COMMANDS = (
     "run", "replay", "accuracy", "stability", "bench", "scenes", "lesson", "grade", "import", "export",
-    "sweep", "kernels",
+    "kernels", "sweep", "schema",
 )  # fmt: skip
 """Every command, by the name of its module, which has an underscore behind a keyword of Python."""
 
 
 def command(name: str) -> Command:
     """Return a command by name; only now is it imported, and the physics with it."""
-    return cast(Command, import_module(f"{__name__}.{name}{'_' * iskeyword(name)}"))
+    return cast(Command, import_module(module_of(name)))
+
+
+def module_of(name: str) -> str:
+    """Return the full name of a command's module."""
+    return f"{__name__}.{name}{'_' * iskeyword(name)}"

@@ -1,5 +1,6 @@
 """Compile the physics for this computer ahead of time, or share what is compiled with others of its kind."""
 
+import platform
 import sys
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
@@ -11,9 +12,11 @@ from physicslab.ecs.text import printable
 from physicslab.files.replace import reason_of
 from physicslab.kernels import cache_directory
 from physicslab.kernels.archive import ArchiveError, pack, unpack
-from physicslab.kernels.keys import platform_key
-from physicslab.kernels.warm import Warmup, is_warm, load_all, mark_warm
+from physicslab.kernels.keys import LEVELS, platform_key, use_processor
+from physicslab.kernels.warm import WORKER, Warmup, is_warm, load_all, mark_warm, work
 
+NATIVE = "native"
+"""The name of just this processor."""
 _LOOK_EVERY_S = 0.1
 _WARNING = (
     "physicslab: compiled kernels are programs: import none from people whose programs you would not run"
@@ -23,17 +26,30 @@ _WARNING = (
 def add_arguments(parser: ArgumentParser) -> None:
     """Declare what the command takes."""
     parser.add_argument(
-        "action", nargs="?", choices=("export", "import"),
+        "action", nargs="?", choices=("export", "import", WORKER), metavar="{export,import}",
         help="export: compile all and write them to FILE; import: take them from FILE in place of compiling; "
         "neither: compile all and keep them",
     )  # fmt: skip
+    words = "with export: for any processor of the kind, in place of just this one; the same bits (native)"
+    parser.add_argument("--cpu", choices=(NATIVE, *LEVELS), default=NATIVE, help=words)
     parser.add_argument("file", metavar="FILE", nargs="?", help="an archive of compiled kernels")
 
 
 def execute(arguments: Namespace) -> int:
     """Compile all kernels, or write or read an archive of them."""
+    if arguments.action == WORKER:
+        return work()
     if (arguments.action is None) != (arguments.file is None):
         raise CommandError(f"kernels {arguments.action}: FILE is missing (see physicslab kernels --help)")
+    if arguments.cpu != NATIVE:
+        if arguments.action != "export":
+            raise CommandError(f"--cpu {arguments.cpu}: must go with export")
+        if platform.machine() not in ("x86_64", "AMD64"):
+            raise CommandError(
+                f"--cpu {arguments.cpu}: this is {platform.machine()}, of which there are no kinds"
+            )
+        cache_directory()
+        use_processor(arguments.cpu)
     if arguments.action == "import":
         return _import(arguments.file)
     output = None if arguments.action is None else Output("kernels export", arguments.file)
@@ -66,7 +82,7 @@ def _export(output: Output) -> int:
     if not output.to_stdout:
         kind = ", ".join(f"{name} {value}" for name, value in platform_key().items())
         print(f"{len(content) / 1e6:.1f} MB written to {printable(output.path)}")
-        print(f"They fit computers with just this: {kind}")
+        print(f"They fit computers with {kind}")
     return 0
 
 

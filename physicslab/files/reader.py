@@ -42,10 +42,11 @@ FORMAT = "physicslab-scene/1"
 _MOST_STEPS = 2.0**48
 """Steps after which the clock still tells a sixteenth of a step from none."""
 
-_KEYS = (
+KEYS = (
     "format", "name", "title", "description", "view", "desk", "numbers", "time", "physics", "simulation",
     "entities", "contacts", "joints", "rests", "solver", "remainders", "islands",
 )  # fmt: skip
+"""The keys of a scene."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +159,7 @@ def read_scene(document: object, source: str = "scene") -> World:
 def check_scene(document: object, source: str = "scene") -> SceneDraft:
     """Return the content of a scene document; the first thing not allowed is a :class:`SceneError`."""
     scene = checks.checked_object(document, source, 'an object {"format": ..., "entities": [...]}')
-    checks.checked_keys(scene, f"{source}: ", "key", _KEYS)
+    checks.checked_keys(scene, f"{source}: ", "key", KEYS)
     if "format" not in scene:
         raise checks.SceneError(f"{source}: format is missing: must be {checks.shown(FORMAT)}")
     if scene["format"] != FORMAT:

@@ -4,13 +4,10 @@
 each cost, and says what is over the budget.
 """
 
-import gc
 import sys
 
-from physicslab.kernels import KERNELS, compile_kernels
 from physicslab.kernels.interpreter import compile_all_the_same
-from physicslab.kernels.loading import prepare
-from physicslab.kernels.warm import Progress, Warmup, load_all
+from physicslab.kernels.warm import Progress, Warmup
 
 
 def _fill() -> int:
@@ -22,17 +19,6 @@ def _fill() -> int:
                 print(progress.done, progress.total, progress.name, flush=True)
                 shown = progress
     return 0 if shown.done == shown.total else 1
-
-
-def _work() -> int:
-    """Compile the kernels whose names come in, a line each, and print each when it is done."""
-    names = load_all()
-    prepare()
-    gc.disable()  # next to nothing of what numba makes is garbage before the process ends
-    for line in sys.stdin:
-        compile_kernels((KERNELS[names.index(line.strip())],))
-        print(line.strip(), flush=True)
-    return 0
 
 
 def _budget() -> int:
@@ -48,4 +34,4 @@ def _budget() -> int:
 
 if __name__ == "__main__":
     compile_all_the_same()
-    sys.exit({"worker": _work, "budget": _budget}.get(" ".join(sys.argv[1:]), _fill)())
+    sys.exit({"budget": _budget}.get(" ".join(sys.argv[1:]), _fill)())

@@ -17,8 +17,14 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-from physicslab.kernels.cache import cache_directory
-from physicslab.kernels.keys import current_folders, platform_key, sources_key
+from physicslab.kernels.cache import cache_directory, place_of
+from physicslab.kernels.keys import (
+    current_folders,
+    platform_key,
+    sources_key,
+    supported_levels,
+    use_processor,
+)
 
 _FORMAT = "physicslab-kernels/1"
 _MANIFEST = "manifest.json"
@@ -45,12 +51,13 @@ def pack(folders: Collection[str] | None = None) -> bytes:
     folders : collection of str, optional
         The names of the cache's folders that are packed; those of all modules where none are given.
     """
-    root, buffer = cache_directory(), io.BytesIO()
+    cache_directory()  # it determines for which processor is compiled
+    buffer = io.BytesIO()
     chosen = current_folders().values() if folders is None else folders
     files = {
         f"{folder}/{path.name}": path.read_bytes()
         for folder in sorted(chosen)
-        for path in sorted((root / folder).glob("*.nb[ic]"))
+        for path in sorted(place_of(folder).glob("*.nb[ic]"))
     }
     document = {
         "format": _FORMAT,
@@ -77,6 +84,7 @@ def unpack(path: Path) -> int:
     OSError
         If it cannot be read, or the cache cannot be written.
     """
+    root = cache_directory()
     with open(path, "rb") as file:
         content = file.read(_LIMIT + 1)
     if len(content) > _LIMIT:
@@ -86,7 +94,6 @@ def unpack(path: Path) -> int:
             files = _files(archive)
     except _DAMAGE as error:
         raise ArchiveError(f"is damaged, or no archive of kernels: {error}") from error
-    root = cache_directory()
     for folder, name in sorted(files, key=lambda file: file[1].endswith(".nbi")):  # indices after their data
         (root / folder).mkdir(mode=0o700, exist_ok=True)
         fresh = root / folder / f"{name}.tmp.{secrets.token_hex(8)}"
@@ -111,6 +118,8 @@ def _manifest(archive: zipfile.ZipFile) -> dict[str, Any]:
 def _check(manifest: dict[str, Any]) -> None:
     """Refuse an archive that is for another computer or another version, and say what does not fit."""
     theirs = manifest.get("platform")
+    if isinstance(theirs, dict) and theirs.get("processor") in supported_levels():
+        use_processor(str(theirs["processor"]))
     for name, own in platform_key().items():
         other = theirs.get(name) if isinstance(theirs, dict) else None
         if other != own:

@@ -6,12 +6,18 @@ Each module's kernels are in a folder named after a hash of all that determines 
 numba unpickles the files there, so **a compiled kernel is a program that will be run**. The folder is used
 only if none but this user and root can write in it, or put another in its place: it is no link, and it and
 every folder above it is root's or this user's, and closed to others for writing; or sticky, as that of
-temporary files is, above ours. Links above it are resolved once, before that is checked. One that cannot be
-written is used if it holds every kernel, as where a package or an administrator has installed them.
+temporary files is, above ours. Links above it are resolved once, before that is checked.
 
 Its place is the environment variable ``PHYSICSLAB_KERNELS``, or ``physicslab/kernels`` in the user's cache
 folder, or, where there is no such folder, ``physicslab-<user>/kernels`` among the temporary files; else a new
 temporary one that is removed at the end of the process.
+
+Beside it there may be a shared one, which is only read: that of the variable where this user cannot write, or
+``share/physicslab/kernels`` below ``sys.prefix``, where a package, a container or an administrator has put
+them. It is used if it holds every kernel.
+
+If there are not all kernels for just this processor, and all for a kind of processors that it belongs to
+(:data:`physicslab.kernels.keys.LEVELS`), as ``physicslab kernels import`` brings them, those are used.
 """
 
 from __future__ import annotations
@@ -24,6 +30,7 @@ import os
 import re
 import shutil
 import stat
+import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -36,7 +43,16 @@ import numba.core.config
 from numba.core.caching import CacheImpl, UserProvidedCacheLocator
 from platformdirs import user_cache_path
 
-from physicslab.kernels.keys import current_folders, folder_of, hash_of
+from physicslab.kernels.keys import (
+    LEVELS,
+    current_folders,
+    folder_of,
+    hash_of,
+    is_own,
+    platform_key,
+    supported_levels,
+    use_processor,
+)
 
 if numba.core.config.DISABLE_JIT:  # type: ignore[attr-defined]
     raise ImportError(
@@ -50,20 +66,33 @@ _UNUSED = 30 * _DAY
 """Time [s] for which what is not used is kept."""
 _VERSIONS = 8
 """How many folders of one module are kept, however many were in use: those used last."""
+_OF_LEVEL = "complete-x86-64-v*"
 _log = logging.getLogger(__name__)
 
 
 # ---- the folder --------------------------------------------------------------------------------------------
 
 _directory: Path | None = None
+_shared: Path | None = None
 
 
 def cache_directory() -> Path:
     """Return where compiled kernels are kept: a folder in which only this user, or root, can write."""
-    global _directory
+    global _directory, _shared
     if _directory is None:
+        _shared = _first_shared()
         _directory = _first_private()
+        _choose_processor([_directory] if _shared is None else [_shared, _directory])
+        if _shared is not None and not (_shared / _mark_name()).is_file():
+            _shared = None  # it has those of another processor
     return _directory
+
+
+def place_of(folder: str) -> Path:
+    """Return the path of a module's folder: the shared one if it is there."""
+    own = cache_directory() / folder
+    shared = own if _shared is None else _shared / folder
+    return shared if shared.is_dir() else own
 
 
 def use_directory(directory: Path) -> None:
@@ -71,8 +100,8 @@ def use_directory(directory: Path) -> None:
 
     Kernels that are defined before this call stay in the previous folder.
     """
-    global _directory
-    _directory = directory
+    global _directory, _shared
+    _directory, _shared = directory, None
 
 
 def _first_private() -> Path:
@@ -95,7 +124,8 @@ def _places() -> Iterator[tuple[Path, str]]:
     if os.environ.get(VARIABLE):
         named = Path(os.path.abspath(os.environ[VARIABLE]))
         yield named.parent, named.name
-        return
+        if _shared is None or named.resolve() != _shared:
+            return
     with contextlib.suppress(RuntimeError, KeyError):
         yield user_cache_path("physicslab", appauthor=False, opinion=False), "kernels"
     shared = f"physicslab-{os.getuid() if hasattr(os, 'getuid') else 0}"
@@ -115,13 +145,37 @@ def _resolved(place: Path, name: str) -> Path | None:
         with contextlib.suppress(FileExistsError):
             if not os.path.lexists(path):
                 path.mkdir(mode=0o700)
-        reason = _why_unsafe(path, is_above=path != folder) if hasattr(os, "geteuid") else ""
-        if reason:
-            _log.warning("compiled kernels in %s are not used: %s %s", folder, path, reason)
+        if not _is_safe(path, folder):
             return None
-    if not os.access(folder, os.W_OK | os.X_OK) and not (folder / _mark_name()).is_file():
+    if not os.access(folder, os.W_OK | os.X_OK):
         raise PermissionError(folder)
     return folder
+
+
+def _first_shared() -> Path | None:
+    """Return the folder of kernels that are only read, if there is one with all of them."""
+    places = [Path(sys.prefix, "share", "physicslab", "kernels")]
+    named = os.environ.get(VARIABLE, "")
+    if named and not os.access(named, os.W_OK | os.X_OK):
+        places.insert(0, Path(os.path.abspath(named)))
+    for place in filter(Path.is_dir, places):
+        with contextlib.suppress(OSError):
+            folder = _without_links(place)
+            is_full = any((folder / _mark_name(level)).is_file() for level in ("", *supported_levels()))
+            if is_full and all(_is_safe(path, folder) for path in (*reversed(folder.parents), folder)):
+                return folder
+    return None
+
+
+def _choose_processor(folders: list[Path]) -> None:
+    """Go by the kernels of a kind of processors, if there are all of those and not all of this one's."""
+    settings: Any = numba.core.config
+    if settings.CPU_NAME is not None or not any(any(place.glob(_OF_LEVEL)) for place in folders):
+        return
+    levels = ("", *supported_levels())
+    chosen = next((e for e in levels if any((place / _mark_name(e)).is_file() for place in folders)), "")
+    if chosen:
+        use_processor(chosen)
 
 
 def _without_links(path: Path) -> Path:
@@ -141,6 +195,14 @@ def _without_links(path: Path) -> Path:
                 raise PermissionError(found)
             found = _without_links(found.parent / os.readlink(found))
     return found
+
+
+def _is_safe(path: Path, folder: Path) -> bool:
+    """Whether a folder may be used as far as that depends on its ``path`` or one above; log why not."""
+    reason = _why_unsafe(path, is_above=path != folder) if hasattr(os, "geteuid") else ""
+    if reason:
+        _log.warning("compiled kernels in %s are not used: %s %s", folder, path, reason)
+    return not reason
 
 
 def _why_unsafe(folder: Path, *, is_above: bool) -> str:
@@ -173,11 +235,14 @@ def _remove_own(directory: Path, process: int) -> None:
 
 def mark() -> Path:
     """Return the file whose existence means that every kernel of this package is kept."""
-    return cache_directory() / _mark_name()
+    own = cache_directory()
+    return (own if _shared is None else _shared) / _mark_name()
 
 
-def _mark_name() -> str:
-    return f"complete-{hash_of(*sorted(current_folders().values()))[:16]}"
+def _mark_name(level: str = "") -> str:
+    processor = platform_key(level)["processor"]
+    kind = f"{processor}-" if processor in LEVELS else ""
+    return f"complete-{kind}{hash_of(*sorted(current_folders(level).values()))[:16]}"
 
 
 # ---- for numba ---------------------------------------------------------------------------------------------
@@ -188,8 +253,9 @@ class _Locator(UserProvidedCacheLocator):
 
     def __init__(self, function: Callable[..., Any], path: str) -> None:
         self._py_file, self._lineno = path, function.__code__.co_firstlineno
+        cache_directory()  # it determines for which processor is compiled
         self._folder = folder_of(function.__module__, path)
-        self._cache_path = str(cache_directory() / self._folder)
+        self._cache_path = str(place_of(self._folder))
 
     def ensure_cache_path(self) -> None:
         """Make the folder; numba calls this before it writes."""
@@ -202,8 +268,8 @@ class _Locator(UserProvidedCacheLocator):
 
     @classmethod
     def from_function(cls, function: Callable[..., Any], path: str) -> _Locator | None:
-        """Return the locator of a function; None where it has no file, for which numba has other locators."""
-        return cls(function, path) if os.path.exists(path) else None
+        """Return the locator of a function; None where it is another's without a file."""
+        return cls(function, path) if is_own(function.__module__) or os.path.exists(path) else None
 
 
 @contextmanager
@@ -222,7 +288,8 @@ def cached() -> Iterator[None]:
 
 
 def _folder(function: Callable[..., Any]) -> Path:
-    return cache_directory() / folder_of(function.__module__, inspect.getfile(function))
+    cache_directory()
+    return place_of(folder_of(function.__module__, inspect.getfile(function)))
 
 
 def is_kept(function: Callable[..., Any]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import os
 import pkgutil
@@ -19,7 +20,10 @@ from typing import Any
 
 from physicslab import kernels
 from physicslab.kernels import cache
-from physicslab.kernels.keys import current_folders
+from physicslab.kernels.interpreter import compile_all_the_same
+from physicslab.kernels.keys import current_folders, processor_variables
+from physicslab.kernels.loading import compile_kernels, prepare
+from physicslab.kernels.program import own_command
 from physicslab.kernels.tiers import compile_seconds
 
 _WORKERS_LIMIT = 4
@@ -28,7 +32,8 @@ _FIRST = (
     "raster", "triangles", "energy",
 )  # fmt: skip
 """Modules whose kernels almost every scene needs, compiled first: what moves it, then its picture."""
-_WORKER = (sys.executable, "-m", "physicslab.kernels", "worker")
+WORKER = "worker"
+"""What the command ``kernels`` takes to do :func:`work`."""
 _YIELDING = 15
 """How much higher the priority of a running scene is than that of the workers, as a Unix nice value."""
 
@@ -39,7 +44,7 @@ def is_warm() -> bool:
         kept = cache.mark().read_text(encoding="utf-8").split()
     except OSError:
         return False
-    return all((cache.cache_directory() / folder).is_dir() for folder in kept)
+    return all(cache.place_of(folder).is_dir() for folder in kept)
 
 
 def mark_warm() -> None:
@@ -78,6 +83,18 @@ def rank_of(name: str) -> int:
     return _FIRST.index(module) if module in _FIRST else len(_FIRST)
 
 
+def work() -> int:
+    """Compile the kernels whose names come in by stdin, a line each, and print each when it is done."""
+    compile_all_the_same()
+    names = load_all()
+    prepare()
+    gc.disable()  # next to nothing of what numba makes is garbage before the process ends
+    for line in sys.stdin:
+        compile_kernels((kernels.KERNELS[names.index(line.strip())],))
+        print(line.strip(), flush=True)
+    return 0
+
+
 @dataclass(frozen=True, slots=True)
 class Progress:
     """Progress of compiling: how many kernels of how many, the last one's name, and the share of the work."""
@@ -100,7 +117,7 @@ class Warmup:
     workers : int, optional
         How many processes; by default one for each processor, up to four.
     command : sequence of str
-        What each runs: it reads names of kernels, a line each, and prints each when it is compiled.
+        What each runs in place of :func:`work`.
 
     Attributes
     ----------
@@ -108,8 +125,8 @@ class Warmup:
         Whether there is nothing left to wait for.
     """
 
-    def __init__(self, workers: int | None = None, command: tuple[str, ...] = _WORKER) -> None:
-        self._command = command
+    def __init__(self, workers: int | None = None, command: tuple[str, ...] = ()) -> None:
+        self._command = command or own_command("kernels", WORKER)
         names = load_all()
         self._compiled = {name_of(jitted) for jitted in _own() if cache.is_kept(jitted.py_func)}
         self._jobs = deque(sorted((name for name in names if name not in self._compiled), key=rank_of))
@@ -141,7 +158,7 @@ class Warmup:
             thread.join()
 
     def _start_worker(self) -> None:
-        environment = {**os.environ, cache.VARIABLE: str(cache.cache_directory())}
+        environment = {**os.environ, **processor_variables(), cache.VARIABLE: str(cache.cache_directory())}
         process = subprocess.Popen(
             self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1,
             env=environment,

@@ -5,9 +5,10 @@ import gettext
 import io
 import struct
 from functools import cache
-from pathlib import Path
+from importlib.resources import files
 
-FOLDER = Path(__file__).parent
+FOLDER = files(__package__)
+"""Where the catalogues are, be it in an archive."""
 SOURCE = "en"
 """The language that the program's own texts are in."""
 _MAGIC, _HEADER = 0x950412DE, struct.Struct("<7I")
@@ -15,7 +16,7 @@ _MAGIC, _HEADER = 0x950412DE, struct.Struct("<7I")
 
 def languages() -> list[str]:
     """Return the codes of all languages that there are, that of the program's own texts first."""
-    return [SOURCE, *sorted(path.stem for path in FOLDER.glob("*.po"))]
+    return [SOURCE, *sorted(one.name[:-3] for one in FOLDER.iterdir() if one.name.endswith(".po"))]
 
 
 def translations(code: str) -> gettext.NullTranslations:
@@ -27,7 +28,7 @@ def translations(code: str) -> gettext.NullTranslations:
 @cache
 def sources(code: str) -> dict[tuple[str, ...], list[str]]:
     """Return the messages of a language; none without a catalogue."""
-    path = FOLDER / f"{code}.po"
+    path = FOLDER.joinpath(f"{code}.po")
     if code == SOURCE or not path.is_file():
         return {}
     return messages(path.read_text("utf-8"), path.name)

@@ -1,6 +1,9 @@
 """The lessons that come with the program, in their order."""
 
+import atexit
+from contextlib import ExitStack
 from functools import cache
+from importlib.resources import as_file, files
 from pathlib import Path
 
 from physicslab.ecs.text import printable, suggestion
@@ -8,7 +11,10 @@ from physicslab.lessons.blocks import LessonError
 from physicslab.lessons.lesson import Lesson
 from physicslab.lessons.reader import read_lesson
 
-LIBRARY = Path(__file__).parent / "library"
+_KEPT = ExitStack()
+atexit.register(_KEPT.close)
+LIBRARY = _KEPT.enter_context(as_file(files(__package__) / "library"))
+"""Where their files are; those of an archive are unpacked."""
 LESSONS = (
     "projectile", "terminal_velocity", "incline", "atwood", "rolling", "collision", "centre_of_mass",
     "bounces", "billiards", "cradle", "ballistic_pendulum", "pendulum", "damped_spring", "coupled_pendulums",

@@ -20,9 +20,8 @@ from physicslab.state.state import State
 from physicslab.systems.joint_forces import JointForces
 from physicslab.systems.system import Stage, System, at
 
-_LEFT = 0.1
-"""Share of its arm by which an anchor may leave its way in a substep, in blocks of masses 1 to M / m, times
-sqrt(M / m): a chain of 100 links with 10,000 times their mass at its end then gives by 0.4 % of a link."""
+_LEFT = 1e-3
+"""Share of its arm by which an anchor may leave its way in a substep, in blocks of unequal masses."""
 
 
 def remove_lost(state: State, kind: type[Any], a: NDArray[np.int64], b: NDArray[np.int64]) -> None:
@@ -137,8 +136,7 @@ class JointSystem(System):
         """Return the factor for what turns fast about its anchors, as links do of a chain that whips.
 
         Impulses keep the speeds of anchors equal. While a body turns by an angle w h in a substep, an anchor
-        at a distance r leaves the straight way by r (w h)^2 / 2: that is to be a small share of r, and
-        the smaller the heavier what light links carry, whose forces act in a wrong direction then.
+        at a distance r leaves the straight way by r (w h)^2 / 2: that is to be a small share of r.
         """
         if not (state.has_forces and state.bodies.unequal):
             return 1

@@ -8,10 +8,10 @@ from physicslab.kernels.joints.blocks import ENDS, FIRST, TERM, TERMS, Joints, J
 
 @kernel
 def fastest_whip(plain: JointsTuple, angular: Numbers, inverse_mass: Numbers, unequal: float) -> float:
-    """Return the largest r w^2 / R sqrt(M / m) [1/s^2] of bodies that turn by w about an anchor at r.
+    """Return the largest r w^2 / R [1/s^2] of bodies that turn by w about an anchor at r.
 
-    R is the longer of the two arms of the joint, M and m are the heaviest and the lightest mass of the block.
-    Blocks whose masses differ by no more than ``unequal`` times are left out.
+    R is the longer of the two arms of the joint. Blocks whose masses differ by no more than ``unequal`` times
+    are left out.
     """
     joints, largest = Joints(*plain), 0.0
     nodes, terms, body = joints.nodes, joints.terms, joints.body
@@ -33,5 +33,5 @@ def fastest_whip(plain: JointsTuple, angular: Numbers, inverse_mass: Numbers, un
             arm = max(arm_a, arm_b)
             if arm > 0.0:
                 fastest = max(fastest, (arm_a * a * a + arm_b * b * b) / arm)
-        largest = max(largest, fastest * math.sqrt(lightest / heaviest))
+        largest = max(largest, fastest)
     return largest

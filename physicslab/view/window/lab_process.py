@@ -1,18 +1,20 @@
 """Commands of the laboratory that run in a process of their own, while the window goes on."""
 
 import json
+import os
 import re
 import subprocess
-import sys
 import tempfile
 import threading
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from physicslab.files.scene import save_scene
+from physicslab.kernels.program import own_command as own_command
 from physicslab.world import World
 
 _SHARE = re.compile(r"(\d+) %")
@@ -37,6 +39,8 @@ class LabProcess:
 
     option = "--json"
     """What the command is told by to write its report."""
+    niceness = 0
+    """How much lower its priority is than that of frames, which take what they need of the machine."""
 
     def __init__(self, command: Sequence[str]) -> None:
         self._command = tuple(command)
@@ -73,6 +77,11 @@ class LabProcess:
             self._process = subprocess.Popen(
                 command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=log
             )
+        if self.niceness and hasattr(os, "setpriority"):
+            with suppress(OSError):  # it has ended already
+                os.setpriority(
+                    os.PRIO_PROCESS, self._process.pid, os.getpriority(os.PRIO_PROCESS, 0) + self.niceness
+                )
         self.share, self.failure = 0.0, ""
 
     @staticmethod
@@ -139,7 +148,7 @@ class LabProcess:
 # ---- error against run time --------------------------------------------------------------------------------
 
 
-_COMMAND = (sys.executable, "-m", "physicslab.cli", "accuracy")
+_COMMAND = own_command("accuracy")
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,16 +1,14 @@
 """A page that the window makes of its scene, in a process of its own: ``physicslab export``."""
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from physicslab.view.window.lab_process import LabProcess
+from physicslab.view.window.lab_process import LabProcess, own_command
 from physicslab.view.window.naming import Naming
 
-_COMMAND = (sys.executable, "-m", "physicslab.cli", "export")
-_LESSON = (sys.executable, "-m", "physicslab.cli", "lesson")
+_COMMAND, _LESSON = own_command("export"), own_command("lesson")
 FROM_START, FROM_NOW, WHOLE_LESSON = "From the start", "From now on", "The whole lesson"
 """What a page begins with, or holds."""
 SLIDERS = 2

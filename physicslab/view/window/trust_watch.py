@@ -1,6 +1,5 @@
 """How many digits of what the window shows can be relied on, found by another process."""
 
-import sys
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -8,12 +7,10 @@ from typing import Any
 from physicslab.components import Held, Transform, Velocity
 from physicslab.files.checks import SceneError
 from physicslab.files.writer import SceneText, WorldSnapshot
-from physicslab.view.window.lab_process import LabProcess
+from physicslab.view.window.lab_process import LabProcess, own_command
 from physicslab.world import World
 
-_NICELY = "import os, sys; getattr(os, 'nice', int)(5); from physicslab.cli import main; sys.exit(main())"
-_COMMAND = (sys.executable, "-c", _NICELY, "accuracy")
-"""Frames go first: the process takes what they leave of the machine."""
+_COMMAND = own_command("accuracy")
 BODIES_LIMIT = 500
 """Bodies that can move, with more of which digits are not checked."""
 RUNS = 20
@@ -81,6 +78,8 @@ class TrustWatch(LabProcess):
     left_out : str
         Why it is not checked, where it is not.
     """
+
+    niceness = 5
 
     def __init__(self, command: tuple[str, ...] = _COMMAND) -> None:
         super().__init__(command)

@@ -1,0 +1,135 @@
+"""The parsers of the command line, and what is made of all of them: completion for shells, and a manual."""
+
+import importlib.util
+import inspect
+from argparse import SUPPRESS, Action, ArgumentParser
+from collections.abc import Iterator
+from typing import NoReturn
+
+from physicslab.commands import COMMANDS, CommandError, command, module_of, require
+from physicslab.scenes import SCENES
+
+SHELLS = ("bash", "zsh", "tcsh")
+"""Shells for which a completion can be written."""
+_DESCRIPTION = "Open the desktop sandbox, or do one of the commands."
+_SCENES = {
+    "bash": f"""_physicslab_scene() {{ compgen -W "{" ".join(SCENES)}" -- "$1"; compgen -f -- "$1"; }}""",
+    "zsh": f"""_physicslab_scene() {{ compadd {" ".join(SCENES)}; _files }}""",
+    "tcsh": "",
+}
+"""How each shell completes a scene: a built-in name, or a file."""
+
+
+class Parser(ArgumentParser):
+    """Refuses bad usage in one line, and takes no option by half its name."""
+
+    def __init__(self, prog: str, description: str | None) -> None:
+        super().__init__(prog=prog, description=description, allow_abbrev=False)
+
+    def error(self, message: str) -> NoReturn:
+        """Refuse it."""
+        raise CommandError(f"{message} (see {self.prog} --help)")
+
+
+class WindowParser(Parser):
+    """Parses what opens the window, and lists the commands in its help without importing any."""
+
+    def __init__(self, version: str) -> None:
+        super().__init__("physicslab", _DESCRIPTION)
+        words = "a built-in scene's name, or a path; or that of a lesson, which ends in .md"
+        self.add_argument("scene", metavar="SCENE", nargs="?", help=words)
+        self.add_argument("--version", action="version", version=version)
+        words = (
+            "write what completes these commands in a shell: bash, zsh or tcsh (needs the extra completion)"
+        )
+        self.add_argument("--print-completion", metavar="SHELL", choices=SHELLS, help=words)
+        self.add_argument("--print-manual", action="store_true", help="write the manual page, for man")
+
+    def format_help(self) -> str:
+        """Return the help."""
+        self.usage = "physicslab [SCENE] | physicslab COMMAND ... (physicslab COMMAND --help says more)"
+        width = max(map(len, COMMANDS))
+        lines = (f"  {name:<{width}}  {summary_of(name)}" for name in COMMANDS)
+        return super().format_help() + "\n".join(["\ncommands:", *lines, ""])
+
+
+def summary_of(name: str) -> str:
+    """Return the first line of a command's help, without importing it, and the physics with it."""
+    spec = importlib.util.find_spec(module_of(name))
+    assert spec is not None
+    code = spec.loader.get_code(spec.name)  # type: ignore[union-attr]
+    return str(code.co_consts[0]).splitlines()[0]
+
+
+def parser_of(name: str) -> Parser:
+    """Return the parser of a command."""
+    named = command(name)
+    parser = Parser(f"physicslab {name}", named.__doc__)
+    named.add_arguments(parser)
+    return parser
+
+
+def completion(shell: str) -> str:
+    """Return what completes all commands in a shell.
+
+    Raises
+    ------
+    CommandError
+        If the package that writes it is not installed.
+    """
+    require("--print-completion", "completion", "shtab")
+    import shtab
+
+    whole = ArgumentParser("physicslab", description=_DESCRIPTION)
+    parts = whole.add_subparsers()
+    for name in COMMANDS:
+        part = parts.add_parser(name, help=summary_of(name))
+        command(name).add_arguments(part)
+        for action in part._actions:
+            if action.dest == "scene":
+                action.complete = {"bash": "_physicslab_scene", "zsh": "_physicslab_scene", "tcsh": "f"}  # type: ignore[attr-defined]
+            elif action.metavar in ("FILE", "DIR"):
+                action.complete = shtab.FILE if action.metavar == "FILE" else shtab.DIRECTORY  # type: ignore[attr-defined]
+    return shtab.complete(whole, shell, preamble={shell: _SCENES[shell]})  # type: ignore[arg-type]
+
+
+def manual(version: str) -> str:
+    """Return the manual page in roff."""
+    lines = [
+        f'.TH PHYSICSLAB 1 "" "{_roff(version)}" "User Commands"',
+        ".SH NAME", "physicslab \\- a 2D physics sandbox that reports its own errors",
+        ".SH SYNOPSIS", "physicslab [SCENE]", ".br", "physicslab COMMAND ...",
+        ".SH DESCRIPTION", _roff(_DESCRIPTION), *_options(WindowParser(version)),
+        ".SH COMMANDS",
+    ]  # fmt: skip
+    for name in COMMANDS:
+        parser = parser_of(name)
+        usage = " ".join(parser.format_usage().removeprefix("usage: ").split())
+        about = inspect.cleandoc(parser.description or "").split("\n\n")
+        lines += [f".SS {name}", _roff(usage)]
+        lines += [line for text in about for line in (".PP", _roff(" ".join(text.split())))]
+        lines += [*_options(parser), *([".PP", _roff(parser.epilog)] if parser.epilog else [])]
+    lines += [".SH EXIT STATUS", "0: done. 1: the run failed. 2: bad usage or a bad scene."]
+    return "\n".join(lines) + "\n"
+
+
+def _options(parser: ArgumentParser) -> Iterator[str]:
+    """Yield the paragraphs of a parser's arguments."""
+    formatter = parser._get_formatter()
+    for action in parser._actions:
+        if action.help == SUPPRESS:
+            continue
+        yield from (".TP", f"\\fB{_roff(_named(action))}\\fR", _roff(formatter._expand_help(action)))
+
+
+def _named(action: Action) -> str:
+    """Return an argument as it is given."""
+    values = action.metavar if isinstance(action.metavar, str) else action.dest
+    names = ", ".join(action.option_strings)
+    return " ".join(filter(None, (names, values if action.nargs != 0 else "")))
+
+
+def _roff(text: str) -> str:
+    """Return a text in which nothing is taken for a request."""
+    text = text.replace("\\", "\\e").replace("-", "\\-")
+    return f"\\&{text}" if text[:1] in (".", "'") else text
