@@ -2,12 +2,12 @@
 
 import sys
 from argparse import ArgumentParser, Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from physicslab.commands import FAILED, CommandError
+from physicslab.commands import FAILED, CommandError, require
 from physicslab.commands.arguments import (
     add_assignments,
     check_seconds,
@@ -22,6 +22,7 @@ from physicslab.commands.progress import Progress
 from physicslab.commands.variations import vary
 from physicslab.ecs.text import printable, shortened
 from physicslab.ensembles.cluster import Dask
+from physicslab.ensembles.map_picture import map_grids
 from physicslab.ensembles.result import EnsembleResult
 from physicslab.ensembles.runs import run_task, task_of
 from physicslab.ensembles.task import Task
@@ -53,6 +54,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--seconds", metavar="T", type=positive_duration, default=_DEFAULT_S,
         help=f"how long a run is, in the scene's time ({_DEFAULT_S:g})")  # fmt: skip
     add("--out", metavar="FILE", help="where the rows go: .npz, .csv or .parquet; else a summary on stdout")
+    words = "a picture of the first measure over the two fields that --vary names (extra: plot)"
+    add("--map", metavar="FILE.png", help=words)
     where = parser.add_mutually_exclusive_group()
     where.add_argument("--workers", metavar="N", type=positive_count, help="processes (one a processor)")
     where.add_argument("--dask", metavar="ADDRESS", help="the scheduler of a Dask cluster: tcp://host:8786")
@@ -76,6 +79,7 @@ def execute(arguments: Namespace) -> int:
     )  # fmt: skip
     if arguments.open is not None:
         return _open(task, arguments.open)
+    picture = _map(arguments, task)
     label = shortened(printable(name_of(world, arguments)))
     progress = Progress(label, sys.stderr, foresees=True)
     out = None if output is None else Path(output.path)
@@ -86,8 +90,19 @@ def execute(arguments: Namespace) -> int:
         raise CommandError(f"{label}: {error}", FAILED) from error
     finally:
         progress.clear()
+    if picture is not None:
+        picture.write(result.map())
     _tell(result, label, output)
     return 0
+
+
+def _map(arguments: Namespace, task: Task) -> Output | None:
+    """Return where the picture goes, which can be drawn and written."""
+    if arguments.map is None:
+        return None
+    require("--map", "plot", "matplotlib")
+    map_grids(task.space)
+    return Output("--map", arguments.map)
 
 
 def _output(arguments: Namespace) -> Output | None:
@@ -171,17 +186,14 @@ def _tell(result: EnsembleResult, label: str, output: Output | None) -> None:
     for row, why in [*result.failures.items()][:_SHOWN_FAILURES]:
         print(f"  row {row}: {why}")
     if output is None:
-        for line in _summary(result, list(result.task.measures)):
+        for line in _summary(result):
             print(line)
 
 
-def _summary(result: EnsembleResult, names: Sequence[str]) -> list[str]:
-    """Return least, mean and greatest of each measure."""
-    lines = []
-    for name in names:
-        column = result.columns[name]
-        there = column[column == column]
-        if len(there):
-            numbers = f"least {there.min():.6g}, mean {there.mean():.6g}, greatest {there.max():.6g}"
-            lines.append(f"  {name}: {numbers}")
-    return lines
+def _summary(result: EnsembleResult) -> list[str]:
+    """Return least, mean and greatest of each measure that has any."""
+    return [
+        f"  {name}: least {one['least']:.6g}, mean {one['mean']:.6g}, greatest {one['greatest']:.6g}"
+        for name, one in result.spread().items()
+        if one["count"]
+    ]

@@ -60,8 +60,16 @@ class Fit:
     curve: Callable[[Numbers], Numbers]
 
 
-def _covariance(jacobian: Numbers, rests: Numbers) -> Numbers:
-    """Return the covariance s^2 (J^T J)^-1 of parameters (Press et al., Numerical Recipes, 2007, 15.4)."""
+def covariance_of(jacobian: Numbers, rests: Numbers) -> Numbers:
+    """Return the covariance s^2 (J^T J)^-1 of parameters (Press et al., Numerical Recipes, 2007, 15.4).
+
+    Parameters
+    ----------
+    jacobian : float64 array (n, parameters)
+        Of what the fit leaves, by the parameters.
+    rests : float64 array (n,)
+        What it leaves.
+    """
     count, unknown = jacobian.shape
     variance = float(rests @ rests) / max(count - unknown, 1)
     return np.asarray(variance * np.linalg.pinv(jacobian.T @ jacobian), np.float64)
@@ -82,7 +90,7 @@ def _polynomial(degree: int) -> Callable[[Numbers, Numbers], Fit]:
                 back[k, n] = math.comb(n, k) * (-middle) ** (n - k) / span**n
         back[2:] *= 2.0
         values = back @ found
-        errors = np.sqrt(np.diag(back @ _covariance(jacobian, rests) @ back.T))
+        errors = np.sqrt(np.diag(back @ covariance_of(jacobian, rests) @ back.T))
         parameters = tuple(
             Parameter(name, float(value), float(error), power, 1)
             for (name, power), value, error in zip(names, values, errors, strict=False)
@@ -121,7 +129,7 @@ def _sine(x: Numbers, y: Numbers) -> Fit:
             step *= 0.5
         if before - float(rests @ rests) <= _DONE * before:
             break
-    covariance = _covariance(jacobian, rests)
+    covariance = covariance_of(jacobian, rests)
     amplitude = math.hypot(found[1], found[2])
     along = np.array([0.0, found[1], found[2], 0.0]) / max(amplitude, 1e-300)
     parameters = (

@@ -6,18 +6,24 @@ import csv
 import importlib
 import importlib.util
 import io
+import json
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from physicslab.ecs.text import table_cell
+from physicslab.ensembles.map_picture import map_picture
+from physicslab.ensembles.measures import Measures
 from physicslab.ensembles.space import Values
-from physicslab.ensembles.task import Task
-from physicslab.files.checks import SceneError
+from physicslab.ensembles.task import Task, places_of
+from physicslab.files.checks import SceneError, shown
 from physicslab.files.replace import replacing
+from physicslab.files.scene import load_scene
 from physicslab.world import World
 
 FORMATS = (".npz", ".csv", ".parquet")
@@ -59,13 +65,39 @@ class EnsembleResult:
             raise IndexError(f"row {row}: must be from 0 to {len(self) - 1}")
         return self.task.world(row)
 
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """The SI unit of each varied field and of each measure that has one."""
+        world = load_scene(json.loads(self.task.scene))
+        fields = {name: place.spec.unit for name, place in places_of(world, self.task.space).items()}
+        return {**fields, **Measures(world, self.task.measures).units}
+
+    def spread(self) -> dict[str, dict[str, float]]:
+        """Return how each measure is spread over the runs that have it.
+
+        Returns
+        -------
+        dict of str to dict
+            ``count``, ``mean``, ``deviation`` (of a sample), ``least``, ``low`` (5 % are below it),
+            ``median``, ``high`` (5 % are above it) and ``greatest`` of each measure; those of none are NaN.
+        """
+        return {name: _spread(self.columns[name]) for name in self.task.measures}
+
+    def map(self, measure: str | None = None) -> bytes:
+        """Return a PNG of a measure, the first if none is named, over the two lists of a space."""
+        measures = list(self.task.measures)
+        name = measures[0] if measure is None else measure
+        if name not in measures:
+            raise SceneError(f"measure {shown(name)}: must be one of {', '.join(measures)}")
+        return map_picture(self.task.space, name, self.columns[name], self.units)
+
     def to_pandas(self) -> Any:
         """Return a ``pandas.DataFrame`` of the columns."""
-        return _package("pandas", "to_pandas").DataFrame(self.columns)
+        return package("pandas", "to_pandas").DataFrame(self.columns)
 
     def to_xarray(self) -> Any:
         """Return an ``xarray.Dataset`` with a dimension for each grid, for samples and for replicas."""
-        xarray, space = _package("xarray", "to_xarray"), self.task.space
+        xarray, space = package("xarray", "to_xarray"), self.task.space
         grids = {axis.name: axis.values for axis in space.axes if axis.law == "grid" and not axis.jitter}
         names = [axis.name for axis in space.axes if axis.law == "grid"] + ["sample", "replica"]
         shape = space.shape
@@ -79,7 +111,21 @@ class EnsembleResult:
         return xarray.Dataset(columns, coords=grids)
 
 
-def _package(name: str, method: str) -> Any:
+def _spread(column: Values) -> dict[str, float]:
+    there = column[np.isfinite(column)]
+    if not len(there):
+        names = ("mean", "deviation", "least", "low", "median", "high", "greatest")
+        return {"count": 0, **dict.fromkeys(names, math.nan)}
+    low, median, high = np.quantile(there, (0.05, 0.5, 0.95)).tolist()
+    deviation = float(there.std(ddof=1)) if len(there) > 1 else math.nan
+    return {
+        "count": len(there), "mean": float(there.mean()), "deviation": deviation, "least": float(there.min()),
+        "low": low, "median": median, "high": high, "greatest": float(there.max()),
+    }  # fmt: skip
+
+
+def package(name: str, method: str) -> Any:
+    """Return a package that is optional, or refuse what needs it in one line."""
     try:
         return importlib.import_module(name)
     except ImportError as error:
@@ -117,7 +163,7 @@ def write_result(path: Path, columns: Mapping[str, Values], failures: Mapping[in
             text.flush()
             text.detach()
         else:
-            arrow, parquet = (_package(name, ".parquet") for name in ("pyarrow", "pyarrow.parquet"))
+            arrow, parquet = (package(name, ".parquet") for name in ("pyarrow", "pyarrow.parquet"))
             parquet.write_table(arrow.table(dict(columns)), file)
 
 

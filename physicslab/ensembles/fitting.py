@@ -1,0 +1,220 @@
+"""Fields of a scene fitted to what was measured, by least squares, with the covariance of their values."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from physicslab.diagnostics.figures import Record
+from physicslab.diagnostics.fits import covariance_of
+from physicslab.ecs.component import InvalidValue
+from physicslab.ecs.quantity_text import InvalidText, evaluate
+from physicslab.ensembles.result import package
+from physicslab.files.assignments import put
+from physicslab.files.checks import SceneError, shown
+from physicslab.files.places import Place, entity_names, find_place
+from physicslab.files.scene import load_scene
+from physicslab.files.writer import write_scene
+from physicslab.state.masses import Diverged
+from physicslab.world import World
+
+type Numbers = NDArray[np.float64]
+"""A float64 array (n,)."""
+
+_STEP = 1e-6
+"""Share of a field by which it is moved to find derivatives, to both sides."""
+_ENDLESS = 1e100
+"""How many times the size of a field a bound may be: SciPy computes with squares of what is left to it."""
+
+
+@dataclass(frozen=True)
+class FieldFit:
+    """Fields of a scene that were fitted to data.
+
+    Attributes
+    ----------
+    values, errors : dicts of str to float
+        Each field and its standard error [SI].
+    covariance : float64 array (fields, fields)
+        That of the values, in the order of ``values``; it takes what the fit leaves for noise that is
+        independent from sample to sample and alike in all columns.
+    rest : float
+        Root of the mean square of what the fit leaves.
+    runs : int
+        How many runs of the scene it took.
+    model : dict of str to float64 array (n,)
+        The columns of the data as the fitted scene has them.
+    """
+
+    values: dict[str, float]
+    errors: dict[str, float]
+    covariance: NDArray[np.float64]
+    rest: float
+    runs: int
+    model: dict[str, Numbers]
+
+
+def fit(
+    scene: Any, start: Mapping[str, float | str], data: str | os.PathLike[str] | Mapping[str, ArrayLike]
+) -> FieldFit:
+    """Find the values of fields with which a scene moves as was measured (SciPy; extra ``analysis``).
+
+    Parameters
+    ----------
+    scene : str, path, dict or World
+        What was measured, in a scene.
+    start : mapping of str to float or str
+        The fields that are found (``pendulum.Rod.length``), and where the search begins: in SI or as texts
+        with units. Their values stay in the range that each field has.
+    data : path or mapping of str to array
+        A CSV file with a head, or its columns: ``time`` [s] after the start, ascending, and quantities in SI
+        as ``ball.x``. What is NaN or empty was not measured.
+
+    Raises
+    ------
+    ImportError
+        If SciPy is not installed.
+    SceneError
+        If a field or a column is unknown, there are fewer numbers than fields, or the scene cannot be run.
+
+    Examples
+    --------
+    >>> seen = {"time": [0.2, 0.4, 0.6], "ball.y": [3.8038, 3.2152, 2.2342]}  # rounded to 0.1 mm
+    >>> found = fit("drop", {"physics.gravity.y": -9.0}, seen)  # doctest: +SKIP
+    >>> round(found.values["physics.gravity.y"], 3)  # doctest: +SKIP
+    -9.81
+    """
+    package("scipy", "fit")
+    from scipy.optimize import least_squares
+
+    world = scene if isinstance(scene, World) else load_scene(scene)
+    model = _Model(world, start, _columns(data))
+    first = model.start / model.scale
+    low, high = model.bounds
+    found = least_squares(
+        model.rests, np.clip(first, low, high), bounds=(low, high), jac="3-point", diff_step=_STEP,
+        xtol=1e-12, ftol=1e-12, gtol=1e-12,
+    )  # fmt: skip
+    covariance = covariance_of(found.jac, found.fun) * np.outer(model.scale, model.scale)
+    values = found.x * model.scale
+    return FieldFit(
+        dict(zip(model.places, values.tolist(), strict=True)),
+        dict(zip(model.places, np.sqrt(np.diag(covariance)).tolist(), strict=True)),
+        covariance, math.sqrt(float(np.mean(found.fun**2))), model.runs, model.columns_of(found.x),
+    )  # fmt: skip
+
+
+class _Model:
+    """Runs of a scene beside data, by values of fields in units of their own size."""
+
+    def __init__(self, world: World, start: Mapping[str, float | str], data: dict[str, Numbers]) -> None:
+        self._scene, names = write_scene(world), entity_names(world)
+        if not start:
+            raise SceneError("start: must name at least one field")
+        self.places = {path: find_place(world, "start", path, str(start[path]), names) for path in start}
+        self.start = np.array([_number(self.places[path], start[path]) for path in start])
+        self.scale = np.array([abs(value) or 1.0 for value in self.start.tolist()])
+        self.times = data.pop("time")
+        self._data = data
+        self.runs = 0
+        try:
+            self.run(self.start)
+        except InvalidText as error:
+            raise SceneError(f"data: column {error}") from error
+        self._there = {name: np.isfinite(column) for name, column in data.items()}
+        count = sum(int(there.sum()) for there in self._there.values())
+        if count < len(self.places):
+            raise SceneError(f"data: has {count} numbers for {len(self.places)} fields; must have as many")
+
+    @property
+    def bounds(self) -> tuple[Numbers, Numbers]:
+        """The ranges of the fields, in units of their size."""
+        limits = [
+            (place.spec.lowest, place.spec.highest) if place.spec.kind == "number" else (-math.inf, math.inf)
+            for place in self.places.values()
+        ]
+        low, high = np.array(limits).T / self.scale
+        return np.where(low < -_ENDLESS, -math.inf, low), np.where(high > _ENDLESS, math.inf, high)
+
+    def run(self, values: Numbers) -> dict[str, Numbers]:
+        """Run the scene with these values [SI]; return the columns of the data."""
+        world = load_scene(self._scene)
+        words = ", ".join(f"{path} = {value:g}" for path, value in zip(self.places, values, strict=True))
+        try:
+            put(world, dict(zip(self.places.values(), values.tolist(), strict=True)))
+            record = Record(world, self._data)
+            for moment in self.times.tolist():
+                if moment > world.time:
+                    world.run(seconds=moment - world.time)
+                record.add()
+        except (Diverged, InvalidValue) as error:
+            raise SceneError(f"the run of {words}: {error}") from error
+        self.runs += 1
+        return {name: np.array(column) for name, column in record.columns.items()}
+
+    def columns_of(self, values: Numbers) -> dict[str, Numbers]:
+        return self.run(values * self.scale)
+
+    def rests(self, values: Numbers) -> Numbers:
+        """Return what the scene leaves of the data (n,)."""
+        found = self.columns_of(values)
+        return np.concatenate([
+            found[name][there] - self._data[name][there] for name, there in self._there.items()
+        ])  # fmt: skip
+
+
+def _number(place: Place, value: float | str) -> float:
+    if place.spec.kind != "number" and not place.part:
+        raise SceneError(f"{place.words}: must be a number, or a part of a vector")
+    try:
+        number = evaluate(value, place.spec.unit) if isinstance(value, str) else float(value)
+    except (InvalidText, TypeError, ValueError) as error:
+        raise SceneError(f"{place.words} = {shown(value)}: {error}; must be {place.spec.allowed}") from error
+    if not math.isfinite(number):
+        raise SceneError(f"{place.words} = {number}: must be a finite number")
+    return number
+
+
+def _columns(data: str | os.PathLike[str] | Mapping[str, ArrayLike]) -> dict[str, Numbers]:
+    """Return the columns of data, all as long, with times that ascend."""
+    named = data if isinstance(data, Mapping) else _read(Path(data))
+    columns = {name: np.asarray(column, np.float64) for name, column in named.items()}
+    if "time" not in columns or len(columns) < 2:
+        raise SceneError("data: must have a column time [s], and at least one of a quantity, as ball.x")
+    if len({column.shape for column in columns.values()}) > 1 or columns["time"].ndim != 1:
+        raise SceneError("data: all columns must have as many numbers")
+    times = columns["time"]
+    if not (len(times) and np.isfinite(times).all() and times[0] >= 0.0 and (np.diff(times) > 0.0).all()):
+        raise SceneError("data: time must begin at 0 s or later and ascend")
+    return columns
+
+
+def _read(path: Path) -> dict[str, list[float]]:
+    """Return the columns of a CSV file by its head."""
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            head, *rows = csv.reader(file)
+    except (OSError, ValueError, csv.Error) as error:
+        raise SceneError(f"data {path}: cannot be read: {error}") from error
+    found: dict[str, list[float]] = {name.strip(): [] for name in head}
+    for number, row in enumerate(rows, 2):
+        if len(row) != len(head):
+            raise SceneError(f"data {path}: line {number}: has {len(row)} cells; must have {len(head)}")
+        for column, cell in zip(found.values(), row, strict=True):
+            column.append(_cell(path, number, cell))
+    return found
+
+
+def _cell(path: Path, number: int, cell: str) -> float:
+    try:
+        return float(cell) if cell.strip() else math.nan
+    except ValueError:
+        raise SceneError(f"data {path}: line {number}: {shown(cell)} must be a number") from None

@@ -1,0 +1,190 @@
+"""What measures depend on: derivatives by fields, and shares of a variance that fields explain."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.ensembles.measures import Measure
+from physicslab.ensembles.result import EnsembleResult, package
+from physicslab.ensembles.runs import ensemble, task_of
+from physicslab.files.checks import SceneError, shown
+from physicslab.files.places import entity_names, find_place
+from physicslab.files.scene import load_scene
+from physicslab.world import World
+
+_STEP = 1e-3
+"""Share of a field by which it is moved to each side: with the error of order 4 below, rounding and what is
+left out are both some 1e-12 of a measure whose higher derivatives are like the first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Derivative:
+    """How fast a measure changes with a field.
+
+    Attributes
+    ----------
+    value, error : float
+        The derivative [SI], and what a halved step changes of it: far more than its error where the measure
+        is smooth, and like the value itself where it is not, as where an impact comes or goes.
+    """
+
+    value: float
+    error: float
+
+
+@dataclass(frozen=True, slots=True)
+class SobolIndices:
+    """Shares of a measure's variance.
+
+    Attributes
+    ----------
+    first : dict of str to float
+        What each field explains by itself.
+    total : dict of str to float
+        What it explains together with all others: 0 where the measure does not depend on it.
+    first_error, total_error : dicts of str to float
+        Half the width of the interval in which each is with 95 % confidence.
+    """
+
+    first: dict[str, float]
+    total: dict[str, float]
+    first_error: dict[str, float]
+    total_error: dict[str, float]
+
+
+def sensitivity(
+    scene: Any, fields: Sequence[str] | Mapping[str, float], *, measure: Measure | Mapping[str, Measure],
+    seconds: float | None = None, steps: int | None = None, executor: Any = "serial",
+) -> dict[str, dict[str, Derivative]]:  # fmt: skip
+    """Return the derivative of each measure by each field, of the scene as it is.
+
+    By central differences of runs of the same bits, with two steps, which leaves an error of order 4.
+
+    Parameters
+    ----------
+    scene : str, path, dict or World
+        What is run.
+    fields : sequence of str, or mapping of str to float
+        The fields, or the step of each [SI]; else it is a thousandth of the field, or 1e-3 where that is 0.
+    measure, seconds, steps, executor
+        As for :func:`~physicslab.ensemble`.
+
+    Raises
+    ------
+    SceneError
+        If a field is no number, or a run fails.
+
+    Examples
+    --------
+    >>> found = sensitivity("drop", ["physics.gravity.y"], measure="ball.y", seconds=0.5)
+    >>> round(found["ball.y"]["physics.gravity.y"].value, 10)  # t^2 / 2
+    0.125
+    """
+    world = scene if isinstance(scene, World) else load_scene(scene)
+    names = entity_names(world)
+    places = {path: find_place(world, "fields", path, "...", names) for path in fields}
+    middle = {}
+    for path, place in places.items():
+        held = place.read(world)
+        held = getattr(held, place.part) if place.part else held
+        if place.spec.kind not in ("number", "vector") or not isinstance(held, int | float):
+            raise SceneError(f"{place.words}: must be a number: derivatives are by numbers")
+        middle[path] = float(held)
+    given = fields if isinstance(fields, Mapping) else dict.fromkeys(fields, None)
+    widths = {path: _STEP * (abs(middle[path]) or 1.0) if h is None else h for path, h in given.items()}
+    moves = np.array([0.5, -0.5, 1.0, -1.0])
+    rows = {path: np.full(4 * len(places), value) for path, value in middle.items()}
+    for k, path in enumerate(rows):
+        rows[path][4 * k : 4 * k + 4] += moves * widths[path]
+    result = ensemble(
+        world, {path: ("rows", values) for path, values in rows.items()}, measure=measure, seconds=seconds,
+        steps=steps, executor=executor,
+    )  # fmt: skip
+    _whole(result)
+    found: dict[str, dict[str, Derivative]] = {}
+    for name in result.task.measures:
+        near_up, near_down, up, down = result.columns[name].reshape(-1, 4).T
+        spans = np.array([rows[path][4 * k : 4 * k + 4] for k, path in enumerate(rows)]).T
+        half, full = (near_up - near_down) / (spans[0] - spans[1]), (up - down) / (spans[2] - spans[3])
+        values = half + (half - full) / 3.0
+        found[name] = {
+            path: Derivative(float(value), float(abs(value - near)))
+            for path, value, near in zip(rows, values, half, strict=True)
+        }
+    return found
+
+
+def sobol_indices(
+    scene: Any, space: Mapping[str, tuple[str, float, float]], *, measure: Measure | Mapping[str, Measure],
+    seconds: float | None = None, steps: int | None = None, samples: int = 256, seed: int = 0,
+    executor: Any = "processes", workers: int | None = None,
+) -> dict[str, SobolIndices]:  # fmt: skip
+    """Return which fields explain how much of the variance of each measure (SALib; extra ``analysis``).
+
+    Parameters
+    ----------
+    space : mapping of str to tuple
+        Fields, each ``("uniform", a, b)`` or ``("normal", mean, deviation)``.
+    samples : int
+        A power of two; ``samples`` times the number of fields plus 2 runs are made.
+    scene, measure, seconds, steps, executor, workers
+        As for :func:`~physicslab.ensemble`.
+
+    Raises
+    ------
+    ImportError
+        If SALib is not installed.
+    SceneError
+        If a field is drawn otherwise, or a run fails: indices need all of them.
+    """
+    package("SALib", "sobol_indices")
+    from SALib.analyze import sobol as analyse
+    from SALib.sample import sobol as sample
+
+    if samples < 2 or samples & (samples - 1):
+        raise SceneError(f"samples = {samples}: must be a power of two")
+    laws = {path: law[0] if isinstance(law, tuple) and law else None for path, law in space.items()}
+    for path, law in laws.items():
+        if law not in ("uniform", "normal"):
+            words = 'must be ("uniform", a, b) or ("normal", mean, deviation)'
+            raise SceneError(f"space: {path} = {shown(space[path])}: {words}")
+    task = task_of(scene, space, measure=measure, seconds=seconds, steps=steps, samples=1)  # is checked
+    problem = {
+        "num_vars": len(space),
+        "names": [*space],
+        "bounds": [axis.values.tolist() for axis in task.space.axes],
+        "dists": ["unif" if law == "uniform" else "norm" for law in laws.values()],
+    }
+    drawn: NDArray[np.float64] = sample.sample(problem, samples, calc_second_order=False, seed=seed)
+    result = ensemble(
+        scene, {path: ("rows", drawn[:, k]) for k, path in enumerate(space)}, measure=measure,
+        seconds=seconds, steps=steps, executor=executor, workers=workers,
+    )  # fmt: skip
+    _whole(result)
+    return {name: _indices(analyse, problem, result.columns[name], seed) for name in result.task.measures}
+
+
+def _indices(analyse: Any, problem: dict[str, Any], column: NDArray[np.float64], seed: int) -> SobolIndices:
+    names = problem["names"]
+    if not np.ptp(column):  # a variance of zero has no shares
+        none = dict.fromkeys(names, 0.0)
+        return SobolIndices(none, none, none, none)
+    found = analyse.analyze(problem, column, calc_second_order=False, seed=seed)
+    parts = (
+        dict(zip(names, map(float, found[key]), strict=True)) for key in ("S1", "ST", "S1_conf", "ST_conf")
+    )
+    return SobolIndices(*parts)
+
+
+def _whole(result: EnsembleResult) -> None:
+    """Refuse results in which a run has none."""
+    for row, why in result.failures.items():
+        values = ", ".join(
+            f"{axis.name} = {result.columns[axis.name][row]:g}" for axis in result.task.space.axes
+        )
+        raise SceneError(f"the run of {values}: {why}")

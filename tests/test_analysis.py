@@ -1,0 +1,151 @@
+"""What measures depend on, and fields found from data: beside answers that are known."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from physicslab import SceneError, World, circle, ensemble, load_scene
+from physicslab.cli import main
+from physicslab.components import Spring, Transform
+from physicslab.ensembles import fit, sensitivity, sobol_indices
+
+VX, VY, G = "ball.Velocity.linear.x", "ball.Velocity.linear.y", "physics.gravity.y"
+E, STIFFNESS = "ball.Material.restitution", "spring.Spring.stiffness"
+
+
+def oscillator() -> World:
+    world = World()
+    ball = circle(world, (1.0, 0.0), radius=0.1, mass=2.0, name="ball")
+    world.spawn(Spring(a=ball, rest_length=0.0, stiffness=8.0, anchor_b=(0.0, 0.0)), name="spring")
+    world.physics = world.physics.__class__(gravity_mode="none")
+    return world
+
+
+# ---- derivatives -------------------------------------------------------------------------------------------
+
+
+def test_derivatives_of_an_oscillation_are_those_of_the_formula() -> None:
+    found = sensitivity(oscillator(), [STIFFNESS, "ball.Mass.mass"], measure="ball.x", seconds=3.0)["ball.x"]
+    w, t = 2.0, 3.0  # x = cos(w t), w = sqrt(k / m)
+    by_w = -t * math.sin(w * t)
+    assert found[STIFFNESS].value == pytest.approx(by_w * 0.5 / (2.0 * w), rel=1e-8)
+    assert found["ball.Mass.mass"].value == pytest.approx(-by_w * w / 4.0, rel=1e-8)
+
+
+@given(st.floats(-3.0, 3.0), st.floats(0.05, 0.8))
+def test_a_derivative_by_gravity_is_half_the_square_of_the_time(speed: float, seconds: float) -> None:
+    found = sensitivity("drop", {G: 0.1, VX: 0.5}, measure="ball.y", seconds=seconds)["ball.y"]
+    assert found[G].value == pytest.approx(0.5 * seconds**2, rel=1e-9) and found[VX].value == 0.0
+
+
+def test_where_an_impact_comes_or_goes_the_error_says_that_there_is_no_derivative() -> None:
+    touched = math.sqrt(2.0 * 3.75 / 9.81)
+    found = sensitivity("drop", {G: 0.5}, measure="collisions", seconds=touched)["collisions"][G]
+    assert found.error >= 0.1 * abs(found.value) > 0.0
+
+
+@pytest.mark.parametrize(
+    "field", ["ball.Mass.mas", "ball.Shape.kind", "bal.Mass.mass", VX.rpartition(".")[0]]
+)
+def test_what_is_no_number_is_refused(field: str) -> None:
+    with pytest.raises(SceneError, match=r"fields: entity|must be a number"):
+        sensitivity("drop", [field], measure="ball.y", seconds=0.1)
+
+
+# ---- spread ------------------------------------------------------------------------------------------------
+
+
+def test_the_spread_of_a_measure_is_that_of_its_column_without_runs_that_failed() -> None:
+    result = ensemble(
+        "drop", {VY: [0.0, 1.0, 2.0, 1e9]}, measure={"y": "ball.y", "t": "first_impact.time"}, seconds=0.5,
+        executor="serial",
+    )  # fmt: skip
+    spread, y = result.spread(), result.columns["y"]
+    assert spread["y"]["count"] == 4 and spread["y"]["mean"] == y.mean()
+    assert (spread["y"]["least"], spread["y"]["greatest"]) == (y.min(), y.max())
+    assert spread["t"]["count"] == 0 and math.isnan(spread["t"]["mean"])
+    assert result.units == {VY: "m/s", "y": "m", "t": "s"}
+
+
+# ---- Sobol's indices ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.peers
+def test_indices_of_a_sum_are_shares_of_its_variance() -> None:
+    space = {VX: ("uniform", 0.0, 2.0), VY: ("uniform", 0.0, 1.0), E: ("uniform", 0.2, 0.9)}
+    measure = {"sum": "ball.x / (1 m) + ball.y / (1 m)"}
+    found = sobol_indices("drop", space, measure=measure, seconds=0.5, samples=512, executor="serial")["sum"]
+    # both are moved by v t, so that variances are as the squares of the widths
+    assert found.first[VX] == pytest.approx(0.8, abs=0.05) and found.total[VY] == pytest.approx(0.2, abs=0.05)
+    assert found.first[E] == found.total[E] == 0.0
+    with pytest.raises(SceneError, match="a power of two"):
+        sobol_indices("drop", space, measure=measure, seconds=0.5, samples=100)
+    with pytest.raises(SceneError, match='must be \\("uniform"'):
+        sobol_indices("drop", {VX: [1, 2]}, measure=measure, seconds=0.5)  # type: ignore[dict-item]
+
+
+# ---- fits --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.peers
+def test_a_fit_finds_the_fields_of_which_data_come_and_how_sure_they_are(tmp_path: Path) -> None:
+    world, noise = oscillator(), np.random.default_rng(3)
+    times, places = np.linspace(0.1, 6.0, 60), []
+    for t in times.tolist():
+        world.run(seconds=t - world.time)
+        places.append(world.component("ball", Transform).position.x)
+    data = {"time": times, "ball.x": np.array(places)}
+    start: dict[str, float | str] = {STIFFNESS: 6.5, "ball.Transform.position.x": "0.8 m"}
+    exact = fit(oscillator(), start, data)
+    assert exact.values[STIFFNESS] == pytest.approx(8.0, rel=1e-9)
+    assert exact.rest < 1e-9
+    pulls = []
+    for _ in range(8):
+        shaken = {**data, "ball.x": data["ball.x"] + noise.normal(0.0, 0.01, 60)}
+        found = fit(oscillator(), start, shaken)
+        pulls.append((found.values[STIFFNESS] - 8.0) / found.errors[STIFFNESS])
+        assert found.rest == pytest.approx(0.01, rel=0.4) and found.covariance.shape == (2, 2)
+    assert np.sqrt(np.mean(np.square(pulls))) < 2.2  # chi^2 of 8 is above 8 * 2.2^2 once in 10^5
+    path = tmp_path / "seen.csv"
+    rows = "\n".join(f"{t},{x}" for t, x in zip(times, places, strict=True))
+    path.write_text(f"time,ball.x\n{rows}\n", encoding="utf-8")
+    assert fit(oscillator(), start, path).values == exact.values
+
+
+@pytest.mark.peers
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        ({"ball.x": [1.0]}, "must have a column time"),
+        ({"time": [0.0, 1.0], "ball.x": [1.0]}, "as many numbers"),
+        ({"time": [1.0, 0.5], "ball.x": [1.0, 1.0]}, "ascend"),
+        ({"time": [1.0], "ball.z": [1.0]}, "column 'ball.z' is no quantity"),
+        ({"time": [1.0], "ball.x": [math.nan]}, "has 0 numbers for 1 fields"),
+    ],
+)
+def test_data_that_cannot_be_fitted_are_refused(data: dict[str, list[float]], message: str) -> None:
+    with pytest.raises(SceneError, match=message):
+        fit(oscillator(), {STIFFNESS: 6.0}, data)
+
+
+# ---- maps --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.plot
+def test_a_map_is_written_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "map.png"
+    vary = ["--vary", f"{VX}=0:3:4", "--vary", f"{VY}=0:3:3"]
+    command = ["sweep", "drop", "--measure", "x=ball.x", "--seconds", "0.5", "--map", str(path)]
+    assert main([*command, *vary, "--workers", "1"]) == 0 and path.read_bytes().startswith(b"\x89PNG")
+    assert main([*command, *vary[:2]]) == 2
+    assert "map: must have two lists of numbers" in capsys.readouterr().err
+
+
+def test_a_map_needs_two_lists() -> None:
+    result = ensemble(load_scene("drop"), {VX: [0, 1]}, measure="ball.x", seconds=0.1, executor="serial")
+    with pytest.raises(SceneError, match="two lists of numbers"):
+        result.map()
