@@ -219,7 +219,8 @@ if sys.argv[1] == "pack":
     path.write_bytes(pack())
 bits = [world.table(Transform)["position"], world.table(Transform)["angle"], world.table(Velocity)["linear"]]
 digest = hashlib.sha256(b"".join(column.tobytes() for column in bits)).hexdigest()
-print(digest, sum(sum(k.stats.cache_misses.values()) for k in KERNELS if hasattr(k, "stats")), platform_key()["processor"])
+missed = sum(sum(k.stats.cache_misses.values()) for k in KERNELS if hasattr(k, "stats"))
+print(digest, missed, platform_key()["processor"])
 """
 
 
