@@ -229,7 +229,7 @@ def test_seeks_give_the_bits_of_a_fresh_run_whatever_the_scene(seed: int, contac
         ("newtons_cradle", "rigid"),
         ("pendulum", "flow"),
         ("solar_system", "flow"),
-        ("spring_chain", "contact"),
+        ("spring_chain", "fused_contact"),
         ("pyramid", "fused_contact"),
         ("pile", "fused_contact"),
     ],

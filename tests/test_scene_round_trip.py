@@ -328,12 +328,6 @@ def test_a_pile_that_was_edited_goes_on_with_the_same_bits(
                 )
 
 
-def fast_on_a_spring(world: World) -> int:
-    ball = circle(world, (0, 3), velocity=(0, -60))
-    world.spawn(Spring(ball, None, (0.01, 0.0), (0.0, 5.0), rest_length=4.5, stiffness=500.0))
-    return ball
-
-
 def fast_with_drag(world: World) -> int:
     ball = circle(world, (0, 3), velocity=(500, 0))
     world.add(ball, Drag(quadratic=900.0))
@@ -344,7 +338,7 @@ def in_the_air(world: World) -> int:
     return circle(world, (0, 3), radius=0.5, restitution=0.5)
 
 
-@pytest.mark.parametrize("make", [fast_on_a_spring, fast_with_drag, in_the_air])
+@pytest.mark.parametrize("make", [fast_with_drag, in_the_air])
 def test_what_was_chosen_for_an_earlier_motion_is_kept(make: Callable[[World], int]) -> None:
     """The method was chosen by how a body moved; the world that is loaded meets it nearly at rest."""
     world = World(*standard_systems())

@@ -52,17 +52,11 @@ def add_arguments(parser: ArgumentParser) -> None:
         "only where they are named"
     )
     parser.add_argument("--peers", action="store_true", help=peers)
-    built = (
-        "time Box2D 3 in C as well, compiled with cc, or CC, from this checkout of its sources (3.2 or "
-        "later); with AVX2 where the processor has it"
-    )
+    built = "time Box2D 3 in C as well, compiled with cc, or CC, from this checkout of its sources (from 3.2 on)"
     parser.add_argument("--box2d", metavar="DIR", type=Path, help=built)
-    random = (
-        "time N scenes drawn at random instead, beside pymunk with --peers and Box2D in C with --box2d; list "
-        "the slowest and what they have in common"
-    )
+    random = "time N random scenes instead; list the slowest and what they have in common"
     parser.add_argument("--random", metavar="N", type=positive_count, help=random)
-    series = "the series that they are of (0); S:K begins at its K-th, so that --random 1 runs that one"
+    series = "their series (0); S:K begins at its K-th"
     parser.add_argument("--seed", metavar="S", type=_series, default=(0, 0), help=series)
     parser.epilog = (
         f"groups: {', '.join(SCENES.families)}; --list names the {len(SCENES)} scenes; {_UNUSED}: what a "

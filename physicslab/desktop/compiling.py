@@ -178,7 +178,8 @@ class Compiling:
         if now:
             self.scenes.interpret([native for jitted in now for native in natives_within(jitted)])
             assert self._warmup is not None
-            self._warmup.hurry({name_of(jitted): _seconds_saved(jitted) for jitted in self.scenes.pending()})
+            awaited = dict.fromkeys((*now, *self.scenes.pending()))
+            self._warmup.hurry({name_of(jitted): _seconds_saved(jitted) for jitted in awaited})
         else:
             self._wait(missing)
         return now

@@ -47,9 +47,9 @@ class Run:
     >>> from physicslab import load_scene
     >>> run = load_scene("drop").record(seconds=3.0, until="ball.y <= 1 m")
     >>> run
-    <Run: 53 instants from 0 s to 0.874401 s, bodies: ball>
+    <Run: 48 instants from 0 s to 0.782062 s, bodies: ball>
     >>> round(float(run.columns["ball.vy"][-1]), 6)
-    -8.577876
+    -7.672027
     """
 
     def __init__(
