@@ -52,7 +52,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         "only where they are named"
     )
     parser.add_argument("--peers", action="store_true", help=peers)
-    built = "time Box2D 3 in C as well, compiled with cc, or CC, from this checkout of its sources (from 3.2 on)"
+    built = "time Box2D 3 in C as well, compiled with cc, or CC, from this checkout of it (3.2 or later)"
     parser.add_argument("--box2d", metavar="DIR", type=Path, help=built)
     random = "time N random scenes instead; list the slowest and what they have in common"
     parser.add_argument("--random", metavar="N", type=positive_count, help=random)
