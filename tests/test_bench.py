@@ -294,6 +294,15 @@ def test_the_command_runs_random_scenes_and_says_what_they_have(capsys: pytest.C
     assert scene["path"] and scene["features"] and scene["systems_ms"]["beside systems"] >= 0.0
 
 
+def test_contacts_are_found_in_a_world_of_many_islands() -> None:
+    """Those of its islands came in between, without room for colours: memory was written beyond it."""
+    world = random_scene(1, 39)[0].build()
+    world.synchronise()
+    assert len(world.parts) > 1
+    find_contacts(world)
+    assert all(len(kind.used) == len(world.entity_index) for kind in world.contacts.wide.kinds)
+
+
 @pytest.mark.parametrize(
     "given", [["--seed", "x"], ["--seed", "1:"], ["--random", "0"], ["--random", "1", "heap"]]
 )

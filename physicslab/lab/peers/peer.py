@@ -320,6 +320,7 @@ def find_contacts(world: World) -> None:
     """Find the contacts of a world again, from where its bodies are now."""
     world.synchronise()
     with world.active():
+        world.contacts.fetch()  # else those of islands would be put in place of what is found, on the way
         world.contacts.stale = True
         for stage in (Stage.BROAD_PHASE, Stage.CONTACT):
             world.schedule.run(stage, world, 0.0)
