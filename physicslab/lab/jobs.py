@@ -96,8 +96,9 @@ def in_processes[Result](
         futures = {name: future for run in runs for future in [pool.submit(_each, work, run)] for name in run}
         try:
             yield from _in_order(futures, names)
-        finally:
+        except BaseException:  # else the end of the block waits: a process that is left ends with a traceback
             pool.shutdown(wait=False, cancel_futures=True)
+            raise
 
 
 def end_with_parent() -> None:
