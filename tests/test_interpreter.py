@@ -364,6 +364,8 @@ def joints_fields_and_chains() -> None:
     for x in (0.0, 0.25):
         world.spawn(Transform((x, 0.0)), Velocity(), Mass(1.0), Molecule())
     world.run(steps=2)
+    world.simulation = replace(world.simulation, integrator="dop853")
+    world.record(4.0 * world.simulation.dt)
 
 
 def lone_sweeps() -> None:

@@ -108,6 +108,9 @@ class Workers:
                 return
             piece, future = self._done.get()
             self._flying.discard(future)
+            if future.cancelled():  # it waited in a pool that was given up
+                waiting.appendleft(piece)
+                continue
             error = future.exception()
             if error is None:
                 self._begun, block = True, future.result()

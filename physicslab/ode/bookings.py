@@ -69,7 +69,8 @@ class BookKeeper:
         self.slots = {cause: first + ACCOUNTS * number for number, cause in enumerate(sorted(causes))}
         self.count = ACCOUNTS * len(causes)
         kept = {system.account for system in foreign if system.potential is None}
-        kept |= {DAMPING} if any(force.keeps is not None for force in own) else set()
+        # A force that books nothing, as drag on what cannot move, needs no room either.
+        kept |= {DAMPING} & causes if any(force.keeps is not None for force in own) else set()
         self.rooms = {cause: self._room() for cause in sorted(kept if kicked else ())}
         pairs = [(self.slots[cause], room) for cause, room in self.rooms.items()]
         head = layout.clock, first + ACCOUNTS * len(causes), len(layout.moving), self.slots.get(DAMPING, -1)
