@@ -16,8 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 from physicslab.diagnostics.figures import Record
 from physicslab.diagnostics.fits import covariance_of
 from physicslab.ecs.component import InvalidValue
-from physicslab.ecs.quantity_text import InvalidText, evaluate
+from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ensembles.result import package
+from physicslab.ensembles.space import number_of
 from physicslab.files.assignments import put
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import Place, entity_names, find_place
@@ -174,13 +175,7 @@ class _Model:
 def _number(place: Place, value: float | str) -> float:
     if place.spec.kind != "number" and not place.part:
         raise SceneError(f"{place.words}: must be a number, or a part of a vector")
-    try:
-        number = evaluate(value, place.spec.unit) if isinstance(value, str) else float(value)
-    except (InvalidText, TypeError, ValueError) as error:
-        raise SceneError(f"{place.words} = {shown(value)}: {error}; must be {place.spec.allowed}") from error
-    if not math.isfinite(number):
-        raise SceneError(f"{place.words} = {number}: must be a finite number")
-    return number
+    return number_of(place, value)
 
 
 def _columns(data: str | os.PathLike[str] | Mapping[str, ArrayLike]) -> dict[str, Numbers]:

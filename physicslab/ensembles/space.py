@@ -200,7 +200,7 @@ def _law(world: World, place: Place, law: str, numbers: list[Any]) -> Values:
     if len(numbers) != 2:
         raise SceneError(f'{place.words}: ("{law}", ...) must have {_LAWS[law]}')
     if law == "normal":
-        low, high = _checked(world, place, numbers[0]), _number(place, numbers[1])
+        low, high = _checked(world, place, numbers[0]), number_of(place, numbers[1])
     else:
         low, high = (_checked(world, place, number) for number in numbers)
     if not (high > 0.0 if law == "normal" else low < high):
@@ -211,7 +211,7 @@ def _law(world: World, place: Place, law: str, numbers: list[Any]) -> Values:
 def _checked(world: World, place: Place, value: Any) -> Any:
     """Return a value as the column has it, or refuse it by name."""
     if place.spec.kind in ("number", "vector"):
-        value = _number(place, value)
+        value = number_of(place, value)
     elif isinstance(value, np.generic):
         value = value.item()
     try:
@@ -221,7 +221,8 @@ def _checked(world: World, place: Place, value: Any) -> Any:
     return value
 
 
-def _number(place: Place, value: Any) -> float:
+def number_of(place: Place, value: Any) -> float:
+    """Return a number or a text with a unit in the unit of a field, or refuse it by name."""
     try:
         number = evaluate(value, place.spec.unit) if isinstance(value, str) else float(value)
     except (InvalidText, TypeError, ValueError) as error:
@@ -242,7 +243,7 @@ def _with_jitter(
         jitter = dict.fromkeys(numbers, jitter) if jitter else {}
     for path, size in jitter.items():
         place = find_place(world, "jitter", path, str(size), names)
-        deviation = _number(place, size)
+        deviation = number_of(place, size)
         own = by_path.get(place.path)
         if own is None:
             held = place.read(world)
