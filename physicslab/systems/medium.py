@@ -155,5 +155,5 @@ class MediumSystem(ForceSystem):
 def _outlines(state: State, rows: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return the shapes of rows as outlines (n, OUTLINE), unturned and about their centres."""
     cores = cores_of(state.table(Shape), rows)
-    numbers = cores.vertices, cores.radius, cores.corners.reshape(len(rows), -1)
+    numbers = cores.vertices, cores.radius, cores.corners.reshape(len(rows), 2 * cores.corners.shape[1])
     return np.column_stack(numbers)
