@@ -1,4 +1,4 @@
-"""What a flow takes while contacts and joints push is the flow's, and nothing is left as an error of the method."""
+"""What a flow takes while contacts and joints push is the flow's, and no error of the method."""
 
 from typing import Any
 
@@ -79,7 +79,9 @@ def test_what_drag_takes_while_bodies_slide_and_rest_is_dampings(drag: str, stag
     moving = {"Velocity": {"linear": [3.0, 0.0]}, **DRAGS[drag]}
     resting = {"Material": {"restitution": 0.0, "friction": 0.3}}
     document = scene(
-        body(0.0, 0.65, **{**resting, **moving}), body(0.0, 0.95, **{**resting, **DRAGS[drag]}), fixed(0.0, 0.0)
+        body(0.0, 0.65, **{**resting, **moving}),
+        body(0.0, 0.95, **{**resting, **DRAGS[drag]}),
+        fixed(0.0, 0.0),
     )
     _, account = after(document, 20, *[LooksAtSolving()] * staged)
     assert account.energy["damping"] < -1e-3
@@ -105,7 +107,7 @@ def test_a_magnetic_field_beside_a_joint_that_is_closed_books_nothing() -> None:
 def test_what_drags_by_the_square_of_the_speed_is_followed_from_rest(what: str) -> None:
     water = fixed(0.0, 5.0, Medium={"density": 0.0, "quadratic": 2.0})
     water["Shape"] = {"kind": "box", "width": 20.0, "height": 20.0}
-    drag = {"Drag": {"quadratic": 2.0}} if what == "drag" else {}
+    drag: dict[str, Any] = {"Drag": {"quadratic": 2.0}} if what == "drag" else {}
     document = scene(body(0.0, 8.0, **drag), body(5.0, 0.65), fixed(0.0, 0.0), *[water] * (what == "medium"))
     world, account = after(document, 40)
     assert world.bodies.sub_integrated[1]
@@ -113,21 +115,13 @@ def test_what_drags_by_the_square_of_the_speed_is_followed_from_rest(what: str) 
     assert share(account) < FLOWN
 
 
-def test_a_medium_without_a_body_in_it_stays_empty() -> None:
-    water = fixed(0.0, 0.0, Medium={"density": 1.0, "viscosity": 1.0})
-    point = {"Transform": {"position": [0.0, 3.0]}, "Velocity": {}, "Mass": {"mass": 1.0}, "Drag": {"linear": 1.0}}
-    rope = {"Rope": {"b": "point", "anchor_a": [0.0, 5.0], "length": 1.0}}
-    document = scene({"id": "point", **point}, rope, body(30.0, 3.0), water)
-    world, account = after(document, 5)
-    assert len(world.islands.members) == 2
-    assert abs(account.energy["numerical"]) < 1e-9
-
-
 def test_a_step_that_is_begun_again_by_another_method_is_booked_once() -> None:
     capsule = {"kind": "capsule", "length": 0.24, "radius": 0.04}
     one = {"id": "one", **body(7.1, 6.4, 2.7), "Shape": {"kind": "circle", "radius": 0.35}}
     two = {"id": "two", **body(5.4, 7.6, 1.0), "Shape": capsule}
-    motor = {"Pin": {"a": "one", "b": "two", "anchor_a": [1.8, -0.8], "anchor_b": [0.4, -0.1], "motor_speed": -2}}
+    motor = {
+        "Pin": {"a": "one", "b": "two", "anchor_a": [1.8, -0.8], "anchor_b": [0.4, -0.1], "motor_speed": -2}
+    }
     weld = {"Weld": {"a": "two", "b": "one", "anchor_a": [0.0, -2.3], "anchor_b": [-0.3, 0.0]}}
     document = scene(one, two, motor, weld)
     document["simulation"] = {}

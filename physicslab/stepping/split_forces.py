@@ -138,7 +138,7 @@ class SplitForces:
             )  # fmt: skip
 
     def _note_flow(self, state: State, sign: float, h: float) -> None:
-        """Take the flow from the velocities that contacts noted, so that what each does is booked as its own."""
+        """Take the flow from the velocities that contacts noted, so that each is booked as its own."""
         bodies, velocity, contacts = state.bodies, state.table(Velocity), state.contacts
         if len(contacts.angular_before) == len(bodies.unkicked):
             work.note_flow(

@@ -39,7 +39,7 @@ class StageAccounts:
     other : int
         The cause by which the kicks of other forces are booked.
     moves_against : bool
-        Whether forces act that are not uniform, so that moving bodies apart does other work than the kernel books.
+        Whether forces act that are not uniform: the kernel books another work of moving bodies apart.
     """
 
     kernels: tuple[Any, ...] = (work.book_kick, work.book_damping)

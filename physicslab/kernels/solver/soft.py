@@ -136,8 +136,8 @@ def _note_flow(
     """Take a flow from the velocities noted, if any were, as :func:`note_flow` does."""
     if near.counts[LEFT] + near.counts[WIDE_COUNT] > 0:
         note_flow(
-            near.linear_before, near.angular_before, motion.linear, motion.angular, acting.force, acting.torque,
-            inverse.mass, inverse.inertia, sub_integrated, acting.unkicked, acting.uniform, sign, h,
+            near.linear_before, near.angular_before, motion.linear, motion.angular, acting.force,
+            acting.torque, inverse.mass, inverse.inertia, sub_integrated, acting.unkicked, acting.uniform, sign, h,
         )  # fmt: skip
 
 
