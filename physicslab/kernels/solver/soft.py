@@ -137,7 +137,8 @@ def _note_flow(
     if near.counts[LEFT] + near.counts[WIDE_COUNT] > 0:
         note_flow(
             near.linear_before, near.angular_before, motion.linear, motion.angular, acting.force,
-            acting.torque, inverse.mass, inverse.inertia, sub_integrated, acting.unkicked, acting.uniform, sign, h,
+            acting.torque, inverse.mass, inverse.inertia, sub_integrated, acting.unkicked, acting.uniform,
+            sign, h,
         )  # fmt: skip
 
 

@@ -76,8 +76,8 @@ def note_flow(
     """Take from the velocities noted what a flow changes those of its bodies by, before contacts are booked.
 
     Called with 1 and the time ``h`` [s] of the flow before it, and with -1 and 0 after. What was noted is
-    less than the velocities by the kick of a substep, twice ``h``, which the bodies of a flow do not get: half of
-    it is what was predicted for them. Where forces are ``uniform`` all of it is taken later, of all bodies.
+    less than the velocities by the kick of a substep, twice ``h``, which the bodies of a flow do not get:
+    half of it is what was predicted for them. Where forces are ``uniform`` it is taken later, of all bodies.
     """
     for i in range(len(unkicked)):
         if sub_integrated[i]:
