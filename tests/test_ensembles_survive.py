@@ -173,3 +173,16 @@ def test_the_run_that_ends_its_process_is_found_and_kept_as_a_failure() -> None:
     result = ensemble("drop", space, measure={"m": ends_its_process}, seconds=0.1, workers=2)
     assert result.failures == {2: "the process that made this run ended"}
     assert np.isnan(result.columns["m"][2]) and np.nansum(result.columns["m"]) == 25.0
+
+
+@pytest.mark.slow
+def test_a_script_that_processes_would_run_again_is_told_so_in_one_line(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from physicslab import ensemble\n"
+        'ensemble("drop", {"ball.Mass.mass": [1, 2]}, measure="ball.y", steps=2, workers=1)\n'
+    )
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert 'call it under if __name__ == "__main__":' in done.stderr.splitlines()[-1]
+    assert "bootstrapping" not in done.stderr

@@ -31,6 +31,8 @@ _SUSPECT = 2
 """Deaths of processes after which a piece is worked on alone."""
 _DEATHS = 3
 """How often a run that is alone must then end its process to be taken for the reason."""
+_UNGUARDED = 78
+"""Exit status of a process that began by running the script that has started it."""
 
 
 class Serial(Executor):
@@ -74,6 +76,7 @@ class Workers:
         self._done: queue.SimpleQueue[tuple[_Piece, Future[Block]]] = queue.SimpleQueue()
         self._flying: set[Future[Block]] = set()
         self._begun = False
+        self._children: set[Any] = set()
 
     def __enter__(self) -> Workers:
         return self
@@ -95,7 +98,7 @@ class Workers:
         BrokenExecutor
             If the caller's executor does not work any more.
         RuntimeError
-            If no process can be started.
+            If processes begin by running the script that starts them.
         """
         ahead, waiting = _Ahead(missing), deque[_Piece]()
         while True:
@@ -140,6 +143,11 @@ class Workers:
                 raise error
         elif isinstance(self._kind, Executor):
             raise error
+        elif any(child.exitcode == _UNGUARDED for child in self._children):
+            raise RuntimeError(
+                "ensemble: each process that it starts runs this script again: call it under if __name__ == "
+                '"__main__":, or with executor="threads"'
+            ) from None
         else:
             self._stop(wait=True)
 
@@ -154,6 +162,8 @@ class Workers:
             elif self._kind == "threads":
                 self._own = ThreadPoolExecutor(count)
             else:  # a fork would share threads of the compiled code: each worker imports for itself
+                if getattr(multiprocessing.current_process(), "_inheriting", False):
+                    raise SystemExit(_UNGUARDED)  # the one that has started this process says why
                 context = multiprocessing.get_context("spawn")
                 self._own = ProcessPoolExecutor(count, context, initializer=end_with_parent)
         return self._own
@@ -169,6 +179,8 @@ class Workers:
         except BrokenExecutor as error:  # it broke a moment ago, and its pieces are about to say so
             future = Future()
             future.set_exception(error)
+        if not self._begun and self._kind == "processes":
+            self._children.update(multiprocessing.active_children())
         self._flying.add(future)
         future.add_done_callback(lambda done: self._done.put((piece, done)))
 
