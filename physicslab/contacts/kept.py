@@ -22,10 +22,10 @@ from physicslab.state.state import State
 
 type _Array = NDArray[Any]
 
-_LISTED_AGAIN = (
+_LISTED_AGAIN = np.array([
     near_counts.PROXIMITY, near_counts.SCALAR, near_counts.SLEEPING, near_counts.ACTIVE, near_counts.LEFT,
     near_counts.WIDE_COUNT, near_counts.DISC_BLOCKS, near_counts.BOX_BLOCKS, near_counts.UNORDERED,
-)  # fmt: skip
+])  # fmt: skip
 """The counts that are found when pairs are listed."""
 _SMALL = 1 << 15
 """Size [bytes] up to which arrays are compared sooner by copies than by what numpy needs for a comparison."""
@@ -158,16 +158,17 @@ class KeptContacts:
         contacts.clear()
         contacts.rotations[:] = np.nan
         near = contacts.manifolds[:n]
-        near[:], contacts.points[: 2 * n] = self.manifolds, self.points.reshape(-1)
-        for name, other in (("a", "entity_a"), ("b", "entity_b")):
+        if n:
+            near[:], contacts.points[: 2 * n] = self.manifolds, self.points.reshape(-1)
+        for name, other in (("a", "entity_a"), ("b", "entity_b")) if n else ():
             near[name] = np.maximum(index.rows_of(near[other]), 0)
         contacts.counts[:] = self.counts
-        contacts.counts[list(_LISTED_AGAIN)] = 0
+        contacts.counts[_LISTED_AGAIN] = 0
         contacts.recorded = n
         for constraints, colour in zip(contacts.wide.kinds, self.colours, strict=True):
             constraints.make_room(len(colour))
             constraints.colour[: len(colour)] = colour
-        contacts.restoring = bool((near["slot"] >= 0).any())
+        contacts.restoring = n > 0 and bool((near["slot"] >= 0).any())
         contacts.impulse_dt, contacts.substep_factor = self.impulse_dt, self.substep_factor
         contacts.inactive = np.zeros(0, np.bool_)
         contacts.stale = True
@@ -207,17 +208,19 @@ class KeptSleep:
         """Return every array."""
         return (*self.columns.values(), self.gone)
 
-    def restore(self, state: State, rows: NDArray[np.int64]) -> None:
+    def restore(self, state: State, rows: NDArray[np.int64] | None) -> None:
         """Give them back to a state in which nothing sleeps.
 
-        ``rows`` (rows then,) are those of now; -1 for what is blank.
+        ``rows`` (rows then,) are those of now; -1 for what is blank, ``None`` where all are the same.
         """
         sleep = state.sleep
-        there = rows >= 0
         for name, column in self.columns.items():
             now = getattr(sleep, name)
             now[:] = 0
-            now[rows[there]] = column[there]
+            if rows is None:
+                now[1 : len(column)] = column[1:]
+            else:
+                now[rows[rows >= 0]] = column[rows >= 0]
         sleep.gone, sleep.laws, sleep.unverified = self.gone, self.laws, self.unverified
         sleep.count = int(np.count_nonzero(sleep.asleep))
         if sleep.count:

@@ -213,8 +213,9 @@ class Keyframe:
                 structure.restore(world)
                 world.stale |= index.synchronise()
                 structure.world, structure.changes = weakref.ref(world), index.changes
-            rows = np.where(structure.entities > 0, index.rows_of(structure.entities), -1)
-            there = None if np.array_equal(rows[1:], np.arange(1, len(index))) else rows
+            there = None  # where rows are numbered as they were then, which is seen at once
+            if structure.entities.tobytes() != index.entities.tobytes():
+                there = np.where(structure.entities > 0, index.rows_of(structure.entities), -1)
             for kind, columns in self._columns.items():
                 for now, then in zip(world.table(kind).columns, columns, strict=True):
                     _put(then, now, there)
@@ -227,7 +228,7 @@ class Keyframe:
             world.synchronise()
             world.adopt(self._plan, self._remade)
         self._contacts.restore(world)
-        self._sleep.restore(world, rows)
+        self._sleep.restore(world, there)
         world.joints.restore(self._joints)
         for now, then in zip((world.bodies.force, world.bodies.torque), self._forces, strict=True):
             _put(then, now, there)
