@@ -101,7 +101,7 @@ def solve(
     """Start from the last substep's impulses, then go through all contacts, correcting overlap.
 
     ``warm_start_scale`` is the ratio of this substep to the last one: the impulses of resting contacts grow
-    by that factor. What they do is booked by :func:`relax`, where the points are looked at again.
+    by that factor. What those of contacts do is booked by :func:`relax`, where points are looked at again.
     """
     joined, loose, stiff = len(joints.impulse) > 0, False, joint_softness(h)
     if joined:
@@ -121,6 +121,7 @@ def solve(
         elif not (unsettled or loose):
             break
     if joined:
+        book_work(joints, motion, near.account, True)
         book_momentum(joints, motion, inverse, near.account, True)
 
 
@@ -154,7 +155,6 @@ def relax(
     rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0), h
     joined, loose, stiff = len(joints.impulse) > 0, False, JointSoftness(h, 0.0, 1.0)
     if joined:
-        book_work(joints, motion, near.account, True)
         begin_joints(joints, motion, near.rotations, inverse, acting, 0.0)
         factorise_joints(joints, inverse, stiff)
     for n in range(sweeps):

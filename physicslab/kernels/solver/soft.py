@@ -45,14 +45,14 @@ from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.joints.blocks import Joints, JointsTuple
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
-from physicslab.kernels.near_counts import ACTIVE, OUTSIDE, WIDE_COUNT
+from physicslab.kernels.near_counts import ACTIVE, LEFT, OUTSIDE, WIDE_COUNT
 from physicslab.kernels.ode.damped_flow import flow_forces
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.edits import find_pushed
 from physicslab.kernels.sleep.islands import count_rest, find_touched
 from physicslab.kernels.solver.finer import factor_for
 from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
-from physicslab.kernels.solver.work import book_damping, book_gravity, book_kick
+from physicslab.kernels.solver.work import book_damping, book_gravity, book_kick, note_flow
 from physicslab.kernels.ticks import charge, ticks
 from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to_blocks
 
@@ -134,6 +134,19 @@ def _moved(motion: Motion, before: Numbers) -> bool:
 
 
 @inlined
+def _note_flow(
+    near: Near, motion: Motion, inverse: Inverse, acting: Acting, sub_integrated: Flags, sign: float, h: float
+) -> None:
+    """Take a flow from the velocities noted, if any were, as :func:`note_flow` does."""
+    if near.counts[LEFT] + near.counts[WIDE_COUNT] > 0:
+        note_flow(
+            near.linear_before, near.angular_before, motion.linear, motion.angular, acting.force,
+            acting.torque, inverse.mass, inverse.inertia, sub_integrated, acting.unkicked, acting.uniform,
+            sign, h,
+        )  # fmt: skip
+
+
+@inlined
 def _woken(near: Near, motion: Motion, inverse: Inverse, acting: Acting, sleepers: Sleepers) -> bool:
     """Return whether a sleeping body is to be woken; what rests on fixed bodies is passed over by impacts."""
     if sleepers.unverified:
@@ -198,7 +211,9 @@ def _advance(
                 weighed = False
                 now = charge(cost, INTEGRATE, now)
             elif what == SPRINGS:
+                _note_flow(near, motion, inverse, acting, sub_integrated, 1.0, span)
                 made = flow_forces(motion, springs, span, account)
+                _note_flow(near, motion, inverse, acting, sub_integrated, -1.0, 0.0 if made >= 0 else -span)
                 evaluations += max(0, made)
                 why = ALL if made >= 0 else PYTHON
                 weighed = False
