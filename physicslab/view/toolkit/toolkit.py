@@ -381,14 +381,19 @@ class Walk:
             imgui.set_nav_cursor_visible(True)
         self._begins = False
 
-    def end(self) -> None:
-        """Give the keys back to the world after Esc, or a line of a menu; after panels are built."""
+    def end(self, *, is_alone: bool) -> None:
+        """Give the keys back to the world after Esc, or a line of a menu; after panels are built.
+
+        Where the world ``is_alone`` in front and has them, their mark goes, and the tip of what it was on.
+        """
         toolkit, panel = self._toolkit, imgui.get_current_context().nav_window
         in_menus = toolkit.walked and self._panel == _MENUS
         left = in_menus and not toolkit.has_popup() and panel is not None and panel.name != _MENUS
         if self._ends or left:
             imgui.set_window_focus()
             self._ends = self._from_field = toolkit.walked = False
+        if is_alone and not toolkit.has_keys:
+            imgui.set_nav_cursor_visible(False)
 
 
 def _has_widgets(window: imgui.internal.Window) -> bool:
