@@ -2,6 +2,7 @@
 
 import math
 import random
+from collections.abc import Iterable
 
 import pytest
 
@@ -84,6 +85,25 @@ def test_what_heaps_that_fall_on_each_other_give_back_is_bounded_and_told(kind: 
     assert (most > UNLIKE_LIMIT * lifted) == (seed == 7), "both cases are there"
     account = measure_account(world)
     assert abs(account.energy["numerical"]) < 1e-9 * lifted
+
+
+def fallen(steps: Iterable[int]) -> tuple[bytes, set[int]]:
+    """Return where a heap of unlike boxes is after calls of so many steps, and the numbers of substeps."""
+    chance, world, substeps = random.Random(2), soft_world(), set[int]()
+    floor(world)
+    for i in range(20):
+        at = 1.02 * (i % 4) + chance.uniform(0.0, 0.01), 0.6 + 1.05 * (i // 4)
+        spawn(world, "box", at, 1.0, 10.0 ** chance.uniform(0.0, 3.0))
+    for count in steps:
+        world.run(steps=count)
+        substeps.add(world.substeps)
+    return world.table(Transform)["position"].tobytes(), substeps
+
+
+def test_substeps_are_the_same_however_a_run_is_divided() -> None:
+    single, substeps = fallen([1] * 60)
+    assert len(substeps) > 1, "loads come and go"
+    assert fallen([60])[0] == fallen([7, 23, 30])[0] == single
 
 
 @pytest.mark.parametrize(("contacts", "share"), [("soft", 0.33), ("rigid", 1e-12)])
