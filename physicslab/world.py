@@ -171,10 +171,7 @@ class World(Facade):
     def _attempt(self, h: float, steps: int, bears: float) -> int:
         """Advance, unless that ends with a load on joints beyond ``bears`` that is known at any time."""
         with Undoing(self, self._motion):
-            if self.account.start is None:
-                open_account(self, self.schedule.forces)
-            self.schedule.run(Stage.PREPARE, self, h)
-            self.account.is_open = False  # what was written at PREPARE is booked with what was before
+            self._prepare(h)
             made = self._advance(h, steps)
             if self.account.is_open:
                 close_account(self, self.schedule.forces)
@@ -188,6 +185,13 @@ class World(Facade):
         self.step_divisions = made.divisions
         return made.steps
 
+    def _prepare(self, h: float) -> None:
+        """Begin a step; what is written at PREPARE is booked with what was written before."""
+        if self.account.start is None:
+            open_account(self, self.schedule.forces)
+        self.schedule.run(Stage.PREPARE, self, h)
+        self.account.is_open = False
+
     def _advance(self, h: float, steps: int) -> Advance:
         """Advance with the best stepper; choose again where its numbers do not apply any more."""
         try:
@@ -199,6 +203,7 @@ class World(Facade):
             go_back(self)
             plan = plan_for_jumps(self, self.schedule, self.plan)
             self.plan, self.steppers = remake(self, self.schedule, plan)
+            self._prepare(h)
             made = self._make(h, steps)
         start, begun = self.time, 0.0
         try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pygame
 import pytest
-from desk import SETTLED, Desk, click, click_at, empty_world, sized, tap
+from desk import SETTLED, Desk, click, click_at, empty_world, middle_of, point, sized, tap, write
 from random_edits import state_hash
 
 from physicslab import load_scene
@@ -138,3 +138,32 @@ def test_a_click_on_a_spark_opens_the_microscope_in_a_pause_alone() -> None:
         desk.frames(2)
         assert desk.window.microscope.is_open == opens
         desk.window.pace.paused = True
+
+
+def test_keys_that_come_before_their_field_are_written_there(desk: Desk) -> None:
+    """On a slow machine T and W of the title acted on the world, and were lost."""
+    trails, tool = len(desk.world.batch(Trail)), desk.window.tool
+    desk.window.selection.clear()
+    desk.frames(SETTLED)
+    place = middle_of(desk, "Title and notes")
+    for kind in (pygame.MOUSEBUTTONDOWN, pygame.MOUSEBUTTONUP):
+        pygame.event.post(pygame.Event(kind, button=1, pos=place, touch=False))
+    for letter in "Two":
+        pygame.event.post(pygame.Event(pygame.KEYDOWN, key=ord(letter.lower()), mod=0, unicode=letter))
+        pygame.event.post(pygame.Event(pygame.TEXTINPUT, text=letter))
+    desk.frames(12)
+    tap(desk, "return")
+    assert (desk.world.title, len(desk.world.batch(Trail)), desk.window.tool) == ("Two", trails, tool)
+    tap(desk, "space")
+    assert desk.window.pace.paused
+
+
+def test_no_tip_stays_of_a_tool_that_was_clicked_before_a_scene_was_opened(desk: Desk) -> None:
+    desk.frames(SETTLED)
+    click(desk, "Circle")
+    tap(desk, "l")
+    write(desk, "five rest")
+    tap(desk, "return")
+    point(desk, desk.pixel(1.0, 1.0))
+    desk.frames(60)
+    assert not any("or click. Key" in words for words in desk.ui.words)

@@ -130,7 +130,10 @@ def test_a_table_that_is_opened_in_the_past_has_all_impacts_of_the_line() -> Non
     desk.window.edits.history.seek(40)
     desk.window.pace.paused = True
     tap(desk, "z")
-    desk.frames(30)
+    for _ in range(100):  # the line is run again in pieces, by the time that a frame leaves
+        desk.frames(3)
+        if len(desk.window.impacts.records) == len(known):
+            break
     assert desk.window.impacts.records["time"].tolist() == known["time"].tolist()
     assert known["time"].max() > desk.world.time
 

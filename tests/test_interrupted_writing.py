@@ -13,6 +13,7 @@ from desk import Desk
 
 from physicslab.cli import main
 from physicslab.desktop.autosave import Autosave
+from physicslab.files import replace
 from physicslab.files.replace import create_file, remove_leftovers, replace_file
 from physicslab.files.scene import load_scene, save_scene
 
@@ -179,3 +180,30 @@ def test_a_limit_on_the_size_of_files_leaves_the_old_file_whole(way: str, tmp_pa
     done = subprocess.run(command, capture_output=True, text=True, timeout=100, check=False)
     assert done.returncode == 1 and "File too large" in done.stderr
     assert list(tmp_path.iterdir()) == [path] and path.read_bytes() == old
+
+
+def test_a_file_that_is_held_for_a_moment_is_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As Windows refuses to replace one that a virus scanner reads."""
+    target, attempts, own = tmp_path / "scene.json", [1], os.replace
+
+    def held(fresh: Path, onto: Path) -> None:
+        attempts[0] -= 1
+        if attempts[0] >= 0:
+            raise PermissionError(13, "Access is denied", str(onto))
+        own(fresh, onto)
+
+    monkeypatch.setattr(replace, "_PAUSE", 0.0)
+    monkeypatch.setattr(os, "replace", held)
+    with pytest.raises(PermissionError, match="denied"):
+        replace.replace_file(target, b"elsewhere")  # where it is not for being held
+    monkeypatch.setattr(replace, "_CAN_BE_HELD", True)
+    attempts[0] = 2
+    replace.replace_file(target, b"new")
+    assert target.read_bytes() == b"new" and attempts == [-1]
+    monkeypatch.setattr(replace, "_PATIENCE", 0.0)
+    attempts[0] = 10**9
+    with pytest.raises(PermissionError, match="another program holds it open"):
+        replace.replace_file(target, b"newer")
+    assert target.read_bytes() == b"new" and os.listdir(tmp_path) == ["scene.json"]

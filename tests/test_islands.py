@@ -17,6 +17,7 @@ from physicslab.diagnostics.step_warnings import lost_phase
 from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.files.scene import read_scene
 from physicslab.files.writer import write_scene
 from physicslab.history import History, Remove, RemoveComponent
 from physicslab.kernels.accounts import EDITS
@@ -402,6 +403,34 @@ def test_what_is_undone_is_undone_in_the_islands() -> None:
             ]
         )
     assert rubs == [[False, True, True], [False, True, True], [True, True, True]]
+
+
+def test_an_edit_that_is_taken_back_and_made_again_reaches_its_island() -> None:
+    """The second was taken for what the islands had left: they went on with the value in between."""
+    world = World()
+    floor(world)
+    balls = [disc(world, x, 3.0) for x in (0.0, FAR, 2.0 * FAR)]
+    velocity = world.component(balls[2], Velocity)
+    velocity.linear = Vector2(66.0, 85.0)
+    world.run(steps=3)
+    moved = velocity.linear
+    for value in (Vector2(), moved):
+        velocity.linear = value
+        world.synchronise()
+    world.run(steps=1)
+    assert velocity.linear.x == 66.0
+
+
+def test_a_file_of_islands_is_written_alike_where_one_has_touched_nothing_yet() -> None:
+    world = World()
+    floor(world)
+    disc(world, -FAR, 3.0)
+    for n in range(14):
+        disc(world, 0.6 * n, 3.0)
+    world.step(1.0 / 480.0)
+    document = write_scene(world)
+    assert len(document["islands"]) == 2
+    assert write_scene(read_scene(document)) == document
 
 
 def test_a_step_that_diverges_in_one_island_is_made_in_none() -> None:

@@ -24,6 +24,7 @@ from physicslab.kernels import Numbers, kernel
 from physicslab.kernels.forces import immersion
 from physicslab.prefabs import box
 from physicslab.state.shapes import cores_of
+from physicslab.systems.medium import _outlines
 from physicslab.systems.standard import standard_systems
 
 G = 9.81
@@ -308,3 +309,13 @@ def test_sizes_are_followed_where_there_is_a_medium_and_a_polygon_can_hold_one()
     assert world.bodies.shapes.reach[world.entity_index.row_of[ball]] == 0.4
     assert world.bodies.shapes.vertices.tolist() == [0, 0, 1]
     assert not len(world.contacts.impacts) and world.component(ball, Velocity).linear.y > 0.0
+
+
+def test_a_medium_that_reaches_no_body_of_a_flow_is_packed_all_the_same() -> None:
+    shape = {"kind": "box", "width": 1.0, "height": 1.0}
+    water = {"Transform": {}, "Shape": shape, "Medium": {"density": 1.0}}
+    world = load_scene(
+        {"format": "physicslab-scene/1", "entities": [water, {"Transform": {"position": [3, 0]}}]}
+    )
+    none = np.zeros(0, np.int64)
+    assert _outlines(world, none).shape == (0, immersion.OUTLINE)

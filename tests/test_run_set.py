@@ -278,6 +278,7 @@ def test_every_shorter_than_a_step_takes_every_step(capsys: pytest.CaptureFixtur
     ("arguments", "line"),
     [
         (["--every", "1"], "--every: must go with --csv, whose rows it spaces"),
+        (["--csv-for", "excel"], "--csv-for: must go with --csv or --ledger, whose rows it is about"),
         (["--csv", "-", "--every", "0"], "argument --every: '0': must be a finite number > 0 s"),
         (["--csv", "-", "--every", "nan"], "argument --every: 'nan': must be a finite number > 0 s"),
     ],

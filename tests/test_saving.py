@@ -130,6 +130,16 @@ def test_names_that_cannot_be_are_refused_at_the_field(folder: Path, name: str) 
     assert naming is not None and naming.refused and "\n" not in naming.refused and not list(folder.iterdir())
 
 
+def test_after_a_name_that_is_refused_another_is_written_at_once(folder: Path) -> None:
+    desk = Desk(load_scene("drop"))
+    tap(desk, "s", CTRL | pygame.KMOD_SHIFT)
+    for name in ("no/folder", "mine.json"):
+        write(desk, name)
+        tap(desk, "return")
+        desk.frames(SETTLED)
+    assert [path.name for path in folder.iterdir()] == ["mine.json"]
+
+
 def test_a_full_disk_leaves_the_file_and_the_work(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")

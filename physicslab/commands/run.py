@@ -61,6 +61,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--json", metavar="FILE", help="write energies, momenta, costs and the final state (- for stdout)")
     table = "write every body's state with all energies and momenta, at the start and after each step (-)"
     add("--csv", metavar="FILE", help=table)
+    sheet = "with --csv or --ledger: for Excel where numbers have commas: semicolons between cells"
+    add("--csv-for", metavar="PROGRAM", choices=["excel"], help=f"{sheet} (excel)")
     spacing = "with --csv: rows at most so often, in the scene's time; those of the start and the end always"
     add("--every", metavar="S", type=positive_duration, help=spacing)
     words = "compute the run in other ways too: how many digits of motion and energy agree, and until when"
@@ -75,6 +77,8 @@ def execute(arguments: Namespace) -> int:
     outputs = _outputs(arguments)
     if arguments.every is not None and "csv" not in outputs:
         raise CommandError("--every: must go with --csv, whose rows it spaces")
+    if arguments.csv_for is not None and not {"csv", "ledger"} & {*outputs}:
+        raise CommandError("--csv-for: must go with --csv or --ledger, whose rows it is about")
     world = opened(arguments)
     with Tiers(is_small(world)) as tiers:
         return _execute(world, arguments, outputs, tiers)
@@ -87,9 +91,10 @@ def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], 
     name = name_of(world, arguments)
     label = shortened(printable(name))
     seconds = _DEFAULT_S if arguments.seconds is None and arguments.steps is None else arguments.seconds
+    for_excel = arguments.csv_for is not None
     with _stream(outputs, "csv") as stream, _stream(outputs, "ledger") as impacts:
-        keep = None if stream is None else TrajectoryWriter(stream, world).write
-        ledger = None if impacts is None else LedgerWriter(impacts, world)
+        keep = None if stream is None else TrajectoryWriter(stream, world, for_excel=for_excel).write
+        ledger = None if impacts is None else LedgerWriter(impacts, world, for_excel=for_excel)
         try:
             run = MeasuredRun(world, name, tiers, arguments.at_most, keep, arguments.every or 0.0, ledger)
             run.go(seconds, arguments.steps)

@@ -7,7 +7,7 @@ from typing import Any
 
 from physicslab.ecs.text import printable
 from physicslab.files.checks import SceneError
-from physicslab.files.replace import replace_file
+from physicslab.files.replace import rename_over, replace_file
 from physicslab.files.scene import read_bytes
 from physicslab.languages.catalogue import languages
 from physicslab.theme import THEMES
@@ -67,7 +67,7 @@ def _put_aside(path: Path, window: Window, error: Exception) -> None:
     kept = path.with_name(path.name + _UNREADABLE)
     reason = "nested too deeply" if isinstance(error, RecursionError) else printable(str(error))
     try:
-        os.replace(path, kept)
+        rename_over(path, kept)
         done = f"it is kept as {kept.name}, and the usual ones are taken"
     except OSError:
         done = "the usual ones are taken"

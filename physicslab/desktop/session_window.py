@@ -115,6 +115,7 @@ def run_window(display: Display, config: WindowConfig, scene: str | World, *, we
     stamp = None if source is None else stamp_of(source)
     world = scene if isinstance(scene, World) else load_scene(scene)
     window = Window(display.canvas, config)
+    window.text_scale = display.density
     window.scenes.source = source
     session, abandoned = _begin_session(window)
     with suppress(OSError):

@@ -10,7 +10,6 @@ J . (u- + u+) / 2, with u before and after all impulses of the moment: this is e
 in the impulses. The sum over the points of a pair, negative, is what the impact took.
 """
 
-import csv
 import io
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,6 +18,7 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.diagnostics.table_rows import TableRows
 from physicslab.ecs.text import table_cell
 from physicslab.kernels.constraint.impact_law import ENERGETIC, LOWERED, NEWTON
 from physicslab.kernels.constraint.pair import ContactFrame, PairVelocity, point_state
@@ -245,6 +245,8 @@ class LedgerWriter:
         Opened with ``newline=""``.
     state : State
         Whose impacts; from now on all of them are logged.
+    for_excel : bool
+        As :class:`TableRows` has it.
 
     Attributes
     ----------
@@ -252,10 +254,10 @@ class LedgerWriter:
         How many impacts were written.
     """
 
-    def __init__(self, stream: TextIO, state: State) -> None:
+    def __init__(self, stream: TextIO, state: State, *, for_excel: bool = False) -> None:
         state.contacts.read = True
-        self._rows = csv.writer(stream, lineterminator="\n")
-        self._rows.writerow(_HEADER)
+        self._rows = TableRows(stream, for_excel=for_excel)
+        self._rows.write([_HEADER])
         self._state, self._reader = state, ImpactReader(state)
         self._last: LastTimes = {}
         self.rows = 0
@@ -284,7 +286,7 @@ class LedgerWriter:
             _or_empty(found.since), [LAWS[law] for law in records["law"].tolist()],
             records["points"].tolist(), np.where(records["alone"] == 1, "no", "yes").tolist(),
         )  # fmt: skip
-        self._rows.writerows(zip(*columns, strict=True))
+        self._rows.write(zip(*columns, strict=True))
         self.rows += len(records)
 
 

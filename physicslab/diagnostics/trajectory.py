@@ -1,13 +1,12 @@
 """The motion of every body, with the energy and momentum of all, as a table: a row an instant and body."""
 
-import csv
-import math
 from typing import TextIO
 
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import ENERGY_CAUSES, QUANTITIES
 from physicslab.diagnostics.energy import Accounts
 from physicslab.diagnostics.run_report import body_names
+from physicslab.diagnostics.table_rows import TableRows
 from physicslab.ecs.text import table_cell
 from physicslab.world import World
 
@@ -40,16 +39,18 @@ class TrajectoryWriter:
         Opened with ``newline=""``.
     world : World
         What is written; its forces decide which potential energies have a column.
+    for_excel : bool
+        As :class:`TableRows` has it.
     """
 
-    def __init__(self, stream: TextIO, world: World) -> None:
+    def __init__(self, stream: TextIO, world: World, *, for_excel: bool = False) -> None:
         world.synchronise()
         stored = (force.potential for force in world.schedule.forces)
         self._potentials = tuple(dict.fromkeys(("gravity", "spring", *filter(None, stored))))
-        self._rows = csv.writer(stream, lineterminator="\n")
+        self._rows = TableRows(stream, for_excel=for_excel)
         potentials = (f"potential {name} [J]" for name in self._potentials)
         sums = (*_headings(_KINETIC), *potentials, *_headings(("total energy", *_MOMENTUM, *_ACCOUNTS)))
-        self._rows.writerow((*BODY_HEADER, *sums))
+        self._rows.write([(*BODY_HEADER, *sums)])
         self._names: list[str] = []
         self._batch: object = None
 
@@ -64,7 +65,7 @@ class TrajectoryWriter:
             self._names, transform["position"][batch.rows].tolist(), transform["angle"][batch.rows].tolist(),
             velocity["linear"][batch.rows].tolist(), velocity["angular"][batch.rows].tolist(), strict=True,
         )  # fmt: skip
-        self._rows.writerows(
+        self._rows.write(
             (world.time, name, x, y, angle, vx, vy, w, *sums) for name, (x, y), angle, (vx, vy), w in bodies
         )
 
@@ -73,7 +74,4 @@ class TrajectoryWriter:
         energy, now = account.parts, account.now
         stored = (energy.potential.get(name, 0.0) for name in self._potentials)
         kinetic = (energy.kinetic_linear, energy.kinetic_angular)
-        return [
-            repr(float(value)) if math.isfinite(value) else ""
-            for value in (*kinetic, *stored, *now, *account.energy.values())
-        ]
+        return [*map(self._rows.number, (*kinetic, *stored, *now, *account.energy.values()))]

@@ -142,7 +142,8 @@ class _Model:
             (place.spec.lowest, place.spec.highest) if place.spec.kind == "number" else (-math.inf, math.inf)
             for place in self.places.values()
         ]
-        low, high = np.array(limits).T / self.scale
+        with np.errstate(over="ignore"):  # the largest number, in units of what is small
+            low, high = np.array(limits).T / self.scale
         return np.where(low < -_ENDLESS, -math.inf, low), np.where(high > _ENDLESS, math.inf, high)
 
     def run(self, values: Numbers) -> dict[str, Numbers]:

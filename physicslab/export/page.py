@@ -109,13 +109,13 @@ def fill_page(
         "CODE": html.escape(code),
         "TITLE": html.escape(printable(title)),
         "DESCRIPTION": html.escape(printable(description)),
-        "STYLE": style() + "".join(map(_part, styles)),
+        "STYLE": style() + "".join(map(player_part, styles)),
         "ARTICLE": article,
-        "PLAYER": "".join(map(_part, scripts)),
+        "PLAYER": "".join(map(player_part, scripts)),
         "RUN": _json({**document, "look": look(), "words": shown, "mark": own.say(".")}),
     }
     texts |= {f"say:{text}": html.escape(said) for text, said in words.items()}
-    head, *rest = _part("page.html").split("{{")
+    head, *rest = player_part("page.html").split("{{")
     pieces = [head]
     for piece in rest:
         key, _, after = piece.partition("}}")
@@ -125,7 +125,7 @@ def fill_page(
 
 def player_texts() -> list[str]:
     """Return the player's own texts, which a page has in its language."""
-    sources = map(_part, (*_SCRIPTS, "page.html"))
+    sources = map(player_part, (*_SCRIPTS, "page.html"))
     return list(dict.fromkeys(one or other for source in sources for one, other in _SAID.findall(source)))
 
 
@@ -172,7 +172,8 @@ def page_of(instants: Iterable[World], name: str) -> bytes:
     return page(world, name, [run_document(world, recorder, [])])
 
 
-def _part(name: str) -> str:
+def player_part(name: str) -> str:
+    """Return a file of the player."""
     return files("physicslab.export").joinpath("player", name).read_text("utf-8")
 
 

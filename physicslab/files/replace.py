@@ -13,6 +13,10 @@ from pathlib import Path
 
 _ENDING = ".physicslab-tmp"
 """How files end that are being written; one that is there for long was left by a process that was killed."""
+_CAN_BE_HELD = os.name == "nt"
+"""Whether a file that another program holds open cannot be replaced: on Windows, while a scanner reads it."""
+_PATIENCE, _PAUSE = 1.0, 0.05
+"""How long [s] one is waited for, and between two attempts."""
 _ABANDONED = 3600.0
 """Age [s] from which on such a file is taken for one that was left behind."""
 
@@ -66,7 +70,28 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[str | os.PathLike[str]]:
             os.fsync(written.fileno())
         if target.exists():
             os.chmod(fresh, stat.S_IMODE(target.stat().st_mode))
-        os.replace(fresh, target)
+        rename_over(fresh, target)
+
+
+def rename_over(fresh: str | os.PathLike[str], target: str | os.PathLike[str]) -> None:
+    """Give a file the place of another, which on Windows takes a second attempt while that one is held.
+
+    Raises
+    ------
+    OSError
+        If it cannot have it.
+    """
+    deadline = time.monotonic() + _PATIENCE
+    while True:
+        try:
+            return os.replace(fresh, target)
+        except PermissionError as error:
+            if not _CAN_BE_HELD:
+                raise
+            if time.monotonic() > deadline:
+                held = "another program holds it open, or it may not be written"
+                raise PermissionError(error.errno, held, os.fspath(target)) from error
+        time.sleep(_PAUSE)
 
 
 def create_file(path: Path, content: bytes) -> None:
@@ -94,7 +119,7 @@ def create_file(path: Path, content: bytes) -> None:
         except (OSError, NotImplementedError):  # a file system without hard links
             with open(path, "xb"):
                 pass
-            os.replace(fresh, path)
+            rename_over(fresh, path)
 
 
 @contextmanager

@@ -249,14 +249,11 @@ def _islands(islands: Sequence[KeptIsland], ids: Mapping[int, str]) -> list[dict
 def _solver(snapshot: WorldSnapshot) -> dict[str, Any]:
     """Return the time over which impulses act, how much finer the next step is, and what was chosen before.
 
-    Each only where a world would not start so.
+    Each only where a world would not start so; islands have each their own time.
     """
     contacts, simulation = snapshot.contacts, snapshot.simulation
-    span = (
-        {"span": contacts.impulse_dt}
-        if contacts.impulse_dt not in (0.0, simulation.dt / simulation.substeps)
-        else {}
-    )
+    usual = contacts.impulse_dt in (0.0, simulation.dt / simulation.substeps)
+    span = {} if usual or snapshot.islands is not None else {"span": contacts.impulse_dt}
     finer = {"finer": contacts.substep_factor} if contacts.substep_factor != 1 else {}
     return span | finer | ({"chosen": list(snapshot.chosen)} if snapshot.chosen is not None else {})
 

@@ -1,6 +1,7 @@
 """What is said to people: whole sentences with named gaps, numbers and dates, in one language."""
 
 import re
+import sys
 from datetime import date
 from functools import cache, lru_cache
 from gettext import NullTranslations
@@ -14,6 +15,8 @@ _BETWEEN = re.compile(r"(?<=\d), (?=[-\u2212]?\d)")
 _GAP = re.compile(r"\\\{([a-z_]+)\\\}")
 _MEASURED = re.compile(r"(\D+?) ([-\u2212]?\d.*)")
 """Words and their number."""
+_CTRL = re.compile(r"\b(?:Ctrl|Strg)\b")
+"""The key that is Cmd on macOS."""
 _KNOWN_BY = 4
 """So many letters around its gaps tell a sentence that begins with one."""
 _KEPT = 4096
@@ -29,11 +32,16 @@ class Language:
         As ``"de"``.
     catalogue : gettext.NullTranslations, optional
         Its translations; those of ``CODE.po`` where absent.
+    on_mac : bool
+        Whether its texts are for macOS, where Ctrl is Cmd.
     """
 
-    def __init__(self, code: str, catalogue: NullTranslations | None = None) -> None:
+    def __init__(
+        self, code: str, catalogue: NullTranslations | None = None, *, on_mac: bool = sys.platform == "darwin"
+    ) -> None:
         self.code = code
-        self._catalogue = translations(code) if catalogue is None else catalogue
+        own = translations(code) if catalogue is None else catalogue
+        self._catalogue = _MacTexts(own) if on_mac else own
         self._mark = self.say(".")
         self._sentences = _sentences(code)
         self._reworded = lru_cache(_KEPT)(self._found)
@@ -132,6 +140,17 @@ class Language:
             self.say("October"), self.say("November"), self.say("December"),
         )  # fmt: skip
         return self.say("{day} {month} {year}", day=day.day, month=months[day.month - 1], year=day.year)
+
+
+class _MacTexts(NullTranslations):
+    """The texts of a catalogue for macOS."""
+
+    def __init__(self, catalogue: NullTranslations) -> None:
+        super().__init__()
+        self.add_fallback(catalogue)
+
+    def gettext(self, message: str) -> str:
+        return _CTRL.sub("Cmd", super().gettext(message))
 
 
 @cache

@@ -1,10 +1,10 @@
 """What a world did while it was recorded: columns of numbers, for any library of tables."""
 
 import csv
-import html
 import importlib
 import io
 import os
+import sys
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from pathlib import Path
@@ -18,7 +18,6 @@ type Column = NDArray[np.float64]
 
 BODY_COLUMNS = {"x": "m", "y": "m", "angle": "rad", "vx": "m/s", "vy": "m/s", "omega": "rad/s"}
 """What is recorded of each body that moves, in the order of samples, and its unit."""
-_FRAME = '<iframe srcdoc="{}" style="width: 100%; height: 540px; border: 0" sandbox="allow-scripts"></iframe>'
 
 
 class Run:
@@ -140,9 +139,33 @@ class Run:
         """Return a page of HTML that plays the run without a network, in UTF-8."""
         return self._page(self)
 
+    @cached_property
+    def widget(self) -> Any:
+        """The player as a widget of a notebook: ``time`` [s] and ``playing`` follow it and can be set.
+
+        It needs anywidget, which comes with the extra ``notebook``.
+        """
+        return _notebook().widget(self.page(), float(self.times[0]))
+
     def _repr_html_(self) -> str:
-        """Return the player of the run, for a notebook."""
-        return _FRAME.format(html.escape(self.page().decode()))
+        """Return the player of the run in a frame, for a notebook that is read."""
+        shown: str = _notebook().frame(self.page())
+        return shown
+
+    def _repr_mimebundle_(self, **_: object) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Return the widget, for a notebook that is worked in; the frame is beside it and in its place."""
+        if "ipykernel" not in sys.modules:
+            return {}, {}  # a terminal shows neither
+        try:
+            data, about = self.widget._repr_mimebundle_()
+        except ImportError:
+            return {}, {}
+        return {name: shown for name, shown in data.items() if name != "text/plain"}, about
+
+
+def _notebook() -> Any:
+    """Return what makes players for notebooks, which stands above what measures."""
+    return importlib.import_module("physicslab.export.notebook")
 
 
 def _library(name: str, needed_by: str) -> Any:

@@ -72,6 +72,11 @@ class Facade(State):
             raise TypeError(f"record: give every=... or until=... by name, not {wrong[0]!r}")
         return cast(Run, _measuring("recorder").record(self, seconds, every, until))
 
+    def _repr_html_(self) -> str:
+        """Return a picture of now for a notebook: the page of a run of one instant, in a frame."""
+        made = import_module("physicslab.export.page").page_of([self], self.title or self.name)
+        return cast(str, import_module("physicslab.export.notebook").frame(made))
+
     def __dir__(self) -> list[str]:
         """Return what a person may want; all else is there, and belongs to the machine."""
         return sorted(_SHOWN)

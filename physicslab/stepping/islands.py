@@ -194,9 +194,10 @@ class Islands:
     def _take_edits(self, state: State) -> None:
         """Let the islands follow what was changed in the whole world since the last step."""
         self._follow_rows(state)
-        if b"".join(numbers_of(state)) == self._left:
+        now = b"".join(numbers_of(state))
+        if now == self._left:
             return
-        changed = rows_changed(numbers_of(state), self._left)
+        changed, self._left = rows_changed(numbers_of(state), self._left), now
         for island in self.members:
             island.take(state, changed)
         self._apart_until = -math.inf

@@ -10,6 +10,7 @@ from physicslab.integrators import Integrator, StepTooSmall
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.kernels import motion
+from physicslab.kernels.solver import work
 from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import Diverged
 from physicslab.state.state import State
@@ -95,7 +96,7 @@ class SplitForces:
         if method is SPRING_SPLITTING and why_no_spring_flow(state, forces) is None:
             self.springs = SpringFlow(state, forces, self._ode.layout, steps)
         else:
-            state.compile((*method.kernels, motion.predict))
+            state.compile((*method.kernels, motion.predict, work.note_flow))
 
     def outdated(self, state: State) -> bool:
         """Whether a number was changed that the layout, or the choice of a method, depends on."""
@@ -125,13 +126,25 @@ class SplitForces:
     def take_part(self, stage: Stage, state: State, h: float) -> None:
         """Do the work of a stage of a substep, if there is any."""
         if stage is Stage.DRIFT:
+            self._note_flow(state, 1.0, h)
             state.force_evaluations += self._follow(state, h)
+            self._note_flow(state, -1.0, 0.0)
         elif stage is Stage.PREDICT:
             bodies, velocity = state.bodies, state.table(Velocity)
             motion.predict(
                 velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
                 bodies.awake_inverse_mass, bodies.awake_inverse_inertia, bodies.sub_integrated,
                 bodies.unkicked, h,
+            )  # fmt: skip
+
+    def _note_flow(self, state: State, sign: float, h: float) -> None:
+        """Take the flow from the velocities that contacts noted, so that each is booked as its own."""
+        bodies, velocity, contacts = state.bodies, state.table(Velocity), state.contacts
+        if len(contacts.angular_before) == len(bodies.unkicked):
+            work.note_flow(
+                contacts.linear_before, contacts.angular_before, velocity["linear"], velocity["angular"],
+                bodies.force, bodies.torque, bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
+                bodies.sub_integrated, bodies.unkicked, state.uniform_forces, sign, h,
             )  # fmt: skip
 
     def _follow(self, state: State, h: float) -> int:

@@ -38,8 +38,8 @@ class StageAccounts:
         The sum of the accelerations [m/s^2] by forces that are the same everywhere.
     other : int
         The cause by which the kicks of other forces are booked.
-    stores : bool
-        Whether forces store energy that are not uniform.
+    moves_against : bool
+        Whether forces act that are not uniform: the kernel books another work of moving bodies apart.
     """
 
     kernels: tuple[Any, ...] = (work.book_kick, work.book_damping)
@@ -51,6 +51,7 @@ class StageAccounts:
         free = [force for force in others if force.potential is None]
         springs = any(isinstance(force, SpringSystem) for force in others)
         self.other = next((force.account for force in (*free, *others)), GRAVITY)
+        self.moves_against = bool(others)
         # Momentum is booked to one cause by kernels: what is another's is then noted by itself.
         self._storing, others = (
             [force for force in others if force.potential is not None],
@@ -66,7 +67,6 @@ class StageAccounts:
         driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0) & ~bodies.sub_integrated
         self._driven = driven if others and driven.any() else None
         self._start: tuple[NDArray[np.float64], NDArray[np.float64]]
-        self.stores = bool(self._storing)
         self._before = bodies.packed[2, : 2 * len(driven)].reshape(-1, 2)
 
     @property
@@ -126,16 +126,17 @@ class StageAccounts:
 
     def note_places(self, state: State) -> None:
         """Note where bodies are before they are moved apart."""
-        if self.stores:
+        if self.moves_against:
             self._before[:] = state.table(Transform)["position"]
 
     def book_overlap(self, state: State) -> None:
         """Book what moving bodies apart has changed in what forces store that are not the same everywhere.
 
-        The kernel has booked their work as if they stayed as they are along that way.
+        The kernel has booked the work of all forces as if they stayed as they are along that way. What stores
+        no energy, as drag, does none there.
         """
         position, bodies = state.table(Transform)["position"], state.bodies
-        if not self.stores or np.array_equal(position, self._before):
+        if not self.moves_against or np.array_equal(position, self._before):
             return
         way, now = position - self._before, position.copy()
         stored = sum(force.potential_energy(state) for force in self._storing)

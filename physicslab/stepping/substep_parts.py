@@ -153,7 +153,7 @@ class SubstepParts:
                 self._part(soft.WIDEN, share)
             if stage is Stage.CONTACT and self._sleeps:
                 self._part(soft.WAKE, share)
-            if stage is Stage.RELAX and accounts.stores:
+            if stage is Stage.RELAX and accounts.moves_against:
                 self.hooks[len(self.parts)] = lambda state, h: accounts.book_overlap(state)
                 self._part(soft.OVERLAP)
             return ""

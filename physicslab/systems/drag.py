@@ -11,6 +11,9 @@ from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
 
+AT_REST = 1e-9
+"""Speed [m/s] by which the rate of a body at rest is told: it is slowed as soon as it moves."""
+
 
 class DragSystem(ForceSystem):
     """Slows every body that has Drag. It dissipates energy and stores none."""
@@ -44,7 +47,7 @@ class DragSystem(ForceSystem):
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row the rate at which it slows down at its present speed [1/s]."""
         table, rows = state.table(Drag), state.batch(*self.needs).rows
-        speed = np.hypot(*state.table(Velocity)["linear"][rows].T)
+        speed = np.maximum(np.hypot(*state.table(Velocity)["linear"][rows].T), AT_REST)
         rates = np.zeros(len(state.entity_index))
         rates[rows] = table["linear"][rows] + 2.0 * table["quadratic"][rows] * speed
         return rates * state.bodies.inverse_mass

@@ -13,6 +13,7 @@ from physicslab.kernels.forces.medium import NUMBERS, ROOM, medium
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.shapes import cores_of
 from physicslab.state.state import State
+from physicslab.systems.drag import AT_REST
 from physicslab.systems.system import ForceSystem
 
 _BODIES = (Shape, Transform, Velocity, Mass)
@@ -117,7 +118,7 @@ class MediumSystem(ForceSystem):
         width, inverse = 2.0 * state.bodies.shapes.reach[rows], state.bodies.inverse_mass[rows]
         lift = float(table["density"][media].max(initial=0.0)) * float(np.hypot(*self._gravity(state)))
         flow = np.hypot(*table["flow"][media].T).max(initial=0.0)
-        speed = np.hypot(*state.table(Velocity)["linear"][rows].T) + flow
+        speed = np.maximum(np.hypot(*state.table(Velocity)["linear"][rows].T) + flow, AT_REST)
         drag = (
             table["viscosity"][media].max(initial=0.0)
             + 2.0 * table["quadratic"][media].max(initial=0.0) * speed
@@ -155,5 +156,5 @@ class MediumSystem(ForceSystem):
 def _outlines(state: State, rows: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return the shapes of rows as outlines (n, OUTLINE), unturned and about their centres."""
     cores = cores_of(state.table(Shape), rows)
-    numbers = cores.vertices, cores.radius, cores.corners.reshape(len(rows), -1)
+    numbers = cores.vertices, cores.radius, cores.corners.reshape(len(rows), 2 * cores.corners.shape[1])
     return np.column_stack(numbers)

@@ -145,6 +145,7 @@ loaders.push(() => {
   const name = selected?.name;
   selected = run.bodies.find(body => body.name === name) ?? null;
   $("time").max = COUNT - 1;
+  document.body.classList.toggle("still", COUNT === 1);
   decimals = Math.min(Math.max(2 - Math.floor(Math.log10(end / COUNT * 10 || 1)), 0), 9);
   $("speed").replaceChildren(...SPEEDS.map(value => new Option(`${short(value * natural, 3)}\u00d7`, value)));
   $("speed").value = speed;
@@ -159,6 +160,21 @@ loaders.push(() => {
 });
 new ResizeObserver(() => { if (camera.fitted) fit(); stale = true; }).observe(world);
 darkly.addEventListener("change", readColours);
+
+// What shows this page in a frame may set the time [s] and play, by messages; from then on it is told of both.
+let host = null, told = {};
+addEventListener("message", ({ source, data }) => {
+  if (source !== window.parent || source === window) return;
+  host = source;
+  if (typeof data.playing === "boolean") play(data.playing);
+  if (Number.isFinite(data.time)) seek(data.time - run.start);
+  told = {};
+});
+function tell(now) {
+  if (!host || told.playing === playing && playing && now - told.now < 200) return;
+  told = { time: run.start + time, playing, now };
+  host.postMessage({ time: told.time, playing }, "*");
+}
 
 let last = 0;
 function tick(now) {
@@ -178,6 +194,7 @@ function tick(now) {
     $("time").value = frame;
     $("clock").textContent = `${marked((run.start + time).toFixed(decimals))} / ${short(run.start + end, 4)} s`;
     $("time").setAttribute("aria-valuetext", $("clock").textContent);
+    tell(now);
   }
   requestAnimationFrame(tick);
 }

@@ -6,6 +6,7 @@ import contextlib
 import io
 import itertools
 import os
+import sys
 import time
 import warnings
 from collections.abc import Iterator
@@ -23,6 +24,8 @@ from physicslab.view.canvas.pygame_canvas import PygameCanvas
 
 _INVISIBLE = ("dummy", "offscreen")
 """Drivers of SDL without a window."""
+_USUAL_DPI = 96.0
+"""Pixels to the inch of a screen on which sizes are as they are written [1/inch]."""
 _WITHOUT_WINDOW = "physicslab run SCENE needs none"
 
 
@@ -37,10 +40,12 @@ class Display:
     ----------
     canvas : PygameCanvas
         The picture in the window; it has the window's size at any time.
+    density : float
+        How many pixels of the screen there are for one of usual size; text is to be that much larger.
     """
 
-    def __init__(self, canvas: PygameCanvas, fps: int) -> None:
-        self.canvas = canvas
+    def __init__(self, canvas: PygameCanvas, fps: int, density: float = 1.0) -> None:
+        self.canvas, self.density = canvas, density
         self._period = 1.0 / fps
         self._last = self._next = time.perf_counter()
 
@@ -54,12 +59,16 @@ class Display:
         NoScreen
             If there is no screen to open it on.
         """
+        # Otherwise Windows enlarges a picture of fewer pixels, and it is blurred.
+        os.environ.setdefault("SDL_WINDOWS_DPI_AWARENESS", "permonitorv2")
         try:
             pygame.display.init()  # not pygame.init(): sound is not needed, and complains where there is none
             _check_visible()
             pygame.font.init()
             pygame.display.set_icon(_icon(theme))
-            surface = pygame.display.set_mode(config.size, pygame.RESIZABLE)
+            density = _dpi() / _USUAL_DPI
+            size = [round(density * side) for side in config.size]
+            surface = pygame.display.set_mode(size, pygame.RESIZABLE)
         except pygame.error as error:
             pygame.quit()
             raise NoScreen(f"no window can be opened: {error}; {_WITHOUT_WINDOW}") from error
@@ -68,7 +77,7 @@ class Display:
             _limit(config.least_size)
             surface.fill(theme.background)
             pygame.display.flip()  # at once, so that no black rectangle greets the user
-            yield cls(PygameCanvas(surface), config.fps)
+            yield cls(PygameCanvas(surface), config.fps, density)
         finally:
             pygame.quit()
 
@@ -123,6 +132,15 @@ class Display:
                 create_file(path, picture.getvalue())
                 break
         return path
+
+
+def _dpi() -> float:
+    """Return the pixels to the inch of the screen that Windows tells a program which draws each of them."""
+    if sys.platform == "win32":
+        import ctypes
+
+        return float(ctypes.windll.user32.GetDpiForSystem())
+    return _USUAL_DPI
 
 
 def _check_visible() -> None:

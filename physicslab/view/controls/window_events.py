@@ -9,6 +9,7 @@ import pygame
 from physicslab.components import Held, Shape, Transform
 from physicslab.contacts.outlines import Outlines
 from physicslab.ecs.vector import Vector2
+from physicslab.view.canvas.keyboard import held_keys, usual_event
 from physicslab.view.controls import actions, drawing
 from physicslab.view.controls.choosing_keys import choose_key, usual
 from physicslab.view.controls.context import open_context, thing_at
@@ -96,7 +97,7 @@ class WindowEvents:
 
     def handle(self, world: World, event: pygame.Event) -> None:
         """Do what an event calls for."""
-        window = self._window
+        window, event = self._window, usual_event(event)
         if window.keys.asks and event.type == pygame.KEYDOWN:
             self._choose_key(world, event)
             return
@@ -151,7 +152,7 @@ class WindowEvents:
 
     def _follow_snapping(self, world: World) -> None:
         """Let the place of the cursor snap, where that is on or a key for it is held."""
-        self._window.snapping.held = bool(pygame.key.get_mods() & _SNAPPING)
+        self._window.snapping.held = bool(held_keys() & _SNAPPING)
         follow_snapping(world, self._window)
 
     def _do_pending(self, world: World) -> None:
@@ -218,7 +219,7 @@ class WindowEvents:
         if self._window.now - self._came_back < _COMING_BACK:
             return  # it brought the window to the front
         follow_pointer(world, self._window)
-        self._window.adding = bool(pygame.key.get_mods() & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL))
+        self._window.adding = bool(held_keys() & (pygame.KMOD_SHIFT | pygame.KMOD_CTRL))
         self._follow_snapping(world)
         if event.button == pygame.BUTTON_LEFT:
             if self._window.picking is not None:
@@ -233,13 +234,19 @@ class WindowEvents:
                 return
             self._tool = TOOLS[self._window.tool]
             self._tool.press(world, self._window)
-        elif event.button == pygame.BUTTON_RIGHT and self._window.lesson is None:
+        elif event.button == pygame.BUTTON_RIGHT and self._window.lesson is None and not self._is_busy:
             self._right = self._window.now
             if thing_at(world, self._window) is None:
                 drawing.press(world, self._window, BOX, pygame.BUTTON_RIGHT)
         by_tool = event.button == pygame.BUTTON_LEFT and self._tool is not None and self._tool.pans
         if event.button == pygame.BUTTON_MIDDLE or by_tool:
             self._panning = event.button
+
+    @property
+    def _is_busy(self) -> bool:
+        """Whether something else is drawn, or is in the hand: no menu opens over it, nor is it given up."""
+        sketch = self._window.sketch
+        return self._window.hand.entity is not None or bool(sketch.grips and sketch.name != BOX.name)
 
     def _takes_handle(self, world: World, pixel: tuple[float, float]) -> bool:
         """Take the handle of the selection that lies under the cursor; return whether there is one."""
@@ -291,7 +298,7 @@ class WindowEvents:
         self._follow_snapping(world)
         drawing.follow(window, TOOLS[window.sketch.name or window.tool].draws)
         if window.handles.dragged is not None and window.handled is not None:
-            rounds = bool(pygame.key.get_mods() & pygame.KMOD_SHIFT)
+            rounds = bool(held_keys() & pygame.KMOD_SHIFT)
             snaps = rounds or (window.snapping.active and window.handles.dragged == "angle")
             window.handles.drag(window.edits, window.handled, window.camera, window.target, snaps=snaps)
         window.pins.drag(window.edits, window.target, paused=window.pace.paused)

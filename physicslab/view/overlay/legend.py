@@ -65,7 +65,7 @@ class Gauge:
         if self.kept and self.per_metre:
             return
         strongest = float(np.max(values, initial=0.0, where=np.isfinite(values)))
-        faded = self._peak * math.exp(-max(time - self._time, 0.0) / _MEMORY)
+        faded = self._peak * math.exp(-abs(time - self._time) / _MEMORY)  # after a restart as well
         self._peak, self._time = max(strongest, faded), time
         wanted = self._peak / reach
         if wanted > 1e-12 and not _SHORTEST * self.per_metre <= wanted <= _LONGEST * self.per_metre:

@@ -23,7 +23,7 @@ _KEYS = {
     pygame.K_y: imgui.Key.y, pygame.K_z: imgui.Key.z,
 }  # fmt: skip
 """The keys that matter to text and menus."""
-_HELD = {getattr(pygame, f"KMOD_{key}"): imgui.Key[f"mod_{key.lower()}"] for key in ("CTRL", "SHIFT", "ALT")}
+_HELD = {pygame.KMOD_SHIFT: imgui.Key.mod_shift, pygame.KMOD_ALT: imgui.Key.mod_alt}
 _AWAY = (pygame.WINDOWFOCUSLOST, pygame.WINDOWMINIMIZED, pygame.WINDOWHIDDEN)
 """Events after which no button counts as held."""
 _SETTLING = 3
@@ -298,6 +298,9 @@ def _feed(io: imgui.IO, event: pygame.Event) -> None:
             io.add_mouse_wheel_event(-across, float(getattr(event, "precise_y", event.y)))
         case pygame.KEYDOWN | pygame.KEYUP:
             mod = getattr(event, "mod", 0)
+            # On macOS Dear ImGui exchanges the two, and its events of keys are exchanged already.
+            ctrl = imgui.Key.mod_super if io.config_mac_osx_behaviors else imgui.Key.mod_ctrl
+            io.add_key_event(ctrl, bool(mod & pygame.KMOD_CTRL))
             for mask, key in _HELD.items():
                 io.add_key_event(key, bool(mod & mask))
             if event.key in _KEYS:
@@ -378,14 +381,19 @@ class Walk:
             imgui.set_nav_cursor_visible(True)
         self._begins = False
 
-    def end(self) -> None:
-        """Give the keys back to the world after Esc, or a line of a menu; after panels are built."""
+    def end(self, *, is_alone: bool) -> None:
+        """Give the keys back to the world after Esc, or a line of a menu; after panels are built.
+
+        Where the world ``is_alone`` in front and has them, their mark goes, and the tip of what it was on.
+        """
         toolkit, panel = self._toolkit, imgui.get_current_context().nav_window
         in_menus = toolkit.walked and self._panel == _MENUS
         left = in_menus and not toolkit.has_popup() and panel is not None and panel.name != _MENUS
         if self._ends or left:
             imgui.set_window_focus()
             self._ends = self._from_field = toolkit.walked = False
+        if is_alone and not toolkit.has_keys:
+            imgui.set_nav_cursor_visible(False)
 
 
 def _has_widgets(window: imgui.internal.Window) -> bool:

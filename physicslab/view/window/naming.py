@@ -24,12 +24,15 @@ class Naming:
         Why nothing could be done with it; empty if nothing was refused.
     replaces : path, optional
         The file that is written over where the user says so.
+    entered : bool
+        Whether Enter was pressed: where it is refused, the writing goes on.
     """
 
     text: str = ""
     copies: bool = False
     refused: str = ""
     replaces: Path | None = None
+    entered: bool = False
 
     def write(self, text: str) -> None:
         """Take another name, of which nothing was said yet."""

@@ -1,11 +1,11 @@
 """Files of earlier sessions: opened or saved last, and left by sessions that ended without closing."""
 
-import os
 import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Protocol
 
+from physicslab.files.replace import rename_over
 from physicslab.files.scene import load_scene
 from physicslab.world import World
 
@@ -104,7 +104,7 @@ class Recovery:
         world = load_scene(session.path)
         world.synchronise()
         if self._own is not None:
-            os.replace(session.path, self._own)
+            rename_over(session.path, self._own)
             session.end()
         self.leave()
         return world

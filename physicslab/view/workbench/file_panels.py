@@ -30,14 +30,16 @@ def build_name(ui: Ui, label: str, naming: Naming, width: float, close: Callable
     """
     if imgui.is_key_pressed(imgui.Key.escape):
         close()
-    if imgui.is_window_appearing():
+    if imgui.is_window_appearing() or (naming.entered and naming.refused):
         imgui.set_keyboard_focus_here()
+        naming.entered = False
     text, _ = ui.field(label, naming.text, width * ui.size, wrong=bool(naming.refused))
     entered = imgui.is_item_focused() and imgui.is_key_pressed(imgui.Key.enter)
+    naming.entered |= entered
     if naming.refused:
         ui.text(naming.refused, ui.theme.error, wrapped=True)
     naming.write(text)
-    return entered
+    return bool(entered)
 
 
 def build_answers(

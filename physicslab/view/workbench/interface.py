@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 from physicslab.languages.language import language
 from physicslab.view.canvas.canvas import Canvas, Rect
 from physicslab.view.controls.tools import TOOLS
+from physicslab.view.toolkit.early_keys import EarlyKeys
 from physicslab.view.toolkit.style import bar_height
 from physicslab.view.toolkit.toolkit import Toolkit, Walk, is_for_files
 from physicslab.view.toolkit.ui import Ui
@@ -134,7 +135,7 @@ class Interface:
     def __init__(self, window: Window) -> None:
         self._window = window
         self.toolkit = Toolkit()
-        self._walk = Walk(self.toolkit)
+        self._walk, self._early = Walk(self.toolkit), EarlyKeys()
         self.ui = Ui(self.toolkit.fonts, window.theme)
         self.ui.do_next = window.do_next
         self._numbers = NumberFields()
@@ -191,10 +192,11 @@ class Interface:
         """
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self.toolkit.follow_pointer(event.pos)
-        if self._search.take(self._window, event):
+        if self._early.take(event) or self._search.take(self._window, event):
             return True
         self._walk.follow(event)
         taken = self.toolkit.take(event)
+        self._early.follow(event, on_panel=taken)
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self._window.pointer_beside_panel = self.toolkit.covers(event.pos, _BESIDE)
         if event.type == pygame.KEYDOWN and taken and event.key == pygame.K_ESCAPE:
@@ -254,9 +256,11 @@ class Interface:
                 window.do_next(lambda _, window: window.edits.release())
 
         if self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build):
-            self._walk.end()
+            self._walk.end(is_alone=not window.in_front)
             self._built = window.canvas.size, self.text
             window.arrangement = self._arrangement = self.toolkit.arrangement()
+        if self._early.advance(typing=self.toolkit.typing):
+            self.toolkit.wake()
 
     def _is_cramped(self) -> bool:
         """Whether docked windows leave the world no width since the text or the window has another size."""

@@ -12,6 +12,7 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.quantity_text import InvalidText, evaluate, evaluate_points
+from physicslab.view.canvas.keyboard import held_keys
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 
@@ -242,7 +243,7 @@ class NumberFields:
             self._dragged = key, value
             ui.do_next(lambda _, window: window.edits.hold())
         if self._dragged is not None and imgui.is_item_active() and imgui.is_mouse_dragging(0, 2.0):
-            held = pygame.key.get_mods()
+            held = held_keys()
             factor = _FINER if held & pygame.KMOD_SHIFT else _COARSER if held & pygame.KMOD_CTRL else 1.0
             moved = imgui.get_mouse_drag_delta(0, 2.0).x
             least = math.degrees(1.0) if spec.unit == "deg" else 1.0
