@@ -145,7 +145,7 @@ def factor_for(
 ) -> int:  # fmt: skip
     """Return the factor for the next step, by the impulses of the last substep and the present speeds.
 
-    It is a power of two, or one and a half of it.
+    It is 1, 2, 3, 4, 6, 8 or the largest, which is for loads that longer substeps would not carry at all.
     """
     h, rows, over = plan.own_h, len(joints.impulse), 0.0
     sweeps, sunk = sweeps_of(near, rows, plan.iterations), h * h / (softness.push * softness.stiffness)
@@ -159,7 +159,8 @@ def factor_for(
         over = max(over, 0.5 * _fastest_whip(joints, angular, inverse.mass) * h * h / _LEFT)
     factor, last = 1, 1
     while factor < MAX_SUBSTEP_FACTOR and factor * factor < over:
-        factor, last = factor + 1 if factor < 4 else 2 * last, factor  # 1, 2, 3, 4, 6, 8, 12, 16
+        factor, last = factor + 1 if factor < 4 else 2 * last, factor  # 1, 2, 3, 4, 6, 8
+        factor = MAX_SUBSTEP_FACTOR if factor > 8 else factor  # what is heaviest gets all there are
     return factor
 
 
