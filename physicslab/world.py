@@ -181,6 +181,7 @@ class World(Facade):
                     raise Overloaded(load)
             self.schedule.run(Stage.FINISH, self, h * steps)
         self.steps += made.steps
+        self._forces_at = self.steps, self.motion_edits
         self.step_divisions = made.divisions
         return made.steps
 

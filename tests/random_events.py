@@ -233,6 +233,7 @@ class Hands:
         window.pace.halt()
         window.hand.drop(self._desk.world)
         window.sketch.cancel()
+        window.keys.asks = ""  # the first letter of a number would be taken for a key, and the next act
         window.edits.keep()
         history = self._desk.sandbox.history
         return history.step_count == history.steps_range[1] and history.position == len(history.entries)

@@ -57,6 +57,28 @@ def test_a_button_that_is_held_in_a_pause_keeps_the_window_awake(desk: Desk) -> 
         desk.release(2.0, 1.0, button)
 
 
+def test_the_right_button_gives_up_nothing_that_is_being_drawn(desk: Desk) -> None:
+    """A menu opened over the drag, and what was drawn was gone."""
+    desk.window.tool = "circle"
+    desk.move(2.0, 1.0)
+    desk.press(2.0, 1.0)
+    desk.frames(2)
+    desk.move(2.5, 1.0)
+    desk.frames(2)
+    desk.press(2.5, 1.0, "right")
+    desk.frames(40)
+    assert desk.window.context is None and desk.window.sketch.grips
+    desk.release(2.5, 1.0, "right")
+    desk.release(2.5, 1.0)
+    desk.frames(SETTLED)
+    assert len(desk.world.batch(Shape)) == 2
+    desk.window.tool = "polygon"
+    for x in (-2.0, -1.0):
+        click_at(desk, desk.pixel(x, 1.5))
+    click_at(desk, desk.pixel(-1.5, 2.5), "right")
+    assert len(desk.window.sketch.grips) == 2 and len(desk.world.batch(Shape)) == 2
+
+
 def test_the_right_button_held_opens_a_menu_and_a_short_click_makes_a_box(desk: Desk) -> None:
     open_at(desk, 2.0, 1.0)
     assert "Circle here" in desk.ui.places

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.report import ContactPoint, contacts_of
+from physicslab.diagnostics.present_forces import with_present_forces
 from physicslab.ecs.vector import Vector2, rotated
 from physicslab.state import joint_figures
 from physicslab.state.joints import Joint
@@ -68,7 +69,7 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
     """Return the forces on a body as they are now, by what brings them about; of one that cannot move none.
 
     Springs and gravity are those of the present state of motion, contacts and soft joints those of the last
-    substep.
+    substep; before the first step, and after an edit, those of a step that would begin now.
     """
     moves = world.has(entity, Velocity) and world.has(entity, Mass) and world.has(entity, Transform)
     if not moves:
@@ -83,11 +84,13 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
     if damping > 0.0:
         velocity, mass = world.component(entity, Velocity).linear, world.component(entity, Mass).mass
         found.append(NamedForce(_DAMPING, -damping * mass * velocity, centre, "field"))
-    for number, pull in joint_figures.forces_on(world, row).items():
-        joint = world.joints.joints[number]
-        name, at = world.label(joint.entity), _end(world, joint, row)
+    now = with_present_forces(world)
+    row = now.entity_index.row_of[entity]
+    for number, pull in joint_figures.forces_on(now, row).items():
+        joint = now.joints.joints[number]
+        name, at = world.label(joint.entity), _end(now, joint, row)
         found.append(NamedForce(name, Vector2(*pull.tolist()), at, "field"))
-    for contact in contacts_of(world, entity):
+    for contact in contacts_of(now, entity):
         on_b = contact.b == entity
         other = world.label(contact.a if on_b else contact.b) if contact.a and contact.b else "the wall"
         sign = 1.0 if on_b else -1.0
@@ -140,13 +143,11 @@ class LastStep:
 def last_step(world: World, entity: int) -> LastStep | None:
     """Return the changes of the momentum of a body in the last step; ``None`` if they are not known.
 
-    It is not of what cannot move, after a longer run than one step, and after going to another place of the
-    history. Impacts are those of the world's log (``contacts.read``).
+    It is not of what cannot move, after a longer run than one step, after an edit, and after going to another
+    place of the history. Impacts are those of the world's log (``contacts.read``).
     """
     checkpoint, dt = world.checkpoint, world.time - world.checkpoint.time
-    if not 0.0 < dt <= _LONGEST * world.simulation.dt or len(checkpoint.columns[0]) != len(
-        world.bodies.force
-    ):
+    if not (world.forces_known and 0.0 < dt <= _LONGEST * world.simulation.dt):
         return None
     present = forces_on(world, entity)
     row = world.entity_index.row_of[entity]
@@ -213,19 +214,21 @@ def applied_forces(world: World) -> NDArray[np.float64]:
 
 def joint_forces(world: World) -> NDArray[np.float64]:
     """Return the forces of joints on each row (n, 2) [N], as in :func:`forces_on`."""
-    total = joint_figures.forces_on_all(world)
+    now = with_present_forces(world)
+    total = joint_figures.forces_on_all(now)
     total[0] = 0.0
-    return total
+    return _by_row(world, now, total)
 
 
 def contact_forces(world: World) -> NDArray[np.float64]:
     """Return the forces of contacts and bounds on each row (n, 2) [N], as in :func:`forces_on`."""
-    contacts = world.contacts
+    now = with_present_forces(world)
+    contacts = now.contacts
     contacts.sync()
-    total = np.zeros_like(world.bodies.force)
+    total = np.zeros_like(now.bodies.force)
     pairs = np.flatnonzero(contacts.manifolds["count"][: contacts.recorded] > 0)
     if not len(pairs) or contacts.impulse_dt <= 0.0:
-        return total
+        return _by_row(world, now, total)
     near = contacts.manifolds[pairs]
     normal, tangent = np.zeros(len(pairs)), np.zeros(len(pairs))
     for k in range(2):
@@ -237,7 +240,15 @@ def contact_forces(world: World) -> NDArray[np.float64]:
     np.add.at(total, near["b"], on_b)
     bodies = near["entity_a"] > 0  # the others are the world's bounds
     np.subtract.at(total, near["a"][bodies], on_b[bodies])
-    return total
+    return _by_row(world, now, total)
+
+
+def _by_row(world: World, now: World, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return values (rows, 2) of the rows of ``now`` by those that the same entities have in a world."""
+    if now is world:
+        return values
+    rows = now.entity_index.rows_of(world.entity_index.entities)
+    return np.where(rows[:, None] > 0, values[rows], 0.0)
 
 
 @quiet

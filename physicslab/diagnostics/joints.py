@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 
 from physicslab.components import Transform
+from physicslab.diagnostics.present_forces import with_present_forces
 from physicslab.ecs.vector import Vector2, rotated
 from physicslab.state.joint_figures import figures_of
-from physicslab.state.state import State
+from physicslab.world import World
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,12 +54,12 @@ class JointState:
     size: float
 
 
-def joint_states(state: State) -> list[JointState]:
-    """Return all joints, as the structure of the world was when it was last followed."""
+def joint_states(world: World) -> list[JointState]:
+    """Return all joints, with the forces of the last step, or of one that would begin now."""
+    state = with_present_forces(world)
     joints, transform = state.joints, state.table(Transform)
     if not joints.joints:
         return []
-    joints.refresh(state.entity_index)
     figures = figures_of(state)
     first, a, b = (np.array([joint[k] for joint in joints.joints], np.int64) for k in (2, 4, 5))
     angle, entities = transform["angle"], state.entity_index.entities

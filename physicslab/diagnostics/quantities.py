@@ -22,6 +22,7 @@ from physicslab.diagnostics.energy import Accounts, measure_account
 from physicslab.diagnostics.free_body import forces_on, net_force
 from physicslab.diagnostics.joints import JointState, joint_states
 from physicslab.diagnostics.period import spring_state
+from physicslab.diagnostics.present_forces import with_present_forces
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.forces import springs
 from physicslab.state.account import Energy, Momentum
@@ -32,7 +33,7 @@ from physicslab.world import World
 
 _NAN = math.nan
 NOT_YET = "known after the first step"
-"""Why what only a step reckons has no value."""
+"""Why forces have no value where not even a short step of a copy can be made."""
 
 
 class Reading:
@@ -212,7 +213,7 @@ def _why_not_carried(world: World, carrier: str, entity: int) -> str:
     count = sum(world.has(entity, kind) for kind in KINDS)
     if count != 1:
         return "has several joints" if count else "has no joint"
-    return "" if world.steps else NOT_YET
+    return "" if with_present_forces(world).forces_known else NOT_YET
 
 
 def _why_no_potential(world: World, body: int) -> str:

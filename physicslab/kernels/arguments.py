@@ -122,7 +122,8 @@ class Plan(NamedTuple):
     """Substeps a step, iterations of the solver, the substep and the step [s], the time at the start [s].
 
     0 iterations: their number is chosen from that of the contacts. Then the time [s] that a step counts as
-    rest, and the substep in which the records of a step begin, -1 where they have begun.
+    rest, and the substep in which the records of a step begin, -1 where they have begun. Last, the configured
+    substep [s], and how many times as many substeps loads have been found to need, 0 where none are.
     """
 
     substeps: int
@@ -132,6 +133,8 @@ class Plan(NamedTuple):
     time: float
     rested: float
     first: int
+    own_h: float
+    finer: int
 
 
 class Course(NamedTuple):
@@ -227,7 +230,7 @@ NearTuple = tuple[
     Vectors,
 ]
 SoftnessTuple = tuple[float, float, float]
-PlanTuple = tuple[int, int, float, float, float, float, int]
+PlanTuple = tuple[int, int, float, float, float, float, int, float, int]
 CourseTuple = tuple[Rows, Vectors, float, float, float, bool]
 SpringsTuple = tuple[Numbers, Rows]
 PackedTuple = tuple[Vectors, Calls]

@@ -105,11 +105,11 @@ class State(Entities):
 
     # An attribute that is misspelt, or belongs elsewhere, would be kept and do nothing.
     __slots__ = (
-        "_physics", "_simulation", "_waited_before", "account", "bodies", "brought_back", "checkpoint",
-        "collisions", "contacts", "description", "desk", "event_driven", "fastest_rates", "force_evaluations",
-        "generation", "has_forces", "joints", "kick_before_contacts", "moment", "motion_edits", "name",
-        "remainders", "revision", "rigid_contacts", "samples", "sleep", "stale", "step_divisions", "steps",
-        "substeps", "time", "title", "uniform_forces", "view", "window",
+        "_forces_at", "_physics", "_simulation", "_waited_before", "account", "bodies", "brought_back",
+        "checkpoint", "collisions", "contacts", "description", "desk", "event_driven", "fastest_rates",
+        "force_evaluations", "generation", "has_forces", "joints", "kick_before_contacts", "moment",
+        "motion_edits", "name", "remainders", "revision", "rigid_contacts", "samples", "sleep", "stale",
+        "step_divisions", "steps", "substeps", "time", "title", "uniform_forces", "view", "window",
     )  # fmt: skip
 
     def __init__(
@@ -125,6 +125,7 @@ class State(Entities):
         self.view: View | None = None
         self.desk: Desk | None = None
         self.time, self.steps, self.revision, self.motion_edits = 0.0, 0, 0, 0
+        self._forces_at = -1, -1  # after how many steps and edits forces were solved for
         self.substeps, self.step_divisions = self._simulation.substeps, 1
         self.force_evaluations = self.collisions = self.brought_back = 0
         self._waited_before = seconds_waited()
@@ -167,6 +168,11 @@ class State(Entities):
     def counts(self) -> tuple[int, int, int]:
         """Force evaluations, impacts, and impacts logged."""
         return self.force_evaluations, self.collisions, self.contacts.logged
+
+    @property
+    def forces_known(self) -> bool:
+        """Whether a step has led to the present state, and so to forces of joints and contacts."""
+        return self._forces_at == (self.steps, self.motion_edits)
 
     def compile(self, kernels: Iterable[Any]) -> None:
         """Compile kernels that are about to be called, or load them."""

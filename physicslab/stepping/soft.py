@@ -84,8 +84,8 @@ class Soft:
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make ``steps`` steps or fewer; where one fails, those before it are counted."""
         contacts, parts = state.contacts, divisions(state, h)
-        single = bool(self.hooks) or parts > 1 or (state.bodies.unequal and state.has_forces)
-        if not single:
+        single, unequal = bool(self.hooks) or parts > 1, state.bodies.unequal and state.has_forces
+        if not unequal:
             contacts.substep_factor = 1
         factor = max(contacts.substep_factor, falls_far(state, h / parts))
         state.substeps = factor * state.simulation.substeps
@@ -99,7 +99,8 @@ class Soft:
         if self.substeps.split is not None:
             self.substeps.split.begin(state)
         rested = min(h, state.simulation.dt)  # of a divided step only the end is observed
-        span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested)
+        finer = contacts.substep_factor if unequal else 0
+        span = Span(parts * state.substeps, h / parts / state.substeps, h, state.time, rested, finer)
         cause = self._open(state) if self.keeps_balance else -1
         self._note_energy(state)
         made = self.substeps.go_through(state, span, steps, cause)
@@ -109,9 +110,6 @@ class Soft:
         if len(state.joints):
             state.joints.force[:] = state.joints.impulse / (contacts.impulse_dt or span.h)
         self._note_energy(state)
-        if single:
-            factors = (system.substep_factor(state) for system in self._schedule.running)
-            contacts.substep_factor = max(factors, default=1)
         if wanted > 1:
             self._max_steps = max(1, min(_MAX_STEPS, made * _CALL_NS // max(working_ns() - began, 1)))
         return Advance(made, parts)

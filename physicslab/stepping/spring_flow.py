@@ -11,7 +11,7 @@ from physicslab.ecs.sentences import sentence
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS
 from physicslab.kernels.arguments import SpringsTuple
-from physicslab.kernels.ode.spring_flow import HEAD, KNOWN, MOST_TERMS, UNIFORM, WEIGHT
+from physicslab.kernels.ode.spring_flow import HEAD, KNOWN, LONGEST, MOST_TERMS, UNIFORM, WEIGHT
 from physicslab.kernels.wide_layout import WIDE
 from physicslab.state.packed import StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
@@ -138,7 +138,7 @@ class SpringFlow:
             parts += [np.zeros(4 * len(order))]
         by_mass = bodies.inverse_mass[alone]
         parts += [drag["linear"][alone] * by_mass, drag["quadratic"][alone] * by_mass, _reciprocal(by_mass)]
-        sizes = len(moving), p, len(order), len(DRIFTS), steps, turns or damped, turns
+        sizes = len(moving), p, len(order), len(DRIFTS), turns or damped, turns
         decays = max((float(one.bounds(state)[1].max()) for one in springs_of(forces)), default=0.0)
         half = 0.5 * state.simulation.dt / state.simulation.substeps
         dampers = [2 * np.flatnonzero(used & np.isin(end, ends)) + at_b for at_b, end in enumerate(slots)]
@@ -152,6 +152,7 @@ class SpringFlow:
         whole += [_terms(decays, half / steps), alone]
         self.changes_with_speed = bool(drag["quadratic"][alone].any())
         self.arrays: SpringsTuple = np.concatenate(parts), np.concatenate(whole).astype(np.int64)
+        self.arrays[0][LONGEST] = half / steps
         self._place = self.arrays[0][HEAD : HEAD + 2 * p].reshape(-1, 2)
         first = HEAD + 6 * p + 2 * len(moving)
         self._gravity, self._weight = self.arrays[0][first : first + 4 * len(moving)].reshape(2, -1)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Mass
+from physicslab.components import Mass, Velocity
 from physicslab.contacts.arguments import (
     acting_in,
     bounds_of,
@@ -20,10 +20,12 @@ from physicslab.contacts.arguments import (
     speculative_margin,
 )
 from physicslab.contacts.islands import all_asleep
+from physicslab.kernels.arguments import PlanTuple, SoftnessTuple
 from physicslab.kernels.broad import grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import fat_boxes
 from physicslab.kernels.loading import direct_entry, working_ns
 from physicslab.kernels.solver import soft
+from physicslab.kernels.solver.finer import needed_factor
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
@@ -41,8 +43,8 @@ from physicslab.systems.sleep import SleepSystem
 from physicslab.systems.system import ForceSystem, System
 
 _KERNELS = (
-    soft.advance, fat_boxes, leaving.index_bodies, leaving.add_pairs, grid.find_pairs, near_pairs.partition,
-    near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
+    soft.advance, needed_factor, fat_boxes, leaving.index_bodies, leaving.add_pairs, grid.find_pairs,
+    near_pairs.partition, near_pairs.carry_over, near_pairs.sort_scalar, slots.list_scalar,
 )  # fmt: skip
 _COSTS: dict[type[System], int] = {
     AccelerateSystem: soft.ACCELERATE, IntegrateSystem: soft.INTEGRATE, BroadPhaseSystem: soft.BROAD_PHASE,
@@ -55,7 +57,8 @@ _COSTS: dict[type[System], int] = {
 class Span(NamedTuple):
     """What substeps are to cover: their number a step, the length of a substep and of a step, the start [s].
 
-    ``rested`` is the time [s] that a step counts as rest of what is slow.
+    ``rested`` is the time [s] that a step counts as rest of what is slow, ``finer`` how many times as many
+    substeps as configured loads have been found to need, 0 where it is not looked at them.
     """
 
     substeps: int
@@ -63,6 +66,7 @@ class Span(NamedTuple):
     dt: float
     start: float
     rested: float
+    finer: int
 
 
 class Substeps:
@@ -115,13 +119,14 @@ class Substeps:
     # ---- going through them --------------------------------------------------------------------------------
 
     def go_through(self, state: State, span: Span, steps: int = 1, cause: int = -1) -> int:
-        """Make ``steps`` steps or, where everything falls asleep, fewer; return how many.
+        """Make ``steps`` steps or, where everything falls asleep or substeps are to be others, fewer.
 
         What was changed since the last step is booked to a ``cause``, unless that is negative. Where one
-        fails, those before it are counted.
+        fails, those before it are counted. Returns how many there are; how many times as many substeps the
+        next step needs is written into the contacts.
         """
         before, made, substep, part = state.time, 0, 0, 0
-        first = 0 if self._contact is None or self._contact.first else -1
+        first, why = 0 if self._contact is None or self._contact.first else -1, soft.OTHER_SUBSTEPS
         try:
             while made < steps and self._parts:
                 why = soft.PYTHON
@@ -134,8 +139,10 @@ class Substeps:
                 elif why in (soft.SLEEP_PENDING, soft.WALL_PENDING):
                     part = 0
                     self._end_step(state, why, span)
-                    if all_asleep(state):
+                    if span.finer or all_asleep(state):
                         break
+                elif why == soft.OTHER_SUBSTEPS:
+                    break
                 elif why != soft.ALL:
                     began = span.start + made * span.dt
                     state.moment = began + (substep + self._course[4]) * span.h
@@ -155,7 +162,31 @@ class Substeps:
             self._finish(state, 1, span)
             if self._contact is not None:
                 self._contact.end_substep()
+        if span.finer and why != soft.ALL:
+            state.contacts.substep_factor = self._needed_factor(state, span)
         return made if self._parts else steps
+
+    def _needed_factor(self, state: State, span: Span) -> int:
+        """Return how many times as many substeps as configured the next step needs."""
+        state.compile((needed_factor,))
+        factor: int = needed_factor(
+            near_in(state), joints_in(state), state.table(Velocity)["angular"], inverse_in(state),
+            state.bodies.force, self._plan(state, span, 0, 0), self._softness(state),
+            state.contacts.impulse_dt,
+        )  # fmt: skip
+        return factor
+
+    def _plan(self, state: State, span: Span, made: int, first: int) -> PlanTuple:
+        """Return the numbers that the loop goes by after ``made`` steps."""
+        simulation = state.simulation
+        return (
+            span.substeps, simulation.iterations or 0, span.h, span.dt, span.start + made * span.dt,
+            span.rested, first, simulation.dt / simulation.substeps, span.finer,
+        )  # fmt: skip
+
+    def _softness(self, state: State) -> SoftnessTuple:
+        """Return the spring of contacts."""
+        return (0.0, 0.0, 0.0) if self._resolve is None else self._resolve.softness(state)
 
     def _leave(self, state: State, why: int, part: int, h: float) -> None:
         """Do in Python what the loop has come back for."""
@@ -184,11 +215,7 @@ class Substeps:
         """Run the loop as far as it goes; return why it ended, after how many steps, and where."""
         began = time.perf_counter_ns()
         contacts, (substep, part, first, cause) = state.contacts, where
-        plan = (
-            span.substeps, state.simulation.iterations or 0, span.h, span.dt, span.start + made * span.dt,
-            span.rested, first,
-        )  # fmt: skip
-        arguments = self._arguments(state, span.h)
+        plan, arguments = self._plan(state, span, made, first), self._arguments(state, span.h)
         why, done, substep, part, finished_impacts, impacts, evaluations, contacts.impulse_dt = self._entry(
             steps, substep, part, plan, self._course, cause, *arguments
         )
@@ -225,12 +252,11 @@ class Substeps:
             contacts.inactive, contacts.sleeping, sleep.forces, sleep.unverified,
         )  # fmt: skip
         damping, fat, bounds = laws
-        softness = (0.0, 0.0, 0.0) if self._resolve is None else self._resolve.softness(state)
         if self._broad_phase is not None:
             fat = self._broad_phase.fat
         return (
             *motion, packed, self._springs, sleepers, damping, fat, bounds, near_in(state), joints_in(state),
-            contacts.opened, softness, contacts.impulse_dt, contacts.step_log, self._cost,
+            contacts.opened, self._softness(state), contacts.impulse_dt, contacts.step_log, self._cost,
         )  # fmt: skip
 
     def _addresses(self, state: State) -> NDArray[np.int64]:

@@ -6,23 +6,18 @@ import esper
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Gear, Name, Pin, Slot, Transform, Velocity
+from physicslab.components import Gear, Name, Pin, Slot, Transform
 from physicslab.components.gear import COUPLED, OTHER_JOINT
 from physicslab.components.joint_ends import key_of, why_not_joined
-from physicslab.contacts.arguments import do_stage, joints_in
+from physicslab.contacts.arguments import do_stage
 from physicslab.contacts.islands import wake_all
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.sentences import listed, sentence
-from physicslab.kernels.joints.whip import fastest_whip
-from physicslab.kernels.solver import impulse, soft
+from physicslab.kernels.solver import soft
 from physicslab.state.joint_rows import KINDS, ends_of
 from physicslab.state.state import State
 from physicslab.systems.joint_forces import JointForces
 from physicslab.systems.system import Stage, System, at
-
-_LEFT = 5e-4
-"""Share of its arm by which an anchor may leave its way in a substep, in blocks of unequal masses. A heap of
-six ragdolls, started six times 1e-6 apart, comes apart by 16 mm each time; with 1e-3 by 16 to 25 mm."""
 
 
 def remove_lost(state: State, kind: type[Any], a: NDArray[np.int64], b: NDArray[np.int64]) -> None:
@@ -132,22 +127,6 @@ class JointSystem(System):
             _refuse_equal(state, kind, rows[there], a[there], b[there])
         if state.joints.rebuild(index) and state.sleep.count:
             wake_all(state)
-
-    def substep_factor(self, state: State) -> int:
-        """Return the factor for what turns fast about its anchors, as links do of a chain that whips.
-
-        Impulses keep the speeds of anchors equal. While a body turns by an angle w h in a substep, an anchor
-        at a distance r leaves the straight way by r (w h)^2 / 2: that is to be a small share of r.
-        """
-        if not (state.has_forces and state.bodies.unequal):
-            return 1
-        state.compile((fastest_whip,))
-        spin, inverse_mass = state.table(Velocity)["angular"], state.bodies.inverse_mass
-        left = 0.5 * fastest_whip(joints_in(state), spin, inverse_mass, impulse.HEAVY_RATIO)
-        h, parts = state.simulation.dt / state.simulation.substeps, 1
-        while parts < impulse.MAX_SUBSTEP_FACTOR and left * (h / parts) ** 2 > _LEFT:
-            parts *= 2
-        return parts
 
     @at(Stage.SOLVE)
     def solve(self, state: State, h: float) -> None:

@@ -2,13 +2,10 @@
 
 from physicslab.contacts.arguments import do_stage
 from physicslab.kernels.arguments import SoftnessTuple
-from physicslab.kernels.solver import impulse, soft
+from physicslab.kernels.solver import soft
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
 from physicslab.systems.system import Stage, System, at
-
-_LIGHT_LOAD = 12.0
-"""Multiple of its own weight that a body carries with the configured substeps."""
 
 
 class ResolveSystem(System):
@@ -40,25 +37,6 @@ class ResolveSystem(System):
         reason = nothing_to_touch(state)
         state.joints.beside_contacts = reason is None
         return reason
-
-    def substep_factor(self, state: State) -> int:
-        """Return the factor for far heavier loads, which need a stiffer contact spring and shorter substeps.
-
-        Its stiffness is that for the lighter body: one that carries a hundred times its weight sinks in a
-        hundred times as deep. Stiffness grows with the square of how much shorter substeps are.
-        """
-        contacts, bodies = state.contacts, state.bodies
-        if not (contacts.count and state.has_forces and bodies.unequal):
-            return 1
-        contacts.sync()
-        state.compile((impulse.worst_load_ratio,))
-        load = impulse.worst_load_ratio(
-            contacts.manifolds, contacts.recorded, bodies.force, bodies.awake_inverse_mass
-        )
-        parts = 1
-        while parts < impulse.MAX_SUBSTEP_FACTOR and parts * parts * _LIGHT_LOAD < load:
-            parts *= 2
-        return parts
 
     def softness(self, state: State) -> SoftnessTuple:
         """Return the contact spring for the substeps of the coming step.

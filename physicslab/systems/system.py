@@ -135,10 +135,6 @@ class System:
     def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
         """Go on from what :meth:`keep` returned, in its shapes; the entities are those of then."""
 
-    def substep_factor(self, state: State) -> int:
-        """Return the factor by which the next step needs more substeps than configured, at the end of one."""
-        return 1
-
     @property
     def is_engine(self) -> bool:
         """Whether compiled steppers do this system's work themselves."""

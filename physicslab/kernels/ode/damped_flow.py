@@ -33,6 +33,7 @@ from physicslab.kernels.ode.spring_flow import (
     BY_HAND,
     BY_SPRINGS,
     DISSIPATED,
+    FINEST,
     MAX_TURN,
     MOST_TERMS,
     SIZES,
@@ -46,6 +47,8 @@ from physicslab.kernels.ode.spring_flow import (
     gather,
     named,
     scatter,
+    steps_of,
+    still_followed,
     torque_of_gravity,
 )
 from physicslab.kernels.wide_layout import WIDE
@@ -172,7 +175,7 @@ def _pull_ends(places: Places, links: Links, full: Full, turns: bool, at: int, f
 
 
 @inlined
-def _evaluate(places: Places, links: Links, full: Full, turns: bool) -> bool:
+def _evaluate(places: Places, links: Links, full: Full, turns: bool, followed: float) -> bool:
     """Compute the pull of all springs and dampers; return whether each spring is long enough."""
     short = 0
     for at in range(0, len(links.a), WIDE):
@@ -189,7 +192,7 @@ def _evaluate(places: Places, links: Links, full: Full, turns: bool) -> bool:
         put(full.opening, at, opening)
         pull = tension + take(full.damping, at) * opening
         _pull_ends(places, links, full, turns, at, pull * nx, pull * ny)
-        short |= mask_bits(length < take(links.shortest, at))
+        short |= mask_bits(length < followed * take(links.shortest, at))
     return short == 0
 
 
@@ -330,7 +333,7 @@ def _follows(places: Places, links: Links, full: Full, turns: bool, h: float) ->
 @inlined
 def _advance(
     places: Places, links: Links, full: Full, drifts: Numbers, kicks: Numbers, h: float, steps: int,
-    terms: Rows, turns: bool, ends: Rows, held: Rows, given: Numbers,
+    followed: float, terms: Rows, turns: bool, ends: Rows, held: Rows, given: Numbers,
 ) -> int:  # fmt: skip
     """Advance what was gathered, as :func:`flow_forces` does."""
     for i in range(len(places.pull)):
@@ -342,7 +345,7 @@ def _advance(
     for _ in range(steps):
         for stage in range(len(kicks)):
             evaluations += 1
-            if not _evaluate(places, links, full, turns):
+            if not _evaluate(places, links, full, turns, followed):
                 return TURNS_FAST
             _kick(places, links, full, kicks[stage] * h, terms[stage], turns, ends, held, given)
             if stage < len(drifts):
@@ -423,25 +426,28 @@ def _fall(
 def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors) -> int:
     """Move bodies on springs and in drag for ``span`` seconds; return the number of force evaluations.
 
-    Plain springs between middles are left to :func:`flow_springs`. Where a spring becomes so short, or turns
-    so fast, that steps of one length do not follow it, nothing is changed, and :data:`TURNS_FAST` returned.
+    Plain springs between middles are left to :func:`flow_springs`, which says how fast springs are followed.
     """
     numbers, whole = springs
-    m, p, n, s, steps = whole[0], whole[1], whole[2], whole[3], whole[4]
-    turns, alone, last, made = whole[6] != 0, whole[7], len(whole), 0
-    if whole[5] == 0:
+    m, p, n, s = whole[0], whole[1], whole[2], whole[3]
+    turns, alone, last, made = whole[5] != 0, whole[6], len(whole), 0
+    if whole[4] == 0:
         made = flow_springs(motion, springs, span, account)
     else:
         places, links, ends, given, drifts, kicks, at = named(springs)
         full, terms = _full(numbers, at, m, p, n), whole[last - alone - s - 1 : last - alone]
-        held = whole[SIZES + m + 2 * n + whole[8] : last - alone - s - 1]
-        gather(places, motion)
-        _take_spins(places, full, motion)
-        for i in range(len(given)):
-            given[i] = 0.0
-        made = _advance(
-            places, links, full, drifts, kicks, span / steps, steps, terms, turns, ends, held, given
-        )
+        held = whole[SIZES + m + 2 * n + whole[7] : last - alone - s - 1]
+        steps, finer, made = steps_of(springs, span), 1, TURNS_FAST
+        while made < 0 and finer <= FINEST:
+            gather(places, motion)
+            _take_spins(places, full, motion)
+            for i in range(len(given)):
+                given[i] = 0.0
+            made = _advance(
+                places, links, full, drifts, kicks, span / (finer * steps), finer * steps,
+                still_followed(finer), terms, turns, ends, held, given,
+            )  # fmt: skip
+            finer *= 2
         if made >= 0:
             if turns:
                 _put_spins(places, full, motion)

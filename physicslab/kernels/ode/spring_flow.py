@@ -5,6 +5,7 @@ of eight in which no two pull at one body that can be moved, and blocks are gone
 on a body is always added up in the same order.
 """
 
+import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, inlined_by_numba
@@ -18,6 +19,10 @@ TURNS_FAST = -1
 MAX_TURN = 0.25
 """Angle [rad] by which a spring with a rest length may turn, or share of its length by which it may change,
 in a step of the method."""
+_ROUNDING = 1e-9
+"""Share by which a step may be longer than the longest: half substeps are rounded."""
+FINEST = 64
+"""Largest factor by which steps are shortened where springs turn faster, or are short."""
 
 BY_SPRINGS, BY_GRAVITY, BY_HAND, DISSIPATED, BY_DAMPERS, GIVEN = 0, 3, 4, 5, 6, 9
 """Where in what is given are the momentum (x, y) and the angular momentum that springs bring in [N s, N m s];
@@ -25,16 +30,16 @@ the angular momentum of gravity [N m s]; the work of ends that are driven [J]; w
 momenta that they bring in."""
 MOST_TERMS = 10
 """Terms of the series of a kick for which there is room."""
-SIZES = 9
+SIZES = 8
 """The whole numbers begin with: how many bodies move on springs, how many places there are, slots for
-springs, drifts of the method, and its steps; whether there are dampers or arms, and so more numbers behind
+springs, drifts of the method; whether there are dampers or arms, and so more numbers behind
 (:mod:`physicslab.kernels.ode.damped_flow`); arms; how many bodies are in drag alone; how many ends springs do
 not move. Then :attr:`Places.moving`, the springs' ends at A and B, and the ``ends`` that springs do not move;
 dampers at these; terms of the series of each kick; bodies in drag alone."""
-KNOWN, WEIGHT, _GIVEN, UNIFORM, HEAD = 0, 1, 3, 12, 16
+KNOWN, WEIGHT, _GIVEN, UNIFORM, LONGEST, HEAD = 0, 1, 3, 12, 14, 16
 """The numbers begin with: whether the pull is known (1,), the weight of all that moves on springs (2,) [N],
-what is given (GIVEN,), gravity (2,) [m/s^2]. Then those of :class:`Places` and of :class:`Links` in order,
-drifts and kicks, and what dampers and drag need."""
+what is given (GIVEN,), gravity (2,) [m/s^2], the longest step of the method [s]. Then those of
+:class:`Places` and of :class:`Links` in order, drifts and kicks, and what dampers and drag need."""
 
 
 class Places(NamedTuple):
@@ -59,7 +64,7 @@ class Places(NamedTuple):
 class Links(NamedTuple):
     """The springs in blocks of eight: rows of :class:`Places` at A and B, numbers of each.
 
-    ``shortest`` is the length [m] below which the direction of a spring changes too fast.
+    ``shortest`` is the length [m] below which the direction of a spring changes too fast for the usual steps.
     """
 
     a: Rows
@@ -105,7 +110,24 @@ def _turn_fast(places: Places, links: Links, at: int, h: float) -> int:
 
 
 @always_inlined
-def _pull(places: Places, links: Links, at: int) -> int:
+def steps_of(springs: Springs, span: float) -> int:
+    """Return how many steps of the method ``span`` seconds are, if no spring turns fast."""
+    steps: int = max(1, math.ceil(span / springs.numbers[LONGEST] * (1.0 - _ROUNDING)))
+    return steps
+
+
+@always_inlined
+def still_followed(finer: int) -> float:
+    """Return down to which share of its usual shortest length steps shortened by a factor follow a spring.
+
+    Across a spring of the rest length L that is l long, the pull changes as one of (L / l - 1) times the
+    stiffness does along it.
+    """
+    return 2.0 / (1.0 + finer * finer)
+
+
+@always_inlined
+def _pull(places: Places, links: Links, at: int, followed: float) -> int:
     """Add the pull of eight springs to both ends; return which are too short, as bits."""
     xa, ya = take_vectors(places.place, links.a, at)
     xb, yb = take_vectors(places.place, links.b, at)
@@ -118,7 +140,7 @@ def _pull(places: Places, links: Links, at: int) -> int:
     put_vectors(places.pull, links.a, at, pull_x + fx, pull_y + fy)
     pull_x, pull_y = take_vectors(places.pull, links.b, at)
     put_vectors(places.pull, links.b, at, pull_x - fx, pull_y - fy)
-    return mask_bits(length < take(links.shortest, at))
+    return mask_bits(length < followed * take(links.shortest, at))
 
 
 @inlined
@@ -144,11 +166,11 @@ def _clear_pull(places: Places) -> None:
 
 
 @inlined
-def _evaluate(places: Places, links: Links) -> bool:
+def _evaluate(places: Places, links: Links, followed: float) -> bool:
     """Compute the pull of all springs; return whether each is long enough."""
     short = 0
     for at in range(0, len(links.a), WIDE):
-        short |= _pull(places, links, at)
+        short |= _pull(places, links, at, followed)
     return short == 0
 
 
@@ -194,8 +216,8 @@ def book_gravity(
 
 @inlined
 def _advance(
-    places: Places, links: Links, drifts: Numbers, kicks: Numbers, h: float, steps: int, ends: Rows,
-    given: Numbers,
+    places: Places, links: Links, drifts: Numbers, kicks: Numbers, h: float, steps: int, followed: float,
+    ends: Rows, given: Numbers,
 ) -> int:  # fmt: skip
     """Advance what was gathered, as :func:`flow_springs` does."""
     fast, evaluations = 0, 0
@@ -206,7 +228,7 @@ def _advance(
     if places.known[0] == 0.0:
         _clear_pull(places)
         evaluations = 1
-        if not _evaluate(places, links):
+        if not _evaluate(places, links, followed):
             return TURNS_FAST
     torque, rate = torque_of_gravity(places)
     for _ in range(steps):
@@ -214,7 +236,7 @@ def _advance(
             _book(places, ends, kicks[stage] * h, given)
             _kick_and_drift(places, kicks[stage] * h, drifts[stage] * h)
             evaluations += 1
-            if not _evaluate(places, links):
+            if not _evaluate(places, links, followed):
                 return TURNS_FAST
         speed, pull = places.speed.reshape(places.speed.size), places.pull.reshape(places.pull.size)
         kick = kicks[len(drifts)] * h
@@ -248,7 +270,7 @@ def named(springs: Springs) -> tuple[Places, Links, Rows, Numbers, Numbers, Numb
         numbers[links_at + n : links_at + 2 * n],
         numbers[links_at + 2 * n : shares_at],
     )
-    ends = whole[SIZES + m + 2 * n : SIZES + m + 2 * n + whole[8]]
+    ends = whole[SIZES + m + 2 * n : SIZES + m + 2 * n + whole[7]]
     given = numbers[_GIVEN : _GIVEN + GIVEN]
     kicks_at = shares_at + s
     last = kicks_at + s + 1
@@ -272,15 +294,19 @@ def flow_springs(motion: Motion, springs: Springs, span: float, account: Vectors
     springs do not move, and by gravity, is booked: its torque as the corrected trapezoidal rule has it, which
     is of the order of the method.
 
-    Where a spring becomes so short, or turns so fast, that steps of one length do not follow it, nothing is
-    changed, and :data:`TURNS_FAST` returned.
+    Where a spring becomes so short, or turns so fast, that these do not follow it, steps are halved; where
+    those of a FINEST-th do not either, nothing is changed, and :data:`TURNS_FAST` returned.
     """
-    numbers, whole = springs
+    numbers, _ = springs
     places, links, ends, given, drifts, kicks, _ = named(springs)
-    gather(places, motion)
-    for i in range(GIVEN):
-        given[i] = 0.0
-    made = _advance(places, links, drifts, kicks, span / whole[4], whole[4], ends, given)
+    steps, finer, made = steps_of(springs, span), 1, TURNS_FAST
+    while made < 0 and finer <= FINEST:
+        gather(places, motion)
+        for i in range(GIVEN):
+            given[i] = 0.0
+        h, followed = span / (finer * steps), still_followed(finer)
+        made = _advance(places, links, drifts, kicks, h, finer * steps, followed, ends, given)
+        finer *= 2
     places.known[0] = 1.0 if made >= 0 else 0.0
     if made >= 0:
         scatter(places, motion, span)

@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, kernel
+from physicslab.kernels import Rows, always_inlined, inlined, kernel
 from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
 from physicslab.kernels.constraint.pair import (
@@ -31,7 +31,7 @@ from physicslab.kernels.solver.sweep import sweep
 from physicslab.kernels.solver.work import book_relaxed, book_solved, take_means
 from physicslab.kernels.wide.solve import SoftConstraint, sweep_wide, warm_start_wide
 
-_MAX_SWEEPS = 16
+MAX_SWEEPS = 16
 """Sweeps of a substep over few contacts: with a spring as stiff as they carry, cubes of 2 cm stand."""
 _CONTACT_SWEEPS = 512
 """Contacts times sweeps of a substep, where the number of sweeps is not set."""
@@ -71,7 +71,7 @@ def sweeps_of(near: Near, rows: int, iterations: int) -> int:
     if iterations > 0:
         return iterations
     number = near.counts[ACTIVE] + near.counts[WIDE_COUNT] + rows
-    sweeps: int = max(1, min(_MAX_SWEEPS, _CONTACT_SWEEPS // max(number, 1)))
+    sweeps: int = max(1, min(MAX_SWEEPS, _CONTACT_SWEEPS // max(number, 1)))
     return sweeps
 
 
@@ -194,29 +194,3 @@ def deepest(manifolds: Manifolds, points: Points, touching: Rows, count: int) ->
         for j in range(2 * p, 2 * p + manifolds[p].count):
             depth = max(depth, -points[j].separation)
     return depth
-
-
-@kernel
-def worst_load_ratio(manifolds: Manifolds, pairs: int, force: Vectors, inverse_mass: Numbers) -> float:
-    """Return the largest ratio of the load on a body by a far heavier one to the body's own weight.
-
-    By the present forces on both: a heavy body beside or below a light one is no load.
-    """
-    force_cap = 0.0
-    for p in range(pairs):
-        manifold = manifolds[p]
-        if manifold.count <= 0:
-            continue
-        a, b = manifold.a, manifold.b
-        ma, mb = inverse_mass[a], inverse_mass[b]
-        if HEAVY_RATIO * ma < mb and ma > 0.0:
-            heavy, light, sign = a, b, 1.0
-        elif HEAVY_RATIO * mb < ma and mb > 0.0:
-            heavy, light, sign = b, a, -1.0
-        else:
-            continue
-        press = sign * (force[heavy, 0] * manifold.normal_x + force[heavy, 1] * manifold.normal_y)
-        x, y = force[light, 0], force[light, 1]
-        if press > 0.0:
-            force_cap = max(force_cap, press / math.sqrt(x * x + y * y))
-    return force_cap

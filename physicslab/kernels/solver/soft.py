@@ -50,6 +50,7 @@ from physicslab.kernels.ode.damped_flow import flow_forces
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.edits import find_pushed
 from physicslab.kernels.sleep.islands import count_rest, find_touched
+from physicslab.kernels.solver.finer import factor_for
 from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
 from physicslab.kernels.solver.work import book_damping, book_gravity, book_kick, note_flow
 from physicslab.kernels.ticks import charge, ticks
@@ -57,16 +58,19 @@ from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to
 
 __all__ = [
     "ACCELERATE", "ALL", "BLOCKS_FULL", "BROAD_PHASE", "CONTACT", "COSTS", "DIVERGED", "DRIFT", "FIND",
-    "GRAVITY", "HOOK", "IMPACTS", "INTEGRATE", "KICK", "OVERLAP", "PACKED", "PAIRS", "PAIRS_STALE",
-    "PREDICT", "PYTHON", "RELAX", "RESOLVE", "SLEEP", "SLEEP_PENDING", "SOLVE", "SPRINGS", "STEPS",
-    "UNIFORM", "WAKE", "WAKE_PENDING", "WALL_PENDING", "WIDEN", "advance",
+    "GRAVITY", "HOOK", "IMPACTS", "INTEGRATE", "KICK", "OTHER_SUBSTEPS", "OVERLAP", "PACKED", "PAIRS",
+    "PAIRS_STALE", "PREDICT", "PYTHON", "RELAX", "RESOLVE", "SLEEP", "SLEEP_PENDING", "SOLVE", "SPRINGS",
+    "STEPS", "UNIFORM", "WAKE", "WAKE_PENDING", "WALL_PENDING", "WIDEN", "advance",
 ]  # fmt: skip
 
-ALL, PYTHON, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING, WALL_PENDING = range(8)
+(
+    ALL, PYTHON, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING, WALL_PENDING,
+    OTHER_SUBSTEPS,
+) = range(9)  # fmt: skip
 """Why the loop ended: all steps are done; it is at a part that is Python's; the near pairs must be listed
 again; so many bodies touch that more blocks may be needed; the last step left a number that is not finite; a
 sleeping body is touched or pushed; at the end of a step, an island may fall asleep, or a body was beyond the
-bounds."""
+bounds, or the next step needs another number of substeps."""
 (
     HOOK, DRIFT, SPRINGS, UNIFORM, PACKED, KICK, PAIRS, FIND, WIDEN, WAKE, IMPACTS, PREDICT, SOLVE, RELAX,
     OVERLAP,
@@ -325,6 +329,10 @@ def _advance(
                 pending = SLEEP_PENDING if check else ALL
             if pending == ALL and counts[OUTSIDE] != 0:
                 pending = WALL_PENDING
+            if pending == ALL and plan.finer > 0:
+                needed = factor_for(near, joints, angular, inverse, acting.force, plan, softness, impulse_dt)
+                now = charge(cost, RESOLVE, now)
+                pending = ALL if needed == plan.finer else OTHER_SUBSTEPS
             if pending != ALL:
                 return pending, done, substep, part, finished, bounced, evaluations, impulse_dt
     return ALL, done, substep, part, finished, bounced, evaluations, impulse_dt

@@ -234,13 +234,19 @@ class WindowEvents:
                 return
             self._tool = TOOLS[self._window.tool]
             self._tool.press(world, self._window)
-        elif event.button == pygame.BUTTON_RIGHT and self._window.lesson is None:
+        elif event.button == pygame.BUTTON_RIGHT and self._window.lesson is None and not self._is_busy:
             self._right = self._window.now
             if thing_at(world, self._window) is None:
                 drawing.press(world, self._window, BOX, pygame.BUTTON_RIGHT)
         by_tool = event.button == pygame.BUTTON_LEFT and self._tool is not None and self._tool.pans
         if event.button == pygame.BUTTON_MIDDLE or by_tool:
             self._panning = event.button
+
+    @property
+    def _is_busy(self) -> bool:
+        """Whether something else is drawn, or is in the hand: no menu opens over it, nor is it given up."""
+        sketch = self._window.sketch
+        return self._window.hand.entity is not None or bool(sketch.grips and sketch.name != BOX.name)
 
     def _takes_handle(self, world: World, pixel: tuple[float, float]) -> bool:
         """Take the handle of the selection that lies under the cursor; return whether there is one."""

@@ -6,6 +6,7 @@ import numpy as np
 
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics import free_body
+from physicslab.diagnostics.present_forces import with_present_forces
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.quantities import quantity
@@ -37,7 +38,7 @@ def draw_vectors(world: World, overlays: Overlays, on: Drawing) -> None:
     overlays.velocity.follow(speed, overlays.reach, world.time)
     overlays.force.draw(world.table(Transform)["position"][pulled], force, arrows.FORCE, on)
     overlays.velocity.draw(position, linear, arrows.VELOCITY, on, parts=overlays.parts)
-    contacts = resting_of(world)
+    contacts = resting_of(with_present_forces(world))
     contacts = contacts[contacts["normal"] > 0.0]
     start = on.camera.project(contacts["place"])
     length = min(NORMAL_LENGTH, max(0.5 * overlays.reach * on.camera.scale, arrows.MIN_LENGTH))
@@ -60,8 +61,6 @@ class Measured:
         Those on it; none where no body is measured.
     step : LastStep, optional
         What changed its momentum in the last step, where that is known.
-    is_edited : bool
-        Whether something was edited since the last step: forces of contacts are those of that step still.
     number : int
         How often was measured: what shows the figures is built again where it has grown.
     """
@@ -69,9 +68,7 @@ class Measured:
     def __init__(self) -> None:
         self.forces: tuple[free_body.NamedForce, ...] = ()
         self.step: free_body.LastStep | None = None
-        self.is_edited = False
         self.number = 0
-        self._stepped = -1, -1  # how many steps and edits there were when a step was seen first
         self._of: tuple[object, ...] = ()
         self._steps, self._until, self._place = -1, 0.0, Vector2()
 
@@ -93,16 +90,13 @@ class Measured:
         if entity is None or not world.has(entity, Transform):
             self.forces, self.step, self._of = (), None, ()
             return
-        if world.steps != self._stepped[0]:
-            self._stepped = world.steps, world.motion_edits
         of = world, entity, world.motion_edits
         changed = of != self._of or (paused and world.steps != self._steps)
         if not changed and (now < self._until or world.steps == self._steps):
             return
         self._of, self._steps, self._until = of, world.steps, now + _PERIOD
         self.forces = free_body.forces_on(world, entity)
-        self.is_edited = self._stepped != (world.steps, world.motion_edits)
-        self.step = None if self.is_edited else free_body.last_step(world, entity)
+        self.step = free_body.last_step(world, entity)
         self._place = world.component(entity, Transform).position
         self.number += 1
 

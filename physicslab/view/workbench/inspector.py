@@ -131,9 +131,6 @@ def build_forces(ui: Ui, measured: Measured, *, is_brief: bool) -> None:
     ui.faint("Forces on it")
     for one in measured.forces:
         ui.row(one.name.capitalize(), quantity(one.force.magnitude, "N"), vector_quantity(one.force, "N"))
-    if measured.is_edited and any(one.pair is not None for one in measured.forces):
-        ui.faint("Contacts push as in the last step: one more (.) finds their forces after the change.")
-        return
     total = measured.net
     largest = max((one.force.magnitude for one in measured.forces), default=0.0)
     _vector_row(ui, "Sum", total, largest, "N", "The sum of all forces")

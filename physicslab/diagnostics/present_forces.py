@@ -1,0 +1,55 @@
+"""Forces of joints and contacts in a state that no step has led to, as a scene's before its first step.
+
+Only a step solves for them: a very short one of a copy tells what they are, by the law that tells it after
+every other step.
+"""
+
+from contextlib import suppress
+from weakref import WeakKeyDictionary
+
+from physicslab.state.masses import Diverged
+from physicslab.stepping.keyframe import Keyframe
+from physicslab.world import World
+
+_SHORT = 1e-4
+"""Length of the step that finds them, in steps of the scene: nothing has moved by what can be seen. It is not
+shorter, as places are known to rounding only: contacts at rest would be apart by more than they close."""
+
+_found: WeakKeyDictionary[World, tuple[bytes, World]] = WeakKeyDictionary()
+"""What was found last for a world, and for which state of it."""
+
+
+def with_present_forces(world: World) -> World:
+    """Return a world whose joints and contacts have the forces of the present state, for reading only.
+
+    It is the world itself where a step has led to that state. If not, it is a copy that has made a short
+    step: entities have the same numbers there, and maybe other rows. Systems that do not act within a step
+    have no part in it. Where it cannot be made it is the world itself (``forces_known`` tells), and its next
+    step says why.
+    """
+    world.synchronise()
+    if world.forces_known or not (world.joints.joints or world.plan.collisions != "none"):
+        return world
+    state = _bits(world)
+    known = _found.get(world)
+    if known is None or known[0] != state:
+        known = _found[world] = state, _stepped(world)
+    return known[1]
+
+
+def _stepped(world: World) -> World:
+    """Return a copy that has made a short step, or the world itself."""
+    with world.active(), suppress(Diverged, TypeError):  # a system's own __init__ may need to be told more
+        systems = [system.fresh() for system in world.schedule.systems[1:] if system.acts_within_step()]
+        now = World(systems=systems)
+        Keyframe(world).fill(now)
+        now.step(_SHORT * world.simulation.dt)
+        return now
+    return world
+
+
+def _bits(world: World) -> bytes:
+    """Return all numbers of a world, its laws and the count of its changes."""
+    told = world.physics, world.simulation, world.time, world.entity_index.changes
+    columns = (column.tobytes() for table in world.entity_index.tables.values() for column in table.columns)
+    return b"".join((repr(told).encode(), *columns))

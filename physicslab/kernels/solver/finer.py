@@ -1,0 +1,176 @@
+"""How many times as many substeps a world needs: for heavy loads on light bodies, and for links that whip.
+
+A contact sinks in by F h^2 / (m k), with the effective mass m of its pair and the stiffness k of contacts. A
+body that turns by w h in a substep leaves the straight way of an anchor at r by r (w h)^2 / 2. Both are to be
+small shares, of the smaller body and of the joint's longer arm, and shrink with h^2. Where contacts are few,
+and solved nearly to the end, a heavy body is to move a light one as a converged solution would: its load is
+then compared with that of the light body, before the impulses have grown to it.
+"""
+
+import math
+
+from physicslab.kernels import Numbers, Vectors, inlined, kernel
+from physicslab.kernels import wide_layout as L
+from physicslab.kernels.arguments import (
+    Inverse,
+    InverseTuple,
+    Near,
+    NearTuple,
+    Plan,
+    PlanTuple,
+    Softness,
+    SoftnessTuple,
+    named_near,
+)
+from physicslab.kernels.joints.blocks import ENDS, FIRST, TERM, TERMS, Joints, JointsTuple
+from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, RECORDED
+from physicslab.kernels.records import Manifold
+from physicslab.kernels.solver.impulse import HEAVY_RATIO, MAX_SUBSTEP_FACTOR, MAX_SWEEPS, sweeps_of
+
+_SUNK = 0.1
+"""Share of the smaller body by which a load may press it in: half of what there is a warning from."""
+_LIGHT_LOAD, _HARDLY_SUNK = 12.0, 1e-3
+"""Multiple of its own load that a body carries where few contacts are swept most often, and the share of its
+size by which the load may press it in whatever that multiple is, as where its own load is next to nothing."""
+_LEFT = 5e-4
+"""Share of its arm by which an anchor may leave its way in a substep, in blocks of unequal masses. A heap of
+six ragdolls, started six times 1e-6 apart, comes apart by 16 mm each time; with 1e-3 by 16 to 25 mm."""
+
+
+@inlined
+def _hardest_of_slots(slots: L.Slots, blocks: int) -> float:
+    """Return the same as :func:`_hardest_press` of wide contacts."""
+    data, rows, hardest = slots.data, L.rows_of(slots.kind), 0.0
+    for k in range(blocks):
+        for i in range(k * rows, k * rows + L.WIDE):
+            impulse = data[i + L.ONE + L.IMPULSE]
+            if slots.kind == L.BOX:
+                impulse += data[i + L.TWO + L.IMPULSE]
+            hardest = max(hardest, impulse * (data[i + L.MASS_A] + data[i + L.MASS_B]) / data[i + L.SIZE])
+    return hardest
+
+
+@inlined
+def _hardest_press(near: Near, inverse_mass: Numbers) -> float:
+    """Return the largest impulse of a pair over its effective mass and the size of its smaller body [1/s]."""
+    hardest = 0.0
+    for k in range(near.counts[ACTIVE]):
+        p = near.touching[k]
+        manifold, impulse = near.manifolds[p], 0.0
+        for j in range(2 * p, 2 * p + manifold.count):
+            impulse += near.points[j].normal_impulse
+        if impulse > 0.0:
+            mass = inverse_mass[manifold.a] + inverse_mass[manifold.b]
+            hardest = max(hardest, impulse * mass / manifold.size)
+    for slots in (near.discs, near.boxes):
+        hardest = max(hardest, _hardest_of_slots(slots, near.counts[DISC_BLOCKS + slots.kind]))
+    return hardest
+
+
+@inlined
+def _hold(held: Vectors, manifold: Manifold, force: Vectors, weak: float) -> None:
+    """Add how hard each body of a pair holds the other, of an effective mass of one over ``weak``."""
+    a, b = manifold.a, manifold.b
+    if weak > 0.0:
+        forwards = force[a, 0] * manifold.normal_x + force[a, 1] * manifold.normal_y
+        backwards = -force[b, 0] * manifold.normal_x - force[b, 1] * manifold.normal_y
+        held[a, 0] += max(0.0, forwards) / weak
+        held[b, 0] += max(0.0, backwards) / weak
+
+
+@inlined
+def _heaviest_load(near: Near, inverse_mass: Numbers, force: Vectors, sunk: float) -> float:
+    """Return the largest ratio of the load on a body by a far heavier one to its own weight.
+
+    By the present forces on both: a heavy body beside or below a light one is no load. All bodies that hold a
+    heavy one share its load as springs do, by their effective masses. Weight is by the larger acceleration of
+    the two. ``sunk`` is how far an acceleration presses bodies in [s^2].
+    """
+    largest, held = 0.0, near.linear_before  # nothing is noted in it at the end of a step
+    for i in range(len(held)):
+        held[i, 0] = 0.0
+    for shared in (False, True):
+        for p in range(near.counts[RECORDED]):
+            manifold = near.manifolds[p]
+            if manifold.count <= 0:
+                continue
+            heavy, light, sign = manifold.a, manifold.b, 1.0
+            if inverse_mass[heavy] > inverse_mass[light]:
+                heavy, light, sign = light, heavy, -1.0
+            x, y, weak = force[heavy, 0], force[heavy, 1], inverse_mass[heavy] + inverse_mass[light]
+            press = sign * (x * manifold.normal_x + y * manifold.normal_y)
+            if not shared:
+                _hold(held, manifold, force, weak)
+            elif press > 0.0 and inverse_mass[light] > HEAVY_RATIO * inverse_mass[heavy] > 0.0:
+                press *= press / weak / held[heavy, 0]
+                if press * weak * sunk > _HARDLY_SUNK * manifold.size:
+                    own = math.hypot(force[light, 0], force[light, 1])
+                    own = max(own, math.hypot(x, y) * inverse_mass[heavy] / inverse_mass[light])
+                    largest = max(largest, press / own)
+    return largest
+
+
+@inlined
+def _fastest_whip(joints: Joints, angular: Numbers, inverse_mass: Numbers) -> float:
+    """Return the largest r w^2 / R [1/s^2] of bodies that turn by w about an anchor at r.
+
+    R is the longer of the two arms of the joint. Blocks whose masses do not differ much are left out.
+    """
+    largest = 0.0
+    nodes, terms, body = joints.nodes, joints.terms, joints.body
+    for block in range(len(joints.groups) - 1):
+        first, end = joints.groups[block, FIRST], joints.groups[block + 1, FIRST]
+        lightest, heaviest = 0.0, math.inf
+        for e in range(nodes[first, ENDS], nodes[end, ENDS]):
+            inverse = inverse_mass[body[e]]
+            if inverse > 0.0:
+                lightest, heaviest = max(lightest, inverse), min(heaviest, inverse)
+        if lightest <= HEAVY_RATIO * heaviest:
+            continue
+        for t in range(nodes[first, TERMS], nodes[end, TERMS]):
+            n = terms[t, TERM]
+            a, b = angular[joints.a[n]], angular[joints.b[n]]
+            arm_a = math.hypot(joints.anchor_a[n, 0], joints.anchor_a[n, 1])
+            arm_b = math.hypot(joints.anchor_b[n, 0], joints.anchor_b[n, 1])
+            arm = max(arm_a, arm_b)
+            if arm > 0.0:
+                largest = max(largest, (arm_a * a * a + arm_b * b * b) / arm)
+    return largest
+
+
+@inlined
+def factor_for(
+    near: Near, joints: Joints, angular: Numbers, inverse: Inverse, force: Vectors, plan: Plan,
+    softness: Softness, impulse_dt: float,
+) -> int:  # fmt: skip
+    """Return the factor for the next step, by the impulses of the last substep and the present speeds.
+
+    It is 1, 2, 3, 4, 6, 8 or the largest, which is for loads that longer substeps would not carry at all.
+    """
+    h, rows, over = plan.own_h, len(joints.impulse), 0.0
+    sweeps, sunk = sweeps_of(near, rows, plan.iterations), h * h / (softness.push * softness.stiffness)
+    if impulse_dt > 0.0:
+        over = _hardest_press(near, inverse.mass) / impulse_dt * sunk / _SUNK
+    if sweeps > 1:
+        settled = sweeps / MAX_SWEEPS
+        load = _heaviest_load(near, inverse.mass, force, sunk) * settled * settled
+        over = max(over, load / _LIGHT_LOAD)
+    if rows > 0:
+        over = max(over, 0.5 * _fastest_whip(joints, angular, inverse.mass) * h * h / _LEFT)
+    factor, last = 1, 1
+    while factor < MAX_SUBSTEP_FACTOR and factor * factor < over:
+        factor, last = factor + 1 if factor < 4 else 2 * last, factor  # 1, 2, 3, 4, 6, 8
+        factor = MAX_SUBSTEP_FACTOR if factor > 8 else factor  # what is heaviest gets all there are
+    return factor
+
+
+@kernel
+def needed_factor(
+    near: NearTuple, joints: JointsTuple, angular: Numbers, inverse: InverseTuple, force: Vectors,
+    plan: PlanTuple, softness: SoftnessTuple, impulse_dt: float,
+) -> int:  # fmt: skip
+    """Return the factor for the next step (:func:`factor_for`)."""
+    return factor_for(
+        named_near(near), Joints(*joints), angular, Inverse(*inverse), force, Plan(*plan),
+        Softness(*softness), impulse_dt,
+    )  # fmt: skip
