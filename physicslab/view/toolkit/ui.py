@@ -15,14 +15,14 @@ from physicslab.view.toolkit.windows import Spoken, Windows, widget_label
 
 _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
 
-_BEFORE_A_UNIT = re.compile(r"(?<=\d) (?=[A-Za-z°]{1,3}\b)")
+_BEFORE_A_UNIT = re.compile(r"(?<=[\d⁰¹²³⁴-⁹]) (?=[%°]|[A-Za-z]{1,3}\b)")
 
 
 def _with_units(words: str) -> str:
     """Return words in which no line ends between a number and its unit.
 
-    >>> _with_units("9.81 m/s² down, 2 J").split("\N{NO-BREAK SPACE}")
-    ['9.81', 'm/s² down, 2', 'J']
+    >>> _with_units("9.81 m/s² down, 2 J, 4·10⁻¹⁰ %").split("\N{NO-BREAK SPACE}")
+    ['9.81', 'm/s² down, 2', 'J, 4·10⁻¹⁰', '%']
     """
     return _BEFORE_A_UNIT.sub("\N{NO-BREAK SPACE}", words)
 

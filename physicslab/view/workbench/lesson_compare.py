@@ -11,7 +11,7 @@ from physicslab.lessons.lesson import Compare
 from physicslab.lessons.setup import AS_IT_IS, Case
 from physicslab.lessons.words import formula
 from physicslab.state.masses import Diverged
-from physicslab.view.canvas.quantities import percentage, quantity, written_unit
+from physicslab.view.canvas.quantities import percentage, quantity, round_quantity, written_unit
 from physicslab.view.controls import lesson_actions
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lesson import OpenLesson
@@ -92,9 +92,12 @@ def _build_row(
     imgui.table_next_column()
     ui.text(quantity(row.measured, unit).strip(), wrapped=True)
     imgui.table_next_column()
-    gap = (quantity(row.gap, unit) if row.absolute else percentage(row.gap)).replace(" ", "\u00a0")
+    gap = quantity(row.gap, unit) if row.absolute else percentage(row.gap)
+    if "·" in gap:  # one figure says how small it is, and fits a narrow column
+        gap = round_quantity(row.gap if row.absolute else 100.0 * row.gap, unit if row.absolute else "%")
     near = row.gap <= row.tolerance
-    ui.text(f"{RIGHT if near else WRONG} {gap}", ui.theme.accent if near else ui.theme.error, wrapped=True)
+    mark, colour = (RIGHT, ui.theme.accent) if near else (WRONG, ui.theme.error)
+    ui.text(f"{mark}\u00a0{gap}", colour, wrapped=True)
     ui.tip(_gap_words(row, near=near))
 
 
