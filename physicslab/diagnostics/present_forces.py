@@ -9,14 +9,41 @@ from weakref import WeakKeyDictionary
 
 from physicslab.state.masses import Diverged
 from physicslab.stepping.keyframe import Keyframe
+from physicslab.systems.system import System
 from physicslab.world import World
 
 _SHORT = 1e-4
 """Length of the step that finds them, in steps of the scene: nothing has moved by what can be seen. It is not
 shorter, as places are known to rounding only: contacts at rest would be apart by more than they close."""
 
-_found: WeakKeyDictionary[World, tuple[bytes, World]] = WeakKeyDictionary()
-"""What was found last for a world, and for which state of it."""
+_found: WeakKeyDictionary[World, "_Stepped"] = WeakKeyDictionary()
+"""What was found last for a world."""
+
+
+class _Stepped:
+    """A copy of a world that has made a short step; it is filled again where the world has changed."""
+
+    __slots__ = ("_copy", "_state", "_systems", "world")
+
+    def __init__(self) -> None:
+        self._state, self._systems = b"", list[System]()
+        self._copy: World | None = None
+        self.world: World | None = None
+
+    def follow(self, world: World) -> None:
+        """Make the step from the present state, unless that was done; no world is left if it fails."""
+        state = _bits(world)
+        if state == self._state:
+            return
+        self._state, self.world = state, None
+        systems = [system for system in world.schedule.systems[1:] if system.acts_within_step()]
+        with world.active(), suppress(Diverged, TypeError):  # a system's __init__ may need to be told more
+            if self._copy is None or systems != self._systems:
+                self._systems, self._copy = systems, World(systems=[system.fresh() for system in systems])
+            now, self._copy = self._copy, None  # one that fails is not used again
+            Keyframe(world).fill(now)
+            now.step(_SHORT * world.simulation.dt)
+            self._copy = self.world = now
 
 
 def with_present_forces(world: World) -> World:
@@ -30,22 +57,9 @@ def with_present_forces(world: World) -> World:
     world.synchronise()
     if world.forces_known or not (world.joints.joints or world.plan.collisions != "none"):
         return world
-    state = _bits(world)
-    known = _found.get(world)
-    if known is None or known[0] != state:
-        known = _found[world] = state, _stepped(world)
-    return known[1]
-
-
-def _stepped(world: World) -> World:
-    """Return a copy that has made a short step, or the world itself."""
-    with world.active(), suppress(Diverged, TypeError):  # a system's own __init__ may need to be told more
-        systems = [system.fresh() for system in world.schedule.systems[1:] if system.acts_within_step()]
-        now = World(systems=systems)
-        Keyframe(world).fill(now)
-        now.step(_SHORT * world.simulation.dt)
-        return now
-    return world
+    found = _found.setdefault(world, _Stepped())
+    found.follow(world)
+    return found.world or world
 
 
 def _bits(world: World) -> bytes:
