@@ -170,7 +170,7 @@ addEventListener("message", ({ source, data }) => {
   if (Number.isFinite(data.time)) seek(data.time - run.start);
   told = {};
 });
-function tell(now) {
+function tellHost(now) {
   if (!host || told.playing === playing && playing && now - told.now < 200) return;
   told = { time: run.start + time, playing, now };
   host.postMessage({ time: told.time, playing }, "*");
@@ -194,7 +194,7 @@ function tick(now) {
     $("time").value = frame;
     $("clock").textContent = `${marked((run.start + time).toFixed(decimals))} / ${short(run.start + end, 4)} s`;
     $("time").setAttribute("aria-valuetext", $("clock").textContent);
-    tell(now);
+    tellHost(now);
   }
   requestAnimationFrame(tick);
 }
