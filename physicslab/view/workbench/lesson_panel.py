@@ -7,6 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.ecs.text import printable
 from physicslab.languages.language import language
+from physicslab.languages.sentence import Sentence
 from physicslab.lessons.answers import Graded
 from physicslab.lessons.lesson import SURENESS, Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
 from physicslab.lessons.words import sureness_words
@@ -297,8 +298,9 @@ class LessonPanel:
                 ready = False
                 continue
             imgui.same_line()
-            moved = ui.slider(f"Slide {label}", value, least, most, f"{low} to {high}")
-            ui.tip(f"{note}: {low} to {high}" if note else "")
+            span = Sentence("{least} to {most}", least=low, most=high)
+            moved = ui.slider(f"Slide {label}", value, least, most, span)
+            ui.tip(f"{note}: {ui.said(span)}" if note else "")
             if moved is not None and not editing:
                 lesson.values[name] = _in_unit_of(moved, low)
             if not least <= value <= most:
@@ -320,7 +322,8 @@ class LessonPanel:
         compare = language(lesson.lesson.language).say("Compare")
         _title(ui, _COMPARE, f"{compare}: {part.quantity}")
         build_compare(ui, lesson, part, self._rows)
-        if lesson.lesson.setup.opened and imgui.tree_node_ex(f"Your own values###own {part.name}"):
+        own = ui.said("Your own values")
+        if lesson.lesson.setup.opened and imgui.tree_node_ex(f"{own}###own {part.name}"):
             self._build_values(ui, window, lesson, part)
             imgui.tree_pop()
         ui.note(f"Own values {part.name}")
