@@ -298,9 +298,9 @@ def test_words_make_way_for_a_graph() -> None:
     assert not any(paused.colliderect(rect) for rect in desk.sandbox.interface.covered)
 
 
-def test_a_step_that_takes_long_is_told_with_its_reason() -> None:
+def test_a_step_that_takes_long_is_told_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     desk, seconds = Desk(load_scene("drop")), itertools.count(0.0, 2.0)
-    desk.sandbox._clock = lambda: next(seconds)
+    monkeypatch.setattr("physicslab.desktop.sandbox.time.thread_time", lambda: next(seconds))
     desk.frames(2)
     assert (
         desk.window.notice.startswith("Slow: the step to t = 0.0") and "much to compute" in desk.window.notice

@@ -34,7 +34,9 @@ def test_pins_are_made_from_the_list_drawn_selected_removed_and_undone() -> None
         act(world, window)
     desk.frames()
     joined, fixed = joint_states(world)
-    assert tuple(joined.place) == pytest.approx((1.0, 0.0))
+    assert tuple(joined.place) == pytest.approx(
+        (1.0, 0.0), abs=1e-10
+    )  # forces, and places, are those 1.7 us later
     assert (0 in (joined.a, joined.b), 0 in (fixed.a, fixed.b)) == (False, True)
     drawn = canvas.called("strokes")[-1]
     slots = np.array(drawn["start"])[-2:] + np.array(drawn["end"])[-2:]
