@@ -79,7 +79,7 @@ def centred(vertices: Sequence[Vector2 | tuple[float, float]], radius: float = 0
     vertices : sequence of vectors or pairs of floats
         Counter-clockwise, from anywhere [m].
     radius : float
-        What rounds it [m].
+        Radius that rounds it [m].
 
     Examples
     --------

@@ -26,7 +26,7 @@ def describe(world: World, code: str = "en") -> str:
     Parameters
     ----------
     world : World
-        What is described, at the moment where it is. Nothing in it changes.
+        The world to describe at its present moment. Nothing in it changes.
     code : str
         The language, as ``"de"``; one without a catalogue is said in English.
 

@@ -27,7 +27,7 @@ class Parameter:
     Attributes
     ----------
     name : str
-        What it is.
+        Its name.
     value, error : float
         It, and its standard error.
     across, up : int
@@ -66,9 +66,9 @@ def covariance_of(jacobian: Numbers, rests: Numbers) -> Numbers:
     Parameters
     ----------
     jacobian : float64 array (n, parameters)
-        Of what the fit leaves, by the parameters.
+        Derivatives of the residuals by the parameters.
     rests : float64 array (n,)
-        What it leaves.
+        Residuals.
     """
     count, unknown = jacobian.shape
     variance = float(rests @ rests) / max(count - unknown, 1)
@@ -162,7 +162,7 @@ def _rest(rests: Numbers) -> float:
 FITS: dict[str, tuple[Callable[[Numbers, Numbers], Fit], int]] = {
     "line": (_polynomial(1), 3), "parabola": (_polynomial(2), 4), "sine": (_sine, 6),
 }  # fmt: skip
-"""What can be fitted, and how many samples it takes at least."""
+"""Curves that can be fitted, and the least number of samples for each."""
 
 
 def fit(kind: str, x: Numbers, y: Numbers) -> Fit | None:

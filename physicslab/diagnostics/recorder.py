@@ -107,11 +107,11 @@ class _Watch:
     Parameters
     ----------
     world : World
-        What is advanced.
+        The world that is advanced.
     until : str
         The condition, of what graphs show: ``"ball.x >= 8 m"``, ``"time > 2 s and world.kinetic < 1 mJ"``.
     reader, records : ImpactReader, list
-        What reads impacts, and where they are kept.
+        The reader of impacts, and their records.
     """
 
     def __init__(self, world: World, until: str, reader: ImpactReader, records: list[NDArray[Any]]) -> None:

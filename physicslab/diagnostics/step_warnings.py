@@ -29,11 +29,11 @@ class ModelWarning:
     entity : str, optional
         The body or spring, by its id; ``None`` where it concerns all of the world.
     what : str
-        What is wrong, in words that hold for any value: they name the kind of warning.
+        The fault in words that hold for any value: they name the kind of warning.
     value, limit : float, optional
         The figure, and the largest that can be trusted.
     unit : str
-        Of both; empty for a plain number.
+        Unit of both; empty for a plain number.
     setting : str
         A setting that helps, with its value; empty where none does.
     number : int, optional

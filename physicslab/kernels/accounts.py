@@ -1,7 +1,7 @@
 """The accounts of energy and momentum: an array (BOOK, 4) that kernels add to, by one function.
 
 A row is a cause; its columns are the energy that it has given to the world [J], the momentum (x, y) [N s] and
-the angular momentum about the origin [N m s]. What a cause takes is negative.
+the angular momentum about the origin [N m s]. Takings of a cause are negative.
 """
 
 from typing import Any

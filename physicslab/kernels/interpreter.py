@@ -103,7 +103,7 @@ def stand_in(jitted: Any) -> None:
         One that is not compiled; of one that is, nothing changes.
     """
     if _is_dispatcher(jitted):
-        # What numba's dispatcher calls where no compiled signature fits; it then calls what is returned.
+        # numba's dispatcher calls this where no compiled signature fits, and then calls its result.
         entry = entry_of(jitted)
         jitted._compile_for_args = lambda *arguments: entry
     else:

@@ -18,9 +18,9 @@ class LiveRun:
     Attributes
     ----------
     case : Case
-        What differs from the scene as it is.
+        Changes to the scene.
     world : World
-        What is stepped.
+        The world that is stepped.
     record : Record
         The samples so far.
     limit : float
@@ -37,7 +37,7 @@ class LiveRun:
 
     @property
     def figures(self) -> Figures:
-        """What was found so far."""
+        """Figures of the run so far."""
         return Figures(self.record, self._parameters)
 
     def sample(self) -> bool:

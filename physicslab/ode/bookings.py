@@ -42,9 +42,9 @@ class BookKeeper:
     count : int
         How many places there are behind the clock.
     rooms : dict of int to int
-        Of each cause whose forces are kept by themselves, coordinate by coordinate, where that begins.
+        Start of the coordinates of each cause whose forces are kept by themselves.
     places : int64 array
-        What integrators take (:data:`physicslab.kernels.forces.bookings.KEPT`).
+        The places that integrators take (:data:`physicslab.kernels.forces.bookings.KEPT`).
     layout : StateLayout
         As given.
     """
@@ -121,7 +121,7 @@ class BookKeeper:
     def damping(self, rates: Numbers, inverse_mass: Numbers) -> list[PackedForce]:
         """Return what books the damping of all motion, if there is any.
 
-        Of every coordinate its rate (d,) [1/s] and its inverse mass, or moment of inertia (d,) [SI].
+        Rate (d,) [1/s] and inverse mass, or moment of inertia (d,) [SI], of every coordinate.
         """
         if not len(rates):
             return []
@@ -141,7 +141,7 @@ def book_in_python(
     state, book
         Whose, and where.
     system : ForceSystem
-        What acts.
+        The force that acts.
     change : tuple of float64 arrays (rows, 2) and (rows,)
         The force [N] and the torque [N m].
     q, v, force : float64 arrays

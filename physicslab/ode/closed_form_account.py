@@ -1,4 +1,4 @@
-"""What causes have given to bodies that moved in closed form: integrals of their forces, also in closed form.
+"""Energy and momentum from causes to bodies that moved in closed form: integrals in closed form as well.
 
 No power is integrated beside such a motion: what dampers and drag take is what the energy of their bodies
 loses along the solution, and what is left of the angular momentum of these is that of damping. The solution

@@ -49,11 +49,11 @@ class OdeSystem:
     q, v : float64 arrays
         The state.
     inverse_mass : float64 array
-        Of what moves: inverse masses [1/kg] and inverse moments of inertia [1/(kg m^2)].
+        Inverse masses [1/kg] and inverse moments of inertia [1/(kg m^2)] of moving bodies.
     damping : float64 array
         Rates of damping [1/s]; empty where nothing is damped.
     calls, resistances : int64 arrays (n, 3)
-        What kernels call for the forces, and for their resistance to motion.
+        Functions that kernels call for the forces, and for their resistance to motion.
     gyration : float64 array (bodies,)
         Where a splitting method advances it and fields turn velocities, the rate of each body [rad/s],
         clockwise; else empty.
@@ -62,7 +62,7 @@ class OdeSystem:
     slots : dict of int to int
         Where the account of each cause that is booked begins.
     places : int64 array
-        What kernels must know of that (:mod:`physicslab.kernels.forces.bookings`).
+        Places of bookings for kernels (:mod:`physicslab.kernels.forces.bookings`).
     near : int64 array and int, optional
         An order of the coordinates in which those that forces couple are near, and how near; found
         once by the method that needs it, as it depends on the layout alone.
@@ -73,7 +73,7 @@ class OdeSystem:
     tolerance : float
         Relative error a step for methods that choose their steps.
     forces : tuple of ForceSystem
-        What acts.
+        The forces that act.
     interpreted : bool
         Whether Python computes any of it.
 
@@ -82,7 +82,7 @@ class OdeSystem:
     state : State
         Whose motion.
     forces : sequence of ForceSystem
-        What acts.
+        The forces that act.
     part : bool array (rows,), optional
         The rows that take part; all by default.
     every_row : bool, optional
@@ -393,7 +393,7 @@ class OdeSystem:
                     method(state, 0.0)
                     change = bodies.force - before[0], bodies.torque - before[1]
                     book_in_python(state, book, system, change, places, speeds, total)
-                # What is fixed stays where it is, be the force on it infinite: no product with zero.
+                # A fixed body stays where it is, be the force on it infinite: no product with zero.
                 pulled = bodies.inverse_mass[layout.moving] > 0.0
                 total[:n] += np.where(pulled[:, None], bodies.force[layout.moving], 0.0).ravel()
                 turned = bodies.inverse_inertia[layout.turning] > 0.0

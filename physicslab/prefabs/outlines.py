@@ -29,8 +29,8 @@ def outline(world: World, points: Sequence[Pair], **options: Unpack[BodyOptions]
     points : sequence of vectors or pairs of floats
         As :func:`convex_parts` takes them [m].
     **options
-        Of the whole, as in :class:`BodyOptions`, but for an angle; the mass is shared by area, and the name
-        is that of the first part.
+        Options of the whole, as in :class:`BodyOptions`, but for an angle; the mass is shared by area, the
+        name is that of the first part.
 
     Returns
     -------

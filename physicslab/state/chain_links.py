@@ -11,7 +11,7 @@ from physicslab.kernels.geometry.shapes import Shapes
 SMOOTH = math.radians(15.0)
 """The largest angle by which a chain turns and is round there [rad]."""
 _ROUNDING = 1e-9
-"""Of angles [rad] and of shares of a length."""
+"""Rounding of angles [rad] and of shares of a length."""
 _ONE_CIRCLE = 1e-10
 """Share of its radius by which the centres and radii of arcs of one circle differ."""
 _FINE = 0.05
@@ -28,7 +28,7 @@ NO_LINKS: _Points = np.zeros((0, 2))
 def links_of(vertices: _Points) -> tuple[_Points, _Points]:
     """Return the vertices at which a chain turns, and its links as rows of the pool.
 
-    What lies in line is one segment, so that no seam is left on it.
+    Links in line are one segment, so that no seam is left on it.
 
     Parameters
     ----------

@@ -23,7 +23,7 @@ class PackedForce:
     Attributes
     ----------
     kernel : ForceKernel
-        What adds to the forces.
+        The kernel that adds to the forces.
     parameters, indices : float64 array, int64 array
         Whatever the kernel reads; it gets pointers to them.
     resistance : ForceKernel, optional

@@ -1,6 +1,6 @@
-"""Bodies that what is fixed pushes to and fro: they are put where they have room.
+"""Bodies that fixed ones push to and fro: they are put where they have room.
 
-What is beyond the bounds of the world is pushed in by their walls. Where a fixed body pushes it out again, as
+A body beyond the bounds of the world is pushed in by their walls. Where a fixed body pushes it out again, as
 the end of a floor does, neither has an end: the bounds win. Nor has it one where fixed bodies push another
 one into each other, as in a wedge that is too narrow for it. Such a body is put to the nearest place within
 the bounds in which it overlaps nothing fixed, and loses the part of its velocity that points beyond them.

@@ -1,4 +1,4 @@
-"""What corrections of rigid contacts have given, by the change of the motion that they made."""
+"""Work of corrections of rigid contacts, by the change of the motion that they made."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,7 @@ from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 
 type Numbers = NDArray[np.float64]
-"""Of coordinates, of speeds, or of sums (n,)."""
+"""An array of coordinates, of speeds, or of sums (n,)."""
 
 
 def _momenta(ode: OdeSystem, q: Numbers, v: Numbers) -> Numbers:

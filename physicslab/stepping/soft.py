@@ -56,7 +56,7 @@ class Soft:
         self.kernels: tuple[Any, ...] = self.substeps.kernels
         self.hooks = self.substeps.hooks
         self.keeps_balance: bool = not self.hooks and self.substeps.uniform
-        # Of one force the loop measures the same energy, bit for bit, as is measured between steps.
+        # With one force the loop measures the same energy, bit for bit, as is measured between steps.
         self._measures = len(schedule.forces) < 2
         self._max_steps = 64
         self.energy_taken, self.energy_given, self._last = -math.inf, 0.0, -math.inf

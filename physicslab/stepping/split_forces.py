@@ -71,16 +71,16 @@ class SplitForces:
     state : State
         Whose bodies. Its ``bodies.sub_integrated`` and ``unkicked`` are set.
     forces : sequence of ForceSystem
-        What acts.
+        The forces that act.
     method : Integrator
-        What moves them.
+        The method that moves them.
     steps : int
         Into how many steps of the method half a substep is divided.
 
     Attributes
     ----------
     springs : SpringFlow, optional
-        What the loop of substeps moves by itself, as long as no spring turns too fast.
+        Springs that the loop of substeps moves by itself, as long as none turns too fast.
     """
 
     def __init__(self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int) -> None:

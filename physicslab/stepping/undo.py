@@ -14,7 +14,7 @@ class Undoing:
     Parameters
     ----------
     state : State
-        What the step changes.
+        The state that the step changes.
     motion : tuple of arrays
         Its positions, angles and velocities (``motion_of``).
     """

@@ -70,7 +70,7 @@ _MAX_REPEATS = 32
 
 
 class Flight(NamedTuple):
-    """What is known of ballistic motion: the pairs, the bodies, and when each pair meets.
+    """State of ballistic motion: the pairs, the bodies, and when each pair meets.
 
     Records and points of the pairs, and how many there are; paths, modes and motions of the bodies; of each
     pair the face, the first step in which it may meet, when it meets in this one, and where B was at its last
@@ -281,7 +281,7 @@ def run_events(
     manifolds, points, count : records (pairs,), (2 pairs,), int
         The pairs that may meet.
     paths : float64 array (rows, 13)
-        Of each row the remainders of its place and velocity, which are carried on, the acceleration [m/s^2]
+        For each row the remainders of its place and velocity, which are carried on, the acceleration [m/s^2]
         in columns 8 and 9, and in column 12 the mass [kg] that gravity pulls.
     mode : int64 array (rows,)
         The mode of each row.

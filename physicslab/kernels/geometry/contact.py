@@ -36,7 +36,7 @@ _ROUNDING = 1e-9
 AS_FOUND = 3
 """What ``found`` is of a pair with a disc whose point was found in its base pose, and is no later one's."""
 _APART, _KEPT, _OUTDATED = range(3)
-"""What is known of a pair of boxes: that they have no points; where their points are; nothing any more."""
+"""Knowledge of a pair of boxes: they have no points; their points are kept; it is out of date."""
 
 
 @inlined

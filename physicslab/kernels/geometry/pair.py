@@ -41,7 +41,7 @@ _FAST = 0.25
 
 
 class Impulses(NamedTuple):
-    """What a point is warm-started with: its feature, and its impulses [N s]."""
+    """Warm start of a point: its feature, and its impulses [N s]."""
 
     feature: int
     normal: float
@@ -156,7 +156,7 @@ def touch_with_circle(
         return
     fast = reach + swing > SWEEP_THRESHOLD * size
     approach = -(ux * nx + uy * ny)
-    # What rests on each other touches as it does now: the normal of another moment would do work on it.
+    # Resting bodies touch as they do now: the normal of another moment would do work on them.
     loaded = point.normal_impulse > 0.0 and separation < near
     if not loaded and (fast or approach + swing > max(4.0 * speculative_margin, _ROUNDING * size)):
         # The normal is that of the moment of contact, if there is one in this substep.
@@ -242,7 +242,7 @@ def _touch_inner(
 ) -> bool:  # fmt: skip
     """Find where the inner disc of the smaller of two shapes meets the other one; return whether it does.
 
-    What is found of their outlines is not put aside for what comes after the ``latest`` share of a substep.
+    Findings about their outlines are not put aside for an event after the ``latest`` share of a substep.
     """
     t, meeting, found = sweep_inner(way, turn_a, turn_b, start, a, b, pool)
     if t > latest:

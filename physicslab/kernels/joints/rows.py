@@ -128,7 +128,7 @@ def given_by_rows(
 def book_rows(q: Any, v: Any, given: Any, numbers: Any, whole: Any) -> None:
     """Add what the forces of rows give in a second to the accounts behind the clock.
 
-    What holds does no work but on what is driven; what little it does by rounding is an error.
+    Holding forces do no work but on driven bodies; the little that they do by rounding is an error.
     """
     for role in (L.HOLD, L.MOTOR):
         account = whole[L.HOLDING] if role == L.HOLD else whole[L.POWERED]
@@ -254,7 +254,7 @@ def project(q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, numbers: Num
     """Move bodies by the least that closes what joints hold together, and remove speeds that they forbid.
 
     ``q_low`` and ``v_low`` (n,) are the remainders of what moves. Returns the largest error left [m or rad]:
-    more than rounding where joints contradict each other. What this changes of energy and momentum is an
+    more than rounding where joints contradict each other. The change of energy and momentum by this is an
     error of the method.
     """
     m, room, share, before = whole[L.COORDINATES], L.first_room(whole), 1.0, 0.0

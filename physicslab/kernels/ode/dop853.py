@@ -20,11 +20,11 @@ from physicslab.kernels.ode.dop853_tableau import (
 )
 
 TOO_SHORT = -1
-"""What is returned where no step is short enough."""
+"""Result where no step is short enough."""
 NOT_FINITE = -2
-"""What is returned where the forces at the start are not finite."""
+"""Result where the forces at the start are not finite."""
 EXHAUSTED = -3
-"""What is returned where more force evaluations were made than are allowed."""
+"""Result where more force evaluations were made than are allowed."""
 _SAFETY, _MAX_GROWTH, _MIN_GROWTH = 0.9, 6.0, 0.2
 """Safety factor of a step, and the limits of its growth and shrinkage at once."""
 _LEADS = 1e-4

@@ -1,4 +1,4 @@
-"""What contact forces give in a second, and impulses at once, by account."""
+"""Powers of contact forces, and work of impulses, by account."""
 
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.accounts import ENERGY, PX, SPIN, book
@@ -30,7 +30,7 @@ def book_contacts(
 ) -> None:
     """Add what the forces of ``count`` points give in a second, that are measured in the state (q, v).
 
-    What friction takes, force times sliding speed, and the momentum that comes in from what no force moves,
+    Booked are friction, force times sliding speed, and momentum that comes in from bodies no force moves,
     with the work of what moves all the same. Normal forces do no work: what they hold together does not part.
     Motors do, with the speed at which they turn.
     """

@@ -1,6 +1,6 @@
 """Forces of contacts that may open and slide: a linear complementarity problem, solved to rounding.
 
-Point i has a normal and a tangential unknown, z[2 i] and z[2 i + 1]: forces, or impulses. What they cause is
+Point i has a normal and a tangential unknown, z[2 i] and z[2 i + 1]: forces, or impulses. Their effect is
 w = A z + b: accelerations, or velocities. The laws are 0 <= z_n, 0 <= w_n, z_n w_n = 0, and Coulomb's
 |z_t| <= mu z_n, with w_t = 0 where that holds strictly and w_t against z_t where not. In two dimensions the
 cone has two edges, and all of that is linear (Acary & Brogliato, Numerical Methods for Nonsmooth Dynamical

@@ -168,7 +168,7 @@ def constrained_acceleration(
 
     Behind the clock, ``acceleration`` takes what causes give in a second.
 
-    What is light between heavy bodies is accelerated by the difference of large forces. So these are refined
+    A light body between heavy ones is accelerated by the difference of large forces. So these are refined
     by what the accelerations still leave of the laws, and their changes are added to the accelerations.
     """
     accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
@@ -194,7 +194,7 @@ def constrained_acceleration(
 def project(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
     """Move bodies by the least that closes the gaps of closed points, and remove their speeds across.
 
-    What sticks loses its speed along the surface as well. Speeds below the tolerance are taken by contacts;
+    A point that sticks loses its sliding speed as well. Speeds below the tolerance are taken by contacts;
     what moving bodies does to energy and momentum is an error.
     """
     for turn in range(3):

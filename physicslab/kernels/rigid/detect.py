@@ -128,7 +128,7 @@ def _farthest_face(
 ) -> tuple[int, float]:
     """Return the face of ONE from which the core of OTHER is farthest, and how far [m].
 
-    Of faces that are equally far, as where two corners meet, the one that recedes faster: only there could
+    Among faces that are equally far, as where two corners meet, the one that recedes faster: only there could
     they pass each other, and a box that slides over the joint of two tiles is not stopped by the side of
     the next. A core of one vertex has no face.
     """

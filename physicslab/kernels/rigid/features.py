@@ -99,7 +99,7 @@ Points = Annotated[NDArray[np.int64], int64[:, ::1]]
 
 
 class Scene(NamedTuple):
-    """What moves, and what may touch.
+    """Bodies that move, and bodies that may touch.
 
     The number of rows; inverse masses (3 rows,), damping, forces; shapes, walls of the bounds (4,) [m];
     pairs (n, 3), and of each the friction, restitution and smaller size [m] (n, 3); where accounts are (3,);

@@ -140,7 +140,7 @@ def _solve(impact: Equations, n: int, share: float, rest: float, rate: float) ->
 def _energy_gained(impact: Equations, n: int) -> float:
     """Return the work of the impulses at most, as a share of the sum of the magnitudes of its parts.
 
-    What is light and pressed from two sides by what is heavy takes large impulses that nearly cancel; the
+    A light body pressed from two sides by heavy ones takes large impulses that nearly cancel; the
     rounding of that could make energy.
     """
     work, scale, cancelled = 0.0, 0.0, 0.0

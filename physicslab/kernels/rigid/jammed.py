@@ -29,7 +29,7 @@ def stop_sliding(
 ) -> bool:
     """Let impulses act at ``count`` closed points whose free rates are known; return whether any slides less.
 
-    What each point does is found with the speeds that forces would give in a moment, the impulses without
+    The state of each point is found with the speeds that forces would give in a moment, the impulses without
     these. The points of ``changed`` are forgotten.
     """
     points, measures, vectors, largest = equations.points, equations.measures, equations.vectors, 0.0

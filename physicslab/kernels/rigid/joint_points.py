@@ -4,7 +4,7 @@ A limit is a contact without a tangent: its gap is what is left of a rope, or of
 stop, its normal the gradient of that, and it does not bounce. A motor with a largest force is friction
 without a normal: it slides as far as its speed is not the one it is to hold, and a unit of force that nothing
 moves presses on it, of which its coefficient of friction makes the largest force. So both are pairs of the
-laws of contacts, which have no case for them. What is kept in any case, as a pin, is no point
+laws of contacts, which have no case for them. A term that holds in any case, as a pin, is no point
 (:mod:`physicslab.kernels.rigid.joined`).
 
 Angles are multiplied by a lever of their joint, so that all rows measure metres.

@@ -110,7 +110,7 @@ def _pivot(equations: Equations, size: int, row: int, column: int) -> None:
 def _leaving(equations: Equations, size: int, column: int, slack: float) -> int:
     """Return the row whose variable reaches zero first as a column grows, -1 if none does.
 
-    Of those that reach it within a ``slack`` of their values the one with the largest pivot (Harris), as
+    Among those that reach it within a ``slack`` of their values, the one with the largest pivot (Harris), as
     small pivots are mostly rounding; the covering variable before all.
     """
     tableau, best, first, largest = equations.tableau, -1, math.inf, 0.0

@@ -303,7 +303,7 @@ def begin_motion(
         if not solved:
             stopped = stop_sliding(of, points, count, changed, q, v, rest)
             return STOPPED if stopped else NO_FORCES, 0, rest, False
-        # What is light on top of what is heavy is held to more digits by its own mass.
+        # A light body on top of a heavy one is held to more digits by its own mass.
         held = slow and _is_balanced(of, points, count, _BALANCED, at.acceleration, least, at.q)
     closed = keep_pressing(points, count, least)
     if held:

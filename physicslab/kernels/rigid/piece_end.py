@@ -1,4 +1,4 @@
-"""What ends a smooth piece of motion: functions that fall below zero, and when the first of them does."""
+"""The end of a smooth piece of motion: functions that fall below zero, and when the first of them does."""
 
 import math
 
@@ -28,8 +28,8 @@ __all__ = [
 ]  # fmt: skip
 
 PRESSES, HOLDS, SLIDES, REACHES, APART = 0, 1, 2, 3, 4
-"""What must stay positive: a normal force, what is
-left of the friction cone, a sliding speed, the distance to the end of a feature, a gap."""
+"""Quantities that must stay positive: a normal force, the rest of the friction cone, a sliding speed, the
+distance to the end of a feature, a gap."""
 _CLEAR, ALLOWED, STARTS = 5, 6, 7
 """The rows of what is noted at a start that hold how far pairs are apart at least, and how far they may come
 together; the number of rows."""

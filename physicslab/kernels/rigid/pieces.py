@@ -73,7 +73,7 @@ def begin_piece(
 def largest_free(scene: Scene, values: Numbers) -> float:
     """Return the largest magnitude of ``values`` (3 rows,) of what can move.
 
-    What is fixed far away is no measure of errors.
+    A fixed body far away is no measure of errors.
     """
     found = 0.0
     for i in range(3 * scene.rows):
@@ -147,7 +147,7 @@ def make_piece(
     n, free = 3 * scene.rows, 0  # without the clock
     for i in range(n):  # rows of what is fixed, or gone, are no reason for another step
         free += 1 if scene.inverse_mass[i] > 0.0 else 0
-    # What the start reaches by itself: in a step beyond the limit of stability the end grows with the error.
+    # The scale is that of the start: in a step beyond the limit of stability the end grows with the error.
     q_start, v_start = largest_free(scene, q), largest_free(scene, v)
     push = 0.0
     for i in range(n):

@@ -407,7 +407,7 @@ def hold_evenly(
 ) -> int:  # fmt: skip
     """Find the forces that would hold ``count`` points of equal bodies that are pulled as these are.
 
-    What holds bodies at rest depends on what pulls at them and not on their masses. So all are given the
+    Forces that hold bodies at rest depend on their loads and not on their masses. So all are given the
     largest mass there is, and what is light between heavy bodies costs no digits. ``inverse_mass`` and
     ``pulled`` are room.
     """

@@ -1,4 +1,4 @@
-"""What still is swift after an impact is swept again, from then to the end of the substep.
+"""Bodies that are still swift after an impact are swept again, from then to the end of the substep.
 
 The sweeps of a substep go by the velocities from before its impacts. A body that an impact throws back, or
 spins up, may come to another wall within the same substep, or to the same one with its next corner. So pairs

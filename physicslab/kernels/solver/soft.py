@@ -350,8 +350,8 @@ def advance(
     """Advance by ``steps`` steps, beginning at a part of a substep.
 
     ``kept`` has the state now, and receives that in which the last step began. ``impacts`` is the log, and
-    ``cost`` (COSTS,) gets ticks added for each system, and the number of steps. What was changed since the
-    last step is booked to a ``cause``, unless that is negative.
+    ``cost`` (COSTS,) gets ticks added for each system, and the number of steps. A change since the
+    last step is booked to ``cause``, unless that is negative.
 
     Where some parts are Python's, the ends of steps are too: nothing is kept, and energy is not measured.
 

@@ -1,4 +1,4 @@
-"""What contacts do to energy and momentum, and what kicks do.
+"""Work and impulse of contacts, and of kicks.
 
 Impulses J that act at one moment do the work J (v + v') / 2 each, with the velocities v and v' of its point
 before and after all of them. Half of what the forces of a substep give to the point's velocity is not there
@@ -75,7 +75,7 @@ def note_flow(
 ) -> None:  # fmt: skip
     """Take from the velocities noted what a flow changes those of its bodies by, before contacts are booked.
 
-    Called with 1 and the time ``h`` [s] of the flow before it, and with -1 and 0 after. What was noted is
+    Called with 1 and the time ``h`` [s] of the flow before it, and with -1 and 0 after. A note is
     less than the velocities by the kick of a substep, twice ``h``, which the bodies of a flow do not get:
     half of it is what was predicted for them. Where forces are ``uniform`` it is taken later, of all bodies.
     """
@@ -250,7 +250,7 @@ def book_slots(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: 
     """Book what comes from outside by wide contacts in a substep; where it is just ``solved``, note it.
 
     Uniform forces, which have acted for ``h`` seconds, accelerate no more than these bodies against others.
-    What is noted are the impulses that then act, and the place of the body that they move: their moment is
+    Noted are the impulses that then act, and the place of the body that they move: their moment is
     that about where it was, and that of what they change by later about where it is then.
     """
     given = Given(0.0, 0.0, 0.0)

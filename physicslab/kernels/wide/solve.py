@@ -63,7 +63,7 @@ class Mean(NamedTuple):
 
 
 type Work = tuple[Wide, Wide]
-"""Of normal and of tangential impulses [J], slot by slot."""
+"""Work of normal and of tangential impulses [J], slot by slot."""
 
 
 @always_inlined

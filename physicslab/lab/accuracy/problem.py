@@ -22,7 +22,7 @@ class Ladder:
     Attributes
     ----------
     work : int
-        Of the coarsest rung: force evaluations of the whole time, or steps where ``by_step``.
+        Work of the coarsest rung: force evaluations of the whole time, or steps where ``by_step``.
     rungs : int
         Each takes twice the steps of the one before.
     by_step : bool
@@ -50,7 +50,7 @@ class KnownCase(Case):
     Attributes
     ----------
     compared, measure : str
-        What is compared and when; how the error is measured, with its unit.
+        The quantity compared, and when; the measure of the error, with its unit.
     build : callable
         Takes a configuration of steps and returns the world.
     twin : callable, optional
@@ -108,7 +108,7 @@ class Problem(KnownCase):
     exact_energy : callable, optional
         The energy [J] at a time, where friction, drag or a damper takes some away.
     keeps : set of str
-        What is conserved among ``"energy"``, ``"momentum"`` and ``"angular_momentum"``.
+        The conserved ones among ``"energy"``, ``"momentum"`` and ``"angular_momentum"``.
     collisions : int, optional
         How many impacts there are.
     chaotic : bool
@@ -175,7 +175,7 @@ class Setting:
     steps : int, optional
         Into how many the time is divided; ``None`` for a method that chooses its steps.
     tolerance : float, optional
-        Of an adaptive method.
+        Tolerance of an adaptive method.
     collisions : str
         How contacts are found.
     contacts : str

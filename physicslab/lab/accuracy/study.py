@@ -60,7 +60,7 @@ class Study:
     floor : float, optional
         How much the error changes when the start moves by one rounding.
     rigid : Row, optional
-        What rigid contacts do with it, in steps of that length; ``None`` where nothing touches.
+        The row of rigid contacts, in steps of that length; ``None`` where nothing touches.
     """
 
     problem: Problem

@@ -155,7 +155,7 @@ def line_to_show(x: Numbers, y: Numbers, low: float, high: float, width: int) ->
     low, high : float
         The range of ``x`` that the plot shows; the nearest point outside it stays at each side.
     width : int
-        Of the plot [px].
+        Width of the plot [px].
     """
     begin = max(int(np.searchsorted(x, low)) - 1, 0)
     end = min(int(np.searchsorted(x, high, side="right")) + 1, len(x))
@@ -189,7 +189,7 @@ def path_to_show(
     x, y : float64 arrays (n,)
         The path, in the order in which it was gone along.
     low, high : tuple of two floats
-        What the plot shows of ``x`` and ``y``.
+        Ranges of ``x`` and ``y`` in the plot.
     size : tuple of two ints
         Width and height of the plot [px].
     """
@@ -214,7 +214,7 @@ def range_to_show(values: Sequence[Numbers], room: float = 0.06, none: float = 0
     values : sequence of float64 arrays (n,)
         NaN among them does not count.
     room : float
-        What is left at each side, as a share of their range.
+        Free room at each side, as a share of their range.
     """
     ends = [(np.nanmin(one), np.nanmax(one)) for one in values if not np.isnan(one).all()]
     if not ends:
@@ -269,7 +269,7 @@ class PastSamples:
     history : History
         Its world stays as it is; another one goes through the steps.
     keys : tuple of Key
-        What is measured.
+        Quantities that are measured.
 
     Attributes
     ----------

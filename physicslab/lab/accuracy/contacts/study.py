@@ -134,7 +134,7 @@ class ContactCurve:
     order : float, optional
         The power of the step with which errors fall; ``None`` where they are rounding, or too few.
     verdict : Verdict, optional
-        Of our own engines only.
+        Verdict on our own engines only.
     refused : str
         Why there are no rows.
     """
