@@ -1,7 +1,7 @@
 """Float32 columns as text: differences of differences, in as few bytes as each needs, in base 85.
 
 Smooth motion goes on about as it went: differences of a column, and differences of those, are small;
-resting bodies have none. They are differences of the bit patterns, in an order in which neighbours are numbers one
+at rest they are 0. They are differences of the bit patterns, in an order in which neighbours are numbers one
 unit in the last place apart: unpacking gives every bit back.
 """
 
