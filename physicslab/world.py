@@ -28,7 +28,7 @@ from physicslab.stepping.run import run_length, strides
 from physicslab.stepping.select import Steppers, choose, remake, restart, resume
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Advance, Advancer
-from physicslab.stepping.undo import Undoing, go_back
+from physicslab.stepping.undo import StepTransaction, go_back
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.breaking import BreakSystem, load_of
 from physicslab.systems.integrate import IntegrateSystem
@@ -170,7 +170,7 @@ class World(Facade):
 
     def _attempt(self, h: float, steps: int, bears: float) -> int:
         """Advance, unless that ends with a load on joints beyond ``bears`` that is known at any time."""
-        with Undoing(self, self._motion):
+        with StepTransaction(self, self._motion):
             self._prepare(h)
             made = self._advance(h, steps)
             if self.account.is_open:

@@ -94,7 +94,7 @@ class Tiers:
             ask_before_compiling(None)
             interpreter.unlimited()
             for jitted in self._pending():
-                interpreter.stand_back(jitted)
+                interpreter.uninstall(jitted)
 
     @property
     def interpreted_s(self) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
-from physicslab.kernels.accounts import DAMPING, ENERGY, FIELDS, SPIN
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, DAMPING, ENERGY, FIELDS
 from physicslab.kernels.forces.bookings import ACCOUNTS, END
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT
@@ -288,7 +288,7 @@ class OdeSystem:
         turns = inverse > 0.0
         momentum = spin[turns] / inverse[turns]
         state.account.sums[DAMPING, ENERGY] += 0.5 * float(momentum @ spin[turns]) * np.expm1(-2.0 * decay)
-        state.account.sums[DAMPING, SPIN] += float(momentum.sum()) * np.expm1(-decay)
+        state.account.sums[DAMPING, ANGULAR_MOMENTUM] += float(momentum.sum()) * np.expm1(-decay)
 
     def _note_rates(self, state: State) -> None:
         """Note the fastest rates that forces met, wherever within the steps that was."""
@@ -347,7 +347,7 @@ class OdeSystem:
             if force.resistance is not None
         ]
         self._joints = next((force for force in forces if force.kernel is constrain), None)
-        measured = [(system, force) for system, force in packed if force and force.steepest is not None]
+        measured = [(system, force) for system, force in packed if force and force.max_rate_slot is not None]
         self._measured = [system for system, _ in measured]
         self.steepness = measured[-1][1].parameters[-1:] if measured else np.zeros(1)
         damping = book.damping(self.damping, self.inverse_mass)

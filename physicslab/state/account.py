@@ -173,7 +173,7 @@ class Account:
         """Return what there is, to go back to."""
         return KeptAccount(self._now.copy(), self.since, self.start, self.held)
 
-    def bring_back(self, kept: KeptAccount) -> None:
+    def restore(self, kept: KeptAccount) -> None:
         """Go back."""
         np.copyto(self._now, kept.book)
         _, self.since, self.start, self.held = kept

@@ -61,7 +61,7 @@ class State(Entities):
         Into how many parts the last step was divided, which was longer than ``simulation.dt``; or 1.
     force_evaluations, collisions : int
         How often forces were evaluated, and how many impacts there were.
-    brought_back : int
+    returned_inside : int
         How often a body beyond the bounds was put elsewhere, as something fixed held it there.
     has_forces, uniform_forces : bool
         Whether a force system runs; whether those that do, and all else that acts within a step, accelerate
@@ -105,11 +105,42 @@ class State(Entities):
 
     # An attribute that is misspelt, or belongs elsewhere, would be kept and do nothing.
     __slots__ = (
-        "_forces_at", "_physics", "_simulation", "_waited_before", "account", "bodies", "brought_back",
-        "checkpoint", "collisions", "contacts", "description", "desk", "event_driven", "fastest_rates",
-        "force_evaluations", "generation", "has_forces", "joints", "kick_before_contacts", "moment",
-        "motion_edits", "name", "remainders", "revision", "rigid_contacts", "samples", "sleep", "stale",
-        "step_divisions", "steps", "substeps", "time", "title", "uniform_forces", "view", "window",
+        "_forces_at",
+        "_physics",
+        "_simulation",
+        "_waited_before",
+        "account",
+        "bodies",
+        "checkpoint",
+        "collisions",
+        "contacts",
+        "description",
+        "desk",
+        "event_driven",
+        "fastest_rates",
+        "force_evaluations",
+        "generation",
+        "has_forces",
+        "joints",
+        "kick_before_contacts",
+        "moment",
+        "motion_edits",
+        "name",
+        "remainders",
+        "returned_inside",
+        "revision",
+        "rigid_contacts",
+        "samples",
+        "sleep",
+        "stale",
+        "step_divisions",
+        "steps",
+        "substeps",
+        "time",
+        "title",
+        "uniform_forces",
+        "view",
+        "window",
     )  # fmt: skip
 
     def __init__(
@@ -127,7 +158,7 @@ class State(Entities):
         self.time, self.steps, self.revision, self.motion_edits = 0.0, 0, 0, 0
         self._forces_at = -1, -1  # after how many steps and edits forces were solved for
         self.substeps, self.step_divisions = self._simulation.substeps, 1
-        self.force_evaluations = self.collisions = self.brought_back = 0
+        self.force_evaluations = self.collisions = self.returned_inside = 0
         self._waited_before = seconds_waited()
         self.generation = 0
         self.has_forces = self.uniform_forces = self.event_driven = self.rigid_contacts = False

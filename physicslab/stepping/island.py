@@ -24,7 +24,7 @@ from physicslab.stepping.select import Steppers
 type Rows = NDArray[np.int64]
 """Numbers of rows or entities (n,)."""
 
-_COUNTED = ("force_evaluations", "collisions", "brought_back")
+_COUNTED = ("force_evaluations", "collisions", "returned_inside")
 """Counts of a world that are sums over its islands."""
 _IMPACTS = [near_counts.LOWERED, near_counts.ENERGETIC]
 

@@ -33,7 +33,7 @@ type _Array = NDArray[Any]
 type _Columns = tuple[_Array, ...]
 
 _COUNTS = (
-    "time", "steps", "substeps", "step_divisions", "force_evaluations", "collisions", "brought_back",
+    "time", "steps", "substeps", "step_divisions", "force_evaluations", "collisions", "returned_inside",
 )  # fmt: skip
 """Other counts of a world."""
 
@@ -234,9 +234,9 @@ class Keyframe:
             _put(then, now, there)
         for system in world.schedule.running if self._own else ():
             if system.name in self._own:
-                system.bring_back(self._own[system.name])
+                system.restore(self._own[system.name])
         world.remainders = self._remainders
-        world.account.bring_back(self._account)
+        world.account.restore(self._account)
         world.fastest_rates.update(self._rates)
         self._restore_islands(world, before)
 

@@ -425,7 +425,11 @@ def _why_singular(state: State, forces: Sequence[ForceSystem]) -> str | None:
 
 def _sees_velocity(state: State, forces: Sequence[ForceSystem]) -> bool:
     turns = state.physics.angular_damping > 0.0 and any(len(force.turned(state)) for force in forces)
-    return state.physics.linear_damping > 0.0 or turns or any(force.sees_velocity(state) for force in forces)
+    return (
+        state.physics.linear_damping > 0.0
+        or turns
+        or any(force.depends_on_velocity(state) for force in forces)
+    )
 
 
 def _joined(state: State) -> str:

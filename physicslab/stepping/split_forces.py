@@ -30,8 +30,8 @@ def sees_velocity_in_python(state: State, force: ForceSystem) -> bool:
     One that states nothing is kicked, as a wind is: bodies that it acts on may then sleep.
     """
     kind = type(force)
-    stated = kind.sees_velocity is not ForceSystem.sees_velocity
-    return stated and not kind.packs() and force.sees_velocity(state)
+    stated = kind.depends_on_velocity is not ForceSystem.depends_on_velocity
+    return stated and not kind.packs() and force.depends_on_velocity(state)
 
 
 def sub_integrated_rows(state: State, forces: Sequence[ForceSystem]) -> NDArray[np.bool_]:

@@ -29,7 +29,7 @@ from physicslab.kernels.solver.finer import needed_factor
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
-from physicslab.stepping.bounds import bring_back
+from physicslab.stepping.bounds import return_inside
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.substep_parts import SubstepParts
 from physicslab.systems.accelerate import AccelerateSystem
@@ -207,7 +207,7 @@ class Substeps:
         if why == soft.SLEEP_PENDING and self._sleep is not None:
             self._timed(self._sleep, self._sleep.put_islands_to_sleep, state, span.dt)
         if state.contacts.outside:
-            bring_back(state, self._schedule)
+            return_inside(state, self._schedule)
 
     def _advance(
         self, state: State, span: Span, steps: int, made: int, where: tuple[int, int, int, int]

@@ -8,7 +8,7 @@ from physicslab.kernels.arguments import MotionTuple
 from physicslab.state.state import State
 
 
-class Undoing:
+class StepTransaction:
     """A ``with`` block that makes a step: where it fails or is broken off, the state goes back to before it.
 
     Parameters

@@ -132,7 +132,7 @@ class System:
         """
         return ()
 
-    def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
+    def restore(self, kept: tuple[NDArray[Any], ...]) -> None:
         """Go on from what :meth:`keep` returned, in its shapes; the entities are those of then."""
 
     @property
@@ -217,7 +217,7 @@ class ForceSystem(System):
         """
         return None
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         """Return whether the force depends on velocities, as drag does, for the choice of a method.
 
         A force in Python is taken to, unless it overrides this: a method that is made for positions alone

@@ -12,7 +12,7 @@ from physicslab.kernels import Numbers, always_inlined, inlined
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
-from physicslab.kernels.rigid.features import Scene
+from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages, largest_free
 
 __all__ = ["curve_is_exact", "fit_curve", "place_bodies", "place_on_curve"]
@@ -75,7 +75,7 @@ def place_bodies(
 
 @always_inlined
 def curve_is_exact(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
     stages: Stages,
 ) -> bool:  # fmt: skip
     """Whether the state on the curve is that of the motion, to within the tolerance of a piece."""

@@ -31,7 +31,7 @@ from physicslab.kernels.rigid.features import (
     VN,
     VT,
     Points,
-    Scene,
+    RigidScene,
     measure_contact,
     rate_along,
 )
@@ -76,7 +76,7 @@ def _measure_term(
 
 
 @always_inlined
-def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
+def measure(scene: RigidScene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
     """Measure point number i in a state."""
     if points[i, FEATURE] >= JOINT:
         _measure_row(scene.rows, scene.coefficients, points, i, q, v, out)
@@ -117,7 +117,7 @@ def _measure_row(
 
 
 @always_inlined
-def motor_rate(scene: Scene, points: Points, measures: Vectors, i: int) -> float:
+def motor_rate(scene: RigidScene, points: Points, measures: Vectors, i: int) -> float:
     """Return how fast a motor that is measured moves against its force [m/s]."""
     own, p = scene.coefficients, points[i, PAIR]
     rate: float = measures[i, VT] + own[p, LEVER] * own[p, TARGET]

@@ -17,14 +17,14 @@ from physicslab.kernels.rigid.features import (
     STATUS,
     VN,
     VT,
-    Scene,
+    RigidScene,
 )
 from physicslab.kernels.rigid.joint_points import measure
 from physicslab.kernels.rigid.pieces import Stages, make_piece
 from physicslab.kernels.rigid.touching import NO_SPEED, SLOW, find_open, moved_closer
 
 __all__ = [
-    "ALLOWED", "APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "STARTS", "cut_at_first_event", "note_start",
+    "ALLOWED", "APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "STARTS", "locate_event", "note_start",
 ]  # fmt: skip
 
 PRESSES, HOLDS, SLIDES, REACHES, APART = 0, 1, 2, 3, 4
@@ -55,7 +55,7 @@ _CUTS = 16
 
 @inlined
 def _value(
-    kind: int, index: int, scene: Scene, equations: Equations, count: int, scratch: Equations,
+    kind: int, index: int, scene: RigidScene, equations: Equations, count: int, scratch: Equations,
     q: Numbers, v: Numbers,
 ) -> float:  # fmt: skip
     """Return what must stay positive, of a point that is measured in the state or of a pair."""
@@ -89,7 +89,7 @@ def _time_to_fall(height: float, speed: float, acceleration: float) -> float:
 
 @always_inlined
 def note_start(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
     acceleration: Numbers, start: Vectors,
 ) -> float:  # fmt: skip
     """Note all functions at the start of a piece, and distances of pairs.
@@ -121,7 +121,9 @@ def _can_end(kind: int, i: int, equations: Equations) -> bool:
 
 
 @inlined
-def _allowance(kind: int, i: int, scene: Scene, equations: Equations, start: float, rest: float) -> float:
+def _allowance(
+    kind: int, i: int, scene: RigidScene, equations: Equations, start: float, rest: float
+) -> float:
     """Return how far a function may fall that begins at zero: by as much as is treated as zero.
 
     A corner at the end of a face is on it as long as both are level.
@@ -139,7 +141,7 @@ def _allowance(kind: int, i: int, scene: Scene, equations: Equations, start: flo
 
 
 @inlined
-def _noise(kind: int, index: int, scene: Scene, equations: Equations, rest: float) -> float:
+def _noise(kind: int, index: int, scene: RigidScene, equations: Equations, rest: float) -> float:
     """Return by how much rounding may change a function."""
     if kind <= HOLDS:
         force: float = abs(equations.vectors[UNKNOWN, 2 * index])
@@ -152,7 +154,7 @@ def _noise(kind: int, index: int, scene: Scene, equations: Equations, rest: floa
 
 @inlined
 def _first_event(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
     q: Numbers, rest: float, last_kind: int, last: int,
 ) -> tuple[int, int]:  # fmt: skip
     """Return which function fell below zero first within the piece: kind and index, -1 if none did.
@@ -180,9 +182,9 @@ def _first_event(
 
 @always_inlined
 def _cross(
-    on_curve: bool, kind: int, index: int, scene: Scene, equations: Equations, count: int, scratch: Equations,
-    stages: Stages, q: Numbers, v: Numbers, h: float, t: float, end: float, slope: float, f_low: float,
-    allowance: float, noise: float, tolerance: float,
+    on_curve: bool, kind: int, index: int, scene: RigidScene, equations: Equations, count: int,
+    scratch: Equations, stages: Stages, q: Numbers, v: Numbers, h: float, t: float, end: float, slope: float,
+    f_low: float, allowance: float, noise: float, tolerance: float,
 ) -> tuple[float, float, bool, int]:  # fmt: skip
     """Find where a function falls below zero, from ``t`` on and before ``end``, in a piece of ``h`` seconds.
 
@@ -242,8 +244,8 @@ def _cross(
 
 
 @always_inlined
-def cut_at_first_event(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
+def locate_event(
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
     q: Numbers, v: Numbers, h: float, tolerance: float, rest: float, short: bool,
 ) -> tuple[float, int, int, int]:  # fmt: skip
     """Cut a piece that was made of ``h`` seconds where its first event is, if there is one in it.

@@ -36,7 +36,7 @@ from physicslab.kernels.rigid.features import (
     OTHER,
     VT,
     WALL,
-    Scene,
+    RigidScene,
     SceneTuple,
     named_scene,
 )
@@ -121,7 +121,7 @@ def separate(scene: SceneTuple, equations: EquationsTuple, count: int, q: Number
 
 
 @inlined
-def _find_islands(scene: Scene, equations: Equations, count: int, island: Numbers) -> None:
+def _find_islands(scene: RigidScene, equations: Equations, count: int, island: Numbers) -> None:
     """Give all bodies that points or joints connect one number: the lowest row of them."""
     for row in range(scene.rows):
         island[row] = row

@@ -8,7 +8,7 @@ over all points is the change of the kinetic energy, exactly.
 from typing import NamedTuple
 
 from physicslab.kernels import Vectors, always_inlined, inlined
-from physicslab.kernels.accounts import ENERGY, FRICTION, HAND, IMPACTS, SPIN, book
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, FRICTION, HAND, IMPACTS, book
 from physicslab.kernels.constraint.impact_law import ImpactImpulses
 from physicslab.kernels.constraint.pair import (
     ContactFrame,
@@ -122,8 +122,8 @@ def book_outside(
     """
     # A body that cannot turn takes a torque from outside.
     if mass.a > 0.0 and mass.b > 0.0:
-        account[row, SPIN] += moment_a if mass.inertia_a == 0.0 else 0.0
-        account[row, SPIN] -= moment_b if mass.inertia_b == 0.0 else 0.0
+        account[row, ANGULAR_MOMENTUM] += moment_a if mass.inertia_a == 0.0 else 0.0
+        account[row, ANGULAR_MOMENTUM] -= moment_b if mass.inertia_b == 0.0 else 0.0
         return
     if mass.b > 0.0:
         driven = mean.ax != 0.0 or mean.ay != 0.0 or mean.wa != 0.0

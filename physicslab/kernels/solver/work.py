@@ -12,7 +12,16 @@ import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels import wide_layout as L
-from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, SPIN, book
+from physicslab.kernels.accounts import (
+    ANGULAR_MOMENTUM,
+    CONTACT,
+    DAMPING,
+    ENERGY,
+    FRICTION,
+    GRAVITY,
+    HAND,
+    book,
+)
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
 from physicslab.kernels.constraint.pair import (
     along_and_across,
@@ -117,7 +126,7 @@ def _book_moved(
 ) -> None:
     """Book that an impulse from outside acted where B was against A before it moved by (x, y) [m]."""
     driven = _is_driven(motion, a if inverse.mass[a] == 0.0 else b)
-    near.account[HAND if driven else CONTACT, SPIN] -= x * py - y * px
+    near.account[HAND if driven else CONTACT, ANGULAR_MOMENTUM] -= x * py - y * px
 
 
 @always_inlined

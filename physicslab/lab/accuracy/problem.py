@@ -234,9 +234,9 @@ def ladder(problem: Problem, method: Integrator) -> Iterator[Setting]:
             yield Setting(method.name, steps, collisions=collisions)
 
 
-def sees_velocity(problem: Problem) -> bool:
+def depends_on_velocity(problem: Problem) -> bool:
     """Whether forces in a problem depend on velocities, other than by turning them."""
     world = problem.build(SimulationConfig(dt=problem.dt))
     world.synchronise()
     forces = [force for force in world.schedule.smooth_forces if force.gyration(world) is None]
-    return any(force.sees_velocity(world) for force in forces)
+    return any(force.depends_on_velocity(world) for force in forces)

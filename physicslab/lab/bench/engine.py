@@ -121,7 +121,7 @@ class OtherEngine(Engine):
 
     @override
     def look(self) -> World:
-        self._peer.bring_back()
+        self._peer.write_back()
         return self.world
 
 

@@ -102,7 +102,7 @@ class Peer(ABC):
     title, module : str
         The engine's name, and that of its package.
     world : World
-        Where the bodies came from, and where :meth:`bring_back` writes their state.
+        Where the bodies came from, and where :meth:`write_back` writes their state.
     moving : list of int
         The entities that can move.
     space : Any
@@ -300,7 +300,7 @@ class Peer(ABC):
         rate = math.sqrt(spring.stiffness / mass)
         return rate / (2.0 * math.pi), spring.damping / (2.0 * mass * rate)
 
-    def bring_back(self) -> None:
+    def write_back(self) -> None:
         """Write where the bodies are, and how they move, into the world's tables.
 
         Raises

@@ -61,7 +61,7 @@ def _theirs(peer: type[Peer], world: World, dt: float) -> Advance:
     def advance(seconds: float) -> None:
         steps = round(seconds / dt)
         mirror.run(seconds / steps, steps)
-        mirror.bring_back()
+        mirror.write_back()
 
     return advance
 
