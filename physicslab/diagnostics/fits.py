@@ -14,7 +14,7 @@ _MOST = 4000
 """Samples that a fit goes through: of more every so many are taken."""
 _GUESS, _FINER = 1024, 8
 """Samples of the spectrum in which a sine's frequency is looked for, and by how much it is made finer."""
-_ROUNDING = 1e-12
+_EQUAL_SAMPLES_SHARE = 1e-12
 """Share of the largest value up to which samples are alike."""
 _ROUNDS, _DONE = 60, 1e-13
 """Most steps of a fit that is not linear, and the relative change of the sum of squares at which it ends."""
@@ -195,7 +195,7 @@ def fit(kind: str, x: Numbers, y: Numbers) -> Fit | None:
     if len(np.unique(x)) < least:
         return None
     if kind == "sine":
-        if np.ptp(y) <= _ROUNDING * np.abs(y).max():
+        if np.ptp(y) <= _EQUAL_SAMPLES_SHARE * np.abs(y).max():
             return None
         order = np.argsort(x, kind="stable")
         x, y = x[order], y[order]

@@ -55,7 +55,7 @@ _SEPARATE = 1e-11
 _NEAR = 4.0
 """Multiple of an overlap within which other gaps are looked at, as bodies that move apart may press into
 them."""
-_ROUNDING = 4e-15
+_COORDINATE_ROUNDING = 4e-15
 """Share of the largest coordinate that is rounding."""
 _SEPARATIONS = 12
 """How often bodies are moved apart, as that can press them into others."""
@@ -284,7 +284,7 @@ class RigidMotion:
         q, v, deepest = self._ode.q, self._ode.v, 0.0
         largest = float(np.abs(q[: self._ode.layout.clock]).max(initial=0.0))
         smallest = max(float(scene[7][:, 2].min(initial=math.inf)), sys.float_info.min)
-        rounding = _ROUNDING * largest / smallest
+        rounding = _COORDINATE_ROUNDING * largest / smallest
         before = None
         for _ in range(_SEPARATIONS):
             why, count, rest, deepest, _ = self._touch(scene, q, _NEAR * deepest)

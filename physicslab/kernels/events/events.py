@@ -63,7 +63,7 @@ _SAME_TIME = 1e-12
 """Share of a step within which impacts of one pair count as simultaneous."""
 _AHEAD = 64.0
 """Steps for which pairs are at most taken as apart before they are looked at again."""
-_ROUNDING = 1e-11
+_NEARER = 1e-11
 """Share of the farthest place within that time by which pairs are taken as nearer than they seem apart."""
 _MAX_REPEATS = 32
 """Largest number of bounces of an inelastic pair within that time; then it stays together."""
@@ -122,7 +122,7 @@ def _begin_all(flight: Flight, step: int, span: float, left: int) -> tuple[int, 
         way = time * (speed + time * (abs(paths[i, 8]) + abs(paths[i, 9])))
         size = shapes.radius[i] + 2.0 * (shapes.half_x[i] + shapes.half_y[i])
         farthest = max(farthest, abs(position[i, 0]) + abs(position[i, 1]) + size + way)
-    rounding = _ROUNDING * farthest
+    rounding = _NEARER * farthest
     for p in range(flight.pairs):
         if flight.apart[p] > step:
             continue

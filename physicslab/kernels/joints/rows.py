@@ -21,7 +21,7 @@ from physicslab.kernels.joints.envelope import factorise, solve, substitute
 from physicslab.kernels.joints.terms import TermEnd, measure_term
 from physicslab.kernels.ode.compensated import add
 
-_ROUNDING = 4e-16
+_POSITION_ROUNDING = 4e-16
 """Share of the largest coordinate, and of the largest speed, below which an error is rounding."""
 _JUMP = 1e-9
 """Share of the largest speed above which a speed that joints do not allow is no error of a method."""
@@ -268,13 +268,13 @@ def project(q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, numbers: Num
             for i in range(m):
                 q[i], q_low[i] = add(q[i], q_low[i], -back * numbers[room + i])
             continue
-        if share == 0.0 or largest <= _ROUNDING * size or (turn > 2 and largest > 0.5 * before):
+        if share == 0.0 or largest <= _POSITION_ROUNDING * size or (turn > 2 and largest > 0.5 * before):
             break
         _solved_changes(numbers, whole)
         for i in range(m):
             q[i], q_low[i] = add(q[i], q_low[i], numbers[room + i])
         before, share = largest, 1.0
-    if _rates(v, numbers, whole) > _ROUNDING * _size(v, m):
+    if _rates(v, numbers, whole) > _POSITION_ROUNDING * _size(v, m):
         _solved_changes(numbers, whole)
         for i in range(m):
             v[i], v_low[i] = add(v[i], v_low[i], numbers[room + i])

@@ -19,7 +19,7 @@ TURNS_FAST = -1
 MAX_TURN = 0.25
 """Angle [rad] by which a spring with a rest length may turn, or share of its length by which it may change,
 in a step of the method."""
-_ROUNDING = 1e-9
+_STEP_EXCESS = 1e-9
 """Share by which a step may be longer than the longest: half substeps are rounded."""
 FINEST = 64
 """Largest factor by which steps are shortened where springs turn faster, or are short."""
@@ -112,7 +112,7 @@ def _turn_fast(places: Places, links: Links, at: int, h: float) -> int:
 @always_inlined
 def steps_of(springs: Springs, span: float) -> int:
     """Return how many steps of the method ``span`` seconds are, if no spring turns fast."""
-    steps: int = max(1, math.ceil(span / springs.numbers[LONGEST] * (1.0 - _ROUNDING)))
+    steps: int = max(1, math.ceil(span / springs.numbers[LONGEST] * (1.0 - _STEP_EXCESS)))
     return steps
 
 

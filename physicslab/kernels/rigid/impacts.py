@@ -72,7 +72,7 @@ _NOISE = 1e-4
 """Share of the tolerance of speeds up to which an approach is rounding."""
 _SPEEDS = 100.0
 """Multiple of the tolerance of speeds that impulses are measured by: smaller ones go by rounding."""
-_ROUNDING = 1e-15
+_SUM_ROUNDING = 1e-15
 """Share of sums that may be rounding."""
 
 
@@ -155,7 +155,7 @@ def _energy_gained(impact: Equations, n: int) -> float:
             cancelled += abs(impulse) * parts
             work += 0.5 * impulse * (before + after)
             scale += abs(impulse) * (abs(impact.measures[i, VN]) + abs(impact.measures[i, VT]))
-    return (work + _ROUNDING * cancelled) / scale if scale > 0.0 else 0.0
+    return (work + _SUM_ROUNDING * cancelled) / scale if scale > 0.0 else 0.0
 
 
 @always_inlined

@@ -37,7 +37,7 @@ _CLOSED = 1e-13
 """Share of a size by which a gap may change by rounding."""
 _NO_FORCE = 1e-9
 """Share of the largest force that is rounding."""
-_ROUNDING = 1e-14
+_SIZE_ROUNDING = 1e-14
 """Share of a size that is rounding."""
 _HALVINGS = 40
 """How often a piece is halved to find a time at which a point that has bounced is above the other body."""
@@ -149,7 +149,7 @@ def _noise(kind: int, index: int, scene: RigidScene, equations: Equations, rest:
     if kind == SLIDES:
         return NO_SPEED * rest
     size: float = scene.coefficients[index if kind == APART else equations.points[index, PAIR], 2]
-    return _ROUNDING * size
+    return _SIZE_ROUNDING * size
 
 
 @inlined

@@ -136,7 +136,7 @@ class Record:
 # ---- what is plotted of them -------------------------------------------------------------------------------
 
 
-_ROUNDING = 1e-9
+_ZERO_RANGE_SHARE = 1e-9
 """Share of the largest value below which a range is rounding."""
 _NEEDED = 4
 """Points that a pixel's width can need: the first, the lowest, the highest and the last of those in it."""
@@ -221,7 +221,7 @@ def range_to_show(values: Sequence[Numbers], room: float = 0.06, none: float = 0
         return 0.0, 1.0
     low, high = float(min(end[0] for end in ends)), float(max(end[1] for end in ends))
     largest = max(abs(low), abs(high))
-    if high - low <= max(_ROUNDING * largest, none):
+    if high - low <= max(_ZERO_RANGE_SHARE * largest, none):
         spread = 0.1 * largest if largest > none else 1.0
         return low - spread, high + spread
     return low - room * (high - low), high + room * (high - low)
