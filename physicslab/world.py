@@ -28,7 +28,7 @@ from physicslab.stepping.run import run_length, strides
 from physicslab.stepping.select import Steppers, choose, remake, restart, resume
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Advance, Advancer
-from physicslab.stepping.undo import Undoing, go_back
+from physicslab.stepping.undo import StepTransaction, go_back
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.breaking import BreakSystem, load_of
 from physicslab.systems.integrate import IntegrateSystem
@@ -38,7 +38,7 @@ from physicslab.systems.system import Stage, System
 
 _log = logging.getLogger(__name__)
 _told: set[str] = set()
-"""What was told already: a notebook may make a thousand worlds of one kind."""
+"""Warnings given already: a notebook may make a thousand worlds of one kind."""
 _AT_MOST = Field("at_most", "number", above=0.0, unit="s", owner="run")
 _LOOK_S, _STRIDE = 0.1, 1000
 """So long [s], and so many steps of smooth motion, a run goes on before the clock is looked at."""
@@ -66,9 +66,9 @@ class World(Facade):
     plan : StepPlan
         The method that moves the bodies, how collisions are found, and why.
     steppers : Steppers
-        What can advance this world as it is now, the best first.
+        Steppers that can advance this world as it is now, the best first.
     stepper : Advancer, optional
-        What made the last step: one of them, or the islands.
+        The stepper of the last step: one of them, or the islands.
     islands : Islands
         The bodies that have nothing to do with each other, each with steppers of their own.
 
@@ -170,7 +170,7 @@ class World(Facade):
 
     def _attempt(self, h: float, steps: int, bears: float) -> int:
         """Advance, unless that ends with a load on joints beyond ``bears`` that is known at any time."""
-        with Undoing(self, self._motion):
+        with StepTransaction(self, self._motion):
             self._prepare(h)
             made = self._advance(h, steps)
             if self.account.is_open:
@@ -315,7 +315,7 @@ class World(Facade):
         return self.copy()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # What a scene file keeps goes to another process; what writes files stands above worlds.
+        # The contents of a scene file go to another process; the layer that writes files is above this one.
         scene = import_module("physicslab.files.scene")
         return scene.load_scene, (scene.write_scene(self),)
 

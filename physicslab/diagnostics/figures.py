@@ -67,9 +67,9 @@ class Record:
     Parameters
     ----------
     world : World
-        What is recorded; it may go on between samples.
+        The world that is recorded; it may go on between samples.
     names : iterable of str
-        What of it, as ``ball.x``.
+        Quantities of it, as ``ball.x``.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What is kept of each run: expressions of its figures, or functions of the world at its end.
+"""Measures, kept of each run: expressions of its figures, or functions of the world at its end.
 
 Expressions are those of lessons (:mod:`physicslab.diagnostics.figures`). These names are known besides, as
 ``run --json`` has them: ``ball.position.y``, ``ball.linear.x``, ``ball.angular``, ``account.friction``,
@@ -47,7 +47,7 @@ _IMPACTS = {
     "time": (0, 0, 1, 0), "x": (1, 0, 0, 0), "y": (1, 0, 0, 0), "speed": (1, 0, -1, 0),
     "energy_lost": (2, 1, -2, 0),
 }  # fmt: skip
-"""What is known of an impact, with the powers of its unit."""
+"""Quantities of an impact, with the powers of their units."""
 _WHICH = ("first_impact", "last_impact")
 _TRIAL = 8
 """Samples of the run that never was by which an expression is tried."""

@@ -1,4 +1,4 @@
-"""What crosses to other processes: a scene, its rows, its measures; and how a row is run there."""
+"""The task sent to other processes: a scene, its rows, its measures; and how a row is run there."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Task:
     space : Space
         The rows.
     measures : mapping of str to str or callable
-        What is kept of each run, by its column.
+        Measures of each run, by their columns.
     seconds, steps : float or int, optional
         How long a run is; one of the two.
     """
@@ -62,7 +62,7 @@ class Task:
 
     @cached_property
     def payload(self) -> bytes:
-        """What is sent with each piece of work."""
+        """The bytes sent with each piece of work."""
         own = {name: getattr(self, name) for name in ("scene", "space", "measures", "seconds", "steps")}
         return pickle.dumps(own)
 

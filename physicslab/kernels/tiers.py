@@ -26,7 +26,7 @@ from physicslab.kernels.twins import natives
 _PER_BYTE = 2.0e-4
 """Time [s] to compile a byte of Python's bytecode: 41 s for all kernels on an AMD EPYC of 2026."""
 _FIRST = 1.0
-"""What the first kernel of a process takes besides [s], as numba and LLVM begin."""
+"""Extra time of the first kernel of a process [s], as numba and LLVM begin."""
 _FIRST_PART = 0.05
 """Share of the time to compile a kernel for which it is interpreted before the rest is foreseen."""
 
@@ -94,7 +94,7 @@ class Tiers:
             ask_before_compiling(None)
             interpreter.unlimited()
             for jitted in self._pending():
-                interpreter.stand_back(jitted)
+                interpreter.uninstall(jitted)
 
     @property
     def interpreted_s(self) -> float:
@@ -140,7 +140,7 @@ class Tiers:
 
     @property
     def _beginning(self) -> float:
-        """What the next kernel takes to compile besides [s]."""
+        """Extra time that the next kernel takes to compile [s]."""
         return 0.0 if self._compiled_any else _FIRST
 
     def _compile_late(self, jitted: Any) -> None:

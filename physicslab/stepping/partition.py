@@ -25,7 +25,7 @@ from physicslab.systems.standard import PHYSICS_SYSTEMS
 type Rows = NDArray[np.int64]
 """Numbers of rows (n,)."""
 type Numbers = NDArray[np.float64]
-"""Of bodies (n,), or of vectors (n, 2)."""
+"""An array of bodies (n,), or of vectors (n, 2)."""
 
 MAX_BODIES = 12
 """Number of bodies with a Shape above which an island has none of its own steppers: all such are together."""
@@ -184,7 +184,7 @@ class Extent:
     position : float64 array (n, 2)
         Their centres [m].
     radius, speed : float64 arrays (n,)
-        Of the circles around them [m]; how fast these move [m/s].
+        Radii of the circles around them [m]; how fast these move [m/s].
     low, high : float64 arrays (2,)
         The box around all of them [m].
     fastest : float

@@ -1,4 +1,4 @@
-"""What rigid contacts leave to be read: records of pairs, with points, impulses and impacts."""
+"""Records of rigid contacts: pairs, with points, impulses and impacts."""
 
 from collections.abc import Iterator
 from typing import Any

@@ -52,7 +52,7 @@ class RunLength:
 
 
 class Stepped(Protocol):
-    """What a run needs of a world."""
+    """The parts of a world that a run needs."""
 
     time: float
     steps: int
@@ -157,7 +157,7 @@ def _strides(
 def _go_on(world: Stepped, length: RunLength, done: int, stride: int, at_once: int) -> int:
     """Go on with a run of which ``done`` steps are made, as far as one call goes; return how many it made.
 
-    What makes step by step makes ``at_once`` at most, which changes no bit.
+    A stepper that goes step by step makes ``at_once`` at most, which changes no bit.
     """
     world.synchronise()
     h = length.dt if done < length.whole else length.rest

@@ -1,4 +1,4 @@
-"""What a stepper is: one way to advance a state."""
+"""Steppers: ways to advance a state."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -25,7 +25,7 @@ MAX_FACTOR = 256
 
 @dataclass(frozen=True, slots=True)
 class Advance:
-    """What a stepper has done.
+    """Report of a stepper on an advance.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Advance:
 
 
 class Advancer(Protocol):
-    """What advances a state.
+    """A way to advance a state.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Advancer(Protocol):
     reason : str
         The reason for it, for people.
     kernels : tuple of kernels
-        What it calls; compiled before it first advances, and not before.
+        Kernels that it calls; compiled before it first advances, and not before.
     leaps : bool
         Whether several steps are one advance, made as a whole or not at all.
     keeps_balance : bool

@@ -126,7 +126,7 @@ def fatten(
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """Return the fat box (xmin, ymin, xmax, ymax) of body i, good for some three steps of four substeps h.
 
-    It reaches as far as the body would come at its velocity. What is among fast bodies is likely to be hit:
+    It reaches as far as the body would come at its velocity. A body among fast ones is likely to be hit:
     the margin around that way goes by the ``usual`` speed [m/s], but for no more than ``hit_share`` of its
     bounding radius.
     """

@@ -120,7 +120,7 @@ def partition(
     ``known`` of ``manifolds`` are the records so far, whose rows have changed if they are ``stale``. ``fat``
     is that of :mod:`physicslab.kernels.broad.fat_boxes`. ``table`` is filled for :func:`carry_over`.
 
-    Of a long body and a short one that are not ``beside`` each other, the record is made at once.
+    For a long body and a short one that are not ``beside`` each other, the record is made at once.
     """
     _note_known(manifolds, known, table)
     shapes = named_shapes(plain_shapes)

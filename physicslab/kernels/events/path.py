@@ -73,8 +73,8 @@ def advance_to(
 ) -> None:
     """Begin a new path of row i where the old one is at the time ``now + low``.
 
-    What gravity has given on the old one is added to the account: m g s, and about the origin the integral of
-    x x m g, which is (x s + v s^2 / 2) x m g for a parabola.
+    Energy and momentum by gravity on the old one are added to the account: m g s, and about the origin the
+    integral of x x m g, which is (x s + v s^2 / 2) x m g for a parabola.
     """
     s = _advanced(paths, i, now, low)
     angle[i] += s * angular[i]

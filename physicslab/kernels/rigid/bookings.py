@@ -1,23 +1,23 @@
-"""What contact forces give in a second, and impulses at once, by account."""
+"""Powers of contact forces, and work of impulses, by account."""
 
 from physicslab.kernels import Numbers, inlined
-from physicslab.kernels.accounts import ENERGY, PX, SPIN, book
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, PX, book
 from physicslab.kernels.rigid.equations import STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import (
     CONTACTS,
     DRIVEN,
     FEATURE,
+    FRICTION,
     JOINED,
     JOINT,
     MOTOR,
     MOTORS,
     NORMAL,
     ONE,
-    RUBBING,
     STATUS,
     TANGENT,
     VT,
-    Scene,
+    RigidScene,
 )
 from physicslab.kernels.rigid.joint_points import motor_rate
 
@@ -26,11 +26,11 @@ __all__ = ["book_contacts", "book_row", "book_speeds"]
 
 @inlined
 def book_contacts(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, given: Numbers
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, given: Numbers
 ) -> None:
     """Add what the forces of ``count`` points give in a second, that are measured in the state (q, v).
 
-    What friction takes, force times sliding speed, and the momentum that comes in from what no force moves,
+    Booked are friction, force times sliding speed, and momentum that comes in from bodies no force moves,
     with the work of what moves all the same. Normal forces do no work: what they hold together does not part.
     Motors do, with the speed at which they turn.
     """
@@ -40,7 +40,7 @@ def book_contacts(
         equations.measures,
         scene.accounts[CONTACTS],
     )
-    rubbed, work = 0.0, 0.0
+    friction_work, work = 0.0, 0.0
     for i in range(count):
         along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
         account = contacts
@@ -50,7 +50,7 @@ def book_contacts(
                 account = scene.accounts[MOTORS]
                 given[account + ENERGY] += across * motor_rate(scene, points, measures, i)
         elif points[i, STATUS] != STICKS:
-            rubbed += across * measures[i, VT]
+            friction_work += across * measures[i, VT]
         for side in range(2):
             body = points[i, ONE + side]
             n, t = NORMAL + 3 * side, TANGENT + 3 * side
@@ -63,17 +63,17 @@ def book_contacts(
             else:
                 work -= fx * v[x] + fy * v[y]
             if scene.inverse_mass[turning] > 0.0:
-                given[account + SPIN] += torque
+                given[account + ANGULAR_MOMENTUM] += torque
             else:
                 work -= torque * v[turning]
-    given[scene.accounts[RUBBING] + ENERGY] += rubbed
+    given[scene.accounts[FRICTION] + ENERGY] += friction_work
     if scene.accounts[DRIVEN] >= 0:
         given[scene.accounts[DRIVEN] + ENERGY] += work
 
 
 @inlined
 def book_row(
-    scene: Scene, equations: Equations, i: int, q: Numbers, old: Numbers, v: Numbers, late: float,
+    scene: RigidScene, equations: Equations, i: int, q: Numbers, old: Numbers, v: Numbers, late: float,
     acceleration: Numbers, account: Numbers, driven: Numbers,
 ) -> None:  # fmt: skip
     """Book the impulse of a row that has changed the speeds ``old`` to v: its work, and and momentum.
@@ -93,13 +93,13 @@ def book_row(
                 driven[ENERGY] -= work
             elif k < 2:
                 account[PX + k] += push
-                account[SPIN] += q[2 * body] * push if k == 1 else -q[2 * body + 1] * push
+                account[ANGULAR_MOMENTUM] += q[2 * body] * push if k == 1 else -q[2 * body + 1] * push
             else:
-                account[SPIN] += push
+                account[ANGULAR_MOMENTUM] += push
 
 
 @inlined
-def book_speeds(scene: Scene, q: Numbers, v: Numbers, sign: float) -> None:
+def book_speeds(scene: RigidScene, q: Numbers, v: Numbers, sign: float) -> None:
     """Book the motion there is to contacts, with a sign: before they change speeds and after that."""
     contacts, energy, px, py, spin = scene.accounts[CONTACTS], 0.0, 0.0, 0.0, 0.0
     for row in range(scene.rows):

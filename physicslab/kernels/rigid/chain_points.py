@@ -18,7 +18,17 @@ from physicslab.kernels.geometry.links import (
 )
 from physicslab.kernels.geometry.shapes import Shapes, face, is_chain, vertex
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
-from physicslab.kernels.rigid.features import FEATURE, GIVEN, LINK, ONE, OTHER, PAIR, VERTEX, Points, Scene
+from physicslab.kernels.rigid.features import (
+    FEATURE,
+    GIVEN,
+    LINK,
+    ONE,
+    OTHER,
+    PAIR,
+    VERTEX,
+    Points,
+    RigidScene,
+)
 
 __all__ = ["distance_to_chain", "find_chain_points", "is_closed_on_chain"]
 
@@ -197,7 +207,7 @@ def _faces_on_arc(
 
 @inlined
 def find_chain_points(
-    scene: Scene, p: int, q: Numbers, v: Numbers, points: Points, tie: float
+    scene: RigidScene, p: int, q: Numbers, v: Numbers, points: Points, tie: float
 ) -> tuple[int, float]:
     """Write the points where pair ``p``, of which one is a chain, touches or would; return how many.
 
@@ -223,7 +233,7 @@ def find_chain_points(
 
 
 @inlined
-def distance_to_chain(scene: Scene, chain: int, body: int, q: Numbers, enough: float) -> float:
+def distance_to_chain(scene: RigidScene, chain: int, body: int, q: Numbers, enough: float) -> float:
     """Return how far a body is at least from a chain [m]; one above ``enough`` is not the best."""
     rows, reach = scene.rows, scene.shapes.reach[body]
     c, s = math.cos(q[2 * rows + chain]), math.sin(q[2 * rows + chain])

@@ -20,7 +20,7 @@ from physicslab.kernels.rigid.features import (
     TANGENT,
     VN,
     VT,
-    Scene,
+    RigidScene,
     rate_along,
 )
 from physicslab.kernels.rigid.joined import book_answer, lessen, measure_joints, pass_on
@@ -39,7 +39,7 @@ __all__ = [
 
 
 @inlined
-def measure_all(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
+def measure_all(scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
     """Measure the first ``count`` points in a state, and what joints hold together."""
     if scene.joints[ROWS] > 0:
         measure_joints(scene, q, v)
@@ -48,7 +48,7 @@ def measure_all(scene: Scene, equations: Equations, count: int, q: Numbers, v: N
 
 
 @inlined
-def _coupling(scene: Scene, equations: Equations, i: int, j: int) -> tuple[float, float, float, float]:
+def _coupling(scene: RigidScene, equations: Equations, i: int, j: int) -> tuple[float, float, float, float]:
     """Return what unit forces at point j cause at point i: n n, n t, t n, t t."""
     points, measures = equations.points, equations.measures
     nn, nt, tn, tt = 0.0, 0.0, 0.0, 0.0
@@ -72,7 +72,9 @@ def _coupling(scene: Scene, equations: Equations, i: int, j: int) -> tuple[float
 
 
 @always_inlined
-def _own_response(scene: Scene, equations: Equations, i: int, nn: float, tt: float) -> tuple[float, float]:
+def _own_response(
+    scene: RigidScene, equations: Equations, i: int, nn: float, tt: float
+) -> tuple[float, float]:
     """Return what unit forces cause at the row of a joint, and what stands for that where it has none."""
     if equations.points[i, FEATURE] == MOTOR:
         nn = scene.coefficients[equations.points[i, PAIR], OWN]
@@ -80,7 +82,7 @@ def _own_response(scene: Scene, equations: Equations, i: int, nn: float, tt: flo
 
 
 @inlined
-def assemble(scene: Scene, equations: Equations, count: int) -> None:
+def assemble(scene: RigidScene, equations: Equations, count: int) -> None:
     """Fill the matrix with what each unit force causes at each point."""
     a = equations.a
     for i in range(count):
@@ -105,7 +107,7 @@ def assemble(scene: Scene, equations: Equations, count: int) -> None:
 
 
 @inlined
-def apply(scene: Scene, equations: Equations, count: int, target: Numbers, which: int = UNKNOWN) -> None:
+def apply(scene: RigidScene, equations: Equations, count: int, target: Numbers, which: int = UNKNOWN) -> None:
     """Add to velocities what the impulses found cause, or to accelerations what forces do.
 
     ``which`` is their row of the vectors.
@@ -124,7 +126,7 @@ def apply(scene: Scene, equations: Equations, count: int, target: Numbers, which
 
 
 @inlined
-def find_loads(scene: Scene, equations: Equations, count: int, loads: Numbers) -> None:
+def find_loads(scene: RigidScene, equations: Equations, count: int, loads: Numbers) -> None:
     """Add by how much the forces found would accelerate what they press, if each of them acted alone."""
     for i in range(count):
         along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
@@ -139,7 +141,7 @@ def find_loads(scene: Scene, equations: Equations, count: int, loads: Numbers) -
 
 @inlined
 def rates_without_forces(
-    scene: Scene, equations: Equations, i: int, acceleration: Numbers
+    scene: RigidScene, equations: Equations, i: int, acceleration: Numbers
 ) -> tuple[float, float]:
     """Return how the speeds of point i along its normal and its tangent change at given accelerations."""
     points, measures = equations.points, equations.measures
@@ -150,7 +152,7 @@ def rates_without_forces(
 
 @inlined
 def find_free_rates(
-    scene: Scene, equations: Equations, count: int, acceleration: Numbers, share: float
+    scene: RigidScene, equations: Equations, count: int, acceleration: Numbers, share: float
 ) -> None:
     """Find how the speeds of points change at accelerations, of which ``share`` of the forces are part."""
     for i in range(count):
@@ -162,13 +164,13 @@ def find_free_rates(
 
 @inlined
 def constrained_acceleration(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, acceleration: Numbers
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, acceleration: Numbers
 ) -> None:
     """Compute v' of a state in which each point goes on with what it does, and the forces of the points.
 
     Behind the clock, ``acceleration`` takes what causes give in a second.
 
-    What is light between heavy bodies is accelerated by the difference of large forces. So these are refined
+    A light body between heavy ones is accelerated by the difference of large forces. So these are refined
     by what the accelerations still leave of the laws, and their changes are added to the accelerations.
     """
     accelerate(q, v, acceleration, scene.inverse_mass, scene.damping, scene.calls)
@@ -191,10 +193,10 @@ def constrained_acceleration(
 
 
 @always_inlined
-def project(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
+def project(scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
     """Move bodies by the least that closes the gaps of closed points, and remove their speeds across.
 
-    What sticks loses its speed along the surface as well. Speeds below the tolerance are taken by contacts;
+    A point that sticks loses its sliding speed as well. Speeds below the tolerance are taken by contacts;
     what moving bodies does to energy and momentum is an error.
     """
     for turn in range(3):

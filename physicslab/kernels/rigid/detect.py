@@ -16,7 +16,7 @@ from physicslab.kernels.rigid.features import (
     VERTEX,
     WALL,
     Points,
-    Scene,
+    RigidScene,
 )
 
 __all__ = ["TIE", "find_points", "seen_from"]
@@ -65,7 +65,7 @@ def _place(lie: Lie, shapes: Shapes, other: int, k: int) -> tuple[float, float]:
 
 @inlined
 def _rates(
-    scene: Scene, q: Numbers, v: Numbers, one: int, other: int, lie: Lie, k: int
+    scene: RigidScene, q: Numbers, v: Numbers, one: int, other: int, lie: Lie, k: int
 ) -> tuple[float, float]:
     """Return how fast vertex k of OTHER moves, seen from ONE, in its own directions [m/s]."""
     rows, (ux, uy) = scene.rows, vertex(scene.shapes, other, k)
@@ -79,7 +79,7 @@ def _rates(
 
 
 @inlined
-def _to_wall(points: Points, pair: int, q: Numbers, scene: Scene, row: int, wall: int) -> int:
+def _to_wall(points: Points, pair: int, q: Numbers, scene: RigidScene, row: int, wall: int) -> int:
     """Find the two vertices of a body that are nearest to a wall, or its only one."""
     axis, sign = (0 if wall == 0 or wall == 2 else 1), (1.0 if wall < 2 else -1.0)
     first, second, low, next_low = 0, 0, math.inf, math.inf
@@ -113,7 +113,7 @@ def _nearest_vertex(lie: Lie, shapes: Shapes, one: int, k: int, other: int) -> t
 
 
 @inlined
-def _face_rate(scene: Scene, q: Numbers, v: Numbers, one: int, k: int, other: int, lie: Lie) -> float:
+def _face_rate(scene: RigidScene, q: Numbers, v: Numbers, one: int, k: int, other: int, lie: Lie) -> float:
     """Return how fast the nearest vertex of OTHER recedes from face k of ONE [m/s]."""
     fx, fy, _, _ = face(scene.shapes, one, k)
     _, nearest = _nearest_vertex(lie, scene.shapes, one, k, other)
@@ -124,11 +124,11 @@ def _face_rate(scene: Scene, q: Numbers, v: Numbers, one: int, k: int, other: in
 
 @inlined
 def _farthest_face(
-    scene: Scene, q: Numbers, v: Numbers, one: int, other: int, lie: Lie, tie: float
+    scene: RigidScene, q: Numbers, v: Numbers, one: int, other: int, lie: Lie, tie: float
 ) -> tuple[int, float]:
     """Return the face of ONE from which the core of OTHER is farthest, and how far [m].
 
-    Of faces that are equally far, as where two corners meet, the one that recedes faster: only there could
+    Among faces that are equally far, as where two corners meet, the one that recedes faster: only there could
     they pass each other, and a box that slides over the joint of two tiles is not stopped by the side of
     the next. A core of one vertex has no face.
     """
@@ -166,7 +166,7 @@ def _facing(lie: Lie, shapes: Shapes, one: int, k: int, other: int) -> int:
 
 @inlined
 def _within(
-    scene: Scene, q: Numbers, v: Numbers, one: int, k: int, other: int, j: int, lie: Lie, tie: float
+    scene: RigidScene, q: Numbers, v: Numbers, one: int, k: int, other: int, j: int, lie: Lie, tie: float
 ) -> float:
     """Return how far vertex j of OTHER is from the nearer end of face k of ONE, along it [m].
 
@@ -194,7 +194,7 @@ def _beyond(distance: float, rate: float, tie: float) -> float:
 
 @inlined
 def _is_outside(
-    scene: Scene, q: Numbers, v: Numbers, one: int, i: int, other: int, j: int, lie: Lie, tie: float
+    scene: RigidScene, q: Numbers, v: Numbers, one: int, i: int, other: int, j: int, lie: Lie, tie: float
 ) -> bool:
     """Whether vertex j of OTHER is beyond, or leaves, both faces of ONE that meet at vertex i."""
     if scene.shapes.vertices[one] == 1:
@@ -225,8 +225,8 @@ def _nearest_vertices(lie: Lie, shapes: Shapes, one: int, other: int) -> tuple[i
 
 @inlined
 def _to_faces(
-    scene: Scene, points: Points, p: int, q: Numbers, v: Numbers, a: int, b: int, lie: Lie, lie_back: Lie,
-    tie: float,
+    scene: RigidScene, points: Points, p: int, q: Numbers, v: Numbers, a: int, b: int, lie: Lie,
+    lie_back: Lie, tie: float,
 ) -> tuple[int, float]:  # fmt: skip
     """Find the ends of the stretch along which two bodies face each other.
 
@@ -258,7 +258,7 @@ def _to_faces(
 
 
 @inlined
-def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points) -> tuple[int, float]:
+def find_points(scene: RigidScene, p: int, q: Numbers, v: Numbers, points: Points) -> tuple[int, float]:
     """Write the points where pair ``p`` touches, or would; return how many they are.
 
     And a distance that the two have at least where it is positive [m]; infinity where the smallest gap of

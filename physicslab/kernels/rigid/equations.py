@@ -11,7 +11,7 @@ __all__ = [
 ]  # fmt: skip
 
 OPEN, STICKS, SLIDES_ON, SLIDES_BACK = 0, 1, 2, 3
-"""What a point does. One that slides on has z_t = -mu z_n, one that slides back z_t = +mu z_n."""
+"""State of a point. One that slides on has z_t = -mu z_n, one that slides back z_t = +mu z_n."""
 FREE, UNKNOWN, CAUSED, RIGHT, CHANGE, VECTORS = range(6)
 """Rows of vectors: what happens without contact forces, these, what happens with them, a right side, a change
 of forces."""

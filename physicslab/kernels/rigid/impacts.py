@@ -52,7 +52,7 @@ from physicslab.kernels.rigid.features import (
     VERTEX,
     VN,
     VT,
-    Scene,
+    RigidScene,
 )
 from physicslab.kernels.rigid.joined import book_impulses
 from physicslab.kernels.solver.impact_log import (
@@ -72,7 +72,7 @@ _NOISE = 1e-4
 """Share of the tolerance of speeds up to which an approach is rounding."""
 _SPEEDS = 100.0
 """Multiple of the tolerance of speeds that impulses are measured by: smaller ones go by rounding."""
-_ROUNDING = 1e-15
+_SUM_ROUNDING = 1e-15
 """Share of sums that may be rounding."""
 
 
@@ -140,7 +140,7 @@ def _solve(impact: Equations, n: int, share: float, rest: float, rate: float) ->
 def _energy_gained(impact: Equations, n: int) -> float:
     """Return the work of the impulses at most, as a share of the sum of the magnitudes of its parts.
 
-    What is light and pressed from two sides by what is heavy takes large impulses that nearly cancel; the
+    A light body pressed from two sides by heavy ones takes large impulses that nearly cancel; the
     rounding of that could make energy.
     """
     work, scale, cancelled = 0.0, 0.0, 0.0
@@ -155,7 +155,7 @@ def _energy_gained(impact: Equations, n: int) -> float:
             cancelled += abs(impulse) * parts
             work += 0.5 * impulse * (before + after)
             scale += abs(impulse) * (abs(impact.measures[i, VN]) + abs(impact.measures[i, VT]))
-    return (work + _ROUNDING * cancelled) / scale if scale > 0.0 else 0.0
+    return (work + _SUM_ROUNDING * cancelled) / scale if scale > 0.0 else 0.0
 
 
 @always_inlined
@@ -176,7 +176,7 @@ def _find_impulses(impact: Equations, n: int, rest: float, rate: float) -> tuple
 
 @inlined
 def _pair_velocity(
-    scene: Scene, v: Numbers, late: float, acceleration: Numbers, a: int, b: int
+    scene: RigidScene, v: Numbers, late: float, acceleration: Numbers, a: int, b: int
 ) -> PairVelocity[float]:
     """Return how a pair moves at the moment of its impact, ``late`` seconds ago by the forces."""
     wa, wb = 2 * scene.rows + a, 2 * scene.rows + b
@@ -189,7 +189,7 @@ def _pair_velocity(
 
 
 @inlined
-def _frame(scene: Scene, impact: Equations, i: int, q: Numbers) -> ContactFrame[float]:
+def _frame(scene: RigidScene, impact: Equations, i: int, q: Numbers) -> ContactFrame[float]:
     """Return the normal from A to B of a point's pair, and its arms."""
     pair = impact.points[i, PAIR]
     a, b = scene.pairs[pair, 0], scene.pairs[pair, 1]
@@ -202,7 +202,7 @@ def _frame(scene: Scene, impact: Equations, i: int, q: Numbers) -> ContactFrame[
 
 
 @inlined
-def _name_of_wall(scene: Scene, impact: Equations, i: int, wall: int) -> int:
+def _name_of_wall(scene: RigidScene, impact: Equations, i: int, wall: int) -> int:
     """Return the ``wall`` of a pair; of one with a chain it names the segment where point i is."""
     one, other = impact.points[i, ONE], impact.points[i, OTHER]
     if impact.points[i, FEATURE] < 0:
@@ -213,7 +213,7 @@ def _name_of_wall(scene: Scene, impact: Equations, i: int, wall: int) -> int:
 
 
 @inlined
-def _two_points(scene: Scene, impact: Equations, i: int, end: int, q: Numbers) -> ImpactPoints:
+def _two_points(scene: RigidScene, impact: Equations, i: int, end: int, q: Numbers) -> ImpactPoints:
     """Return the points ``i`` to ``end`` of a pair as two, at the ends of the line on which they are.
 
     Where there are more, the impulses of those between are shared out to the ends by the law of the lever.
@@ -243,7 +243,7 @@ def _two_points(scene: Scene, impact: Equations, i: int, end: int, q: Numbers) -
 
 
 @inlined
-def _alone(scene: Scene, impact: Equations, n: int, i: int, end: int) -> bool:
+def _alone(scene: RigidScene, impact: Equations, n: int, i: int, end: int) -> bool:
     """Whether no other pair's impulse acts on what the points ``i`` to ``end`` move."""
     pair, alone = impact.points[i, PAIR], True
     for body in (scene.pairs[pair, 0], scene.pairs[pair, 1]):
@@ -258,8 +258,9 @@ def _alone(scene: Scene, impact: Equations, n: int, i: int, end: int) -> bool:
 
 @inlined
 def _book(
-    scene: Scene, impact: Equations, i: int, end: int, q: Numbers, pose: Pose, before: PairVelocity[float],
-    after: PairVelocity[float], mass: PairInverseMass[float], cause: int, account: Vectors,
+    scene: RigidScene, impact: Equations, i: int, end: int, q: Numbers, pose: Pose,
+    before: PairVelocity[float], after: PairVelocity[float], mass: PairInverseMass[float], cause: int,
+    account: Vectors,
 ) -> None:  # fmt: skip
     """Book the impulses of the points ``i`` to ``end`` of a pair, two by two."""
     for k in range(i, end, 2):
@@ -274,8 +275,9 @@ def _book(
 
 @inlined
 def _note_round(
-    scene: Scene, impact: Equations, n: int, q: Numbers, old: Numbers, v: Numbers, rest: float, rate: float,
-    acceleration: Numbers, law: int, entities: Rows, log: Impacts, logged: int, time: float, account: Vectors,
+    scene: RigidScene, impact: Equations, n: int, q: Numbers, old: Numbers, v: Numbers, rest: float,
+    rate: float, acceleration: Numbers, law: int, entities: Rows, log: Impacts, logged: int, time: float,
+    account: Vectors,
 ) -> int:  # fmt: skip
     """Book a round of impulses that has changed the speeds ``old`` to ``v``, and log its impacts.
 
@@ -328,8 +330,9 @@ def _note_round(
 
 @always_inlined
 def resolve_simultaneous_impacts(
-    scene: Scene, equations: Equations, count: int, impact: Equations, q: Numbers, v: Numbers, old: Numbers,
-    acceleration: Numbers, rest: float, rate: float, entities: Rows, log: Impacts, logged: int, time: float,
+    scene: RigidScene, equations: Equations, count: int, impact: Equations, q: Numbers, v: Numbers,
+    old: Numbers, acceleration: Numbers, rest: float, rate: float, entities: Rows, log: Impacts, logged: int,
+    time: float,
     account: Vectors,
 ) -> tuple[int, bool, int, int, int, int]:  # fmt: skip
     """Let all points that approach faster than ``rest`` bounce, until none does.

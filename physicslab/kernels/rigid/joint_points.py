@@ -4,7 +4,7 @@ A limit is a contact without a tangent: its gap is what is left of a rope, or of
 stop, its normal the gradient of that, and it does not bounce. A motor with a largest force is friction
 without a normal: it slides as far as its speed is not the one it is to hold, and a unit of force that nothing
 moves presses on it, of which its coefficient of friction makes the largest force. So both are pairs of the
-laws of contacts, which have no case for them. What is kept in any case, as a pin, is no point
+laws of contacts, which have no case for them. A term that holds in any case, as a pin, is no point
 (:mod:`physicslab.kernels.rigid.joined`).
 
 Angles are multiplied by a lever of their joint, so that all rows measure metres.
@@ -31,7 +31,7 @@ from physicslab.kernels.rigid.features import (
     VN,
     VT,
     Points,
-    Scene,
+    RigidScene,
     measure_contact,
     rate_along,
 )
@@ -76,7 +76,7 @@ def _measure_term(
 
 
 @always_inlined
-def measure(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
+def measure(scene: RigidScene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
     """Measure point number i in a state."""
     if points[i, FEATURE] >= JOINT:
         _measure_row(scene.rows, scene.coefficients, points, i, q, v, out)
@@ -117,7 +117,7 @@ def _measure_row(
 
 
 @always_inlined
-def motor_rate(scene: Scene, points: Points, measures: Vectors, i: int) -> float:
+def motor_rate(scene: RigidScene, points: Points, measures: Vectors, i: int) -> float:
     """Return how fast a motor that is measured moves against its force [m/s]."""
     own, p = scene.coefficients, points[i, PAIR]
     rate: float = measures[i, VT] + own[p, LEVER] * own[p, TARGET]

@@ -37,7 +37,7 @@ from physicslab.kernels.rigid.features import (
     VN,
     VT,
     Points,
-    Scene,
+    RigidScene,
     SceneTuple,
     named_scene,
 )
@@ -50,7 +50,7 @@ from physicslab.kernels.rigid.piece_end import (
     HOLDS,
     PRESSES,
     SLIDES,
-    cut_at_first_event,
+    locate_event,
     note_start,
 )
 from physicslab.kernels.rigid.pieces import (
@@ -137,7 +137,7 @@ def _note_changes(
 
 
 @inlined
-def _is_slow(scene: Scene, v: Numbers, rest: float) -> bool:
+def _is_slow(scene: RigidScene, v: Numbers, rest: float) -> bool:
     """Whether nothing moves."""
     slow = True
     for i in range(3 * scene.rows):
@@ -148,7 +148,7 @@ def _is_slow(scene: Scene, v: Numbers, rest: float) -> bool:
 
 @inlined
 def _is_balanced(
-    scene: Scene, equations: Equations, closed: int, share: float, acceleration: Numbers, least: float,
+    scene: RigidScene, equations: Equations, closed: int, share: float, acceleration: Numbers, least: float,
     loads: Numbers,
 ) -> bool:  # fmt: skip
     """Whether the forces found leave no acceleration, but for a ``share`` of what each alone would cause.
@@ -210,7 +210,7 @@ def collide(
 
 @inlined
 def _any_approaches(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, rest: float
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, rest: float
 ) -> bool:
     """Whether any point approaches faster than rounding."""
     measure_all(scene, equations, count, q, v)
@@ -222,7 +222,7 @@ def _any_approaches(
 
 @always_inlined
 def _make_smooth(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
     tolerance: float, stages: Stages, allowed: Numbers,
 ) -> tuple[float, int]:  # fmt: skip
     """Make a piece of ``h`` seconds, or less where its error or its ways demand it.
@@ -265,7 +265,7 @@ def advance_piece(
         if not short:
             h, pieces = _make_smooth(of, points, count, q, v, h, left, tolerance, at, allowed)
             evaluations += pieces * LAST
-        passed, kind, index, more = cut_at_first_event(
+        passed, kind, index, more = locate_event(
             of, points, count, scratch, start, at, q, v, h, tolerance, rest, short
         )
         evaluations += more * LAST
@@ -303,7 +303,7 @@ def begin_motion(
         if not solved:
             stopped = stop_sliding(of, points, count, changed, q, v, rest)
             return STOPPED if stopped else NO_FORCES, 0, rest, False
-        # What is light on top of what is heavy is held to more digits by its own mass.
+        # A light body on top of a heavy one is held to more digits by its own mass.
         held = slow and _is_balanced(of, points, count, _BALANCED, at.acceleration, least, at.q)
     closed = keep_pressing(points, count, least)
     if held:

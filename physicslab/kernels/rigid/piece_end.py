@@ -1,4 +1,4 @@
-"""What ends a smooth piece of motion: functions that fall below zero, and when the first of them does."""
+"""The end of a smooth piece of motion: functions that fall below zero, and when the first of them does."""
 
 import math
 
@@ -17,19 +17,19 @@ from physicslab.kernels.rigid.features import (
     STATUS,
     VN,
     VT,
-    Scene,
+    RigidScene,
 )
 from physicslab.kernels.rigid.joint_points import measure
 from physicslab.kernels.rigid.pieces import Stages, make_piece
 from physicslab.kernels.rigid.touching import NO_SPEED, SLOW, find_open, moved_closer
 
 __all__ = [
-    "ALLOWED", "APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "STARTS", "cut_at_first_event", "note_start",
+    "ALLOWED", "APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "STARTS", "locate_event", "note_start",
 ]  # fmt: skip
 
 PRESSES, HOLDS, SLIDES, REACHES, APART = 0, 1, 2, 3, 4
-"""What must stay positive: a normal force, what is
-left of the friction cone, a sliding speed, the distance to the end of a feature, a gap."""
+"""Quantities that must stay positive: a normal force, the rest of the friction cone, a sliding speed, the
+distance to the end of a feature, a gap."""
 _CLEAR, ALLOWED, STARTS = 5, 6, 7
 """The rows of what is noted at a start that hold how far pairs are apart at least, and how far they may come
 together; the number of rows."""
@@ -37,7 +37,7 @@ _CLOSED = 1e-13
 """Share of a size by which a gap may change by rounding."""
 _NO_FORCE = 1e-9
 """Share of the largest force that is rounding."""
-_ROUNDING = 1e-14
+_SIZE_ROUNDING = 1e-14
 """Share of a size that is rounding."""
 _HALVINGS = 40
 """How often a piece is halved to find a time at which a point that has bounced is above the other body."""
@@ -55,7 +55,7 @@ _CUTS = 16
 
 @inlined
 def _value(
-    kind: int, index: int, scene: Scene, equations: Equations, count: int, scratch: Equations,
+    kind: int, index: int, scene: RigidScene, equations: Equations, count: int, scratch: Equations,
     q: Numbers, v: Numbers,
 ) -> float:  # fmt: skip
     """Return what must stay positive, of a point that is measured in the state or of a pair."""
@@ -89,7 +89,7 @@ def _time_to_fall(height: float, speed: float, acceleration: float) -> float:
 
 @always_inlined
 def note_start(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
     acceleration: Numbers, start: Vectors,
 ) -> float:  # fmt: skip
     """Note all functions at the start of a piece, and distances of pairs.
@@ -121,7 +121,9 @@ def _can_end(kind: int, i: int, equations: Equations) -> bool:
 
 
 @inlined
-def _allowance(kind: int, i: int, scene: Scene, equations: Equations, start: float, rest: float) -> float:
+def _allowance(
+    kind: int, i: int, scene: RigidScene, equations: Equations, start: float, rest: float
+) -> float:
     """Return how far a function may fall that begins at zero: by as much as is treated as zero.
 
     A corner at the end of a face is on it as long as both are level.
@@ -139,7 +141,7 @@ def _allowance(kind: int, i: int, scene: Scene, equations: Equations, start: flo
 
 
 @inlined
-def _noise(kind: int, index: int, scene: Scene, equations: Equations, rest: float) -> float:
+def _noise(kind: int, index: int, scene: RigidScene, equations: Equations, rest: float) -> float:
     """Return by how much rounding may change a function."""
     if kind <= HOLDS:
         force: float = abs(equations.vectors[UNKNOWN, 2 * index])
@@ -147,12 +149,12 @@ def _noise(kind: int, index: int, scene: Scene, equations: Equations, rest: floa
     if kind == SLIDES:
         return NO_SPEED * rest
     size: float = scene.coefficients[index if kind == APART else equations.points[index, PAIR], 2]
-    return _ROUNDING * size
+    return _SIZE_ROUNDING * size
 
 
 @inlined
 def _first_event(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
     q: Numbers, rest: float, last_kind: int, last: int,
 ) -> tuple[int, int]:  # fmt: skip
     """Return which function fell below zero first within the piece: kind and index, -1 if none did.
@@ -180,9 +182,9 @@ def _first_event(
 
 @always_inlined
 def _cross(
-    on_curve: bool, kind: int, index: int, scene: Scene, equations: Equations, count: int, scratch: Equations,
-    stages: Stages, q: Numbers, v: Numbers, h: float, t: float, end: float, slope: float, f_low: float,
-    allowance: float, noise: float, tolerance: float,
+    on_curve: bool, kind: int, index: int, scene: RigidScene, equations: Equations, count: int,
+    scratch: Equations, stages: Stages, q: Numbers, v: Numbers, h: float, t: float, end: float, slope: float,
+    f_low: float, allowance: float, noise: float, tolerance: float,
 ) -> tuple[float, float, bool, int]:  # fmt: skip
     """Find where a function falls below zero, from ``t`` on and before ``end``, in a piece of ``h`` seconds.
 
@@ -242,8 +244,8 @@ def _cross(
 
 
 @always_inlined
-def cut_at_first_event(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
+def locate_event(
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
     q: Numbers, v: Numbers, h: float, tolerance: float, rest: float, short: bool,
 ) -> tuple[float, int, int, int]:  # fmt: skip
     """Cut a piece that was made of ``h`` seconds where its first event is, if there is one in it.

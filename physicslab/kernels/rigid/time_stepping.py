@@ -36,7 +36,7 @@ from physicslab.kernels.rigid.features import (
     OTHER,
     VT,
     WALL,
-    Scene,
+    RigidScene,
     SceneTuple,
     named_scene,
 )
@@ -121,7 +121,7 @@ def separate(scene: SceneTuple, equations: EquationsTuple, count: int, q: Number
 
 
 @inlined
-def _find_islands(scene: Scene, equations: Equations, count: int, island: Numbers) -> None:
+def _find_islands(scene: RigidScene, equations: Equations, count: int, island: Numbers) -> None:
     """Give all bodies that points or joints connect one number: the lowest row of them."""
     for row in range(scene.rows):
         island[row] = row
@@ -159,7 +159,7 @@ def take_work(
 
     Where it is to ``pay`` for it, what was added is taken from the kinetic energy of the bodies that hang
     together by the ``count`` points: all their speeds are lowered by one factor, so that what slides and what
-    rests does so still. What their energy does not suffice for is returned; then by how much the energy has
+    rests does so still. Work beyond their energy is returned; then by how much the energy has
     changed, be it that it was less.
     """
     of, points, room = named_scene(scene), named_equations(equations), named_stages(stages)

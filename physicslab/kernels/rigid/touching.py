@@ -39,7 +39,7 @@ from physicslab.kernels.rigid.features import (
     VT,
     WALL,
     Points,
-    Scene,
+    RigidScene,
     measure_contact,
 )
 from physicslab.kernels.rigid.joined import strongest_joint
@@ -81,7 +81,7 @@ def length_of(x: float, y: float) -> float:
 
 
 @inlined
-def _from_core(scene: Scene, row: int, other: int, q: Numbers) -> float:
+def _from_core(scene: RigidScene, row: int, other: int, q: Numbers) -> float:
     """Return how far the centre of a body is from the box about another one's core [m], 0 inside."""
     x, y = seen_from(q, scene.rows, row, q[2 * other], q[2 * other + 1])
     over_x = max(abs(x) - scene.shapes.half_x[row], 0.0)
@@ -90,7 +90,7 @@ def _from_core(scene: Scene, row: int, other: int, q: Numbers) -> float:
 
 
 @inlined
-def far_apart(scene: Scene, p: int, q: Numbers, enough: float) -> float:
+def far_apart(scene: RigidScene, p: int, q: Numbers, enough: float) -> float:
     """Return a distance that the shapes of a pair have at least [m]; negative where they may touch.
 
     One above ``enough`` is not the best that can be found.
@@ -154,7 +154,7 @@ def _is_closed(radius: Numbers, points: Points, count: int, others: Points, k: i
 
 @inlined
 def _find_open_row(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, p: int, q: Numbers, v: Numbers
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, p: int, q: Numbers, v: Numbers
 ) -> tuple[int, float, float]:
     """Do the same as :func:`find_open` for a row of a joint, which a motor always keeps closed."""
     gap: float = scene.coefficients[p, 2]
@@ -171,7 +171,7 @@ def _find_open_row(
 
 @inlined
 def find_open(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, p: int, q: Numbers, v: Numbers
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, p: int, q: Numbers, v: Numbers
 ) -> tuple[int, float, float]:
     """Find and measure the points of a pair that are not closed, unless it is more than a size apart.
 
@@ -204,7 +204,7 @@ def find_open(
 
 
 @inlined
-def moved_closer(scene: Scene, p: int, q: Numbers, later: Numbers) -> float:
+def moved_closer(scene: RigidScene, p: int, q: Numbers, later: Numbers) -> float:
     """Return by how much the distance of a pair can have changed from one state to a later one [m].
 
     That of a limit changes by more than bodies move: it is not estimated.
@@ -222,7 +222,7 @@ def moved_closer(scene: Scene, p: int, q: Numbers, later: Numbers) -> float:
 
 
 @inlined
-def _find_unit(scene: Scene, scratch: Equations, i: int, most: float, strongest: float) -> float:
+def _find_unit(scene: RigidScene, scratch: Equations, i: int, most: float, strongest: float) -> float:
     """Find what a force at a motor causes, and a unit of force of the size of those there are [N]."""
     own, rows, p = 0.0, scene.rows, scratch.points[i, PAIR]
     for side in range(2):
@@ -237,7 +237,7 @@ def _find_unit(scene: Scene, scratch: Equations, i: int, most: float, strongest:
 
 @inlined
 def find_touching(
-    scene: Scene, equations: Equations, scratch: Equations, q: Numbers, v: Numbers, within: float,
+    scene: RigidScene, equations: Equations, scratch: Equations, q: Numbers, v: Numbers, within: float,
     strongest: float,
 ) -> tuple[int, float]:  # fmt: skip
     """List the points that touch, or are ``within`` a share of the size of that.
@@ -279,7 +279,7 @@ def find_touching(
 
 
 @inlined
-def rest_limits(scene: Scene, acceleration: Numbers, v: Numbers) -> tuple[float, float]:
+def rest_limits(scene: RigidScene, acceleration: Numbers, v: Numbers) -> tuple[float, float]:
     """Return the tolerances of speeds [m/s] and of accelerations [m/s^2], below which all is zero.
 
     The latter is ``NO_PUSH`` times the largest acceleration.
@@ -322,7 +322,7 @@ def _changed_status(equations: Equations, i: int, changed: Points) -> int:
 
 
 @always_inlined
-def _stop_across(scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
+def _stop_across(scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
     """Remove speeds below the tolerance: equations of points that rest would contradict each other."""
     for i in range(count):
         equations.points[i, STATUS] = SLIDES_ON
@@ -336,7 +336,7 @@ def _stop_across(scene: Scene, equations: Equations, count: int, q: Numbers, v: 
 
 @always_inlined
 def take_closed(
-    scene: Scene, equations: Equations, count: int, changed: Points, q: Numbers, v: Numbers, rest: float
+    scene: RigidScene, equations: Equations, count: int, changed: Points, q: Numbers, v: Numbers, rest: float
 ) -> int:
     """Keep the points that do not part; return how many.
 
@@ -370,7 +370,7 @@ def _note_given(equations: Equations, count: int, changed: Points, rest: float) 
 
 @always_inlined
 def hold_closed(
-    scene: Scene, equations: Equations, count: int, changed: Points,
+    scene: RigidScene, equations: Equations, count: int, changed: Points,
     q: Numbers, v: Numbers, acceleration: Numbers, rest: float, least: float,
 ) -> tuple[int, bool]:  # fmt: skip
     """Find what ``count`` points do, and with what forces; return how many they are, and if laws are kept."""
@@ -402,12 +402,12 @@ def hold_closed(
 
 @always_inlined
 def hold_evenly(
-    scene: Scene, equations: Equations, count: int, changed: Points, acceleration: Numbers, rest: float,
+    scene: RigidScene, equations: Equations, count: int, changed: Points, acceleration: Numbers, rest: float,
     least: float, inverse_mass: Numbers, pulled: Numbers,
 ) -> int:  # fmt: skip
     """Find the forces that would hold ``count`` points of equal bodies that are pulled as these are.
 
-    What holds bodies at rest depends on what pulls at them and not on their masses. So all are given the
+    Forces that hold bodies at rest depend on their loads and not on their masses. So all are given the
     largest mass there is, and what is light between heavy bodies costs no digits. ``inverse_mass`` and
     ``pulled`` are room.
     """
@@ -419,7 +419,7 @@ def hold_evenly(
         own = scene.inverse_mass[i if i < 2 * scene.rows else 2 * (i - 2 * scene.rows)]
         share = lightest / own if own > 0.0 else 1.0
         inverse_mass[i], pulled[i] = share * scene.inverse_mass[i], share * acceleration[i]
-    even = Scene(
+    even = RigidScene(
         scene.rows, inverse_mass, scene.damping, scene.calls, scene.shapes, scene.walls, scene.pairs,
         scene.coefficients, scene.accounts, scene.joint_numbers, scene.joints,
     )  # fmt: skip
