@@ -2,7 +2,7 @@
 
 ``uv run --group peers --group cluster python benchmarks/ensembles.py``
 
-- A ball falls on a floor and bounces, with another restitution, or mass, in each run, for 1 s: a plain loop of
+- A ball falls on a floor and bounces, with another restitution, or mass, in each run, for 1 s: a loop of
   ``load_scene`` and ``run``, the rows of an ensemble, and pymunk by joblib. Rows of which the end alone is
   measured are made together; a count of impacts has them made one by one.
 - Two bodies go once around each other, from another speed in each run: the rows of an ensemble, and REBOUND
