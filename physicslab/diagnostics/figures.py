@@ -100,6 +100,12 @@ class Record:
         for column in self.columns.values():
             column.clear()
 
+    def put(self, time: float, values: Iterable[float]) -> None:
+        """Hold one sample, of a time [s], with these values of the columns [SI]."""
+        self.end, self.times = time, [time]
+        for column, value in zip(self.columns.values(), values, strict=True):
+            column[:] = [value]
+
     def add(self) -> None:
         """Take a sample of the world as it is now."""
         self.end = self._world.time
