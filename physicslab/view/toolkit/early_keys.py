@@ -1,4 +1,4 @@
-"""Keys that come before the field that they are for: a click or a key has opened it, and it is not built yet."""
+"""Keys that come before the field that they are for: what opens it was pressed, and it is not built yet."""
 
 import pygame
 
