@@ -28,6 +28,7 @@ from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import SECTIONS, Place, entity_names, find_place
 from physicslab.files.reader import read_scene
 from physicslab.kernels.keys import sources_key
+from physicslab.kernels.tiers import compile_first
 from physicslab.stepping.partition import is_one
 from physicslab.stepping.plan import choose_plan
 from physicslab.stepping.run import run_length
@@ -147,6 +148,7 @@ class Runner:
     """Runs rows of a task, one after the other, in one world where that is possible."""
 
     def __init__(self, task: Task) -> None:
+        compile_first()
         self.task = task
         self._names = list(task.measures)
         world = read_scene(json.loads(task.scene), "the scene")
