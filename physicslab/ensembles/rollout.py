@@ -29,7 +29,7 @@ MOTION: Mapping[str, tuple[type[Any], str, str]] = {
     "x": (Transform, "position", "x"), "y": (Transform, "position", "y"), "angle": (Transform, "angle", ""),
     "vx": (Velocity, "linear", "x"), "vy": (Velocity, "linear", "y"), "omega": (Velocity, "angular", ""),
 }  # fmt: skip
-"""What can be read at the end of a run: its column, and which part of a vector."""
+"""Quantities that can be read at the end of a run: the column, and the part of a vector."""
 _ANY_TIME = {(kind.__name__, field) for kind, field, _ in MOTION.values()}
 """Fields of which a stepper keeps nothing."""
 _BETWEEN_IMPACTS = _ANY_TIME | {("Material", "restitution"), ("Material", "friction"), ("Mass", "mass")}
@@ -42,11 +42,11 @@ class Rollout:
     Parameters
     ----------
     world : World
-        What rows have in common; it is one island at all times.
+        The world that rows have in common; it is one island at all times.
     places : mapping of str to Place
         In what they differ, by column.
     read : sequence of tuple of int and str
-        What is read at the end: an entity that moves, and a name of ``MOTION``.
+        Readings at the end: an entity that moves, and a name of ``MOTION``.
     chooses_the_same : callable
         Tells whether the world, as it is then, is stepped by the systems and the method that it has.
     """
@@ -78,7 +78,7 @@ class Rollout:
         Returns
         -------
         ends : float64 array (n, quantities)
-            What is read at the end of each [SI].
+            The readings at the end of each [SI].
         made : bool array (n,)
             Which runs were made.
         """
