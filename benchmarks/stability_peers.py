@@ -83,9 +83,9 @@ def stepped_by(peer: type[Peer], substeps: int) -> Iterator[list[Peer]]:
             for _ in range(substeps):
                 mirror.step(dt / substeps)
             if world.joints.joints:
-                mirror.bring_back()
+                mirror.write_back()
                 note_gaps(world)
-        mirror.bring_back()
+        mirror.write_back()
         world.time += steps * dt
         world.steps += steps
 

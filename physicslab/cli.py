@@ -18,7 +18,7 @@ _LINE_LIMIT = 4_000
 """Characters of what is said on stderr: names of files and values come from outside."""
 _INTERRUPTED = 130
 _PIPE_CLOSED = 141
-"""What a shell reports of a program that a signal ended: 128 and the signal's number."""
+"""The exit status that a shell reports for a program that a signal ended: 128 plus the signal's number."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -32,6 +32,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv : sequence of str, optional
         The arguments, without the program's name; by default those of the process.
     """
+    os.environ.setdefault("PHYSICSLAB_INTERPRET", "0")  # each command decides on when to compile
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(

@@ -73,7 +73,7 @@ class Theme:
     Attributes
     ----------
     name : str
-        What it is called.
+        Its name.
     background : Colour
         Empty space, where one colour stands for it.
     sky_top, sky_bottom, grain : Colour, Colour, int
@@ -97,7 +97,7 @@ class Theme:
     spark : Colour
         Sparks at impacts.
     panel, panel_opacity, outline : Colour, float, Colour
-        What text stands on.
+        Ground of text.
     text, faint, accent, heading : Colour
         Figures; the words beside them; a number that matters; titles.
     velocity, force, contact_normal : Colour

@@ -14,6 +14,7 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows, wake_all
 from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
+from physicslab.kernels.tiers import begin_run
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
 from physicslab.stepping.accounting import book_account, close_account, open_account
@@ -26,9 +27,10 @@ from physicslab.stepping.keyframe import Keyframe
 from physicslab.stepping.plan import StepPlan, default_plan, plan_for_jumps
 from physicslab.stepping.run import run_length, strides
 from physicslab.stepping.select import Steppers, choose, remake, restart, resume
+from physicslab.stepping.small import is_small
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Advance, Advancer
-from physicslab.stepping.undo import Undoing, go_back
+from physicslab.stepping.undo import StepTransaction, go_back
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.breaking import BreakSystem, load_of
 from physicslab.systems.integrate import IntegrateSystem
@@ -38,7 +40,7 @@ from physicslab.systems.system import Stage, System
 
 _log = logging.getLogger(__name__)
 _told: set[str] = set()
-"""What was told already: a notebook may make a thousand worlds of one kind."""
+"""Warnings given already: a notebook may make a thousand worlds of one kind."""
 _AT_MOST = Field("at_most", "number", above=0.0, unit="s", owner="run")
 _LOOK_S, _STRIDE = 0.1, 1000
 """So long [s], and so many steps of smooth motion, a run goes on before the clock is looked at."""
@@ -66,9 +68,9 @@ class World(Facade):
     plan : StepPlan
         The method that moves the bodies, how collisions are found, and why.
     steppers : Steppers
-        What can advance this world as it is now, the best first.
+        Steppers that can advance this world as it is now, the best first.
     stepper : Advancer, optional
-        What made the last step: one of them, or the islands.
+        The stepper of the last step: one of them, or the islands.
     islands : Islands
         The bodies that have nothing to do with each other, each with steppers of their own.
 
@@ -130,6 +132,8 @@ class World(Facade):
             If a value would not be finite; the world is then as it was before the step.
         """
         h = self.simulation.dt if dt is None else _STEP.check(dt)
+        if not self.steps:
+            begin_run(lambda: is_small(self))
         with self.active():
             self._synchronise()
             self.advance(h, 1)
@@ -170,7 +174,7 @@ class World(Facade):
 
     def _attempt(self, h: float, steps: int, bears: float) -> int:
         """Advance, unless that ends with a load on joints beyond ``bears`` that is known at any time."""
-        with Undoing(self, self._motion):
+        with StepTransaction(self, self._motion):
             self._prepare(h)
             made = self._advance(h, steps)
             if self.account.is_open:
@@ -315,7 +319,7 @@ class World(Facade):
         return self.copy()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # What a scene file keeps goes to another process; what writes files stands above worlds.
+        # The contents of a scene file go to another process; the layer that writes files is above this one.
         scene = import_module("physicslab.files.scene")
         return scene.load_scene, (scene.write_scene(self),)
 

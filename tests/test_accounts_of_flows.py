@@ -172,7 +172,7 @@ class Wind(ForceSystem):
 
     needs = (Velocity, Mass)
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         return False
 
     @at(Stage.FORCE)

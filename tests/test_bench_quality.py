@@ -201,7 +201,7 @@ def test_box2d_in_c_has_what_the_world_has(box2d: Any) -> None:
     assert mirror.state(body) == pytest.approx((1, 2, 1, 2, 0.3, 3), abs=1e-6)
     assert mirror.state(still)[:2] == pytest.approx((-5, 0))
     mirror.run(1.0 / 600.0, 60)
-    mirror.bring_back()
+    mirror.write_back()
     assert place(world, body).x == pytest.approx(1.1, abs=1e-4)
     assert place(world, body).y == pytest.approx(2.2 - 0.5 * 9.81 * 0.01, abs=1e-3)
     speed = mirror.state(body)[3]

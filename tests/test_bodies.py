@@ -29,7 +29,7 @@ class Push(ForceSystem):
     def __init__(self, force: tuple[float, float], torque: float = 0.0) -> None:
         self.force, self.torque = force, torque
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         return False
 
     @at(Stage.FORCE)

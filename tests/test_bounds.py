@@ -104,7 +104,7 @@ def test_a_body_too_large_for_a_wedge_leaves_it_without_bounds_too() -> None:
         box(world, (0.0, 0.3 * side), width=4.0, height=0.4, angle=0.1 * side, static=True)
     body = box(world, (0.5, 0.0), width=0.6, height=0.6, mass=2.0)
     world.run(seconds=0.1)
-    assert deepest(world, body) <= 1e-3 and world.brought_back == 1
+    assert deepest(world, body) <= 1e-3 and world.returned_inside == 1
     assert world.component(body, Velocity).linear.magnitude < 2.0
 
 
@@ -114,13 +114,13 @@ def test_what_comes_back_brings_no_energy_but_what_is_booked() -> None:
     world.synchronise()
     before = measure_energy(world).total
     world.step()
-    assert world.brought_back == 1
+    assert world.returned_inside == 1
     booked, came = measure_account(world).energy["overlap"], measure_energy(world).total - before
     assert booked == pytest.approx(came, abs=0.05 * abs(came)) and booked > 0.0
     for _ in range(120):
         world.step()
     assert measure_energy(world).total <= before + booked + 1e-3
-    assert world.brought_back == 1 and world.component(body, Velocity).linear.magnitude < 0.01
+    assert world.returned_inside == 1 and world.component(body, Velocity).linear.magnitude < 0.01
 
 
 def test_many_are_brought_back_at_once_and_a_run_has_the_bits_of_its_steps() -> None:
@@ -139,7 +139,7 @@ def test_many_are_brought_back_at_once_and_a_run_has_the_bits_of_its_steps() -> 
     one.run(steps=90)
     for _ in range(90):
         other.step()
-    assert one.brought_back == other.brought_back > 0
+    assert one.returned_inside == other.returned_inside > 0
     position = one.table(Transform)["position"]
     assert position.tobytes() == other.table(Transform)["position"].tobytes()
     bodies = one.batch(Transform, Velocity).entities.tolist()
@@ -150,14 +150,14 @@ def test_many_are_brought_back_at_once_and_a_run_has_the_bits_of_its_steps() -> 
 def test_where_nothing_is_outside_nothing_is_brought_back() -> None:
     world = load_scene("sandbox")
     world.run(seconds=3.0)
-    assert world.brought_back == 0 and measure_account(world).energy["overlap"] == 0.0
+    assert world.returned_inside == 0 and measure_account(world).energy["overlap"] == 0.0
 
 
 def test_a_body_larger_than_the_world_stays_where_it_is() -> None:
     world = room()
     box(world, (7.0, 0.0), width=14.0, height=0.5, mass=1.0)
     world.run(steps=30)
-    assert world.brought_back == 0 and np.isfinite(world.table(Transform)["position"]).all()
+    assert world.returned_inside == 0 and np.isfinite(world.table(Transform)["position"]).all()
 
 
 def test_an_elastic_ball_outside_comes_back_where_impacts_are_located_in_time() -> None:

@@ -293,6 +293,6 @@ def test_box2d_3_has_what_the_world_has() -> None:
     assert mirror.state(body) == pytest.approx((1, 2, 1, 2, 0.3, 3), abs=1e-6)
     assert mirror._bodies[body].mass == pytest.approx(7)
     mirror.run(1.0 / 600.0, 60)
-    mirror.bring_back()
+    mirror.write_back()
     assert place(world, body).x == pytest.approx(1.1, abs=1e-4)
     assert place(world, body).y == pytest.approx(2.2 - 0.5 * 9.81 * 0.01, abs=1e-3)

@@ -342,7 +342,7 @@ class Pushing(System):
     def keep(self) -> tuple[NDArray[Any], ...]:
         return (np.array([self._count]),) if self._keeps else ()
 
-    def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
+    def restore(self, kept: tuple[NDArray[Any], ...]) -> None:
         self._count = int(kept[0][0])
 
 

@@ -528,7 +528,7 @@ def test_what_would_be_interpreted_for_too_long_is_compiled_first(
     finally:
         ask_before_compiling(None)
         interpreter.unlimited()
-        interpreter.stand_back(jitted)
+        interpreter.uninstall(jitted)
     assert late == [jitted]
     assert bits(world) == bits(expected)
 

@@ -10,7 +10,7 @@ from physicslab import World
 from physicslab.components import Mass, Material, Pin, Shape, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels.accounts import ENERGY, IMPACTS, JOINTS, PX, SPIN
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, IMPACTS, JOINTS, PX
 from physicslab.stepping.accounting import balance_of
 from physicslab.stepping.rigid import Rigid
 
@@ -43,7 +43,9 @@ def test_a_bar_on_a_pin_leaves_a_stop_with_e_times_its_spin(restitution: float) 
     lost = 0.5 * inertia * 4.0 * (1.0 - restitution**2)
     assert world.account.sums[IMPACTS, ENERGY] == pytest.approx(-lost, abs=1e-12)
     assert world.account.sums[JOINTS, ENERGY] == 0.0
-    assert world.account.sums[JOINTS, SPIN] == pytest.approx(0.0, abs=1e-14), "the pin is at the origin"
+    assert world.account.sums[JOINTS, ANGULAR_MOMENTUM] == pytest.approx(0.0, abs=1e-14), (
+        "the pin is at the origin"
+    )
 
 
 def test_what_hits_one_of_two_bars_moves_both_and_loses_nothing() -> None:

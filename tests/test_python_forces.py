@@ -51,14 +51,14 @@ class Lorentz(ForceSystem):
 class StatedLorentz(Lorentz):
     """The same, and says so."""
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         return True
 
 
 class Pull(Drive):
     """Denies to depend on velocities."""
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         return False
 
 

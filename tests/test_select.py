@@ -161,7 +161,7 @@ def test_a_force_written_in_python_is_named_beside_contacts_too(contacts: str, s
 
 def test_auto_keeps_to_one_evaluation_where_a_force_in_python_depends_on_no_velocity() -> None:
     class Steady(Wind):
-        def sees_velocity(self, state: State) -> bool:
+        def depends_on_velocity(self, state: State) -> bool:
             return False
 
     world = World(Steady(), IntegrateSystem())

@@ -13,7 +13,7 @@ from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import SimulationConfig
-from physicslab.kernels.accounts import ENERGY, GRAVITY, HAND, JOINTS, MOTORS, PX, SPIN
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, GRAVITY, HAND, JOINTS, MOTORS, PX
 from physicslab.kernels.joints import layout
 from physicslab.stepping.flow import Flow
 
@@ -127,7 +127,7 @@ def test_a_motor_that_moves_a_driven_platform_is_paid_by_both() -> None:
     assert abs(sums[MOTORS, ENERGY]) > 0.1 and abs(sums[HAND, ENERGY]) > 0.1
     assert sums[:, ENERGY].sum() == pytest.approx(gained, abs=1e-12)
     assert world.component(arm, Transform).angle == pytest.approx(3.0 * world.time, abs=1e-13)
-    assert sums[GRAVITY, PX] == 0.0 and sums[MOTORS, SPIN] != 0.0
+    assert sums[GRAVITY, PX] == 0.0 and sums[MOTORS, ANGULAR_MOMENTUM] != 0.0
 
 
 def joined_chain(order: np.ndarray) -> World:

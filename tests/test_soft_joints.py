@@ -31,7 +31,7 @@ from physicslab.diagnostics.energy import measure_account, measure_energy, measu
 from physicslab.diagnostics.joints import JointState, joint_states
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels.accounts import ENERGY, JOINTS, MOTORS, SPIN
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, JOINTS, MOTORS
 from physicslab.kernels.solver.finer import needed_factor
 from physicslab.prefabs import box, circle
 from physicslab.state.joint_order import Blocks, order_rows
@@ -130,7 +130,7 @@ def test_a_motor_turns_with_its_torque_up_to_its_speed_and_books_its_work() -> N
     world.run(seconds=1.5)
     assert world.component(wheel, Velocity).angular == pytest.approx(3.0, rel=1e-12)
     assert world.account.sums[MOTORS, ENERGY] == pytest.approx(9.0, rel=1e-12)
-    assert world.account.sums[MOTORS, SPIN] == pytest.approx(6.0, rel=1e-12)
+    assert world.account.sums[MOTORS, ANGULAR_MOMENTUM] == pytest.approx(6.0, rel=1e-12)
     assert world.account.sums[JOINTS, ENERGY] == pytest.approx(0.0, abs=1e-12)
 
 

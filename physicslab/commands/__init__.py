@@ -36,7 +36,7 @@ def require(user: str, extra: str, *packages: str) -> None:
     Parameters
     ----------
     user : str
-        What needs them: an option, or what is opened.
+        The option or the file that needs them.
     extra : str
         The extra.
     *packages : str

@@ -1,4 +1,4 @@
-"""What several commands take: a scene, and numbers, each refused with what is allowed."""
+"""Arguments of several commands: a scene, and numbers, each refused with the allowed range."""
 
 import argparse
 import math

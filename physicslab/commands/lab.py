@@ -72,7 +72,7 @@ class LabRun:
     label : str
         The command's name.
     arguments : Namespace
-        What was parsed.
+        The parsed arguments.
     example : str
         A name that a plot may have.
 

@@ -42,25 +42,25 @@ class MeasuredRun:
     Parameters
     ----------
     world : World
-        What is advanced.
+        The world that is advanced.
     name : str
-        What the run is called.
+        Name of the run.
     tiers : Tiers
-        What decides whether kernels are compiled or interpreted.
+        The choice whether kernels are compiled or interpreted.
     at_most : float, optional
         Wall-clock time [s] after which the run is stopped, compiling left out.
     keep : callable, optional
-        What keeps the start, the end, and the steps between.
+        Called to keep the start, the end, and the steps between.
     every : float, optional
         The time [s] between what is kept: the first step that ends at or after each multiple of it, counted
         from the start; every step if it is 0.
     ledger : LedgerWriter, optional
-        What writes the impacts, after each call of a stepper.
+        The writer of impacts, after each call of a stepper.
 
     Attributes
     ----------
     record : RunRecord
-        What was gathered.
+        The record gathered.
     stopped : str
         Where the run was stopped because its time was up, in words; empty if it was not.
     """

@@ -124,7 +124,7 @@ def picture_directory(path: str, example: str) -> Path:
     Parameters
     ----------
     path : str
-        What the user named with ``--plot``.
+        The path given with ``--plot``.
     example : str
         A name that a picture may have, to try whether files can be written there.
 

@@ -16,7 +16,7 @@ class Progress:
     Parameters
     ----------
     label : str
-        What is under way.
+        Name of the work under way.
     stream : text stream or None
         Usually stderr, which a program may be started without.
     always : bool

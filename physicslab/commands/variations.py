@@ -42,7 +42,7 @@ class Variation:
 
     @property
     def varied(self) -> Varied:
-        """What a slider says."""
+        """The text of a slider."""
         words = field_words(self.place.spec.name, self.place.part)
         return Varied(f"{self.place.name}: {words}", self.place.spec.unit, self.values)
 

@@ -1,4 +1,4 @@
-"""What bodies are made of: the table of materials, and the component that keeps the name of one."""
+"""Materials of bodies: the table of them, and the component that keeps the name of one."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -6,7 +6,7 @@ from typing import ClassVar
 from physicslab.ecs.component import Component, InvalidValue, component, field
 
 THICKNESS = 0.01
-"""Of the plates that bodies are cut from [m]: their mass per area is density times thickness."""
+"""Thickness [m] of the plates that bodies are cut from: mass per area is density times thickness."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,12 +16,12 @@ class Substance:
     Attributes
     ----------
     name, look : str
-        What it is called; how it is painted: "grain", "metal", "frost", "matt", "clear", "speckle", "plain".
+        Its name; its paint: "grain", "metal", "frost", "matt", "clear", "speckle", "plain".
     density : float
         Mass of a cubic metre [kg/m^3].
     restitution, friction : float
-        Of two bodies of this material; of two materials the pair has the smaller restitution and the root of
-        both frictions multiplied, which is a rule of the engine and no measurement.
+        Coefficients of two bodies of this material; a pair of two has the smaller restitution and the
+        root of both frictions multiplied, which is a rule of the engine and no measurement.
     colour : str
         As "#rrggbb".
     source : str
@@ -83,7 +83,7 @@ SUBSTANCES: dict[str, Substance] = {
 class MadeOf(Component):
     """Keeps the name of a body's material: one of the table, or a name of one's own.
 
-    What its mass, its surface and its colour are is kept in Mass, Material and Colour.
+    Mass, surface and colour are kept in Mass, Material and Colour.
     """
 
     physical: ClassVar[bool] = False

@@ -16,15 +16,15 @@ class Quantity:
     Attributes
     ----------
     name : str
-        What it is called in scene files and in the window.
+        Its name in scene files and in the window.
     unit : str
         Its SI unit, as fields have it: ``"kg m^2/s"``.
     column : str
-        What it is called in the table of ``run --csv``.
+        Its name in the table of ``run --csv``.
     of_body, of_world : bool
         Whether a body has it, and whether the world has.
     carrier : str
-        What an entity must have that has it: ``"Transform"``, ``"Spring"``, or ``JOINT``.
+        The component that an entity needs for it: ``"Transform"``, ``"Spring"``, or ``JOINT``.
     group : str
         The part of a menu in which it stands; empty for the menu itself.
     """

@@ -53,7 +53,7 @@ KINDS = {
 CIRCLE, BOX, CHAIN = 1, 2, 5
 """Codes in the ``kind`` column: their places in the list, from 1 on; 0 is no shape."""
 STAYS = "that of a body without Velocity: a chain does not move"
-"""What a kind must be in place of a chain that moves."""
+"""The message's end where a chain has a Velocity."""
 
 
 def kind_of(code: int) -> Kind:

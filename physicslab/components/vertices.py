@@ -7,7 +7,7 @@ from typing import Any
 
 from physicslab.ecs.vector import Vector2
 
-_ROUNDING = 1e-9
+_ZERO_LENGTH_SHARE = 1e-9
 """Share of the largest distance of two vertices below which a length is zero, and the sine of a turn is."""
 
 
@@ -23,13 +23,13 @@ def why_not_convex(vertices: Sequence[Vector2], least: int, most: int) -> str | 
     size = max((one - other).magnitude for one in vertices for other in vertices)
     for k, one in enumerate(vertices):
         for j in range(k):
-            if (one - vertices[j]).magnitude <= _ROUNDING * size:
+            if (one - vertices[j]).magnitude <= _ZERO_LENGTH_SHARE * size:
                 return f"vertices at different places; number {j + 1} and number {k + 1} are at one"
     turns = _turns(vertices)
-    if all(turn <= _ROUNDING for turn in turns) and min(turns) < -_ROUNDING:
+    if all(turn <= _ZERO_LENGTH_SHARE for turn in turns) and min(turns) < -_ZERO_LENGTH_SHARE:
         return f"counter-clockwise; these are clockwise: take {plain(vertices[::-1])}"
     for k, turn in enumerate(turns):
-        if abs(turn) <= _ROUNDING:
+        if abs(turn) <= _ZERO_LENGTH_SHARE:
             return f"convex, each vertex a corner; number {k + 1} is in line with its neighbours"
         if turn < 0.0:
             return f"convex; at number {k + 1} these turn inwards"
@@ -47,7 +47,7 @@ def why_no_chain(vertices: Sequence[Vector2], least: int, most: int) -> str | No
     if size < _LEAST:
         return f"vertices of which one is at least {_LEAST:g} m from the centre"
     for k, (one, after) in enumerate(pairwise(vertices), start=1):
-        if (after - one).magnitude <= _ROUNDING * size:
+        if (after - one).magnitude <= _ZERO_LENGTH_SHARE * size:
             return f"vertices at different places; number {k} and number {k + 1} are at one"
     if count == 3 and vertices[0] == vertices[-1]:
         return "open, or a loop of more than two segments"
@@ -63,7 +63,7 @@ def _turns(vertices: Sequence[Vector2]) -> list[float]:
 def why_off_centre(vertices: Sequence[Vector2], radius: float) -> str | None:
     """Return by how much a convex polygon that is rounded by a radius [m] is off its centre, or ``None``."""
     centre = centre_of_mass(vertices, radius)
-    if centre.magnitude <= _ROUNDING * max(vertex.magnitude for vertex in vertices):
+    if centre.magnitude <= _ZERO_LENGTH_SHARE * max(vertex.magnitude for vertex in vertices):
         return None
     return (
         f"about the centre of mass; that of these is at [{centre.x!r}, {centre.y!r}] m: shift them by "
@@ -79,7 +79,7 @@ def centred(vertices: Sequence[Vector2 | tuple[float, float]], radius: float = 0
     vertices : sequence of vectors or pairs of floats
         Counter-clockwise, from anywhere [m].
     radius : float
-        What rounds it [m].
+        Radius that rounds it [m].
 
     Examples
     --------

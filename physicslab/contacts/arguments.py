@@ -102,7 +102,7 @@ def do_stage(
     Parameters
     ----------
     state : State
-        Of which everything is taken that is not given.
+        The state that gives all other arguments.
     part : int
         One of those for contacts and joints in :mod:`physicslab.kernels.solver.soft`.
     h : float
@@ -112,7 +112,7 @@ def do_stage(
     first : bool
         Whether it is in the first substep of a step.
     near, motion, inverse, acting : tuples of arrays, optional
-        What takes part.
+        Bodies and pairs that take part.
     """
     state.compile((soft.advance,))
     near, inverse, contacts = near or near_in(state), inverse or inverse_in(state), state.contacts

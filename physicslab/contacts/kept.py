@@ -1,4 +1,4 @@
-"""What the next step takes from the last ones, of contacts and of sleep, as copies of records and columns.
+"""Contacts and sleep that the next step takes from the last ones, as copies of records and columns.
 
 A scene file keeps the same as rows of numbers (:mod:`physicslab.contacts.memory`, and ``export_rests`` of
 :mod:`physicslab.contacts.islands`). Here records are whole, so that what is read of contacts is right at
@@ -81,7 +81,7 @@ class KeptContacts:
         """Return those of now; arrays that are the same in the ``last`` are shared with it."""
         contacts.sync()
         near = contacts.manifolds[: contacts.recorded]
-        # What no list of pairs would carry over from an older one has no contents.
+        # A record that no list of pairs would carry over from an older one has no contents.
         kept = np.flatnonzero((near["count"] != 0) | (near["impact_count"] != 0) | (near["slot"] >= 0))
         points, held = contacts.points.reshape(-1, 2), contacts.restoring or contacts.wide.filled > 0
         # Where some are left out this is a copy already, of megabytes.

@@ -1,4 +1,4 @@
-"""What contacts keep from step to step, as rows of numbers that a file can hold."""
+"""The memory of contacts from step to step, as rows of numbers that a file can hold."""
 
 from collections.abc import Iterator, Sequence
 
@@ -13,7 +13,7 @@ from physicslab.state.contacts import Contacts
 _NO_ROWS = ("entity_a", "entity_b", "a", "b", "gap", "slot")
 _KEPT = tuple(name for name in MANIFOLD.names or () if name not in _NO_ROWS)
 _OF_POINT = tuple(name for name in POINT.names or () if name != "bend")
-"""What a file holds of a point; how a chain bends there is found again in each substep."""
+"""Fields of a point in a file; how a chain bends there is found again in each substep."""
 _WARM = ("feature", "normal_impulse", "tangent_impulse")
 
 

@@ -37,7 +37,7 @@ class Outlines:
     vertices : int64 array (n,)
         Their numbers.
     radius, size : float64 arrays (n,)
-        What rounds the core, and the smaller one of its whole extents [m].
+        Radius that rounds the core, and the smaller one of the whole extents [m].
     line : bool array (n,)
         Whether it is a chain, which has no inside.
     """
@@ -67,7 +67,7 @@ class Outlines:
 
     @property
     def area(self) -> Numbers:
-        """What is within each of them (n,) [m^2]; 0 of a chain."""
+        """Area within each of them (n,) [m^2]; 0 for a chain."""
         around = np.roll(self.corners, -1, axis=1)
         core = 0.5 * (self.corners[:, :, 0] * around[:, :, 1] - self.corners[:, :, 1] * around[:, :, 0]).sum(
             axis=1

@@ -59,7 +59,7 @@ class Contact:
     normal : Vector2
         Unit vector from A to B.
     restitution, friction : float
-        Of the pair.
+        Coefficients of the pair.
     points : tuple of ContactPoint
         One or two; where an impact of the last step has ended, where it was.
     """
@@ -231,7 +231,7 @@ class ImpactReader:
     def new(self, state: State) -> NDArray[Any]:
         """Return the impacts since the last call, oldest first: an array of IMPACT (n,).
 
-        Of more than the log holds, the oldest are missing.
+        If there were more than the log holds, the oldest are missing.
         """
         self.follow(state)
         contacts = state.contacts

@@ -119,7 +119,7 @@ class Autosave:
         Parameters
         ----------
         world : World
-            What is saved; where that fails, ``failure`` is the reason, and the state saved before is left.
+            The world to save; where that fails, ``failure`` is the reason, and the state saved before stays.
         patience : float
             How long a saving that is under way is waited for [s].
         """

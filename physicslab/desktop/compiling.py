@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 INTERPRETING_LIMIT = 0.5
-"""What takes longer than this [s] to interpret, a call or several frames in turn, is waited for: until then
+"""Work that takes longer than this [s] to interpret, a call or several frames in turn, waits: until then
 slow frames, as on a machine that is busy, are better than half a minute without any."""
 _STEPS = 0.05
 """So long [s] a frame may make steps while kernels are interpreted; the last may end later."""
@@ -36,8 +36,9 @@ _IN_TURN = 4
 class SmallScenes:
     """Finds which kernels run as Python until they are compiled: those of a scene that is small.
 
-    It takes 0.2 to 30 ms a step, and no one need wait. What turns out to be slow, as a method that chooses
-    its steps may be with few bodies too, is waited for from then on, until another scene is shown.
+    It takes 0.2 to 30 ms a step, and so it moves at once. A scene that turns out to be slow, as one whose
+    method chooses its steps may be with few bodies too, is waited for from then on, until another scene is
+    shown.
 
     Attributes
     ----------
@@ -128,7 +129,7 @@ class Compiling:
     Attributes
     ----------
     scenes : SmallScenes
-        What finds whether the scene that is shown may be interpreted.
+        The object that finds whether the scene that is shown may be interpreted.
     """
 
     def __init__(self, display: Display) -> None:

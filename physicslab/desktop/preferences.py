@@ -23,7 +23,7 @@ _MAX_ARRANGEMENT = 100_000
 """Characters that are taken of where panels are."""
 _MAX_BYTES = 1_000_000
 _UNREADABLE = ".unreadable"
-"""What is added to the name of a file that could not be read, so that it does not stand in the way again."""
+"""Suffix for a file that could not be read, so that it does not stand in the way again."""
 
 
 def load_preferences(path: Path, window: Window) -> None:

@@ -48,13 +48,13 @@ class Sandbox:
     Parameters
     ----------
     world : World
-        What is shown; the systems of a frame are installed in it.
+        The world that is shown; the systems of a frame are installed in it.
     window : Window
         Where it is shown.
     clock : callable
         Returns the time [s]; it limits how long the steps of a frame may take.
     autosave : Autosave, optional
-        What keeps the state for the case that the program ends badly.
+        The keeper of the state for the case that the program ends badly.
     shown : callable, optional
         Called with every world that is to be shown, before any system is installed in it.
 

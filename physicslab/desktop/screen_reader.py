@@ -1,4 +1,4 @@
-"""What a screen reader is told of the window: every control with its name, value and place, and the scene.
+"""The window as a screen reader gets it: every control with its name, value and place, and the scene.
 
 AccessKit (extra ``access``) hands it to the system: on Linux to AT-SPI, which Orca reads. Nothing is made
 while no reader asks, and a window without the package works as ever.
@@ -18,7 +18,7 @@ from physicslab.view.window.window import Window
 from physicslab.world import World
 
 _PERIOD, _SCENE_PERIOD = 0.2, 1.0
-"""How often controls, and the scene, are told anew [s]."""
+"""How often controls, and the scene, are told again [s]."""
 _ROLES = {
     "button": "BUTTON", "menu item": "MENU_ITEM", "menu": "MENU_ITEM", "check box": "CHECK_BOX",
     "combo box": "COMBO_BOX", "list item": "LIST_BOX_OPTION", "radio": "RADIO_BUTTON", "slider": "SLIDER",

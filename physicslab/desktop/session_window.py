@@ -132,7 +132,7 @@ def run_window(display: Display, config: WindowConfig, scene: str | World, *, we
                 with Compiling(display) as compiling:
                     window.has_kernels = partial(getattr, compiling, "finished")
                     with loading():
-                        # What is waited for a kernel is no time that steps took.
+                        # Time spent waiting for a kernel is no time that steps took.
                         sandbox = Sandbox(
                             world, window, lambda: 1e-9 * working_ns(), autosave, compiling.scenes.follow
                         )

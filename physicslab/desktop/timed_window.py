@@ -22,7 +22,7 @@ class InWindow(Engine):
     Parameters
     ----------
     world : World
-        What is stepped.
+        The world that is stepped.
     """
 
     def __init__(self, world: World) -> None:

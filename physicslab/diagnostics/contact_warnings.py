@@ -27,7 +27,7 @@ class ContactGraph:
     a, b : int64 arrays (pairs,)
         Rows of the bodies; 0 for the world's bounds.
     size : float64 array (pairs,)
-        Of the smaller body [m].
+        Size of the smaller body [m].
     touching : int64 array (touching,)
         Which pairs touch.
     depth : float64 array (touching,)
@@ -160,7 +160,7 @@ def _undetermined(world: World) -> Iterator[ModelWarning]:
 
     Newton's law gives what a pair does alone. Whether several impulses on one body act together, or one
     after the other, is a choice: together where pairs approach together, in turn where one passes it on.
-    What is welded together counts as one body.
+    Bodies welded together count as one.
     """
     log, logged = world.contacts.log, world.contacts.logged
     count = min(logged, len(log), _LATEST)

@@ -14,7 +14,7 @@ from physicslab.world import World
 
 _LISTED = 30
 """So many bodies, and so many joints, are told of; of more there is their number."""
-_ROUNDING = 1e-12
+_ZERO_SUM_SHARE = 1e-12
 """Share of what is usual in a world from which on a sum is no rounding."""
 _REST = 1e-6
 """Slower than this counts as rest [m/s, rad/s]."""
@@ -26,7 +26,7 @@ def describe(world: World, code: str = "en") -> str:
     Parameters
     ----------
     world : World
-        What is described, at the moment where it is. Nothing in it changes.
+        The world to describe at its present moment. Nothing in it changes.
     code : str
         The language, as ``"de"``; one without a catalogue is said in English.
 
@@ -160,4 +160,4 @@ def _way(vector: Vector2, own: Language) -> str:
 
 def _number(value: float, own: Language, scale: float = 0.0) -> str:
     """Return a number to four figures; 0 where it is rounding beside others as large as ``scale``."""
-    return own.decimal(f"{value if abs(value) > _ROUNDING * scale else 0.0:.4g}")
+    return own.decimal(f"{value if abs(value) > _ZERO_SUM_SHARE * scale else 0.0:.4g}")

@@ -64,15 +64,15 @@ class Accounts:
     since : float
         The world's clock when they began [s].
     start, now : Balance
-        What there was then, and what there is now.
+        The balance then and now.
     energy : dict of str to float
-        What each cause gave [J], negative for what it took; ``numerical`` is the error of the method.
+        Energy given by each cause [J], negative where it took; ``numerical`` is the error of the method.
     momentum : dict of str to Vector2
         The impulse of each cause from outside [N s], ``numerical`` likewise.
     angular_momentum : dict of str to float
         The angular impulse of each about the origin [N m s].
     parts : Energy
-        Of what the energy now consists.
+        Parts of the energy now.
     """
 
     since: float
@@ -152,14 +152,14 @@ class Audit:
     Parameters
     ----------
     world : World
-        What is sampled.
+        The world that is sampled.
     whole : bool
         Whether it reaches back to where the world's own accounts began, and not just to now.
 
     Attributes
     ----------
     account : Accounts
-        What changed energy and momenta from the beginning to the last :meth:`sample`.
+        Changes of energy and momenta from the beginning to the last :meth:`sample`.
     initial : float
         The energy at the beginning [J].
     latest : Energy

@@ -67,9 +67,9 @@ class Record:
     Parameters
     ----------
     world : World
-        What is recorded; it may go on between samples.
+        The world that is recorded; it may go on between samples.
     names : iterable of str
-        What of it, as ``ball.x``.
+        Quantities of it, as ``ball.x``.
 
     Attributes
     ----------
@@ -99,6 +99,12 @@ class Record:
         self.times.clear()
         for column in self.columns.values():
             column.clear()
+
+    def put(self, time: float, values: Iterable[float]) -> None:
+        """Hold one sample, of a time [s], with these values of the columns [SI]."""
+        self.end, self.times = time, [time]
+        for column, value in zip(self.columns.values(), values, strict=True):
+            column[:] = [value]
 
     def add(self) -> None:
         """Take a sample of the world as it is now."""

@@ -14,7 +14,7 @@ _MOST = 4000
 """Samples that a fit goes through: of more every so many are taken."""
 _GUESS, _FINER = 1024, 8
 """Samples of the spectrum in which a sine's frequency is looked for, and by how much it is made finer."""
-_ROUNDING = 1e-12
+_EQUAL_SAMPLES_SHARE = 1e-12
 """Share of the largest value up to which samples are alike."""
 _ROUNDS, _DONE = 60, 1e-13
 """Most steps of a fit that is not linear, and the relative change of the sum of squares at which it ends."""
@@ -27,7 +27,7 @@ class Parameter:
     Attributes
     ----------
     name : str
-        What it is.
+        Its name.
     value, error : float
         It, and its standard error.
     across, up : int
@@ -66,9 +66,9 @@ def covariance_of(jacobian: Numbers, rests: Numbers) -> Numbers:
     Parameters
     ----------
     jacobian : float64 array (n, parameters)
-        Of what the fit leaves, by the parameters.
+        Derivatives of the residuals by the parameters.
     rests : float64 array (n,)
-        What it leaves.
+        Residuals.
     """
     count, unknown = jacobian.shape
     variance = float(rests @ rests) / max(count - unknown, 1)
@@ -162,7 +162,7 @@ def _rest(rests: Numbers) -> float:
 FITS: dict[str, tuple[Callable[[Numbers, Numbers], Fit], int]] = {
     "line": (_polynomial(1), 3), "parabola": (_polynomial(2), 4), "sine": (_sine, 6),
 }  # fmt: skip
-"""What can be fitted, and how many samples it takes at least."""
+"""Curves that can be fitted, and the least number of samples for each."""
 
 
 def fit(kind: str, x: Numbers, y: Numbers) -> Fit | None:
@@ -195,7 +195,7 @@ def fit(kind: str, x: Numbers, y: Numbers) -> Fit | None:
     if len(np.unique(x)) < least:
         return None
     if kind == "sine":
-        if np.ptp(y) <= _ROUNDING * np.abs(y).max():
+        if np.ptp(y) <= _EQUAL_SAMPLES_SHARE * np.abs(y).max():
             return None
         order = np.argsort(x, kind="stable")
         x, y = x[order], y[order]

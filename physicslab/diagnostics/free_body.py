@@ -47,7 +47,7 @@ class NamedForce:
     Attributes
     ----------
     name : str
-        What it is, in words.
+        Its name in words.
     force : Vector2
         The force [N]: of a contact the mean of the last substep, impacts left out.
     place : Vector2
@@ -55,7 +55,7 @@ class NamedForce:
     kind : str
         ``"field"``, or for a contact ``"normal"`` or ``"friction"``.
     pair : Pair, optional
-        Of a normal force, the pair of surfaces.
+        The pair of surfaces of a normal force.
     """
 
     name: str

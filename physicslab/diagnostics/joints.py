@@ -19,9 +19,9 @@ class JointState:
     Attributes
     ----------
     entity : int
-        What carries it.
+        The entity that carries it.
     kind : component type
-        Of what kind it is.
+        Its kind.
     place : Vector2
         Where it holds A [m].
     angle : float

@@ -32,7 +32,7 @@ class SpringState:
     force : float
         With which it pulls its ends together, its damper included [N]; negative where it pushes.
     energy : float
-        What it stores [J].
+        Energy that it stores [J].
     """
 
     start: Vector2

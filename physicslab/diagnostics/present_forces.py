@@ -17,7 +17,7 @@ _SHORT = 1e-4
 shorter, as places are known to rounding only: contacts at rest would be apart by more than they close."""
 
 _found: WeakKeyDictionary[World, "_Stepped"] = WeakKeyDictionary()
-"""What was found last for a world."""
+"""The last result for each world."""
 
 
 class _Stepped:

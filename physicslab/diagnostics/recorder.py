@@ -37,7 +37,7 @@ _LOOK = 1024
 """Steps after which impacts are read from the log, so that it does not run over."""
 _AHEAD = 8, 512
 """So many steps are made at first, and at most, before a condition is looked at."""
-_ROUNDING = 1e-15
+_MOMENT_TOLERANCE = 1e-15
 """Share of a step to which a moment is located."""
 _SUMS = ("kinetic", "potential", "energy")
 
@@ -107,11 +107,11 @@ class _Watch:
     Parameters
     ----------
     world : World
-        What is advanced.
+        The world that is advanced.
     until : str
         The condition, of what graphs show: ``"ball.x >= 8 m"``, ``"time > 2 s and world.kinetic < 1 mJ"``.
     reader, records : ImpactReader, list
-        What reads impacts, and where they are kept.
+        The reader of impacts, and their records.
     """
 
     def __init__(self, world: World, until: str, reader: ImpactReader, records: list[NDArray[Any]]) -> None:
@@ -199,7 +199,7 @@ class _Watch:
 
         late = first_time(
             after, h, after(h), early if early <= 0.0 else None,
-            max(_ROUNDING, math.ulp(start + h) / h), 0.0,
+            max(_MOMENT_TOLERANCE, math.ulp(start + h) / h), 0.0,
         )  # fmt: skip
         if last != late:
             after(late)

@@ -21,7 +21,7 @@ class ReferenceSolution:
     Attributes
     ----------
     what : str
-        What the solution is, in words.
+        The solution in words.
     since : float
         The world's time [s] at which the solution begins.
     rows : int64 array (n,)

@@ -31,9 +31,9 @@ class RunRecord:
     Attributes
     ----------
     scene : str
-        What the scene is called.
+        Name of the scene.
     audit : Audit
-        What changed the energy since the start, and the largest error of it.
+        Changes of the energy since the start, and its largest error.
     steps : int
         Steps done.
     wall_s : float

@@ -29,11 +29,11 @@ class ModelWarning:
     entity : str, optional
         The body or spring, by its id; ``None`` where it concerns all of the world.
     what : str
-        What is wrong, in words that hold for any value: they name the kind of warning.
+        The fault in words that hold for any value: they name the kind of warning.
     value, limit : float, optional
         The figure, and the largest that can be trusted.
     unit : str
-        Of both; empty for a plain number.
+        Unit of both; empty for a plain number.
     setting : str
         A setting that helps, with its value; empty where none does.
     number : int, optional
@@ -252,7 +252,7 @@ def _order(world: World) -> Iterator[ModelWarning]:
     along = plan.smooth and not (turned or damped or (world.joints.role != Role.HOLD).any())
     forces = [force for force in world.schedule.smooth_forces if force.gyration(world) is None]
     forces = [force for force in forces if not (along and isinstance(force, JointForces))]
-    seeing = next((force for force in forces if force.sees_velocity(world)), None)
+    seeing = next((force for force in forces if force.depends_on_velocity(world)), None)
     if seeing is not None:
         name = seeing.name.removesuffix("System")
         what = sentence("order_one", force=name, method=method.name)

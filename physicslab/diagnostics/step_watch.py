@@ -30,7 +30,7 @@ class StepWatch:
     Attributes
     ----------
     warnings : tuple of ModelWarning
-        Of the slowest step, if one was slow, and of the worst storm of impacts, if there was one.
+        Warnings of the slowest step, if one was slow, and of the worst storm of impacts, if there was one.
     """
 
     def __init__(self, world: World) -> None:
@@ -54,7 +54,7 @@ class StepWatch:
         Returns
         -------
         str
-            What there is to say, the first time that one is slow; else empty.
+            The message, the first time that one is slow; else empty.
         """
         world, steps = self._world, max(steps, 1)
         impacts = (int(world.collisions) - self._collisions) / steps
@@ -83,7 +83,7 @@ class StepWatch:
         Returns
         -------
         str
-            What there is to say, the first time that there are too many within a step; else empty.
+            The message, the first time that there are too many within a step; else empty.
         """
         world, contacts = self._world, self._world.contacts
         new, self._logged = int(contacts.logged) - self._logged, int(contacts.logged)

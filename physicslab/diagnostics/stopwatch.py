@@ -13,9 +13,9 @@ class Lap:
     Attributes
     ----------
     crossing : Crossing
-        What ends it.
+        The crossing that ends it.
     since : Crossing, optional
-        What began it; ``None`` where nothing did.
+        The crossing that began it; ``None`` where none did.
     """
 
     crossing: Crossing

@@ -38,7 +38,7 @@ class TrajectoryWriter:
     stream : text stream
         Opened with ``newline=""``.
     world : World
-        What is written; its forces decide which potential energies have a column.
+        The world to write; its forces decide which potential energies have a column.
     for_excel : bool
         As :class:`TableRows` has it.
     """

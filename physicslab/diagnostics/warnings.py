@@ -62,7 +62,7 @@ masses that fall between walls give back 0.02 of it, stacks of 1 to 1,000 kg 0.0
 _RIGID_MASS_RATIO = 1e6
 """Mass ratio up to which rigid contacts were seen to hold to 1e-15 m without shorter steps."""
 FALL_LIMIT = 0.5
-"""What gravity adds to the way of a substep, in sizes of the smallest: beyond it a body may pass others."""
+"""Way that gravity adds in a substep, in sizes of the smallest: beyond it a body may pass others."""
 DISTANCE_LIMIT = 1e9
 """Coordinate in sizes of a body: float64 keeps places there to 1e-7 of the body, and a tower to 1e-3."""
 

@@ -63,7 +63,7 @@ class PhysicsConfig:
     softening, softening_law : float, str
         Length [m] below which the inverse square law is softened, and how: ``"clamp"`` or ``"plummer"``.
     coulomb_constant : float
-        Of the force of charges on each other [N m^2/C^2].
+        Constant of the force of charges on each other [N m^2/C^2].
     electric_field, magnetic_field : Vector2, float
         The same everywhere [N/C], [T]; the magnetic one points out of the plane.
     linear_damping, angular_damping : float

@@ -23,7 +23,7 @@ class Active[W]:
     Parameters
     ----------
     value : object
-        What the ``with`` statement gives.
+        The object that the ``with`` statement gives.
     context : str
         The name of the context.
     """

@@ -42,9 +42,9 @@ class InvalidValue(ValueError):
     component, field : str
         Where the value was going.
     value : object
-        What was given.
+        The value given.
     allowed : str
-        What may be given, in words.
+        The allowed values, in words.
     """
 
     def __init__(self, component: str, field: str, value: object, allowed: str) -> None:
@@ -70,7 +70,7 @@ class Field:
     Attributes
     ----------
     name, kind : str
-        What it is called, and what sort of value it holds.
+        Its name, and the sort of value that it holds.
     default : object
         The value where none is given.
     unit, meaning : str

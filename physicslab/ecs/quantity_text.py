@@ -102,7 +102,7 @@ def evaluate(text: str, unit: str = "1") -> float:
     text : str
         Numbers, units, ``+ - * / ^ ( )``, ``pi``, ``sqrt``, ``sin`` and the like.
     unit : str
-        What the result is in, as a field has it: ``"kg m^2"``, ``"m/s"``; ``"1"`` for a pure number.
+        Unit of the result, as a field has it: ``"kg m^2"``, ``"m/s"``; ``"1"`` for a pure number.
 
     Raises
     ------
@@ -141,7 +141,7 @@ def in_unit(found: Quantity, unit: str, text: str) -> float:
 
 
 class Scope(Protocol):
-    """What an expression may refer to beside units, constants and functions of numbers."""
+    """Names that an expression may refer to beside units, constants and functions of numbers."""
 
     def named(self, name: str) -> Quantity | None:
         """Return what a name stands for, as ``th`` or ``ball.x``; ``None`` for a name of no such thing."""
@@ -317,7 +317,7 @@ def evaluate_as(kind: str, value: Any, unit: str = "1") -> Any:
         What :func:`evaluate`, :func:`evaluate_pair` and :func:`evaluate_points` take; a pair of texts and
         numbers too.
     unit : str
-        What a number without a unit is in.
+        Unit of a number that has none of its own.
 
     Raises
     ------

@@ -1,6 +1,6 @@
 """The sentences of the engine: why it does what it does, and what would help; each by its code.
 
-What makes a reason gives its code and what stands in the gaps; ``run --json`` has the words below, and beside
+A reason is made of its code and the values of its gaps; ``run --json`` has the words below, and beside
 them code and values; a window says it in its language.
 """
 

@@ -18,7 +18,7 @@ class Dask(Executor):
     Parameters
     ----------
     address : str
-        Of the scheduler: ``tcp://host:8786``.
+        Address of the scheduler: ``tcp://host:8786``.
 
     Raises
     ------

@@ -71,13 +71,13 @@ def fit(
     Parameters
     ----------
     scene : str, path, dict or World
-        What was measured, in a scene.
+        The scene of the measurement.
     start : mapping of str to float or str
         The fields that are found (``pendulum.Rod.length``), and where the search begins: in SI or as texts
         with units. Their values stay in the range that each field has.
     data : path or mapping of str to array
         A CSV file with a head, or its columns: ``time`` [s] after the start, ascending, and quantities in SI
-        as ``ball.x``. What is NaN or empty was not measured.
+        as ``ball.x``. A value that is NaN or empty was not measured.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What is kept of each run: expressions of its figures, or functions of the world at its end.
+"""Measures, kept of each run: expressions of its figures, or functions of the world at its end.
 
 Expressions are those of lessons (:mod:`physicslab.diagnostics.figures`). These names are known besides, as
 ``run --json`` has them: ``ball.position.y``, ``ball.linear.x``, ``ball.angular``, ``account.friction``,
@@ -26,6 +26,7 @@ from physicslab.ecs.quantity_text import (
     in_words,
     is_known,
 )
+from physicslab.ensembles.rollout import MOTION
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import entity_names
 from physicslab.world import World
@@ -46,7 +47,7 @@ _IMPACTS = {
     "time": (0, 0, 1, 0), "x": (1, 0, 0, 0), "y": (1, 0, 0, 0), "speed": (1, 0, -1, 0),
     "energy_lost": (2, 1, -2, 0),
 }  # fmt: skip
-"""What is known of an impact, with the powers of its unit."""
+"""Quantities of an impact, with the powers of their units."""
 _WHICH = ("first_impact", "last_impact")
 _TRIAL = 8
 """Samples of the run that never was by which an expression is tried."""
@@ -187,11 +188,34 @@ class Measures:
         if self.needs_path:
             self._record.add()
 
+    @property
+    def read_at_end(self) -> list[tuple[int, str]] | None:
+        """Entities and what is read of their motion at the end, where no measure needs anything else."""
+        if self._functions or self.needs_path or self._impacts:
+            return None
+        ids = {self._world.label(entity): entity for entity in self._world.entities()}
+        found: list[tuple[int, str]] = []
+        for name in self._ends.columns:
+            body, _, quantity = name.rpartition(".")
+            if quantity not in MOTION or body not in ids:
+                return None
+            if not self._world.has(ids[body], MOTION[quantity][0]):
+                return None
+            found.append((ids[body], quantity))
+        return found
+
+    def values_at(self, time: float, read: Sequence[float]) -> tuple[list[float], str]:
+        """Return the measures of a run that ended at a time [s], where this was read, and why one is NaN."""
+        self._ends.put(time, read)
+        return self._evaluated(_Impacts(None, 0))
+
     def values(self) -> tuple[list[float], str]:
         """Return the measures of the run that has ended [SI], and why one of them is NaN."""
-        impacts = _Impacts(self._world if self._impacts else None, self._since)
         self._ends.clear()
         self._ends.add()
+        return self._evaluated(_Impacts(self._world if self._impacts else None, self._since))
+
+    def _evaluated(self, impacts: _Impacts) -> tuple[list[float], str]:
         path, end = Figures(self._record, impacts), Figures(self._ends, impacts)
         found, why = [], ""
         for name in self._names:

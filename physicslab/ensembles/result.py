@@ -41,7 +41,7 @@ class EnsembleResult:
     failures : dict of int to str
         The rows that have none, or not all of it, and why.
     task : Task
-        What was run.
+        The task that was run.
     """
 
     columns: dict[str, Values] = field(repr=False)

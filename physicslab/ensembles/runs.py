@@ -26,7 +26,7 @@ from physicslab.world import World
 
 _TAKEN = ("wall_s", "failure", "replica")
 PARTS = ".parts"
-"""What the folder of results that are not whole yet ends in, beside the file that they become."""
+"""Suffix of the folder of partial results, beside the file that they become."""
 
 
 def ensemble(
@@ -50,14 +50,14 @@ def ensemble(
     Parameters
     ----------
     scene : str, path, dict or World
-        What is run; a world as it is now.
+        The scene to run; a world as it is now.
     space : mapping of str to list or tuple
         Fields (``ball.Mass.mass``, ``ball.Velocity.linear.x``, ``physics.gravity.y``) and their values, in SI
         or as texts with units. A list or an array is a grid, of which every combination is run;
         ``("uniform", a, b)``, ``("normal", mean, deviation)`` and ``("sobol", a, b)`` are drawn for each
         sample; ``("rows", values)`` has a value for each.
     measure : str, callable, or mapping of str to either
-        What is kept of a run, by the name of its column: an expression of its figures
+        Measures of a run by the names of their columns: an expression of its figures
         (:mod:`physicslab.ensembles.measures`), or an importable function of the world at its end.
     seconds, steps : float or int
         How long a run is: one of the two.

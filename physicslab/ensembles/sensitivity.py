@@ -1,4 +1,4 @@
-"""What measures depend on: derivatives by fields, and shares of a variance that fields explain."""
+"""Dependence of measures on fields: derivatives, and the shares of a variance that fields explain."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ class SobolIndices:
     Attributes
     ----------
     first : dict of str to float
-        What each field explains by itself.
+        Share that each field explains by itself.
     total : dict of str to float
-        What it explains together with all others: 0 where the measure does not depend on it.
+        Share that it explains together with all others: 0 where the measure does not depend on it.
     first_error, total_error : dicts of str to float
         Half the width of the interval in which each is with 95 % confidence.
     """
@@ -68,7 +68,7 @@ def sensitivity(
     Parameters
     ----------
     scene : str, path, dict or World
-        What is run.
+        The scene to run.
     fields : sequence of str, or mapping of str to float
         The fields, or the step of each [SI]; else it is a thousandth of the field, or 1e-3 where that is 0.
     measure, seconds, steps, executor

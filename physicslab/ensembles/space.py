@@ -37,7 +37,7 @@ class Axis:
     Attributes
     ----------
     name : str
-        What its column is called.
+        Name of its column.
     path, kind : str
         The field, and what its values are.
     law : str

@@ -116,7 +116,7 @@ class Mp4Writer:
 
 
 ENDINGS = (".gif", ".mp4")
-"""What the name of a film ends with."""
+"""Endings of the names of films."""
 
 
 class _Given(Exception):

@@ -14,7 +14,7 @@ _LIGHTS = ("LIGHT_", "BRIGHT", "DIM", "SHADOW_", "WEDGE", "DEEP", "HATCH")
 _SIZES = (
     "RIM", "FLOOR", "WALL", "POINT_RADIUS", "PLANET", "LEAST_PLANET", "STAR", "GLOW", "GLOWS", "MAX_SHADOWS",
 )  # fmt: skip
-"""What the player is given of the laws of light, and of sizes."""
+"""Laws of light, and sizes, as the player gets them."""
 
 
 def _colours(of: Theme) -> dict[str, str]:

@@ -1,7 +1,7 @@
 """Float32 columns as text: differences of differences, in as few bytes as each needs, in base 85.
 
-What moves smoothly goes on about as it went, so differences of a column, and differences of those, are small;
-what rests has none. They are differences of the bit patterns, in an order in which neighbours are numbers one
+Smooth motion goes on about as it went: differences of a column, and differences of those, are small;
+at rest they are 0. They are differences of the bit patterns, in an order in which neighbours are numbers one
 unit in the last place apart: unpacking gives every bit back.
 """
 
@@ -21,7 +21,7 @@ _SAFE = str.maketrans("<,", ",<")
 def pack(values: NDArray[np.float32]) -> str:
     """Return a float32 array (rows, columns) in base 85, column after column: 5 letters hold 4 bytes.
 
-    A column begins with a byte: how often differences were taken. Of each number a byte holds seven bits, the
+    A column begins with a byte: how often differences were taken. A byte holds seven bits of a number, the
     lowest first, and the eighth says that more follow; the sign is the number's lowest bit.
     ``physicslab/export/player/run.js`` unpacks it.
 

@@ -33,7 +33,7 @@ _SAID = re.compile(r'\bsay\("([^"]+)"\)|\{\{say:([^}]+)\}\}')
 
 
 _WORDS = {"linear": "velocity", "angular": "angular velocity"}
-"""What fields are called whose names do not say it without their components."""
+"""Labels of fields whose names are not clear without their components."""
 
 
 def field_words(field: str, part: str) -> str:
@@ -67,12 +67,12 @@ def page(
     world : World
         The scene, for its title and its description.
     name : str
-        What the scene is called where it has no title.
+        Name of a scene that has no title.
     runs : sequence of dict
         As :func:`run_document` returns them, or ``{"failure": why}``: one, or one for each combination of
         values, those of the last quantity next to each other.
     varied : sequence of Varied
-        What differs between the runs.
+        Fields that differ between the runs.
     """
     views = [run["view"] for run in runs if "view" in run]
     low, high = (
@@ -93,9 +93,9 @@ def fill_page(
     Parameters
     ----------
     title, description : str
-        What stands above it.
+        The lines above it.
     document : dict
-        What the player is given, as JSON.
+        The player's data, as JSON.
     article : str
         HTML of a lesson, in which the player stands where a run is made; none where it is empty.
     code : str

@@ -1,4 +1,4 @@
-"""What of a scene is drawn beside its bodies: springs, joints, fields, thrusts, notes, gates, graphs."""
+"""Things drawn beside the bodies of a scene: springs, joints, fields, thrusts, notes, gates, graphs."""
 
 from typing import Any
 

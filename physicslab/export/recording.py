@@ -43,13 +43,13 @@ class RunRecorder:
     moving : int
         How many bodies move.
     energies : tuple of str
-        What the energies of an instant are called, the total last.
+        Names of the energies of an instant, the total last.
     start : float
         The time at the first instant [s].
     graphs : list of pairs
-        What stands across each graph, and its lines.
+        The horizontal axis of each graph, and its lines.
     quantities : tuple of Key
-        What else is kept of an instant: the momentum of the world, and what graphs show.
+        Other quantities of an instant: the momentum of the world, and what graphs show.
     """
 
     def __init__(self, world: World) -> None:
@@ -115,7 +115,7 @@ class RunRecorder:
 
     @property
     def motion(self) -> Columns:
-        """Of each instant and moving body, x, y, angle and their rates: float32 (instants, moving, 6)."""
+        """x, y, angle and their rates of each moving body at each instant: float32 (instants, moving, 6)."""
         bodies = self.columns[:, 1 + len(self.energies) + len(self.quantities) :]
         return bodies.reshape(len(bodies), self.moving, BODY_COLUMNS)
 
@@ -170,9 +170,9 @@ _STRAY_FROM_GROUND, _STRAY = 0.25, 4.0
 _BESIDE = 0.1
 """How far what does not move is shown, in sizes of what is shown."""
 _MARGIN = 0.04
-"""What is left free at the rim, in sizes of what is shown."""
+"""Free rim, as a share of the size of the picture."""
 _EMPTY: Box = (-5.0, -3.0, 5.0, 3.0)
-"""What is shown of a world in which there is nothing [m]."""
+"""The part of an empty world that is shown [m]."""
 
 
 def extent_of_run(world: World, recorder: RunRecorder) -> Box:

@@ -27,7 +27,7 @@ class Place:
     Attributes
     ----------
     name, entity : str, int
-        What the entity is called, and its number; 0 for the laws.
+        Name and number of the entity; 0 for the laws.
     kind : type
         The component, or the laws.
     spec : Field
@@ -35,7 +35,7 @@ class Place:
     part : str
         ``"x"`` or ``"y"``; empty for the whole field.
     option : str
-        What messages begin with: where it was given.
+        The beginning of messages: where it was given.
     """
 
     name: str
@@ -52,14 +52,14 @@ class Place:
 
     @property
     def field(self) -> str:
-        """What names the whole field: ``ball.Velocity.linear``, ``physics.gravity``."""
+        """Name of the whole field: ``ball.Velocity.linear``, ``physics.gravity``."""
         if self.kind in SECTIONS.values():
             return f"{self.name}.{self.spec.name}"
         return f"{self.name}.{self.kind.__name__}.{self.spec.name}"
 
     @property
     def path(self) -> str:
-        """What names it, with its part."""
+        """Its name, with its part."""
         return f"{self.field}.{self.part}" if self.part else self.field
 
     def read(self, world: World) -> Any:
@@ -112,11 +112,11 @@ def find_place(
     world : World
         Whose field.
     option : str
-        What messages begin with: where the path was given.
+        The beginning of messages: where the path was given.
     path : str
         ``ID.Component.field`` or ``physics.field``, with ``.x`` or ``[0]`` behind it for a part of a vector.
     value : str
-        What it is to be, for messages.
+        The value to set, for messages.
     names : mapping of str to int, optional
         The entities, where they are known already.
 
@@ -142,7 +142,7 @@ def read_path(
 ) -> tuple[str, type[Component] | Section, Field, str]:
     """Return what ``ID.Component.field=VALUE`` names: the entity, the component, the field; and the value.
 
-    Of a field of the laws, ``physics.field=VALUE``, they are the section and its record.
+    For a field of the laws, ``physics.field=VALUE``, they are the section and its record.
 
     Raises
     ------

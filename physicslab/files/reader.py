@@ -56,11 +56,11 @@ class SceneDraft:
     Attributes
     ----------
     name, title, description : str
-        What the scene is called and about.
+        Name, title and description of the scene.
     view : View, optional
-        What a window shows of it at first.
+        The part that a window shows at first.
     desk : Desk, optional
-        What it shows beside that.
+        The view beside that.
     time : float
         Where its clock stands [s].
     physics, simulation : PhysicsConfig, SimulationConfig
@@ -70,13 +70,13 @@ class SceneDraft:
     contacts : list of lists of numbers
         The contact solver's memory; the first two numbers of a row are entities, 0 for the bounds.
     joints : list of (int, str, list of float)
-        Of each joint its entity, its kind, and its impulses in the last substep [N s].
+        Entity and kind of each joint, and its impulses in the last substep [N s].
     rests : list of lists of numbers
-        What sleeps, an entity in a list; and how long [s] and how slowly [m/s] the others have rested.
+        Sleeping entities, one in a list; and how long [s] and how slowly [m/s] the others have rested.
     numbers : list of int
         Those of the entities, in order.
     remainders : dict of int to two lists of six numbers
-        Of entities x, y, angle and their rates, and what rounding left out of each.
+        x, y, angle and their rates of entities, and the rounding remainder of each.
     solver : tuple of float, int and tuple
         The time over which the contacts' impulses act [s], the factor by which the coming step needs more
         substeps than configured, and what was chosen for an earlier state of motion, if anything was.
@@ -110,7 +110,7 @@ def read_scene(document: object, source: str = "scene") -> World:
     document : dict
         A scene as ``json.loads`` gives it.
     source : str
-        What messages call the scene: its path or name.
+        Name of the scene in messages: its path or name.
 
     Raises
     ------

@@ -123,9 +123,9 @@ def scene_bytes(world: World, source: str) -> bytes:
     Parameters
     ----------
     world : World
-        What is written.
+        The world to write.
     source : str
-        What messages call the scene: the path that it will have.
+        Name of the scene in messages: the path that it will have.
 
     Raises
     ------
@@ -259,7 +259,7 @@ def save_new_scene(world: World, paths: Iterable[Path]) -> Path:
     Parameters
     ----------
     world : World
-        What is saved.
+        The world to save.
     paths : iterable of Path
         The names in order; one that does not end.
 

@@ -1,7 +1,7 @@
 """The JSON Schema of scene files, made from the fields of components and settings.
 
 Editors complete and check scenes by it. It says all that can be said of each value by itself: types, ranges,
-words, keys. What refers to other entities is checked when a scene is opened.
+words, keys. References to other entities are checked when a scene is opened.
 """
 
 import math

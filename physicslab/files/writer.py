@@ -48,23 +48,23 @@ class WorldSnapshot:
     living, shaped : set of int
         All of them once more, and those with a Shape.
     contacts : Contacts
-        What the contact solver remembers.
+        Memory of the contact solver.
     joints : list of (int, str, list of float)
-        Of each joint that has impulses its entity, its kind and these [N s].
+        Entity, kind and impulses [N s] of each joint that has impulses.
     rests : list of lists
-        What sleeps, and how long the others have rested.
+        Sleeping entities, and how long the others have rested.
     remainders : list of lists
-        What rounding left out of positions and velocities, where it is not zero.
+        Rounding remainders of positions and velocities, where not zero.
     chosen : tuple, optional
-        What was chosen for the motion as it once was, where it would not be chosen now.
+        Choices made for the motion as it once was, where others would be made now.
     islands : list of KeptIsland, optional
         The islands, where a loaded world would find others.
     texts : dict of str to str
         Name, title and description of the world.
     view : View, optional
-        What a window shows of it at first.
+        The part that a window shows at first.
     desk : Desk, optional
-        What it shows beside that.
+        The view beside that.
     time : float
         Time of the world [s].
     """
@@ -146,7 +146,7 @@ class SceneText:
     Parameters
     ----------
     snapshot : WorldSnapshot
-        What is written.
+        The snapshot to write.
     clock : callable
         Returns the time [s].
 

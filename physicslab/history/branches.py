@@ -35,7 +35,7 @@ class Branch:
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What the edits and runs after that were."""
+        """The edits and runs after that, in words."""
         return self.line.words_after(self.place)
 
 

@@ -236,7 +236,7 @@ class Group:
     Parameters
     ----------
     text : str
-        What they do together, in plain English.
+        Their effect together, in plain English.
     commands : sequence of Command
         In order.
     """

@@ -18,7 +18,7 @@ COLUMNS = ("Transform.position", "Transform.angle", "Velocity.linear", "Velocity
 class Digester:
     """Makes the digests of one world.
 
-    What it reads of columns is kept while they are the same arrays, which they are between changes of
+    Readings of columns are kept while they are the same arrays, which they are between changes of
     structure: for a small world that is most of the work.
     """
 

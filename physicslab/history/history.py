@@ -29,7 +29,7 @@ class HistoryEntry:
     Attributes
     ----------
     words : str
-        What it was, in plain English: "made a circle", "mass of ball: 2 kg", "ran 3.2 s".
+        The edit or run in plain English: "made a circle", "mass of ball: 2 kg", "ran 3.2 s".
     done : bool
         Whether it, or the beginning of it, lies before the present place.
     first_step, steps : int
@@ -43,7 +43,7 @@ class HistoryEntry:
 
 
 class Changes:
-    """What was done to a world by hand; two are alike if the same things were done, whatever ran since."""
+    """Edits made to a world by hand; two are equal if the edits are, whatever ran since."""
 
     def __init__(self, made: Sequence[tuple[Edit | Run, int]] = ()) -> None:
         self._made = made
@@ -57,7 +57,7 @@ class Changes:
 
 
 class History:
-    """What was done to a world and what it did, from now on: every edit and every step goes through here.
+    """Edits and steps of a world, from now on: each of them goes through here.
 
     A place in the line of edits and runs is gone to from the last key frame before it
     (:class:`physicslab.history.places.Places`); the steps since are made again. ``world`` is the same
@@ -113,7 +113,7 @@ class History:
         Raises
         ------
         InvalidValue, KeyError, TypeError, ValueError
-            What the world raises where it refuses the edit. Nothing is recorded then, and nothing changed.
+            Raised by the world where it refuses the edit. Nothing is recorded then, and nothing changed.
         """
         places = self._places
         places.mend()
@@ -178,7 +178,7 @@ class History:
     def undo(self, *, runs: bool = True) -> str | None:
         """Undo the last edit or run before the present place; return its words, ``None`` if none is.
 
-        Of a run in the middle of which the place is, the beginning is taken back. Without ``runs``, a run in
+        In the middle of a run, its beginning is taken back. Without ``runs``, a run in
         which nothing was written is taken back together with the edit before it, if there is one.
         """
         places, line = self._places, self._places.line

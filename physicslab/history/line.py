@@ -65,7 +65,7 @@ class Run:
 
     @property
     def words(self) -> str:
-        """What it was, in plain English."""
+        """The edit or run in plain English."""
         return run_in_words(self.steps, self.seconds)
 
     @property

@@ -37,7 +37,7 @@ class Places:
     world : World
         The world at the present place.
     line : Line
-        What was done, and what comes after the present place. Whatever is added to it is noted by
+        Edits and runs, before the present place and after it. Whatever is added to it is noted by
         :meth:`advance`; another line is put in its place by :meth:`follow`.
     here : int
         The present place [ticks].
@@ -131,7 +131,7 @@ class Places:
         self._last = self._frames[base]
         self._last.restore(self.world)
         self.here, self._since, self._whole = base, 0.0, True
-        # Of one nearby it was not noted how far the last one along the line is.
+        # A frame nearby has no note of how far the last one along the line is.
         self._since_along = 0.0 if self._frames.is_along(base) else float("inf")
 
     def _make_again(self, place: int) -> None:

@@ -248,7 +248,7 @@ def _text(value: object, where: str) -> str:
 
 
 FORMAT = "physicslab-recording/1"
-"""What the key ``format`` of a recording holds."""
+"""The value of a recording's key ``format``."""
 
 
 def save(world: World, line: Line, path: str | os.PathLike[str]) -> None:

@@ -33,7 +33,7 @@ class Played:
 def edit(world: World, command: Command) -> Command:
     """Carry out an edit and book what it changed; what is measured of the world begins again.
 
-    What a hand did since the last step is booked before.
+    Work of a hand since the last step is booked before.
     """
     world.book_edits()
     done = command.carry_out(world)

@@ -20,7 +20,7 @@ _MAX_COSTLY = 100_000
 
 def _floor(state: State, ode: OdeSystem) -> float:
     """Return how far rounding puts off accelerations [m/s^2] of what may come to rest."""
-    rests = len(ode.damping) or any(force.sees_velocity(state) for force in ode.forces)
+    rests = len(ode.damping) or any(force.depends_on_velocity(state) for force in ode.forces)
     floor = max((force.rounding_floor(state) for force in ode.forces), default=0.0) if rests else 0.0
     return floor if math.isfinite(floor) else 0.0
 

@@ -155,7 +155,7 @@ class Course(NamedTuple):
 
 
 class Springs(NamedTuple):
-    """What moves on springs (:mod:`physicslab.kernels.ode.spring_flow`), in two arrays: each costs 0.1 us."""
+    """Bodies on springs (:mod:`physicslab.kernels.ode.spring_flow`), in two arrays: each costs 0.1 us."""
 
     numbers: Numbers
     whole: Rows

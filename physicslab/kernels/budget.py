@@ -1,4 +1,4 @@
-"""What compiling costs: every kernel once, in one process, into an empty cache.
+"""The cost of compiling: every kernel once, in one process, into an empty cache.
 
 The first launch waits for it, so it does not grow unnoticed. Processor time is counted, which other programs
 on the machine change less than the time that passes; by as much as they do, a loop of Python takes longer,
@@ -22,7 +22,7 @@ from physicslab.kernels.warm import load_all, mark_warm, name_of, rank_of
 
 LIMIT_TOTAL_S = 60.0
 LIMIT_EACH_S = 6.0
-"""What is wanted on an idle processor. A limit of cost is printed and fails nothing: whoever exceeds it says
+"""Limits wanted on an idle processor. A limit of cost is printed and fails nothing: whoever exceeds it says
 by how much, and it is not moved."""
 _SAMPLE, _SAMPLE_S = 500_000, 0.0255
 """Steps of a loop that is timed between kernels, and what it takes on the processor of the limits, idle."""

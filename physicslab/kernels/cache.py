@@ -319,7 +319,7 @@ def _touch(path: Path) -> None:
 def prune() -> None:
     """Remove what the present sources do not need and what was not used for a month.
 
-    Of each module the eight folders that were used last stay at most: other versions of this program, and
+    The eight folders of each module that were used last stay at most: other versions of this program, and
     other Pythons, have theirs in the same place.
     """
     root, own = cache_directory(), set(current_folders().values())

@@ -1,6 +1,6 @@
 """The decorators that make kernels, and the inner functions that kernels call.
 
-What is written here decides on the machine code: an edit invalidates every compiled kernel.
+These lines decide on the machine code: an edit invalidates every compiled kernel.
 """
 
 from collections.abc import Callable

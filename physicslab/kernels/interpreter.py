@@ -103,7 +103,7 @@ def stand_in(jitted: Any) -> None:
         One that is not compiled; of one that is, nothing changes.
     """
     if _is_dispatcher(jitted):
-        # What numba's dispatcher calls where no compiled signature fits; it then calls what is returned.
+        # numba's dispatcher calls this where no compiled signature fits, and then calls its result.
         entry = entry_of(jitted)
         jitted._compile_for_args = lambda *arguments: entry
     else:
@@ -134,7 +134,7 @@ def interpreted() -> Iterator[None]:
     finally:
         _forced = before
         for jitted in compiler.KERNELS:
-            stand_back(jitted)
+            uninstall(jitted)
         for jitted, overloads in aside.items():
             _take_back(jitted, overloads)
 
@@ -144,7 +144,7 @@ def _is_dispatcher(value: Any) -> bool:
     return bool(is_jitted(value))
 
 
-def stand_back(jitted: Any) -> None:
+def uninstall(jitted: Any) -> None:
     """Let a kernel be compiled where it is called, as it was before :func:`stand_in`."""
     if _is_dispatcher(jitted):
         loading.at_first_call(jitted)

@@ -1,7 +1,7 @@
 """Discs, boxes, rounded polygons and lines with smooth edges, painted into an array of pixels.
 
 Coverage comes from the signed distance to the outline [px], so position, size and angle are exact to a
-fraction of a pixel. What is not flat is lit from above, and may cast a soft shadow. Pixels are 32 bits of
+fraction of a pixel. Raised shapes are lit from above, and may cast a soft shadow. Pixels are 32 bits of
 four 8-bit channels in any order; colours are packed in the same order. Pixel (row, column) covers
 [column, column + 1) x [row, row + 1), and y points down. Nothing is written outside the array; coordinates
 must be finite.

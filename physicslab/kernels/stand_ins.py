@@ -1,4 +1,4 @@
-"""What kernels use and plain Python has not: its equal, for the interpreter to call in its place.
+"""Equals in plain Python of what only kernels have, for the interpreter to call in its place.
 
 Compiled code rounds every operation by itself and raises nothing: a root of -1 is not a number, a number by
 zero is infinite. So do these, in float64, and so gives the interpreter the same bits.
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _INT64_MIN = -(2**63)
-"""What a number becomes that no int64 can hold."""
+"""The int64 that stands for a number that no int64 can hold."""
 
 
 _stand_ins: dict[Any, Callable[..., Any]] = {}
@@ -93,7 +93,7 @@ class Records:
     Parameters
     ----------
     array : ndarray (n,)
-        Of a dtype with fields.
+        An array of a dtype with fields.
     """
 
     __slots__ = ("_columns", "_kind", "array")

@@ -135,7 +135,7 @@ def paint_triangles(
     coverage : uint8 array (height, width)
         The texture.
     left, top, right, bottom : int
-        What may be painted [px]; it lies within the picture.
+        The part that may be painted [px]; it lies within the picture.
     """
     for k in range(first, first + count - 2, 3):
         a, b = offset + _whole(indices[k]), offset + _whole(indices[k + 1])

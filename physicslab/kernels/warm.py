@@ -33,7 +33,7 @@ _FIRST = (
 )  # fmt: skip
 """Modules whose kernels almost every scene needs, compiled first: what moves it, then its picture."""
 WORKER = "worker"
-"""What the command ``kernels`` takes to do :func:`work`."""
+"""The argument of the command ``kernels`` that runs :func:`work`."""
 _YIELDING = 15
 """How much higher the priority of a running scene is than that of the workers, as a Unix nice value."""
 
@@ -117,7 +117,7 @@ class Warmup:
     workers : int, optional
         How many processes; by default one for each processor, up to four.
     command : sequence of str
-        What each runs in place of :func:`work`.
+        The command that each runs in place of :func:`work`.
 
     Attributes
     ----------

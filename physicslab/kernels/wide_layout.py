@@ -18,11 +18,11 @@ WIDE = 8
 DISC, BOX = 0, 1
 """The kinds of blocks: pairs of discs, with one point, and pairs with a box, with one or two."""
 
-# Of every pair: the normal from A to B, the friction coefficient, inverse masses and moments of inertia, the
+# Each pair has the normal from A to B, the friction coefficient, inverse masses and moments of inertia, the
 # size of the smaller body.
 NORMAL_X, NORMAL_Y, FRICTION, MASS_A, MASS_B, INERTIA_A, INERTIA_B, SIZE = (WIDE * i for i in range(8))
 
-# Of a point: impulses along the normal and across, effective masses, the separation; its arms.
+# A point has impulses along the normal and across, effective masses, the separation; its arms.
 IMPULSE, TANGENT_IMPULSE, MASS, TANGENT_MASS, SEPARATION = (WIDE * i for i in range(5))
 ARM_AX, ARM_AY, ARM_BX, ARM_BY, FOUND = (WIDE * i for i in range(5, 10))
 ONE = 8 * WIDE

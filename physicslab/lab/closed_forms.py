@@ -119,7 +119,7 @@ def driven(
     Parameters
     ----------
     stiffness, drag, strength : float
-        Of the spring [N/m], of the drag [kg/s] and of the force [N]. The damping is below the critical one.
+        Spring [N/m], drag [kg/s] and amplitude of the force [N]. The damping is below the critical one.
     rate, start, t : float
         That of the force [rad/s]; where it is let go at t = 0 [m]; the time [s].
     """

@@ -1,4 +1,4 @@
-"""What is said to people: whole sentences with named gaps, numbers and dates, in one language."""
+"""Texts for people: whole sentences with named gaps, numbers and dates, in one language."""
 
 import re
 import sys
@@ -76,7 +76,7 @@ class Language:
     def reword(self, text: str) -> str:
         """Return a finished text of the program in this language, also the numbers in it.
 
-        A :class:`Sentence` is said as it was made, and names in its gaps stay. Of other texts a sentence is
+        A :class:`Sentence` is said as it was made, and names in its gaps stay. In other texts a sentence is
         known by what it has around its gaps, ``"Saved {file}"``, and what stands in these is reworded as
         well; several lines are, each for itself. Any other text stays, but for its numbers.
 

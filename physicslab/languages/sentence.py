@@ -11,9 +11,9 @@ class Sentence(str):
     template : str
         The whole sentence in English, its gaps as ``{name}``. Catalogues know it by that.
     code : str
-        What it says, for programs: the same whatever its words. One that is no reason has none.
+        Its code for programs: the same whatever its words; empty unless it is a reason.
     **values : object
-        What stands in the gaps. A sentence there is said in the language too; any other text is a name, and
+        Values of the gaps. A sentence there is said in the language too; any other text is a name, and
         the same in every language.
 
     >>> Sentence("{body} is fixed", body="Box")

@@ -37,7 +37,7 @@ type _Asked = Question | Explain
 
 @dataclass(frozen=True, slots=True)
 class Answers:
-    """What a learner has answered: by the names of questions, objects of JSON that are checked."""
+    """A learner's answers: checked JSON objects by the names of questions."""
 
     learner: str
     given: Mapping[str, Mapping[str, Any]]

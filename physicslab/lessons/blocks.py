@@ -41,7 +41,7 @@ class LessonError(SceneError):
     entry : (str, str)
         The kind of the block and the key that cannot be so; empty where it is not one entry.
     why : str
-        What is said of it, without the place.
+        The message, without the place.
     """
 
     entry = ("", "")
@@ -72,7 +72,7 @@ class Block:
     json : str
         A scene behind them.
     file : str
-        What messages call the file.
+        Name of the file in messages.
     """
 
     kind: str

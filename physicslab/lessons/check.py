@@ -26,7 +26,7 @@ class Row:
     lesson, block : str
         Where it stands; ``line`` is its line.
     quantity, case : str
-        What is compared, and in which case.
+        Measure that is compared, and the case.
     measured, theory : float
         In the ``unit``; NaN where it has no number.
     gap, tolerance : float

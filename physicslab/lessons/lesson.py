@@ -34,13 +34,13 @@ class Run:
     seconds : Expression, optional
         How long it goes on [s].
     until : Condition, optional
-        What ends it otherwise, as soon as it becomes true.
+        Condition that ends it otherwise, as soon as it becomes true.
     limit : Expression
         The longest that it may take then [s].
     graphs : tuple of pairs of Expression
-        What is drawn, and against what; ``time`` where nothing else is named.
+        Expressions drawn, and those on the horizontal axis; ``time`` by default.
     case : Case
-        What differs from the scene as it is.
+        Changes to the scene.
     """
 
     name: str
@@ -65,11 +65,11 @@ class Reply:
     right : bool
         Whether it is right.
     feedback, idea : str
-        What is said to who gives it; the misconception that it stands for, with its source.
+        Reply to a learner who gives it; the misconception that it stands for, with its source.
     shown_by : Case, optional
         A run that shows it.
     when : Condition, optional
-        Of the run's figures; it holds if, and only if, this choice is right.
+        Condition on the run's figures that holds if, and only if, this choice is right.
     """
 
     text: str
@@ -93,19 +93,19 @@ class Question:
         ``"choice"``, ``"number"``, ``"curve"`` (drawn over time) or ``"goal"`` (values with which the run
         reaches something).
     unit : str
-        What a number or a curve is in.
+        Unit of a number or a curve.
     answer : Expression, optional
         The right number, or what is measured along the curve.
     tolerance : float
         Share of the right number within which an answer is right; of its span for a curve.
     goal : Condition, optional
-        What is to be reached.
+        Condition to be reached.
     solution : Case, optional
         Values that reach it.
     replies : tuple of Reply
         The choices, or the wrong numbers that have a feedback of their own.
     right : str
-        What is said of a right answer.
+        Reply to a right answer.
     run : Run, optional
         Whose figures it is about.
     """
@@ -132,7 +132,7 @@ class Compare:
     Attributes
     ----------
     quantity : str
-        What it is called.
+        Its name.
     measured, theory : Expression
         Over the figures of the run, and over parameters.
     along : bool
@@ -202,15 +202,15 @@ class Lesson:
     minutes : int
         How long it takes.
     needs : tuple of str
-        What should be known before.
+        Lessons that should be known before.
     setup : Setup
         Its scene, with parameters, and what of the window is open.
     sources : dict of str to str
         Literature, by the keys that stand in brackets.
     quantities : tuple of str
-        What the expressions read from a run, as ``ball.x``.
+        Quantities that the expressions read from a run, as ``ball.x``.
     digest : str
-        Of the file's bytes: answers say to which text they were given.
+        Digest of the file's bytes: answers say to which text they were given.
     path : Path
         Where it was read.
     """

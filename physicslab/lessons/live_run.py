@@ -8,7 +8,7 @@ from physicslab.lessons.lesson import Run
 from physicslab.lessons.setup import AS_IT_IS, Case, Setup
 from physicslab.world import World
 
-_ROUNDING = 1e-6
+_STEP_SUM_ROUNDING = 1e-6
 """Share of a step by which a sum of steps is rounded at most."""
 
 
@@ -18,9 +18,9 @@ class LiveRun:
     Attributes
     ----------
     case : Case
-        What differs from the scene as it is.
+        Changes to the scene.
     world : World
-        What is stepped.
+        The world that is stepped.
     record : Record
         The samples so far.
     limit : float
@@ -37,7 +37,7 @@ class LiveRun:
 
     @property
     def figures(self) -> Figures:
-        """What was found so far."""
+        """Figures of the run so far."""
         return Figures(self.record, self._parameters)
 
     def sample(self) -> bool:
@@ -52,7 +52,7 @@ class LiveRun:
         """
         self.record.add()
         if self._until is None:
-            return self.world.time >= self.limit - _ROUNDING * self.world.simulation.dt
+            return self.world.time >= self.limit - _STEP_SUM_ROUNDING * self.world.simulation.dt
         self._after += bool(self._after) or self._until.margin(self.figures) > 0.0
         if self._after < AROUND // 2:
             if self.world.time > self.limit:

@@ -64,7 +64,7 @@ def lesson_page(
 
 
 class _Page:
-    """What is gathered while the article is written: runs, books of them, and what is known of questions."""
+    """The parts gathered while the article is written: runs, books of runs, and answers to questions."""
 
     def __init__(
         self, lesson: Lesson, find: Callable[[str], Lesson], tell: Callable[[float], object]
@@ -87,7 +87,7 @@ class _Page:
 
     @property
     def about(self) -> str:
-        """What stands below the title."""
+        """The line below the title."""
         lesson, own = self.lesson, self.own
         said = [own.say("level {level}", level=lesson.level)]
         said.append(own.say_count("{n} minute", "{n} minutes", lesson.minutes))

@@ -25,7 +25,7 @@ FORMAT = "physicslab-lesson/1"
 FILE_LIMIT = 2**20
 """Bytes that a lesson may have."""
 TOOLS = ("hand", "stopwatch", *(kind.__name__.lower() for kind in INSTRUMENTS))
-"""What of the window a lesson may open to its learners."""
+"""Tools of the window that a lesson may open to its learners."""
 _HEAD = ("format", "title", "level", "minutes", "needs", "scene", "language", "source")
 _LANGUAGE = re.compile(r"[a-z]{2,3}")
 

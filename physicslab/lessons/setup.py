@@ -24,7 +24,7 @@ _WORDS: dict[str, Any] = {"true": True, "false": False, "null": None}
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What differs from a scene as it is: values of parameters, or of fields, by ``ID.Component.field``."""
+    """Changes to a scene: values of parameters, or of fields, by ``ID.Component.field``."""
 
     text: str
     values: tuple[tuple[str, str], ...] = ()
@@ -58,15 +58,15 @@ class Setup:
     document : dict
         A scene; a text in the place of a number is an expression of parameters.
     source : str
-        What messages call it: file, line and block.
+        Its name in messages: file, line and block.
     parameters : dict of str to Expression
         Each may refer to those before it.
     notes : dict of str to str
-        What they are, in words.
+        Their meaning in words.
     opened : dict of str to (str, str)
         Those that a learner may change, with the least and the greatest value.
     tools, shown : tuple of str
-        What of the window is open, and what it shows beside the world.
+        Tools of the window that are open, and things that it shows beside the world.
     """
 
     document: dict[str, Any]

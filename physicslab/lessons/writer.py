@@ -32,7 +32,7 @@ class Opened:
     path : str
         ``ID.Component.field`` of the scene, with ``.x`` or ``.y`` for a part of a vector; empty for none.
     name : str
-        What expressions call it.
+        Its name in expressions.
     low, high : str
         The least and the greatest value, with units.
     """
@@ -45,7 +45,7 @@ class Opened:
 
 @dataclass(slots=True)
 class Draft:
-    """What a teacher chose for a lesson of a scene, each part as the text that was typed.
+    """A teacher's choices for a lesson of a scene, each part as the text that was typed.
 
     Attributes
     ----------
@@ -54,18 +54,18 @@ class Draft:
     seconds : str
         How long the run is [s].
     measured, quantity, unit : str
-        What is predicted and compared: an expression of the run's figures, its words, and its unit.
+        The measure predicted and compared: an expression of the run's figures, its words, and its unit.
     question, form : str
-        What is asked before the run, and one of ``FORMS``.
+        The question before the run, and one of ``FORMS``.
     choices : list of [str, str]
         The answers of a choice, each with what is said to it; the first is right.
     theory, holds, tolerance : str
         The formula beside the measurement, when it holds, and the widest gap; without a theory nothing is
         compared.
     why, answer : str
-        What is to be explained afterwards, and a model answer; without these nothing is.
+        The question afterwards, and a model answer; both may be empty.
     opened : list of Opened
-        What learners may change.
+        Fields that learners may change.
     """
 
     title: str

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Velocity
-from physicslab.kernels.accounts import DAMPING, ENERGY, HAND, PX, PY, SPIN
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, DAMPING, ENERGY, HAND, PX, PY
 from physicslab.kernels.forces.bookings import ACCOUNTS, gather, resist
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
@@ -42,9 +42,9 @@ class BookKeeper:
     count : int
         How many places there are behind the clock.
     rooms : dict of int to int
-        Of each cause whose forces are kept by themselves, coordinate by coordinate, where that begins.
+        Start of the coordinates of each cause whose forces are kept by themselves.
     places : int64 array
-        What integrators take (:data:`physicslab.kernels.forces.bookings.KEPT`).
+        The places that integrators take (:data:`physicslab.kernels.forces.bookings.KEPT`).
     layout : StateLayout
         As given.
     """
@@ -57,29 +57,29 @@ class BookKeeper:
         free = state.bodies.inverse_mass[layout.moving] > 0.0
         goes = state.table(Velocity).present[layout.moving]
         self._movable, self._driven = layout.moving[free], layout.moving[goes & ~free]
-        foreign = [system for system, force in packed if force is None or force.books is None]
+        foreign = [system for system, force in packed if force is None or force.work_slots is None]
         own = [force for _, force in packed if force is not None]
         causes = set(also) | ({DAMPING} if len(damping) else set()) | {system.account for system in foreign}
         if len(self._driven) and any(system.potential is not None for system in foreign):
             causes.add(HAND)
         for force in own:
-            causes |= {cause for cause, _ in force.books or ()}
+            causes |= {cause for cause, _ in force.work_slots or ()}
             causes |= {force.cause} if force.anchors is not None else set()
         first = layout.clock + 1
         self.slots = {cause: first + ACCOUNTS * number for number, cause in enumerate(sorted(causes))}
         self.count = ACCOUNTS * len(causes)
         kept = {system.account for system in foreign if system.potential is None}
         # A force that books nothing, as drag on what cannot move, needs no room either.
-        kept |= {DAMPING} & causes if any(force.keeps is not None for force in own) else set()
+        kept |= {DAMPING} & causes if any(force.dissipation_slot is not None for force in own) else set()
         self.rooms = {cause: self._room() for cause in sorted(kept if kicked else ())}
         pairs = [(self.slots[cause], room) for cause, room in self.rooms.items()]
         head = layout.clock, first + ACCOUNTS * len(causes), len(layout.moving), self.slots.get(DAMPING, -1)
         self.places = np.array((*head, *(place for pair in pairs for place in pair)), np.int64)
         for force in own:
-            for cause, place in force.books or ():
+            for cause, place in force.work_slots or ():
                 force.indices[place] = self.slots[cause]
-            if force.keeps is not None:
-                force.indices[force.keeps] = self.rooms.get(DAMPING, -1)
+            if force.dissipation_slot is not None:
+                force.indices[force.dissipation_slot] = self.rooms.get(DAMPING, -1)
 
     def _room(self) -> int:
         """Make room for a number for each coordinate; return where it begins."""
@@ -93,7 +93,7 @@ class BookKeeper:
         if force.anchors is not None:
             ends = np.stack((force.anchors, np.full(len(force.anchors), -1)), axis=1)
             measures.append((self._indices(force.cause, ends, energy=False, momentum=True), -1.0))
-        if force.books is None:
+        if force.work_slots is None:
             stored, ends = system.potential is not None, self._ends(self._movable)
             kept = -1 if stored else self.rooms.get(system.account, -1)
             found = self._indices(system.account, ends, energy=not stored, momentum=True, kept=kept)
@@ -121,7 +121,7 @@ class BookKeeper:
     def damping(self, rates: Numbers, inverse_mass: Numbers) -> list[PackedForce]:
         """Return what books the damping of all motion, if there is any.
 
-        Of every coordinate its rate (d,) [1/s] and its inverse mass, or moment of inertia (d,) [SI].
+        Rate (d,) [1/s] and inverse mass, or moment of inertia (d,) [SI], of every coordinate.
         """
         if not len(rates):
             return []
@@ -141,7 +141,7 @@ def book_in_python(
     state, book
         Whose, and where.
     system : ForceSystem
-        What acts.
+        The force that acts.
     change : tuple of float64 arrays (rows, 2) and (rows,)
         The force [N] and the torque [N m].
     q, v, force : float64 arrays
@@ -157,7 +157,7 @@ def book_in_python(
     x, y, fx, fy = q[:n:2], q[1:n:2], given[:n:2], given[1:n:2]
     force[account + PX] += fx.sum()
     force[account + PY] += fy.sum()
-    force[account + SPIN] += (x * fy - y * fx).sum() + given[n:d].sum()
+    force[account + ANGULAR_MOMENTUM] += (x * fy - y * fx).sum() + given[n:d].sum()
     if system.potential is not None:
         if HAND in slots:
             force[slots[HAND] + ENERGY] -= np.where(free, 0.0, every) @ v[:d]

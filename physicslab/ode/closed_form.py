@@ -40,7 +40,7 @@ class ClosedForm:
         By axis: 1/s^2, 1/s, m and m/s^2. The centre includes the shift by the acceleration where rate2 is
         not 0.
     what : str
-        What it covers, in words.
+        The motion that it covers, in words.
     """
 
     rows: NDArray[np.int64]

@@ -1,4 +1,4 @@
-"""What causes have given to bodies that moved in closed form: integrals of their forces, also in closed form.
+"""Energy and momentum from causes to bodies that moved in closed form: integrals in closed form as well.
 
 No power is integrated beside such a motion: what dampers and drag take is what the energy of their bodies
 loses along the solution, and what is left of the angular momentum of these is that of damping. The solution
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Transform, Velocity
-from physicslab.kernels.accounts import DAMPING, ENERGY, GRAVITY, PX, PY, SPIN, SPRINGS
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, DAMPING, ENERGY, GRAVITY, PX, PY, SPRINGS
 from physicslab.ode.closed_form import ClosedForm
 from physicslab.state.state import State
 
@@ -106,7 +106,7 @@ def _row(energy: float, impulse: Numbers, along: Numbers, spin: float) -> Number
     """Return a row of the account, of impulses (n, 2) by the axes of each body."""
     c, s = along.T
     row = np.zeros(4)
-    row[[ENERGY, SPIN]] = energy, spin
+    row[[ENERGY, ANGULAR_MOMENTUM]] = energy, spin
     row[PX] = (c * impulse[:, 0] - s * impulse[:, 1]).sum()
     row[PY] = (s * impulse[:, 0] + c * impulse[:, 1]).sum()
     return row

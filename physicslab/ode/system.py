@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
-from physicslab.kernels.accounts import DAMPING, ENERGY, FIELDS, SPIN
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, DAMPING, ENERGY, FIELDS
 from physicslab.kernels.forces.bookings import ACCOUNTS, END
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT
@@ -49,11 +49,11 @@ class OdeSystem:
     q, v : float64 arrays
         The state.
     inverse_mass : float64 array
-        Of what moves: inverse masses [1/kg] and inverse moments of inertia [1/(kg m^2)].
+        Inverse masses [1/kg] and inverse moments of inertia [1/(kg m^2)] of moving bodies.
     damping : float64 array
         Rates of damping [1/s]; empty where nothing is damped.
     calls, resistances : int64 arrays (n, 3)
-        What kernels call for the forces, and for their resistance to motion.
+        Functions that kernels call for the forces, and for their resistance to motion.
     gyration : float64 array (bodies,)
         Where a splitting method advances it and fields turn velocities, the rate of each body [rad/s],
         clockwise; else empty.
@@ -62,7 +62,7 @@ class OdeSystem:
     slots : dict of int to int
         Where the account of each cause that is booked begins.
     places : int64 array
-        What kernels must know of that (:mod:`physicslab.kernels.forces.bookings`).
+        Places of bookings for kernels (:mod:`physicslab.kernels.forces.bookings`).
     near : int64 array and int, optional
         An order of the coordinates in which those that forces couple are near, and how near; found
         once by the method that needs it, as it depends on the layout alone.
@@ -73,7 +73,7 @@ class OdeSystem:
     tolerance : float
         Relative error a step for methods that choose their steps.
     forces : tuple of ForceSystem
-        What acts.
+        The forces that act.
     interpreted : bool
         Whether Python computes any of it.
 
@@ -82,7 +82,7 @@ class OdeSystem:
     state : State
         Whose motion.
     forces : sequence of ForceSystem
-        What acts.
+        The forces that act.
     part : bool array (rows,), optional
         The rows that take part; all by default.
     every_row : bool, optional
@@ -288,7 +288,7 @@ class OdeSystem:
         turns = inverse > 0.0
         momentum = spin[turns] / inverse[turns]
         state.account.sums[DAMPING, ENERGY] += 0.5 * float(momentum @ spin[turns]) * np.expm1(-2.0 * decay)
-        state.account.sums[DAMPING, SPIN] += float(momentum.sum()) * np.expm1(-decay)
+        state.account.sums[DAMPING, ANGULAR_MOMENTUM] += float(momentum.sum()) * np.expm1(-decay)
 
     def _note_rates(self, state: State) -> None:
         """Note the fastest rates that forces met, wherever within the steps that was."""
@@ -347,7 +347,7 @@ class OdeSystem:
             if force.resistance is not None
         ]
         self._joints = next((force for force in forces if force.kernel is constrain), None)
-        measured = [(system, force) for system, force in packed if force and force.steepest is not None]
+        measured = [(system, force) for system, force in packed if force and force.max_rate_slot is not None]
         self._measured = [system for system, _ in measured]
         self.steepness = measured[-1][1].parameters[-1:] if measured else np.zeros(1)
         damping = book.damping(self.damping, self.inverse_mass)
@@ -393,7 +393,7 @@ class OdeSystem:
                     method(state, 0.0)
                     change = bodies.force - before[0], bodies.torque - before[1]
                     book_in_python(state, book, system, change, places, speeds, total)
-                # What is fixed stays where it is, be the force on it infinite: no product with zero.
+                # A fixed body stays where it is, be the force on it infinite: no product with zero.
                 pulled = bodies.inverse_mass[layout.moving] > 0.0
                 total[:n] += np.where(pulled[:, None], bodies.force[layout.moving], 0.0).ravel()
                 turned = bodies.inverse_inertia[layout.turning] > 0.0

@@ -31,7 +31,7 @@ class BodyOptions(TypedDict, total=False):
     static : bool
         Whether it stays where it is; mass and velocity are then ignored.
     material : str
-        What it is made of, one of :data:`SUBSTANCES`, whose surface and colour it has unless they are given.
+        Its material, one of :data:`SUBSTANCES`, whose surface and colour it has unless they are given.
     colour : str
         As in :class:`Colour`.
     name : str

@@ -1,4 +1,4 @@
-"""What hangs: chains of balls on springs, pendulums on rods or springs."""
+"""Hanging things: chains of balls on springs, pendulums on rods or springs."""
 
 from physicslab.components import Rod, Spring
 from physicslab.ecs.vector import Vector2
@@ -27,9 +27,9 @@ def chain(
     hold_end : bool
         Whether the end is a fixed point too.
     radius, mass : float
-        Of each ball [m], [kg].
+        Radius [m] and mass [kg] of each ball.
     stiffness, damping : float
-        Of each spring [N/m], [N s/m]; all are at their rest length.
+        Stiffness [N/m] and damping [N s/m] of each spring; all are at their rest length.
 
     Raises
     ------
@@ -75,15 +75,15 @@ def pendulum(
     anchor : vector
         The point of the world it hangs from [m].
     length : float
-        Of the rod, or rest length of the spring: the bob's distance at the start [m].
+        Length of the rod, or rest length of the spring: the bob's distance at the start [m].
     angle : float
         Where the bob is at the start: from straight down, counter-clockwise [rad].
     radius : float
-        Of the bob [m].
+        Radius of the bob [m].
     stiffness, damping : float, optional
-        Of a spring in place of the rod [N/m], [N s/m]; it gives way by the bob's weight over the stiffness.
+        Those of a spring in place of the rod [N/m, N s/m]; its stretch is the bob's weight by the stiffness.
     mass, restitution, friction, name : optional
-        Of the bob: [kg], the numbers of its surface, its id.
+        Mass of the bob [kg], the numbers of its surface, its id.
 
     Raises
     ------

@@ -23,11 +23,11 @@ def container(
     position : vector
         Middle of the upper side of the floor [m].
     width, height : float
-        Of the space inside [m].
+        Size of the space inside [m].
     thickness : float
-        Of floor and walls [m].
+        Thickness of floor and walls [m].
     **options
-        Of each, as :class:`BodyOptions` has them; all are static.
+        Options of each, as in :class:`BodyOptions`; all are static.
     """
     middle = Vector2(*position)
     aside, up = (width + thickness) / 2.0, height / 2.0

@@ -31,11 +31,11 @@ def gas(
     region : tuple of four floats
         Where they are at the start: xmin, ymin, xmax, ymax [m].
     radius, mass : float
-        Of each [m], [kg].
+        Radius [m] and mass [kg] of each.
     slowest, fastest : float
         Limits of the speeds [m/s].
     seed : int
-        Of places, directions and speeds.
+        Seed of places, directions and speeds.
 
     Raises
     ------

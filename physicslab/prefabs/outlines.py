@@ -15,7 +15,7 @@ from physicslab.world import World
 
 _MOST_POINTS = 1000
 _LEAST, _MOST = KINDS["polygon"].own
-_ROUNDING = 2e-9
+_ZERO_LENGTH_SHARE = 2e-9
 """Share of the size of an outline below which a length is zero, and the sine of a turn is."""
 _UNCERTAIN = 4e-16
 """Share of two products below which the sign of their difference may be that of rounding."""
@@ -29,8 +29,8 @@ def outline(world: World, points: Sequence[Pair], **options: Unpack[BodyOptions]
     points : sequence of vectors or pairs of floats
         As :func:`convex_parts` takes them [m].
     **options
-        Of the whole, as in :class:`BodyOptions`, but for an angle; the mass is shared by area, and the name
-        is that of the first part.
+        Options of the whole, as in :class:`BodyOptions`, but for an angle; the mass is shared by area, the
+        name is that of the first part.
 
     Returns
     -------
@@ -125,12 +125,12 @@ def _corners(points: list[Vector2]) -> list[Vector2]:
     places = np.array([tuple(point) for point in points])
     if not 3 <= count <= _MOST_POINTS or not np.isfinite(places).all():
         raise ValueError(f"an outline is 3 to {_MOST_POINTS:,} finite points; this one is {count} points")
-    none = _ROUNDING * float(np.ptp(places, axis=0).max())
+    none = _ZERO_LENGTH_SHARE * float(np.ptp(places, axis=0).max())
     corners, k, kept = list(points), 0, 0
     while kept < len(corners) and len(corners) >= 3:
         a, b, c = corners[k - 1], corners[k], corners[(k + 1) % len(corners)]
         before, after = (b - a).magnitude, (c - b).magnitude
-        if min(before, after) > none and abs(_turn(a, b, c)) > _ROUNDING * before * after:
+        if min(before, after) > none and abs(_turn(a, b, c)) > _ZERO_LENGTH_SHARE * before * after:
             k, kept = (k + 1) % len(corners), kept + 1
         else:
             del corners[k]
@@ -224,7 +224,7 @@ def _kept(corners: list[Vector2], part: list[int]) -> list[int]:
 def _bend(corners: list[Vector2], part: list[int], k: int) -> int:
     """Return 1 where a part turns to the left at one of its corners, 0 where it goes straight on, else -1."""
     a, b, c = (corners[part[i % len(part)]] for i in (k - 1, k, k + 1))
-    turn, none = _turn(a, b, c), _ROUNDING * (b - a).magnitude * (c - b).magnitude
+    turn, none = _turn(a, b, c), _ZERO_LENGTH_SHARE * (b - a).magnitude * (c - b).magnitude
     if abs(turn) > none:
         return 1 if turn > 0.0 else -1
     return 0 if (b - a).dot(c - b) > 0.0 else -1

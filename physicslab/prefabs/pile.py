@@ -30,16 +30,16 @@ def pile(
     columns : int
         Discs in a row.
     radius : float
-        Of each disc [m].
+        Radius of each disc [m].
     gap : float
         Mean distance between neighbours [m]; each is off its place by up to half of that, so that they do not
         come to rest on each other's tops.
     density : float
         Mass of each by its area [kg/m^2], where ``mass`` is not given.
     seed : int
-        Of the places.
+        Seed of the places.
     **options
-        Of each disc, as :class:`BodyOptions` has them.
+        Options of each disc, as in :class:`BodyOptions`.
     """
     corner, pitch = Vector2(*foot), 2.0 * radius + gap
     offsets = np.random.default_rng(seed).uniform(-gap / 2.0, gap / 2.0, (count, 2)).tolist()
@@ -73,7 +73,7 @@ def pyramid(
     gap : float
         Between neighbours of a row [m]; the rows rest on each other.
     **options
-        Of each box, as :class:`BodyOptions` has them, with a friction of 0.6.
+        Options of each box, as in :class:`BodyOptions`, with a friction of 0.6.
     """
     options.setdefault("friction", 0.6)
     middle, pitch = Vector2(*foot), size + gap
@@ -102,11 +102,11 @@ def stack(
     base : vector
         Middle of the lowest side [m].
     width, height : float
-        Of each box [m].
+        Size of each box [m].
     gap : float
         Left between each and the next at the start [m].
     **options
-        Of each box, as :class:`BodyOptions` has them, with a friction of 0.6.
+        Options of each box, as in :class:`BodyOptions`, with a friction of 0.6.
     """
     options.setdefault("friction", 0.6)
     foot = Vector2(*base)

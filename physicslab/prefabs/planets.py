@@ -51,7 +51,7 @@ def binary(
     separation : float
         Their largest distance [m].
     eccentricity : float
-        Of both orbits; 0 is a circle, and it must be below 1.
+        Eccentricity of both orbits; 0 is a circle, and it must be below 1.
     names : tuple of two strings, optional
         Their ids.
     trail : float
@@ -88,7 +88,7 @@ def planets(world: World, star: float, orbiting: Sequence[Planet], *, trail: flo
     star : float
         Mass of the star [kg], which starts at the origin.
     orbiting : sequence of Planet
-        What goes round it, counter-clockwise.
+        Planets that go round it, counter-clockwise.
     trail : float
         How long a trail they draw [s].
 

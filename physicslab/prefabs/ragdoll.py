@@ -10,7 +10,7 @@ from physicslab.world import World
 
 
 class _Limb(NamedTuple):
-    """A limb from a joint on: what it hangs on, where that holds it, its direction, sizes and limits."""
+    """A limb from a joint on: its carrier, where that holds it, its direction, sizes and limits."""
 
     parent: int
     anchor: tuple[float, float]

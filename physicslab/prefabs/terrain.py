@@ -76,11 +76,11 @@ def loop(
     Parameters
     ----------
     radius, run : float
-        Of the loop, and the length of the run [m].
+        Radius of the loop, and the length of the run [m].
     opening : float
         Angle [rad] that the loop lacks on the left above the run, through which a body comes in.
     segments : int
-        Of a whole turn, 24 to 900: from 24 on a chain is round, here the circle that touches all of them.
+        Segments of a whole turn, 24 to 900: from 24 on a chain is round, the circle that touches all of them.
     """
     turn = 2.0 * math.pi / segments
     outer = radius / math.cos(0.5 * turn)

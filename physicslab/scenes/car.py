@@ -8,7 +8,7 @@ from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
 _RADIUS, _TORQUE, _SPEED = 0.3, 18.0, -12.0
-"""Of each wheel [m]; the most torque [N m] and the speed [rad/s] of its motor."""
+"""Radius of each wheel [m]; the most torque [N m] and the speed [rad/s] of its motor."""
 _LEFT, _RIGHT, _STEP = -9.5, 11.5, 0.25
 """The ends of the ground, and how far one vertex is from the next [m]."""
 

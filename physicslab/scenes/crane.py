@@ -7,7 +7,7 @@ from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
 _SPEED, _HEIGHT, _LENGTH, _STOP = 1.6, 5.0, 3.6, 0.6
-"""Of the trolley [m/s], [m]; the length of the rope [m], and where the trolley stops [m]."""
+"""Speed [m/s] and height [m] of the trolley; length of the rope [m], and where the trolley stops [m]."""
 
 
 def _fill(world: World) -> None:

@@ -8,7 +8,7 @@ from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
 _DISTANCE, _RINGS = 0.2, 6
-"""Of neighbours [m]; of molecules around the one in the middle of each crystal."""
+"""Distance of neighbours [m]; rings of molecules around the one in the middle of each crystal."""
 
 
 def _crystal(world: World, x: float, y: float, speed: float, turn: float) -> None:

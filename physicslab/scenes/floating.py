@@ -1,4 +1,4 @@
-"""What floats, and what sinks."""
+"""Bodies that float, and bodies that sink."""
 
 from physicslab.components import Medium, Shape, Transform
 from physicslab.prefabs import box, capsule, circle

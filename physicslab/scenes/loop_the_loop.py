@@ -7,7 +7,7 @@ from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
 _RADIUS, _BALL, _RUN = 1.0, 0.1, 2.5
-"""Of the loops, of the balls, and the length of the runs [m]."""
+"""Radii of the loops and of the balls, and length of the runs [m]."""
 
 
 def _fill(world: World) -> None:

@@ -6,7 +6,7 @@ from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
 _HEIGHT = 2.5
-"""Of the wheels [m]."""
+"""Height of the wheels [m]."""
 
 
 def _fill(world: World) -> None:

@@ -7,7 +7,7 @@ from physicslab.scenes.scene import Scene
 from physicslab.world import World
 
 _RADIUS, _RATE = 2.0, 1.0
-"""Of the circle [m], and of going round it [rad/s]."""
+"""Radius of the circle [m], and rate of going round it [rad/s]."""
 
 
 def _fill(world: World) -> None:

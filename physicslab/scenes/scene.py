@@ -20,14 +20,14 @@ class Scene:
     fill : callable
         Spawns everything in the world that it is given.
     view : tuple of four floats, optional
-        What a window shows of it: xmin, ymin, xmax, ymax [m], with room for 10 s of motion; by default
+        The part that a window shows: xmin, ymin, xmax, ymax [m], with room for 10 s of motion; by default
         all that there is at the start.
     moment : float
         The time at which a small picture shows what it is about [s].
     teaches : tuple of str
-        What it is an example of, by which it is found too.
+        Subjects that it is an example of, by which it is found too.
     tags : tuple of str
-        What is in it, by which it is found: as :func:`physicslab.view.workbench.thumbnails.tags_of` finds.
+        Its contents, by which it is found: as :func:`physicslab.view.workbench.thumbnails.tags_of` finds.
     physics, simulation : PhysicsConfig, SimulationConfig
         The laws, and how they are stepped.
     """

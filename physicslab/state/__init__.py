@@ -1,1 +1,1 @@
-"""What a world holds: arrays and what must be true of them."""
+"""The state of a world: arrays and their invariants."""

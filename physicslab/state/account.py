@@ -1,4 +1,4 @@
-"""What changed the energy and the momentum of a world, by cause: kept where it happens."""
+"""Changes of the energy and the momentum of a world, by cause: kept where they happen."""
 
 import math
 from dataclasses import dataclass
@@ -27,9 +27,9 @@ class Energy:
     Attributes
     ----------
     kinetic_linear, kinetic_angular : float
-        Of translation and of rotation.
+        Kinetic energy of translation and of rotation [J].
     potential : dict of str to float
-        What each running force stores, by the force's name ("gravity", "spring", ...).
+        Energy stored by each running force, by its name ("gravity", "spring", ...).
     """
 
     kinetic_linear: float
@@ -78,7 +78,7 @@ class Account:
     Attributes
     ----------
     table : float64 array (BOOK, 4)
-        What each cause has given (:mod:`physicslab.kernels.accounts`), which kernels add to; what there was
+        Contribution of each cause (:mod:`physicslab.kernels.accounts`), which kernels add to; what there was
         after the last step; and all of it as it was before the step at hand.
     sums : float64 array (CAUSES, 4)
         The first of these.
@@ -87,13 +87,13 @@ class Account:
     since : float
         The world's clock when it began [s].
     start : Balance, optional
-        What there was then; ``None`` before the first step.
+        The balance then; ``None`` before the first step.
     held : tuple of int
         The entities that a hand held then.
     columns : tuple, optional
         The arrays that a balance is measured from, and the revision of the rows that they belong to.
     seen : object, optional
-        What the last balance depends on, in short: while that is the same, so is the balance.
+        Digest of all that the last balance depends on: while it is the same, so is the balance.
     """
 
     def __init__(self) -> None:
@@ -113,7 +113,7 @@ class Account:
 
     @property
     def last(self) -> Balance:
-        """What there was after the last step."""
+        """The balance after the last step."""
         return Balance(*self._last.tolist())
 
     @last.setter
@@ -173,7 +173,7 @@ class Account:
         """Return what there is, to go back to."""
         return KeptAccount(self._now.copy(), self.since, self.start, self.held)
 
-    def bring_back(self, kept: KeptAccount) -> None:
+    def restore(self, kept: KeptAccount) -> None:
         """Go back."""
         np.copyto(self._now, kept.book)
         _, self.since, self.start, self.held = kept

@@ -10,8 +10,8 @@ from physicslab.kernels.geometry.shapes import Shapes
 
 SMOOTH = math.radians(15.0)
 """The largest angle by which a chain turns and is round there [rad]."""
-_ROUNDING = 1e-9
-"""Of angles [rad] and of shares of a length."""
+_ANGLE_ROUNDING = 1e-9
+"""Rounding of angles [rad] and of shares of a length."""
 _ONE_CIRCLE = 1e-10
 """Share of its radius by which the centres and radii of arcs of one circle differ."""
 _FINE = 0.05
@@ -28,7 +28,7 @@ NO_LINKS: _Points = np.zeros((0, 2))
 def links_of(vertices: _Points) -> tuple[_Points, _Points]:
     """Return the vertices at which a chain turns, and its links as rows of the pool.
 
-    What lies in line is one segment, so that no seam is left on it.
+    Links in line are one segment, so that no seam is left on it.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def _corners(way: list[list[float]], closed: bool) -> list[int]:
 def _turn(x: float, y: float, to_x: float, to_y: float) -> float:
     """Return by how much one direction is turned against another, to the left [rad]; 0 for rounding."""
     turn = math.atan2(x * to_y - y * to_x, x * to_x + y * to_y)
-    return turn if abs(turn) > _ROUNDING else 0.0
+    return turn if abs(turn) > _ANGLE_ROUNDING else 0.0
 
 
 def _rows(
@@ -85,7 +85,9 @@ def _rows(
     count, links = len(along), list[_Row]()
     turns = [_turn(*along[k - 1], *along[k % count]) for k in range(count + 1)]
     used = [0.5 * min(length[k - 1], length[k % count]) for k in range(count + 1)]
-    used = [way if abs(turn) <= SMOOTH + _ROUNDING else 0.0 for way, turn in zip(used, turns, strict=True)]
+    used = [
+        way if abs(turn) <= SMOOTH + _ANGLE_ROUNDING else 0.0 for way, turn in zip(used, turns, strict=True)
+    ]
     if not closed:
         used[0] = used[-1] = 0.0
         (x, y), (u, w) = places[0], along[0]
@@ -93,7 +95,7 @@ def _rows(
     for k in range(count):
         (x, y), (u, w), segment = places[k], along[k], float(k)
         straight = length[k] - used[k] - used[k + 1]
-        if straight > _ROUNDING * length[k]:
+        if straight > _ANGLE_ROUNDING * length[k]:
             links.append((0.0, straight, x + used[k] * u, y + used[k] * w, w, -u, w, -u, segment, 1.0))
         x, y, turn, way = *places[k + 1], turns[k + 1], used[k + 1]
         to_u, to_w = along[(k + 1) % count]
@@ -103,7 +105,7 @@ def _rows(
             bend, radius = math.copysign(1.0, turn), way / math.tan(0.5 * abs(turn))
             x, y = x - way * u - bend * radius * w, y - way * w + bend * radius * u
             _append(links, (bend, radius, x, y, w, -u, to_w, -to_u, segment, 1.0))
-        elif abs(turn) >= math.pi - _ROUNDING:  # back on the other side: two right angles
+        elif abs(turn) >= math.pi - _ANGLE_ROUNDING:  # back on the other side: two right angles
             links.append((1.0, 0.0, x, y, w, -u, u, w, segment, 1.0))
             links.append((1.0, 0.0, x, y, u, w, to_w, -to_u, segment, 1.0))
         elif turn > 0.0:
@@ -175,5 +177,5 @@ def line_along(links: _Points) -> _Points:
             around = np.stack((np.cos(angles), np.sin(angles)), axis=1)
             places.append(place + bend * size * around)
     line = np.concatenate(places)
-    apart = np.abs(np.diff(line, axis=0)).max(axis=1) > _ROUNDING * np.abs(line).max()
+    apart = np.abs(np.diff(line, axis=0)).max(axis=1) > _ANGLE_ROUNDING * np.abs(line).max()
     return line[np.concatenate(([True], apart))]

@@ -29,7 +29,7 @@ class Checkpoint:
     time : float
         The clock of then [s].
     remainders : Remainders
-        What rounding had left out of positions and velocities; replaced by a step, never changed in place.
+        Rounding remainders of positions and velocities; replaced by a step, never changed in place.
     """
 
     def __init__(self) -> None:

@@ -218,7 +218,7 @@ class Entities:
         """Put the numbers of entities in place of ids; refuse what is not there where the motion needs it.
 
         ``own`` is the number of the entity that gets the component, which it may refer to: the next where
-        there is none yet. What has a number ``may_come`` later.
+        there is none yet. An entity whose number ``may_come`` is made later.
         """
         if not isinstance(component, Component):
             return

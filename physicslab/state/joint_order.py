@@ -32,7 +32,7 @@ class Blocks(NamedTuple):
     entries : int64 array (l + 1, ENTRY)
         Where the factor of the matrix is not zero below the diagonal, column by column.
     shared : int64 array (s, 2)
-        Of an entry pairs of ends, of its row's node and of its column's, which are of one body.
+        Pairs of ends of an entry, of its row's node and of its column's, which are of one body.
     targets : int64 array (u,)
         The entry that changes by each two entries of a column, as that is eliminated.
     groups : int64 array (b + 1, GROUP)

@@ -17,7 +17,7 @@ from physicslab.kernels.joints.terms import MeasuredTerm, TermEnd, measure_turne
 
 
 class Measure(IntEnum):
-    """What a term measures between the anchors of A and B, or their angles."""
+    """Measure of a term between the anchors of A and B, or their angles."""
 
     ALONG = terms.ALONG
     """How far B's anchor is from A's along an axis of the world [m]."""
@@ -30,7 +30,7 @@ class Measure(IntEnum):
 
 
 class Role(IntEnum):
-    """What a row demands of its quantity g."""
+    """Demand of a row on its quantity g."""
 
     HOLD = soft.HOLD
     """g = 0, by a force of any sign."""

@@ -44,7 +44,7 @@ class Joints:
     joints : tuple of Joint
         Which joint has which rows, in the order of rows.
     measure : int64 array (m,)
-        What each term measures, a :class:`Measure`.
+        Measure of each term, a :class:`Measure`.
     a, b : int64 arrays (m,)
         The rows of its bodies; 0 is the world.
     anchor_a, anchor_b, axis : float64 arrays (m, 2)
@@ -55,14 +55,14 @@ class Joints:
     second : int64 array (n,)
         The second term of each row, or -1.
     role : int64 array (n,)
-        What it demands, a :class:`Role`.
+        Its demand, a :class:`Role`.
     offset, target, strongest : float64 arrays (n,)
-        What is taken from the terms [m or rad]; the speed of a motor [m/s or rad/s]; its largest force [N or
+        Offset of the terms [m or rad]; the speed of a motor [m/s or rad/s]; its largest force [N or
         N m], which may be infinite.
     blocks : Blocks
         The order in which soft constraints solve them, and which at once.
     impulse : float64 array (n,)
-        Of the last substep [N s or N m s], from which the next one starts.
+        Impulses of the last substep [N s or N m s], from which the next one starts.
     force : float64 array (n,)
         At the end of the last step, or as its mean [N or N m].
     largest : float64 array (n,)
@@ -172,7 +172,7 @@ class Joints:
 
     @property
     def _carried(self) -> tuple[NDArray[np.float64], ...]:
-        """What a row has that is not of its component."""
+        """Columns of a row that are not fields of its component."""
         return self.impulse, self.force, self.largest
 
     def settings(self, index: EntityIndex) -> bytes:

@@ -23,20 +23,20 @@ class PackedForce:
     Attributes
     ----------
     kernel : ForceKernel
-        What adds to the forces.
+        The kernel that adds to the forces.
     parameters, indices : float64 array, int64 array
         Whatever the kernel reads; it gets pointers to them.
     resistance : ForceKernel, optional
         The response of the force to a velocity other than the present one, where it resists motion (see
         :mod:`physicslab.kernels.forces.resistance`).
-    steepest : int, optional
+    max_rate_slot : int, optional
         Where in ``indices`` the kernel looks for the place, the last of its ``parameters``, at which it
         leaves the square of the fastest rate that it met [1/s^2].
-    books : tuple of (int, int), optional
+    work_slots : tuple of (int, int), optional
         The accounts to which the kernel itself adds what it gives, each with where in ``indices`` the kernel
         looks for its place (-1: it books nothing). ``None`` where it does not: what it gives is then measured
         around it, and booked as that of a field.
-    keeps : int, optional
+    dissipation_slot : int, optional
         Where in ``indices`` the kernel looks for a place to keep by itself what it takes without storing it.
     anchors : int64 array, optional
         The places of fixed ends, where all else that it acts on is moved by what acts on these, reversed.
@@ -48,9 +48,9 @@ class PackedForce:
     parameters: NDArray[np.float64]
     indices: NDArray[np.int64]
     resistance: ForceKernel | None = None
-    steepest: int | None = None
-    books: tuple[tuple[int, int], ...] | None = None
-    keeps: int | None = None
+    max_rate_slot: int | None = None
+    work_slots: tuple[tuple[int, int], ...] | None = None
+    dissipation_slot: int | None = None
     anchors: NDArray[np.int64] | None = None
     cause: int = FIELDS
 
@@ -63,14 +63,16 @@ class PackedForce:
 def share_steepness[S](packed: Iterable[tuple[S, PackedForce | None]]) -> list[tuple[S, PackedForce | None]]:
     """Return forces of which all that note their fastest rate do so at one place, the last of a parameter."""
     found = list(packed)
-    noting = [i for i, (_, force) in enumerate(found) if force is not None and force.steepest is not None]
+    noting = [
+        i for i, (_, force) in enumerate(found) if force is not None and force.max_rate_slot is not None
+    ]
     if noting:
         parts = [force.parameters for _, force in (found[i] for i in noting) if force is not None]
         joint, start = np.concatenate(parts), 0
         for i, part in zip(noting, parts, strict=True):
             system, force = found[i]
-            assert force is not None and force.steepest is not None
-            force.indices[force.steepest] = len(joint) - 1 - start
+            assert force is not None and force.max_rate_slot is not None
+            force.indices[force.max_rate_slot] = len(joint) - 1 - start
             found[i] = system, replace(force, parameters=joint[start:])
             start += len(part)
     return found

@@ -1,4 +1,4 @@
-"""What rounding left out of positions and velocities, carried on from step to step."""
+"""Rounding remainders of positions and velocities, carried on from step to step."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Remainders:
         Parameters
         ----------
         bodies : dict of int to two sequences of six floats
-            Of each entity x, y, angle and their rates, and the six remainders.
+            x, y, angle and their rates of each entity, and the six remainders.
         """
         keys = (3 * np.array(list(bodies), np.int64)[:, None] + np.arange(3)).ravel()
         values = np.array(list(bodies.values()), np.float64).reshape(len(bodies), 2, 2, 3) + 0.0  # no -0.0

@@ -1,4 +1,4 @@
-"""What a world did while it was recorded: columns of numbers, for any library of tables."""
+"""Recorded runs: the motion of a world as columns of numbers, for any library of tables."""
 
 import csv
 import importlib
@@ -17,11 +17,11 @@ type Column = NDArray[np.float64]
 """A float64 array (instants,)."""
 
 BODY_COLUMNS = {"x": "m", "y": "m", "angle": "rad", "vx": "m/s", "vy": "m/s", "omega": "rad/s"}
-"""What is recorded of each body that moves, in the order of samples, and its unit."""
+"""Columns of each body that moves, in the order of samples, and their units."""
 
 
 class Run:
-    """What a world did while :meth:`World.record` advanced it.
+    """The motion of a world while :meth:`World.record` advanced it.
 
     Parameters
     ----------
@@ -37,9 +37,9 @@ class Run:
         The impacts: when, where, of what and how fast, and the kinetic energy that each took
         (``energy_lost``).
     account : dict of str to float
-        What each cause gave to the energy meanwhile [J]; ``numerical`` is the error of the method.
+        Energy given by each cause meanwhile [J]; ``numerical`` is the error of the method.
     sums, page : callable
-        What finds the columns of the whole world, and what makes the page that plays the run.
+        Functions that find the columns of the whole world, and that make the page that plays the run.
 
     Examples
     --------
@@ -202,4 +202,4 @@ def _parquet(run: Run) -> bytes:
 
 
 _FORMATS: dict[str, Callable[[Run], bytes]] = {".npz": _npz, ".csv": _csv, ".parquet": _parquet}
-"""What writes a file, by the end of its name."""
+"""The writer of a file, by the end of its name."""

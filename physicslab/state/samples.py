@@ -37,7 +37,7 @@ class Samples:
     Attributes
     ----------
     rows : int64 array (moving,)
-        Of which rows of the world they are.
+        Rows of the world that they are taken from.
     times : float64 array (room,)
         The clock [s].
     motion : float64 array (room, moving, 6)

@@ -1,4 +1,4 @@
-"""What a world holds: entities, columns, laws, clock and arrays. It depends on no system and no stepper."""
+"""The state of a world: entities, columns, laws, clock and arrays. It depends on no system and no stepper."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -25,18 +25,18 @@ LEVELS = ("Explore", "Measure", "Engineer")
 SHOWN = (
     "arrows", "centres", "grid", "impacts", "impulses", "momenta", "panel", "parts", "stopwatch",
 )  # fmt: skip
-"""What a window may show beside that."""
+"""Things that a window may show beside that."""
 
 
 @dataclass(frozen=True, slots=True)
 class Desk:
-    """What a window shows of a scene beside the world: one of ``LEVELS``, and some of ``SHOWN``."""
+    """The view of a scene beside the world: one of ``LEVELS``, and some of ``SHOWN``."""
 
     level: str
     shown: frozenset[str]
 
 
-"""What a window shows of a world at first: xmin, ymin, xmax, ymax [m]."""
+"""The part of a world that a window shows at first: xmin, ymin, xmax, ymax [m]."""
 
 
 class State(Entities):
@@ -45,23 +45,23 @@ class State(Entities):
     Attributes
     ----------
     name, title, description : str
-        Of the scene.
+        Name, title and description of the scene.
     view : View, optional
-        What a window shows of it at first; all of it where there is none.
+        The part that a window shows at first; all of it by default.
     desk : Desk, optional
-        What it shows beside that; as the user has it where there is none.
+        The view beside that; by default as the user has it.
     time : float
         The clock [s]. Within a step it is that of the state which a force or a stage sees.
     steps : int
         Steps made.
     substeps : int
-        Of how many parts the last step was, or each part of one that was divided: more than
+        Number of parts of the last step, or of each part of one that was divided: more than
         ``simulation.substeps`` where a system found these too few.
     step_divisions : int
         Into how many parts the last step was divided, which was longer than ``simulation.dt``; or 1.
     force_evaluations, collisions : int
         How often forces were evaluated, and how many impacts there were.
-    brought_back : int
+    returned_inside : int
         How often a body beyond the bounds was put elsewhere, as something fixed held it there.
     has_forces, uniform_forces : bool
         Whether a force system runs; whether those that do, and all else that acts within a step, accelerate
@@ -88,28 +88,59 @@ class State(Entities):
     contacts : Contacts
         The near pairs.
     joints : Joints
-        What holds bodies together, as rows of constraints.
+        Joints between bodies, as rows of constraints.
     fastest_rates : dict of str to float
-        Of force systems the fastest rate [rad/s] that was met within steps since the motion was last edited.
+        Fastest rate [rad/s] of each force system within steps since the motion was last edited.
     remainders : Remainders
-        What rounding left out of positions and velocities in the last step.
+        Rounding remainders of positions and velocities in the last step.
     checkpoint : Checkpoint
         The state of motion before the step at hand.
     sleep : Sleep
         Which bodies have come to rest, and are not simulated until something wakes them.
     account : Account
-        What changed the energy and the momentum, by cause.
+        Changes of the energy and the momentum, by cause.
     samples : Samples, optional
-        What is filled with the motion while the world is advanced.
+        Arrays filled with the motion while the world is advanced.
     """
 
     # An attribute that is misspelt, or belongs elsewhere, would be kept and do nothing.
     __slots__ = (
-        "_forces_at", "_physics", "_simulation", "_waited_before", "account", "bodies", "brought_back",
-        "checkpoint", "collisions", "contacts", "description", "desk", "event_driven", "fastest_rates",
-        "force_evaluations", "generation", "has_forces", "joints", "kick_before_contacts", "moment",
-        "motion_edits", "name", "remainders", "revision", "rigid_contacts", "samples", "sleep", "stale",
-        "step_divisions", "steps", "substeps", "time", "title", "uniform_forces", "view", "window",
+        "_forces_at",
+        "_physics",
+        "_simulation",
+        "_waited_before",
+        "account",
+        "bodies",
+        "checkpoint",
+        "collisions",
+        "contacts",
+        "description",
+        "desk",
+        "event_driven",
+        "fastest_rates",
+        "force_evaluations",
+        "generation",
+        "has_forces",
+        "joints",
+        "kick_before_contacts",
+        "moment",
+        "motion_edits",
+        "name",
+        "remainders",
+        "returned_inside",
+        "revision",
+        "rigid_contacts",
+        "samples",
+        "sleep",
+        "stale",
+        "step_divisions",
+        "steps",
+        "substeps",
+        "time",
+        "title",
+        "uniform_forces",
+        "view",
+        "window",
     )  # fmt: skip
 
     def __init__(
@@ -127,7 +158,7 @@ class State(Entities):
         self.time, self.steps, self.revision, self.motion_edits = 0.0, 0, 0, 0
         self._forces_at = -1, -1  # after how many steps and edits forces were solved for
         self.substeps, self.step_divisions = self._simulation.substeps, 1
-        self.force_evaluations = self.collisions = self.brought_back = 0
+        self.force_evaluations = self.collisions = self.returned_inside = 0
         self._waited_before = seconds_waited()
         self.generation = 0
         self.has_forces = self.uniform_forces = self.event_driven = self.rigid_contacts = False

@@ -18,7 +18,7 @@ class WideConstraints:
     kind, rows : int
         ``DISC`` or ``BOX``, and how many numbers a block has.
     data : float64 array (capacity * rows,)
-        What they hold, as :mod:`physicslab.kernels.wide_layout` has it.
+        Their contents, as :mod:`physicslab.kernels.wide_layout` has it.
     a, b, pair : int64 arrays (capacity * WIDE,)
         Rows of the bodies in each slot, and which near pair it is; -1 for a free slot.
     colour : int64 array (capacity,)

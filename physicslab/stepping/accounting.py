@@ -54,7 +54,7 @@ def balance_of(
 ) -> Balance:
     """Return energy and momentum as they are now; all rows and masses must be up to date.
 
-    What each force stores [J] is added to ``potential`` by the force's name, where that is given.
+    Energy that each force stores [J] is added to ``potential`` by the force's name, where that is given.
     """
     translation, rotation, px, py, spin, mx, my = motion_totals_of(state)
     total = translation + rotation

@@ -1,6 +1,6 @@
-"""Bodies that what is fixed pushes to and fro: they are put where they have room.
+"""Bodies that fixed ones push to and fro: they are put where they have room.
 
-What is beyond the bounds of the world is pushed in by their walls. Where a fixed body pushes it out again, as
+A body beyond the bounds of the world is pushed in by their walls. Where a fixed body pushes it out again, as
 the end of a floor does, neither has an end: the bounds win. Nor has it one where fixed bodies push another
 one into each other, as in a wedge that is too narrow for it. Such a body is put to the nearest place within
 the bounds in which it overlaps nothing fixed, and loses the part of its velocity that points beyond them.
@@ -38,7 +38,7 @@ _INWARDS = np.array(((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)))
 """The normals of the walls: left, bottom, right, top."""
 
 
-def bring_back(state: State, schedule: Schedule) -> int:
+def return_inside(state: State, schedule: Schedule) -> int:
     """Put every body where it has room that a fixed one keeps beyond the bounds or in itself; count them.
 
     To be called at the end of a step in which the contact stages have found one beyond them, or wedged.
@@ -150,6 +150,6 @@ def _put(
         out = rows[beyond[:, wall]]
         linear[out] -= np.minimum(linear[out] @ inwards, 0.0)[:, None] * inwards
     state.account.sums[OVERLAP] += np.subtract(balance_of(state, schedule.forces), before)
-    state.brought_back += len(rows)
+    state.returned_inside += len(rows)
     state.contacts.forget(rows, len(state.entity_index))
     wake_neighbours(state, state.entity_index.entities[rows])

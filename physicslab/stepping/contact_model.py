@@ -45,7 +45,7 @@ def choose_contacts(state: State, schedule: Schedule, kept: str | None = None) -
 def _why_not_worthwhile(state: State) -> str | None:
     """Return why a world that can have rigid contacts is better off with soft ones, or ``None``.
 
-    What was asked for, and only soft contacts have, is not overruled by a default.
+    A setting that only soft contacts have is not overruled by a default.
     """
     if state.simulation.sleeping is True:
         return sentence("sleeping_asked")

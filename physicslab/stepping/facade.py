@@ -1,4 +1,4 @@
-"""What a person asks of a world: how much energy there is, what met, what it did in a run."""
+"""Figures of a world for people: its energy, its impacts, its motion in a run."""
 
 from importlib import import_module
 from typing import Any, Never, cast

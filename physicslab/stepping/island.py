@@ -24,13 +24,13 @@ from physicslab.stepping.select import Steppers
 type Rows = NDArray[np.int64]
 """Numbers of rows or entities (n,)."""
 
-_COUNTED = ("force_evaluations", "collisions", "brought_back")
-"""What a world counts that is the sum of its islands."""
+_COUNTED = ("force_evaluations", "collisions", "returned_inside")
+"""Counts of a world that are sums over its islands."""
 _IMPACTS = [near_counts.LOWERED, near_counts.ENERGETIC]
 
 
 class Part(Stepped, Protocol):
-    """What an island needs of the world that advances it."""
+    """The parts of a world that its islands need."""
 
     plan: StepPlan
     steppers: Steppers
@@ -95,7 +95,7 @@ class Island:
     def go(self, state: State, time: float, h: float, steps: int) -> int:
         """Advance by ``steps`` steps of ``h`` seconds from ``time`` [s] on; return the parts of each.
 
-        What it books and counts is added to that of the whole world.
+        Its bookings and counts are added to those of the whole world.
         """
         own, done = self.state, 0
         own.contacts.read = state.contacts.read
@@ -235,7 +235,7 @@ def join_logs(state: State, parts: list[State], logged: list[int]) -> None:
 
 @dataclass(frozen=True, slots=True)
 class KeptIsland:
-    """What a file keeps of an island, beside the contacts, rests and remainders of all bodies.
+    """Parts of an island that a file keeps, beside the contacts, rests and remainders of all bodies.
 
     Attributes
     ----------
@@ -245,9 +245,9 @@ class KeptIsland:
         The time [s] over which impulses of its contacts act; by which factor its next step needs more
         substeps.
     chosen : tuple, optional
-        What was chosen for it as it once moved, where it would not be chosen now (:attr:`StepPlan.kept`).
+        Choices made for it as it once moved, where others would be made now (:attr:`StepPlan.kept`).
     driven : list of lists
-        Of bodies that move at given speeds the entity, x, y [m] and the angle, where rounding has led them
+        Entity, x, y [m] and angle of bodies that move at given speeds, where rounding has led them
         elsewhere than in the whole world.
     """
 

@@ -102,7 +102,7 @@ class Islands:
 
     @property
     def kernels(self) -> tuple[Any, ...]:
-        """What the steppers of all islands call."""
+        """Kernels that the steppers of all islands call."""
         mains = (island.world.steppers.main(island.state) for island in self.members)
         return tuple(dict.fromkeys(kernel for stepper in mains for kernel in stepper.kernels))
 

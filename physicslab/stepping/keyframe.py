@@ -1,6 +1,6 @@
 """A world at one moment, as raw columns: what a scene file keeps, to go back to in place.
 
-What is kept of contacts, of sleep, of remainders and of what was chosen is what a scene file keeps, and the
+It keeps the same of contacts, sleep, remainders and choices as a scene file does, and the
 world goes on from it as it does from a file: pairs are listed again, contacts that had a slot get it again
 (:mod:`physicslab.contacts.near_pairs`). But records and columns are copied as they are, not written out as
 numbers, and entities keep theirs.
@@ -33,13 +33,13 @@ type _Array = NDArray[Any]
 type _Columns = tuple[_Array, ...]
 
 _COUNTS = (
-    "time", "steps", "substeps", "step_divisions", "force_evaluations", "collisions", "brought_back",
+    "time", "steps", "substeps", "step_divisions", "force_evaluations", "collisions", "returned_inside",
 )  # fmt: skip
-"""What else a world counts."""
+"""Other counts of a world."""
 
 
 class Kept(Part, Protocol):
-    """What a key frame needs of a world, which is a state as well."""
+    """The parts of a world that a key frame needs; a world is a state as well."""
 
     islands: Islands
 
@@ -234,9 +234,9 @@ class Keyframe:
             _put(then, now, there)
         for system in world.schedule.running if self._own else ():
             if system.name in self._own:
-                system.bring_back(self._own[system.name])
+                system.restore(self._own[system.name])
         world.remainders = self._remainders
-        world.account.bring_back(self._account)
+        world.account.restore(self._account)
         world.fastest_rates.update(self._rates)
         self._restore_islands(world, before)
 

@@ -93,11 +93,11 @@ class StepPlan:
     contact_reason : str
         The reason, for people.
     obstacle : str
-        What acts within a step besides forces, if anything does.
+        The system that acts within a step besides forces, if one does.
     stages : Integrator
         The method whose stages the contact step uses; where collisions are exact, only for resting bodies.
     split_forces : Integrator, optional
-        What moves the bodies that springs and drag act on between contacts; ``None`` where kicks do.
+        Method that moves bodies on springs and in drag between contacts; ``None`` where kicks do.
     split_steps : int
         Its steps each half substep.
     """
@@ -118,7 +118,7 @@ class StepPlan:
 
     @property
     def kept(self) -> tuple[str, str, int]:
-        """What a file keeps: how collisions are found, what follows the forces, and in how many steps."""
+        """Choices that a file keeps: how collisions are found, how forces are followed, in how many steps."""
         collisions = "rigid" if self.contacts == "rigid" and self.collisions != "exact" else self.collisions
         if self.contact_reason == WITHOUT_END:
             collisions = "step"
@@ -425,7 +425,11 @@ def _why_singular(state: State, forces: Sequence[ForceSystem]) -> str | None:
 
 def _sees_velocity(state: State, forces: Sequence[ForceSystem]) -> bool:
     turns = state.physics.angular_damping > 0.0 and any(len(force.turned(state)) for force in forces)
-    return state.physics.linear_damping > 0.0 or turns or any(force.sees_velocity(state) for force in forces)
+    return (
+        state.physics.linear_damping > 0.0
+        or turns
+        or any(force.depends_on_velocity(state) for force in forces)
+    )
 
 
 def _joined(state: State) -> str:
@@ -438,7 +442,7 @@ def _too_fast(rate: float) -> str:
 
 
 _WITHIN = {Stage.FORCE, Stage.KICK, Stage.DRIFT}
-"""What happens at these stages is within the substeps of a world in which nothing touches."""
+"""Stages within the substeps of a world in which nothing touches."""
 
 
 def why_not_smooth(state: State, schedule: Schedule) -> str | None:

@@ -1,14 +1,14 @@
-"""What corrections of rigid contacts have given, by the change of the motion that they made."""
+"""Work of corrections of rigid contacts, by the change of the motion that they made."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels.accounts import ENERGY, OVERLAP, PX, PY, SPIN
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, OVERLAP, PX, PY
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 
 type Numbers = NDArray[np.float64]
-"""Of coordinates, of speeds, or of sums (n,)."""
+"""An array of coordinates, of speeds, or of sums (n,)."""
 
 
 def _momenta(ode: OdeSystem, q: Numbers, v: Numbers) -> Numbers:
@@ -25,4 +25,4 @@ def book_overlap(state: State, ode: OdeSystem, place: Numbers, speed: Numbers, e
     """Book that bodies were moved apart, from a place (n,) and a speed (n,), which changed the energy [J]."""
     row = state.account.sums[OVERLAP]
     row[ENERGY] += energy
-    row[[PX, PY, SPIN]] += _momenta(ode, ode.q, ode.v) - _momenta(ode, place, speed)
+    row[[PX, PY, ANGULAR_MOMENTUM]] += _momenta(ode, ode.q, ode.v) - _momenta(ode, place, speed)

@@ -32,7 +32,7 @@ _MAX_EVENTS = 2000
 _MAX_WORK = 8_500
 """Largest work of a step by events (:attr:`MadeStep.work`): short steps need the rest of a frame."""
 _WORK_OF_A_PIECE = 8
-"""Of a piece of motion, beside its force evaluations and half a unit for each pair that may touch."""
+"""Units of work of a piece of motion, beside its force evaluations and half a unit for each pair near."""
 _RESTING = 2.0
 """In speeds that a short step gives: what is no faster than that comes to rest."""
 _REPEATS, _SHORT_REPEATS = 8, 3
@@ -55,7 +55,7 @@ _SEPARATE = 1e-11
 _NEAR = 4.0
 """Multiple of an overlap within which other gaps are looked at, as bodies that move apart may press into
 them."""
-_ROUNDING = 4e-15
+_COORDINATE_ROUNDING = 4e-15
 """Share of the largest coordinate that is rounding."""
 _SEPARATIONS = 12
 """How often bodies are moved apart, as that can press them into others."""
@@ -68,12 +68,12 @@ _WHY = {
 
 @dataclass(slots=True)
 class MadeStep:
-    """What a step leaves.
+    """Results of a step.
 
     Attributes
     ----------
     points, measures, forces : arrays
-        Of the points that are closed at the end: what they are, where they are, and their forces [N].
+        Points that are closed at the end, their measures, and their forces [N].
     closed, impacts, evaluations : int
         How many points are closed at the end; how many impacts and force evaluations there were.
     energetic, lowered : int
@@ -152,7 +152,7 @@ class RigidMotion:
         return made
 
     def _by_events(self, scene: tuple[Any, ...], state: State, at: float, h: float, made: MadeStep) -> float:
-        """Go from event to event; return how far that leads [s]. What stops it is noted in ``made``."""
+        """Go from event to event; return how far that leads [s]. The reason to stop is noted in ``made``."""
         q, v, changed = self._ode.q, self._ode.v, self._changed
         done, stalled, foreseen = 0.0, 0, True
         changed[0, PAIR], rows = -1, 1 + int(self._ode.joints[1][layout.ROWS])
@@ -235,7 +235,7 @@ class RigidMotion:
                 return _WHY[why]
             time_stepping.drift(q, v, 0.5 * h)
             left = 0.0 if last else left - h
-            # What is as slow as a short step makes it comes to rest; moved each time, it would not.
+            # A body as slow as a short step makes it comes to rest; moved each time, it would not.
             rests = float(np.abs(v[: self._ode.layout.clock]).max(initial=0.0)) <= _RESTING * gained
             if rests and not last:
                 continue
@@ -284,7 +284,7 @@ class RigidMotion:
         q, v, deepest = self._ode.q, self._ode.v, 0.0
         largest = float(np.abs(q[: self._ode.layout.clock]).max(initial=0.0))
         smallest = max(float(scene[7][:, 2].min(initial=math.inf)), sys.float_info.min)
-        rounding = _ROUNDING * largest / smallest
+        rounding = _COORDINATE_ROUNDING * largest / smallest
         before = None
         for _ in range(_SEPARATIONS):
             why, count, rest, deepest, _ = self._touch(scene, q, _NEAR * deepest)

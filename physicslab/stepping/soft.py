@@ -11,7 +11,7 @@ from physicslab.kernels.loading import working_ns
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
 from physicslab.stepping.accounting import held_in, open_account
-from physicslab.stepping.bounds import bring_back
+from physicslab.stepping.bounds import return_inside
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.stepper import Advance, divisions, falls_far
 from physicslab.stepping.substeps import Span, Substeps
@@ -56,7 +56,7 @@ class Soft:
         self.kernels: tuple[Any, ...] = self.substeps.kernels
         self.hooks = self.substeps.hooks
         self.keeps_balance: bool = not self.hooks and self.substeps.uniform
-        # Of one force the loop measures the same energy, bit for bit, as is measured between steps.
+        # With one force the loop measures the same energy, bit for bit, as is measured between steps.
         self._measures = len(schedule.forces) < 2
         self._max_steps = 64
         self.energy_taken, self.energy_given, self._last = -math.inf, 0.0, -math.inf
@@ -128,7 +128,7 @@ class Soft:
         if self._sleep is not None:
             self._schedule.call(self._sleep, self._sleep.count_rest, state, h)
         if state.contacts.outside:
-            bring_back(state, self._schedule)
+            return_inside(state, self._schedule)
 
     def _open(self, state: State) -> int:
         """Return by which cause anything was changed since the last step, or -1 where that is booked."""

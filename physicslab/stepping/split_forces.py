@@ -30,8 +30,8 @@ def sees_velocity_in_python(state: State, force: ForceSystem) -> bool:
     One that states nothing is kicked, as a wind is: bodies that it acts on may then sleep.
     """
     kind = type(force)
-    stated = kind.sees_velocity is not ForceSystem.sees_velocity
-    return stated and not kind.packs() and force.sees_velocity(state)
+    stated = kind.depends_on_velocity is not ForceSystem.depends_on_velocity
+    return stated and not kind.packs() and force.depends_on_velocity(state)
 
 
 def sub_integrated_rows(state: State, forces: Sequence[ForceSystem]) -> NDArray[np.bool_]:
@@ -71,16 +71,16 @@ class SplitForces:
     state : State
         Whose bodies. Its ``bodies.sub_integrated`` and ``unkicked`` are set.
     forces : sequence of ForceSystem
-        What acts.
+        The forces that act.
     method : Integrator
-        What moves them.
+        The method that moves them.
     steps : int
         Into how many steps of the method half a substep is divided.
 
     Attributes
     ----------
     springs : SpringFlow, optional
-        What the loop of substeps moves by itself, as long as no spring turns too fast.
+        Springs that the loop of substeps moves by itself, as long as none turns too fast.
     """
 
     def __init__(self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int) -> None:

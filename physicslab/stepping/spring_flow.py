@@ -89,11 +89,11 @@ class SpringFlow:
     Parameters
     ----------
     state : State
-        Of which :func:`why_no_spring_flow` has nothing to say.
+        A state that :func:`why_no_spring_flow` has no reason against.
     forces : sequence of ForceSystem
-        What acts.
+        The forces that act.
     layout : StateLayout
-        Of the bodies that are moved.
+        Layout of the bodies that are moved.
     steps : int
         Into how many steps of the method half a substep is divided.
 

@@ -1,4 +1,4 @@
-"""What forces do within a substep that no kernel books."""
+"""Work of forces within a substep that no kernel books."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -20,7 +20,7 @@ from physicslab.systems.system import ForceSystem, System
 class StageAccounts:
     """Books the work of forces along the way of a substep, where no kernel does.
 
-    What impulses and kicks do is booked within the kernels, what moves sub-integrated bodies within their
+    Work of impulses and kicks is booked within the kernels, that of sub-integrated bodies within their
     flow. A force that kicks bodies and stores no energy does its work along the way of the substep.
 
     Parameters
@@ -28,7 +28,7 @@ class StageAccounts:
     state : State
         Whose accounts.
     forces : sequence of ForceSystem
-        What acts.
+        The forces that act.
     flown : bool
         Whether a compiled flow moves all that forces act on which are not uniform, and books what they do.
 
@@ -132,8 +132,8 @@ class StageAccounts:
     def book_overlap(self, state: State) -> None:
         """Book what moving bodies apart has changed in what forces store that are not the same everywhere.
 
-        The kernel has booked the work of all forces as if they stayed as they are along that way. What stores
-        no energy, as drag, does none there.
+        The kernel has booked the work of all forces as if they stayed as they are along that way. A force
+        that stores no energy, as drag, does none there.
         """
         position, bodies = state.table(Transform)["position"], state.bodies
         if not self.moves_against or np.array_equal(position, self._before):

@@ -1,4 +1,4 @@
-"""What a substep consists of: the stages of the integrator as parts of the compiled loop, or of Python."""
+"""Parts of a substep: the stages of the integrator as parts of the compiled loop, or of Python."""
 
 from collections.abc import Callable
 
@@ -37,7 +37,7 @@ _COMPILED: dict[Stage, tuple[type[System], int]] = {
 class SubstepParts:
     """The parts of a substep for the systems of a world, in the order of the integrator's stages.
 
-    What engine systems do is compiled. Where another acts, or a force in Python, its stage is handed over:
+    Engine systems are compiled. Where another acts, or a force in Python, its stage is handed over:
     all systems of that stage are called, in their order.
 
     Parameters
@@ -52,9 +52,9 @@ class SubstepParts:
     Attributes
     ----------
     parts : list of int
-        What each part does (:mod:`physicslab.kernels.solver.soft`).
+        Kind of each part (:mod:`physicslab.kernels.solver.soft`).
     times : list of tuple
-        Of each its share of the substep, how far positions have drifted before it, and by how much the
+        For each its share of the substep, how far positions have drifted before it, and by how much the
         middle of the substep comes later than that of a kick [substeps].
     hooks : dict
         What Python does at a part.
@@ -65,7 +65,7 @@ class SubstepParts:
     compiled : bool
         Whether the loop does what engine systems do.
     split : SplitForces, optional
-        What moves bodies on springs and in drag, if not kicks.
+        The flow of bodies on springs and in drag, if not kicks.
     forces : list of ForceSystem
         Those that kick bodies, or that contacts reckon with.
     accounts : StageAccounts
@@ -79,7 +79,7 @@ class SubstepParts:
         self.split: SplitForces | None = None
         if plan.split_forces is not None:
             self.split = SplitForces(state, schedule.forces, plan.split_forces, plan.split_steps)
-        # What turns velocities is left to what moves bodies: a contact has no speed to expect from it.
+        # A force that turns velocities is left to the flow: a contact has no speed to expect from it.
         turned = [f for f in schedule.forces if f.gyration(state) is not None] if self.split else []
         self.forces = [force for force in schedule.forces if force not in turned]
         springs = None if self.split is None else self.split.springs

@@ -29,7 +29,7 @@ from physicslab.kernels.solver.finer import needed_factor
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import check_finite
 from physicslab.state.state import State
-from physicslab.stepping.bounds import bring_back
+from physicslab.stepping.bounds import return_inside
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.substep_parts import SubstepParts
 from physicslab.systems.accelerate import AccelerateSystem
@@ -55,7 +55,7 @@ _COSTS: dict[type[System], int] = {
 
 
 class Span(NamedTuple):
-    """What substeps are to cover: their number a step, the length of a substep and of a step, the start [s].
+    """Span of substeps: their number a step, the length of a substep and of a step, the start [s].
 
     ``rested`` is the time [s] that a step counts as rest of what is slow, ``finer`` how many times as many
     substeps as configured loads have been found to need, 0 where it is not looked at them.
@@ -82,9 +82,9 @@ class Substeps:
     hooks : tuple of str
         Why the loop comes back in every substep, if it does; ends of steps are then the caller's.
     kernels : tuple of kernels
-        What is called in most steps.
+        Kernels called in most steps.
     split : SplitForces, optional
-        What moves bodies on springs and in drag, if not kicks.
+        The flow of bodies on springs and in drag, if not kicks.
     uniform : bool
         Whether no forces act but uniform ones that are compiled.
     """
@@ -121,7 +121,7 @@ class Substeps:
     def go_through(self, state: State, span: Span, steps: int = 1, cause: int = -1) -> int:
         """Make ``steps`` steps or, where everything falls asleep or substeps are to be others, fewer.
 
-        What was changed since the last step is booked to a ``cause``, unless that is negative. Where one
+        A change since the last step is booked to ``cause``, unless that is negative. Where one
         fails, those before it are counted. Returns how many there are; how many times as many substeps the
         next step needs is written into the contacts.
         """
@@ -207,7 +207,7 @@ class Substeps:
         if why == soft.SLEEP_PENDING and self._sleep is not None:
             self._timed(self._sleep, self._sleep.put_islands_to_sleep, state, span.dt)
         if state.contacts.outside:
-            bring_back(state, self._schedule)
+            return_inside(state, self._schedule)
 
     def _advance(
         self, state: State, span: Span, steps: int, made: int, where: tuple[int, int, int, int]
@@ -288,7 +288,7 @@ class Substeps:
     def _settle(self) -> None:
         """Note as many calls as the stages would have made; the time is divided by the loop's own clock.
 
-        What that has shown before counts half as much: the last steps may be too few to have been timed.
+        Earlier results count half as much: the last steps may be too few to have been timed.
         """
         costs: list[int] = self._cost[: soft.STEPS].tolist()
         total, timings = max(1, sum(costs)), self._schedule.timings

@@ -8,13 +8,13 @@ from physicslab.kernels.arguments import MotionTuple
 from physicslab.state.state import State
 
 
-class Undoing:
+class StepTransaction:
     """A ``with`` block that makes a step: where it fails or is broken off, the state goes back to before it.
 
     Parameters
     ----------
     state : State
-        What the step changes.
+        The state that the step changes.
     motion : tuple of arrays
         Its positions, angles and velocities (``motion_of``).
     """

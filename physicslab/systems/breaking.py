@@ -50,7 +50,7 @@ class BreakSystem(System):
         """Return how many joints were broken, an array (1,)."""
         return (np.array([len(self.broken)]),)
 
-    def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
+    def restore(self, kept: tuple[NDArray[Any], ...]) -> None:
         """Forget what broke later than the number ``kept`` says, an array (1,)."""
         self.broken = self.broken[: int(kept[0][0])]
 

@@ -110,7 +110,7 @@ class BroadPhaseSystem(System):
     leavers : Leavers
         Which bodies have left theirs since all were made.
     bounds : float64 array (4,)
-        Of the world: xmin, ymin, xmax, ymax [m].
+        Bounds of the world: xmin, ymin, xmax, ymax [m].
     """
 
     engine = True

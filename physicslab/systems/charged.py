@@ -81,7 +81,7 @@ class MagneticFieldSystem(_ChargeForce):
         rows = rows[(state.bodies.inverse_mass[rows] > 0.0) & (layout.place[rows] >= 0)]
         indices = np.concatenate(([len(rows)], layout.place[rows], (-1,)))
         strength = state.table(Charge)["charge"][rows] * state.physics.magnetic_field
-        return PackedForce(magnetic_field, strength, indices, books=((FIELDS, len(rows) + 1),))
+        return PackedForce(magnetic_field, strength, indices, work_slots=((FIELDS, len(rows) + 1),))
 
     def add_packed(self, state: State, h: float) -> None:
         """Add the force, but not within a step to bodies that are sub-integrated: these are turned by it."""
@@ -97,6 +97,6 @@ class MagneticFieldSystem(_ChargeForce):
         """Return for each row the size of q B / m [rad/s]."""
         return np.abs(self.gyration(state))
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         """Return True: it depends on nothing else."""
         return True

@@ -73,7 +73,7 @@ class CoulombSystem(ForceSystem):
         """Return that of the largest sum of forces on a charge."""
         return self._law(state).rounding_floor(state)
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         """Return False: it depends on places alone."""
         return False
 

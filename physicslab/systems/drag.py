@@ -34,7 +34,9 @@ class DragSystem(ForceSystem):
         )
         books = ((DAMPING, len(rows) + 1),) if moved.any() else ()
         keeps = len(rows) + 3
-        return PackedForce(packed_forces.drag, parameters, indices, drag_resistance, books=books, keeps=keeps)
+        return PackedForce(
+            packed_forces.drag, parameters, indices, drag_resistance, work_slots=books, dissipation_slot=keeps
+        )
 
     def needs_origin(self, state: State) -> bool:
         """Drag depends on velocities alone."""
@@ -61,6 +63,6 @@ class DragSystem(ForceSystem):
         """Drag couples nothing."""
         return np.zeros((0, 2), np.int64)
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         """Drag is nothing else."""
         return True

@@ -112,7 +112,7 @@ class GateSystem(System):
         )
         return self._kept
 
-    def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
+    def restore(self, kept: tuple[NDArray[Any], ...]) -> None:
         """Go on with an earlier record of the same gates and bodies, in the shapes of :meth:`keep`."""
         count, rows, pending, self._gates, self._bodies, self._side = kept
         self.count = int(count[0])

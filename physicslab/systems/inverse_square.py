@@ -51,8 +51,8 @@ class InverseSquare(NamedTuple):
         driven = bool((fixed & state.table(Velocity).present[rows]).any())
         anchors = layout.place[rows[fixed]]
         return PackedForce(
-            packed_forces.inverse_square, parameters, indices, steepest=_STEEPEST,
-            books=None if driven else (), cause=cause,
+            packed_forces.inverse_square, parameters, indices, max_rate_slot=_STEEPEST,
+            work_slots=None if driven else (), cause=cause,
             anchors=anchors if len(anchors) and not driven else None,
         )  # fmt: skip
 

@@ -73,7 +73,7 @@ class JointForces(ForceSystem):
         books = [(accounts.JOINTS, packing.HOLDING), (accounts.HAND, packing.DRIVEN)]
         if (joints.role[order] == packing.MOTOR).any():
             books.append((accounts.MOTORS, packing.POWERED))
-        return PackedForce(constrain, numbers, whole, books=tuple(books))
+        return PackedForce(constrain, numbers, whole, work_slots=tuple(books))
 
     def inputs(self, state: State, layout: StateLayout) -> bytes:
         """Return the numbers of all joints, and the angles of bodies that no force turns."""
@@ -94,7 +94,7 @@ class JointForces(ForceSystem):
         """Return the bodies that joints hold."""
         return state.joints.edges.ravel()
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         """Return that it does: what turns faster about a pin is held with more force."""
         return True
 

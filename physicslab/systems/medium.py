@@ -73,7 +73,7 @@ class MediumSystem(ForceSystem):
         behind = 2 + where.size
         indices = np.concatenate(((len(rows), len(media)), where.ravel(), (-1, -1, -1)))
         books = ((FIELDS, behind), (DAMPING, behind + 1)) if len(rows) else ()
-        return PackedForce(medium, parameters, indices, books=books, keeps=behind + 2)
+        return PackedForce(medium, parameters, indices, work_slots=books, dissipation_slot=behind + 2)
 
     def _gravity(self, state: State) -> tuple[float, float]:
         """Return the gravity that weighs on fluids [m/s^2]: that of planets does not."""
@@ -135,7 +135,7 @@ class MediumSystem(ForceSystem):
         lift = densest * float(np.hypot(*self._gravity(state))) * np.pi * reach * reach
         return self.rounding * float((lift * give).max(initial=0.0))
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         """Whether any medium is viscous, or drags by the square of the speed."""
         table, rows = state.table(Medium), state.batch(*self.needs).rows
         return bool((table["viscosity"][rows] > 0.0).any() or (table["quadratic"][rows] > 0.0).any())

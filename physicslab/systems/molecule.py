@@ -51,7 +51,7 @@ class MoleculeSystem(ForceSystem):
         driven = bool((fixed & state.table(Velocity).present[rows]).any())
         anchors = layout.place[rows[fixed]]
         return PackedForce(
-            molecules, parameters, indices, books=None if driven else (), cause=FIELDS,
+            molecules, parameters, indices, work_slots=None if driven else (), cause=FIELDS,
             anchors=anchors if len(anchors) and not driven else None,
         )  # fmt: skip
 
@@ -89,7 +89,7 @@ class MoleculeSystem(ForceSystem):
         force = 24.0 * table["depth"][rows] / table["distance"][rows] * state.bodies.inverse_mass[rows]
         return ROUNDING * float(force.max(initial=0.0))
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         """Return False: it depends on places alone."""
         return False
 

@@ -68,10 +68,10 @@ class SpringSystem(ForceSystem):
             parameters[:, column : column + 2] = rotated(spring[anchors][rows], steady)
         for column, name in enumerate(("rest_length", "stiffness", "damping"), 4):
             parameters[:, column] = spring[name][rows]
-        resistance = damper_resistance if self.sees_velocity(state) else None
+        resistance = damper_resistance if self.depends_on_velocity(state) else None
         return PackedForce(
-            packed_forces.springs, parameters.ravel(), indices, resistance, books=books,
-            keeps=4 + 4 * len(rows) if resistance else None,
+            packed_forces.springs, parameters.ravel(), indices, resistance, work_slots=books,
+            dissipation_slot=4 + 4 * len(rows) if resistance else None,
         )  # fmt: skip
 
     def _booked(
@@ -93,7 +93,7 @@ class SpringSystem(ForceSystem):
             found.append((accounts.SPRINGS, 1 + 4 * n))
         if driven:
             found.append((accounts.HAND, 3 + 4 * n))
-        if self.sees_velocity(state):
+        if self.depends_on_velocity(state):
             found.append((accounts.DAMPING, 2 + 4 * n))
         opened = np.flatnonzero(moved != bookings.ALL_MOVED)
         ends = np.stack((opened, moved[opened]), axis=1)
@@ -179,7 +179,7 @@ class SpringSystem(ForceSystem):
         """Return the bodies at both ends of every spring."""
         return np.stack((self._a, self._b), axis=1)
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         """Whether a spring has a damper."""
         return bool((state.table(Spring)["damping"][self._rows] > 0.0).any())
 

@@ -49,7 +49,7 @@ class StrobeSystem(System):
         """Return the record."""
         return np.array(self._until), *self._flashes
 
-    def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
+    def restore(self, kept: tuple[NDArray[Any], ...]) -> None:
         """Go on with an earlier record of the same bodies, of the shapes that :meth:`keep` gave it."""
         until, *flashes = kept
         self._until, self._flashes, self._before = float(until), tuple(flashes), None

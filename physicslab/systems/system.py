@@ -90,7 +90,7 @@ class System:
     needs : tuple of component types
         An entity must have all of them for the system to have work.
     kernels : tuple of kernels
-        What the system calls at its stages; compiled before it first does.
+        Kernels that the system calls at its stages; compiled before the first call.
     engine : bool
         Whether compiled steppers do this very class's work themselves. It is not inherited: a subclass may
         do other work.
@@ -132,7 +132,7 @@ class System:
         """
         return ()
 
-    def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
+    def restore(self, kept: tuple[NDArray[Any], ...]) -> None:
         """Go on from what :meth:`keep` returned, in its shapes; the entities are those of then."""
 
     @property
@@ -217,7 +217,7 @@ class ForceSystem(System):
         """
         return None
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         """Return whether the force depends on velocities, as drag does, for the choice of a method.
 
         A force in Python is taken to, unless it overrides this: a method that is made for positions alone
@@ -228,7 +228,7 @@ class ForceSystem(System):
     def sees_time(self, state: State) -> bool:
         """Return whether the force depends on the time; one in Python is taken to, unless it overrides this.
 
-        What rests may then begin to move by itself.
+        Resting bodies may then begin to move by themselves.
         """
         return not type(self).packs()
 

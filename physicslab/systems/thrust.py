@@ -70,7 +70,7 @@ class ThrustSystem(ForceSystem):
         """Whether any swings."""
         return bool((state.table(Thrust)["frequency"][state.batch(*self.needs).rows] > 0.0).any())
 
-    def sees_velocity(self, state: State) -> bool:
+    def depends_on_velocity(self, state: State) -> bool:
         """Return False: places, angles and the time are all that it depends on."""
         return False
 

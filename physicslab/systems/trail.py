@@ -57,7 +57,7 @@ class TrailSystem(System):
             return ()
         return self._place.copy(), self._time.copy(), self._head.copy(), np.array(self._now)
 
-    def bring_back(self, kept: tuple[NDArray[Any], ...]) -> None:
+    def restore(self, kept: tuple[NDArray[Any], ...]) -> None:
         """Go on with an earlier record of the same bodies, of the shapes that :meth:`keep` gave it."""
         place, time, head, now = kept
         self._place, self._time, self._head, self._now = place.copy(), time.copy(), head.copy(), float(now)

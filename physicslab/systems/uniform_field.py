@@ -31,7 +31,7 @@ def packed_field(
     indices = np.concatenate(([len(rows)], layout.place[rows], (-1,)))
     parameters = np.concatenate(((field.x, field.y), weight[rows], (weight[rows].sum(),)))
     books = ((cause, len(indices) - 1),) if len(rows) else ()
-    return PackedForce(packed_forces.uniform_gravity, parameters, indices, books=books)
+    return PackedForce(packed_forces.uniform_gravity, parameters, indices, work_slots=books)
 
 
 def field_energy(state: State, weight: NDArray[np.float64], field: Vector2) -> float:

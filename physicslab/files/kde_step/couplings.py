@@ -1,4 +1,4 @@
-"""What acts on bodies of Step: springs, joints, motors and laws of force."""
+"""Couplings of Step's bodies: springs, joints, motors and laws of force."""
 
 import math
 from collections.abc import Callable, Mapping

@@ -22,7 +22,7 @@ class Body:
     Attributes
     ----------
     entity : dict
-        What stands in the scene.
+        The entity as it stands in the scene.
     is_point : bool
         Whether it is a particle: it has no angle, and points of it keep their directions.
     place : pair of floats
@@ -61,7 +61,7 @@ class Body:
 
 @dataclass(slots=True)
 class Draft:
-    """What an import has found so far.
+    """Findings of an import so far.
 
     Attributes
     ----------
@@ -80,7 +80,7 @@ class Draft:
     lines : dict of str to int
         The line in the file of each entity, by its id.
     losses : list of str
-        What is not taken, a line each.
+        Items that are not taken, a line each.
     texts : list of str
         Notes that are too long for one.
     points : list of pairs

@@ -40,7 +40,7 @@ class Item:
 
     @property
     def label(self) -> str:
-        """What a message calls it: class, name and line."""
+        """Its name in messages: class, name and line."""
         name = self.text("name").strip()
         named = f' "{shortened(printable(name))}"' if name else ""
         return f"{shortened(printable(self.kind or self.element.tag))}{named} (line {self.element.line})"

@@ -29,9 +29,9 @@ def read_step(content: bytes, source: str, name: str, losses: list[str]) -> Worl
     content : bytes
         The file.
     source : str
-        What messages call it: its path.
+        Its name in messages: its path.
     name : str
-        What the scene is called.
+        Name of the scene.
     losses : list of str
         Gets what of the file has no place in a scene, a line each; the description of the scene has them too.
 

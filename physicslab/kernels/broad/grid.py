@@ -9,9 +9,6 @@ from numpy.typing import NDArray
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, always_inlined, inlined
 from physicslab.kernels.records import Couples, Pairs
 
-__all__ = ["cell_at", "find_pairs"]
-
-
 _COMPANY_LIMIT = 32
 """Largest number of overlapping bodies of a body's own size that make pairs with it."""
 _CELL_LIMIT = 1e15
@@ -64,7 +61,7 @@ def _extent(boxes: Vectors, fat: Vectors, i: int) -> tuple[float, float]:
 def _take(search: Search, found: int, i: int, j: int) -> int:
     """Write the pair (i, j), if it can be moved and there is room; return how many there are now.
 
-    Of bodies that were put on one spot only so many pairs are taken that work and memory stay proportional
+    With bodies on one spot only so many pairs are taken that work and memory stay proportional
     to the bodies: a body whose ``company`` is full makes pairs with further ones when some have left.
     """
     boxes, fat, inverse_mass, couples, company = search

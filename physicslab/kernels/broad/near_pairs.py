@@ -15,10 +15,6 @@ from physicslab.kernels.geometry.contact import ACTIVATION_RATIO
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Points
 
-__all__ = [
-    "activate", "beside", "carry_over", "distance_to_activate", "make_blank", "partition", "sort_scalar",
-]  # fmt: skip
-
 _LONG = 4.0
 """Ratio of bounding radii from which the circle around the larger body shows little of where it is."""
 _FREE = -1
@@ -120,7 +116,7 @@ def partition(
     ``known`` of ``manifolds`` are the records so far, whose rows have changed if they are ``stale``. ``fat``
     is that of :mod:`physicslab.kernels.broad.fat_boxes`. ``table`` is filled for :func:`carry_over`.
 
-    Of a long body and a short one that are not ``beside`` each other, the record is made at once.
+    For a long body and a short one that are not ``beside`` each other, the record is made at once.
     """
     _note_known(manifolds, known, table)
     shapes = named_shapes(plain_shapes)

@@ -36,7 +36,7 @@ friction of a sign."""
 
 
 class PointResponse(NamedTuple):
-    """What impulses change at a point, and its velocities before.
+    """Response of a point to unit impulses, and its velocities before.
 
     A normal impulse changes its velocity ``v`` along the normal [m/s] by ``kn`` and its ``sliding`` [m/s] by
     ``coupling``, a tangential one by ``coupling`` and ``kt`` [1/kg].
@@ -50,7 +50,7 @@ class PointResponse(NamedTuple):
 
 
 class PairResponse(NamedTuple):
-    """What impulses change at two points of a pair, by themselves and one at the other [1/kg].
+    """Response of two points of a pair to unit impulses, at themselves and at each other [1/kg].
 
     ``kn_12`` is how a normal impulse at either changes the other's v, ``kt_12`` how a tangential one changes
     its sliding; ``coupling_12`` how a normal impulse at the first changes the sliding of the second, which is

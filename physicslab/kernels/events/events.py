@@ -39,11 +39,6 @@ from physicslab.kernels.solver.impact_log import (
 )
 from physicslab.kernels.twins import endless
 
-__all__ = [
-    "BALLISTIC", "CAME_TO_REST", "DEEP", "DONE", "FIXED", "KINEMATIC", "OVERLAP", "REST", "TOGETHER",
-    "TOO_MANY_IMPACTS", "run_events",
-]  # fmt: skip
-
 FIXED, BALLISTIC, KINEMATIC = range(3)
 """Modes of a row: fixed; moving freely; moving and not deflected."""
 DONE, CAME_TO_REST, OVERLAP, TOO_MANY_IMPACTS, TOGETHER = range(5)
@@ -63,14 +58,14 @@ _SAME_TIME = 1e-12
 """Share of a step within which impacts of one pair count as simultaneous."""
 _AHEAD = 64.0
 """Steps for which pairs are at most taken as apart before they are looked at again."""
-_ROUNDING = 1e-11
+_NEARER = 1e-11
 """Share of the farthest place within that time by which pairs are taken as nearer than they seem apart."""
 _MAX_REPEATS = 32
 """Largest number of bounces of an inelastic pair within that time; then it stays together."""
 
 
 class Flight(NamedTuple):
-    """What is known of ballistic motion: the pairs, the bodies, and when each pair meets.
+    """State of ballistic motion: the pairs, the bodies, and when each pair meets.
 
     Records and points of the pairs, and how many there are; paths, modes and motions of the bodies; of each
     pair the face, the first step in which it may meet, when it meets in this one, and where B was at its last
@@ -122,7 +117,7 @@ def _begin_all(flight: Flight, step: int, span: float, left: int) -> tuple[int, 
         way = time * (speed + time * (abs(paths[i, 8]) + abs(paths[i, 9])))
         size = shapes.radius[i] + 2.0 * (shapes.half_x[i] + shapes.half_y[i])
         farthest = max(farthest, abs(position[i, 0]) + abs(position[i, 1]) + size + way)
-    rounding = _ROUNDING * farthest
+    rounding = _NEARER * farthest
     for p in range(flight.pairs):
         if flight.apart[p] > step:
             continue
@@ -281,7 +276,7 @@ def run_events(
     manifolds, points, count : records (pairs,), (2 pairs,), int
         The pairs that may meet.
     paths : float64 array (rows, 13)
-        Of each row the remainders of its place and velocity, which are carried on, the acceleration [m/s^2]
+        For each row the remainders of its place and velocity, which are carried on, the acceleration [m/s^2]
         in columns 8 and 9, and in column 12 the mass [kg] that gravity pulls.
     mode : int64 array (rows,)
         The mode of each row.

@@ -10,8 +10,6 @@ from physicslab.kernels.accounts import GRAVITY, book
 from physicslab.kernels.events.meeting import Course
 from physicslab.kernels.ode.compensated import add_pair, multiply
 
-__all__ = ["FIELDS", "advance_to", "begin", "place", "push", "seen_from", "velocity"]
-
 FIELDS = 13
 """Numbers of a path."""
 _X, _VX, _A, _T, _M = 0, 4, 8, 10, 12
@@ -73,8 +71,8 @@ def advance_to(
 ) -> None:
     """Begin a new path of row i where the old one is at the time ``now + low``.
 
-    What gravity has given on the old one is added to the account: m g s, and about the origin the integral of
-    x x m g, which is (x s + v s^2 / 2) x m g for a parabola.
+    Energy and momentum by gravity on the old one are added to the account: m g s, and about the origin the
+    integral of x x m g, which is (x s + v s^2 / 2) x m g for a parabola.
     """
     s = _advanced(paths, i, now, low)
     angle[i] += s * angular[i]

@@ -1,4 +1,4 @@
-"""What causes give in a second, by account: added up beside the forces, integrated beside the motion.
+"""Powers, forces and torques of causes, by account: added up beside the forces, integrated beside the motion.
 
 Behind the clock, the packed coordinates have four places for each account that a world needs: the energy, the
 momentum (x, y) and the angular momentum about the origin (:mod:`physicslab.kernels.accounts`). A force adds
@@ -178,7 +178,7 @@ def book_kick(
 ) -> None:  # fmt: skip
     """Book on coordinate ``i`` what a kick of ``kick`` seconds does that changes its velocity by ``change``.
 
-    What is not stored: the work of damping at ``rate``, and that of forces that are kept by themselves, by
+    Not stored are the work of damping at ``rate``, and that of forces that are kept by themselves, by
     the velocities on the way. To be called before the velocity has changed.
     """
     along = kick * v[i] + 0.5 * kick * change  # the integral of the velocity

@@ -17,7 +17,7 @@ OUTLINE = 18
 CUTS = 64
 """Room for the shares of a piece at which the other outline may cut it."""
 AREA, MX, MY, LENGTH, SX, SY, S2, WX, WY, TURN, SUMS = range(11)
-"""What is summed up: the common area and its first moments; length, first and second moments of what part of
+"""Sums: the common area and its first moments; length, first and second moments of what part of
 the first outline is within the second; and of the second's within the first the integrals of a linear
 function psi times the normal, and times the moment of the normal."""
 _SAME = 1e-12

@@ -2,7 +2,7 @@
 
 The energy of a pair is e (s^2 - 2 s) with s = (d / r)^6: it is least, -e, at the distance d, and zero at
 sigma = d / 2^(1/6). Beyond 2.5 sigma there is no force; the energy is shifted by that there, so that it is
-continuous (Allen & Tildesley, Computer Simulation of Liquids, 2017, 5.2). Of unlike molecules e is the
+continuous (Allen & Tildesley, Computer Simulation of Liquids, 2017, 5.2). For unlike molecules e is the
 geometric mean and d the arithmetic one (Lorentz, Ann. Phys. 248 (1881) 127; Berthelot, C. R. Acad. Sci. 126
 (1898) 1703).
 """

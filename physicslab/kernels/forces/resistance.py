@@ -1,7 +1,7 @@
 """The response of dampers and drag to a velocity within a step, for the implicit method.
 
 Each is a C function like a force of :mod:`physicslab.kernels.forces.packed_forces`, of the same numbers,
-behind how many coordinates there are. What it gets as ``v`` are three velocities one behind the other,
+behind how many coordinates there are. Its ``v`` holds three velocities one behind the other,
 each of so many numbers: y, to which it responds; u, the mean of the step; and v, that at the start. At the
 end it is u + y.
 """

@@ -31,12 +31,12 @@ WIDE_TOLERANCE = 4.0
 """Multiple of these tolerances after which the points of a wide contact are found again, once a step."""
 _ROWS_FOUND_AGAIN = 64
 """Number of bodies up to which points of boxes are found again after any motion."""
-_ROUNDING = 1e-9
+_NO_MOTION = 1e-9
 """Share of these tolerances that is no motion."""
 AS_FOUND = 3
 """What ``found`` is of a pair with a disc whose point was found in its base pose, and is no later one's."""
 _APART, _KEPT, _OUTDATED = range(3)
-"""What is known of a pair of boxes: that they have no points; where their points are; nothing any more."""
+"""Knowledge of a pair of boxes: they have no points; their points are kept; it is out of date."""
 
 
 @inlined
@@ -298,7 +298,7 @@ def find_contacts(
     # The arms of kept points are those of the pose in which they were found.
     tolerance = 1.0 if first else TOLERANCE_WITHIN_STEP
     if _has_few_rows(near.entities):
-        tolerance = _ROUNDING
+        tolerance = _NO_MOTION
     for number in range(count):
         p = near.scalar[number]
         manifold, one, two = near.manifolds[p], near.points[2 * p], near.points[2 * p + 1]

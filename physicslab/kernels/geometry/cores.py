@@ -1,7 +1,7 @@
 """Where two rounded polygons touch, whatever their numbers of vertices: a box, a capsule, a disc beside one.
 
 Separating axes find the face from which all of the other core is farthest; its nearest edge is clipped to
-that face (Ericson, Real-Time Collision Detection, 2005, 5.1.9 and 5.2). Of rounded ones whose vertices are
+that face (Ericson, Real-Time Collision Detection, 2005, 5.1.9 and 5.2). For rounded ones whose vertices are
 nearest, these are the discs that touch. Coordinates are relative to A's centre.
 """
 

@@ -130,7 +130,7 @@ def _best_axis(
             gap, face = held_gap, held
     if (c < _PARALLEL and s < _PARALLEL) or gap > margin or (ux == 0.0 and uy == 0.0):
         return gap, face
-    # Of parallel boxes, A has the axes of B, which may be turned by a right angle.
+    # With parallel boxes, A has the axes of B, which may be turned by a right angle.
     alike = s < c
     gap_x, gap_y = max(gap_ax, gap_bx if alike else gap_by), max(gap_ay, gap_by if alike else gap_bx)
     uax, uay = a.c * ux + a.s * uy, a.c * uy - a.s * ux

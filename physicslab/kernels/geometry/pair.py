@@ -25,7 +25,7 @@ from physicslab.kernels.records import Manifold, Point
 CONTACT_MARGIN = 0.02
 """Share of the smaller body's size within which a pair counts as near: its points are kept though they do
 not touch."""
-_ROUNDING = 1e-6
+_JUST_MEETING = 1e-6
 """Share of the size within which two surfaces count as just meeting."""
 SWEEP_THRESHOLD = 0.002
 """Share of the smaller body's size below which a substep's motion, or that of a turning box's corners, is not
@@ -41,7 +41,7 @@ _FAST = 0.25
 
 
 class Impulses(NamedTuple):
-    """What a point is warm-started with: its feature, and its impulses [N s]."""
+    """Warm start of a point: its feature, and its impulses [N s]."""
 
     feature: int
     normal: float
@@ -149,16 +149,16 @@ def touch_with_circle(
     if turn != 0.0:
         swing = swing_of(a if a.box else b, turn)
     level = swing <= _TURNING * reach
-    if swing <= _ROUNDING * size:
+    if swing <= _JUST_MEETING * size:
         swing = turn = 0.0
     if separation > max(reach + swing, near):
         manifold.gap = separation
         return
     fast = reach + swing > SWEEP_THRESHOLD * size
     approach = -(ux * nx + uy * ny)
-    # What rests on each other touches as it does now: the normal of another moment would do work on it.
+    # Resting bodies touch as they do now: the normal of another moment would do work on them.
     loaded = point.normal_impulse > 0.0 and separation < near
-    if not loaded and (fast or approach + swing > max(4.0 * speculative_margin, _ROUNDING * size)):
+    if not loaded and (fast or approach + swing > max(4.0 * speculative_margin, _JUST_MEETING * size)):
         # The normal is that of the moment of contact, if there is one in this substep.
         x, y = dx + start * ux, dy + start * uy
         t = _sweep_circle(x, y, way, start, turn, a, b)
@@ -167,7 +167,7 @@ def touch_with_circle(
             met_a, met_b = turned(a, (start + t) * turn), turned(b, (start + t) * turn)
             x, y = x + t * ux, y + t * uy
             mx, my, met_ax, met_ay, met_bx, met_by, gap = _circle_pose(x, y, met_a, met_b, tie)
-            met = gap > -_ROUNDING * size  # else they overlapped before the substep began
+            met = gap > -_JUST_MEETING * size  # else they overlapped before the substep began
             if met and level and _slides_over(mx, my, x, y, way, met_a, met_b):
                 return
         if met:
@@ -225,12 +225,12 @@ def sweep_any(
         inner, place, touch = sweep_inner(way, turn_a, turn_b, start, a, b, pool)
     if t <= 1.0 and outlines and t < inner:
         meeting, met_a, met_b = pose_at(way, turn_a, turn_b, a, b, start + t)
-        found = touch_outlines(meeting, met_a, met_b, pool, _ROUNDING * size, 0)
+        found = touch_outlines(meeting, met_a, met_b, pool, _JUST_MEETING * size, 0)
         one, two = found.one, found.two
         if found.points == 2:  # what lands flat is not spun up
             one = Corner(0.5 * (one.x + two.x), 0.5 * (one.y + two.y), one.separation, one.feature)
         closes = opening(one, meeting, found.nx, found.ny, turn_a, turn_b) < -_STILL * travel
-        if found.points > 0 and closes and abs(found.gap) <= _ROUNDING * size:
+        if found.points > 0 and closes and abs(found.gap) <= _JUST_MEETING * size:
             return t, meeting, Touch(found.gap, found.nx, found.ny, 1, one, none)
     return inner, place, touch
 
@@ -242,7 +242,7 @@ def _touch_inner(
 ) -> bool:  # fmt: skip
     """Find where the inner disc of the smaller of two shapes meets the other one; return whether it does.
 
-    What is found of their outlines is not put aside for what comes after the ``latest`` share of a substep.
+    Findings about their outlines are not put aside for an event after the ``latest`` share of a substep.
     """
     t, meeting, found = sweep_inner(way, turn_a, turn_b, start, a, b, pool)
     if t > latest:
@@ -298,7 +298,7 @@ def touch_rounded(
             meeting, met_a, met_b = pose_at(way, turn_a, turn_b, a, b, start + t)
             met = touch_outlines(meeting, met_a, met_b, pool, near + travel, 0)
             # Else they overlapped before the substep began, or turn too far in it for the sweep.
-            if abs(met.gap) <= _ROUNDING * size:
+            if abs(met.gap) <= _JUST_MEETING * size:
                 found, place, share = met, meeting, start + t
                 manifold.swept = 1
     # The sweep is sure of shapes that hardly turn, and are apart at first.

@@ -16,7 +16,7 @@ to date from the beginning of a step on. Then, of row ``i``:
   centre. ``shapes.thin[i]``: half of its smallest width. ``half_extents(shapes, i, angle)``: of
   the upright box.
 
-What turns without effect, a disc, has ``shapes.reach[i] - shapes.radius[i]`` equal to 0.
+A disc, which turns without effect, has ``shapes.reach[i] - shapes.radius[i]`` equal to 0.
 """
 
 import math

@@ -14,7 +14,7 @@ from physicslab.kernels.geometry.outline import Outline, Way, is_segment, swing_
 from physicslab.kernels.geometry.segment import touch_outlines
 
 MISS = 2.0
-"""What a sweep returns where two outlines miss each other."""
+"""Result of a sweep where two outlines miss each other."""
 APPROACHES, REFINEMENTS = 40, 8
 """Largest numbers of steps towards a meeting, none of which can pass it, and of Newton's steps at its end."""
 NEAR = 0.02
@@ -193,7 +193,7 @@ def _inner_disc(outline: Outline) -> Outline:
 def is_swift(way: Way, room: float, a: Outline, b: Outline) -> bool:
     """Whether two shapes move against each other by more than the inner disc of the smaller one reaches.
 
-    What forces give within the substep, up to ``room`` [m], does not count: a body at rest is not swift.
+    Motion by forces within the substep, up to ``room`` [m], does not count: a body at rest is not swift.
     """
     reach = room + INNER_SHARE * (a.thin if _is_smaller(a, b) else b.thin)
     return bool(way.ux * way.ux + way.uy * way.uy > reach * reach)

@@ -1,1 +1,1 @@
-"""What joints measure and the forces that hold them, in smooth motion and beside contacts."""
+"""Joints: their measures and the forces that hold them, in smooth motion and beside contacts."""

@@ -3,7 +3,7 @@
 A = J M^-1 J^T of a block is factorised as L D L^T, in pieces of 2 x 2. A *node* is one row, or two that hold
 the same bodies, as the two of a point; the order of nodes and all places where L is not zero are found once
 (:mod:`physicslab.state.joint_order`). Joints that form a tree have no more such places than A: a chain costs
-as much as it has links, and a load of 10,000 times its mass hangs on it as on one link. Nodes that are not
+as much as it has links, and a load of 10,000 times its mass is carried as by one link. Nodes that are not
 active, as limits that are not reached, are passed over.
 """
 

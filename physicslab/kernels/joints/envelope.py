@@ -124,7 +124,7 @@ def substitute(numbers: Any, whole: Any) -> None:
 def solve(numbers: Any, whole: Any) -> None:
     """Find the forces of all rows from the right side, which is used up; refined once.
 
-    What is light between heavy bodies gets the difference of large forces.
+    A light body between heavy ones gets the difference of large forces.
     """
     n, states, matrix = whole[L.ROWS], L.first_state(whole), L.first_entry(whole)
     substitute(numbers, whole)

@@ -1,4 +1,4 @@
-"""What all terms of joints measure in a state of motion, for reports."""
+"""Measures of all terms of joints in a state of motion, for reports."""
 
 from physicslab.kernels import Numbers, Rows, Vectors, kernel
 from physicslab.kernels.joints.terms import TermEnd, measure_term

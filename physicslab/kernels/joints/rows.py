@@ -21,7 +21,7 @@ from physicslab.kernels.joints.envelope import factorise, solve, substitute
 from physicslab.kernels.joints.terms import TermEnd, measure_term
 from physicslab.kernels.ode.compensated import add
 
-_ROUNDING = 4e-16
+_POSITION_ROUNDING = 4e-16
 """Share of the largest coordinate, and of the largest speed, below which an error is rounding."""
 _JUMP = 1e-9
 """Share of the largest speed above which a speed that joints do not allow is no error of a method."""
@@ -128,7 +128,7 @@ def given_by_rows(
 def book_rows(q: Any, v: Any, given: Any, numbers: Any, whole: Any) -> None:
     """Add what the forces of rows give in a second to the accounts behind the clock.
 
-    What holds does no work but on what is driven; what little it does by rounding is an error.
+    Holding forces do no work but on driven bodies; the little that they do by rounding is an error.
     """
     for role in (L.HOLD, L.MOTOR):
         account = whole[L.HOLDING] if role == L.HOLD else whole[L.POWERED]
@@ -254,7 +254,7 @@ def project(q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, numbers: Num
     """Move bodies by the least that closes what joints hold together, and remove speeds that they forbid.
 
     ``q_low`` and ``v_low`` (n,) are the remainders of what moves. Returns the largest error left [m or rad]:
-    more than rounding where joints contradict each other. What this changes of energy and momentum is an
+    more than rounding where joints contradict each other. The change of energy and momentum by this is an
     error of the method.
     """
     m, room, share, before = whole[L.COORDINATES], L.first_room(whole), 1.0, 0.0
@@ -268,13 +268,13 @@ def project(q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, numbers: Num
             for i in range(m):
                 q[i], q_low[i] = add(q[i], q_low[i], -back * numbers[room + i])
             continue
-        if share == 0.0 or largest <= _ROUNDING * size or (turn > 2 and largest > 0.5 * before):
+        if share == 0.0 or largest <= _POSITION_ROUNDING * size or (turn > 2 and largest > 0.5 * before):
             break
         _solved_changes(numbers, whole)
         for i in range(m):
             q[i], q_low[i] = add(q[i], q_low[i], numbers[room + i])
         before, share = largest, 1.0
-    if _rates(v, numbers, whole) > _ROUNDING * _size(v, m):
+    if _rates(v, numbers, whole) > _POSITION_ROUNDING * _size(v, m):
         _solved_changes(numbers, whole)
         for i in range(m):
             v[i], v_low[i] = add(v[i], v_low[i], numbers[room + i])

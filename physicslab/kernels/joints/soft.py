@@ -44,7 +44,7 @@ from physicslab.kernels.joints.blocks import (
 from physicslab.kernels.joints.terms import TermEnd, measure_turned
 
 HOLD, LIMIT, MOTOR = range(3)
-"""What a row demands (:class:`physicslab.state.joint_rows.Role`)."""
+"""Demand of a row (:class:`physicslab.state.joint_rows.Role`)."""
 _FASTEST, _DAMPING, _OF_SUBSTEPS = 60.0, 2.0, 0.25
 """The frequency [Hz] of the correction and its damping ratio; at most that share of the rate of substeps."""
 _SETTLED = 1e-10
@@ -222,7 +222,7 @@ def _limit_correction(joints: Joints, first: int, end: int, inverse: Inverse, so
     """Lessen the errors of a block where correcting them gives bodies more energy than its springs have.
 
     A straight chain that is too long for its fixed ends can close its gaps by bending alone: the straighter
-    it is, the faster its links would have to move, without a bound. What a light link holds may be heavy: its
+    it is, the faster its links would have to move, without a bound. A light link may hold a heavy body: its
     spring is as stiff as for the heaviest body of the block.
     """
     nodes, state, stored, stiffness = joints.nodes, joints.state, 0.0, soft.rate / (soft.h * soft.spring)
@@ -379,7 +379,7 @@ def note_joints(joints: Joints, motion: Motion) -> None:
 def book_work(joints: Joints, motion: Motion, account: Vectors, whole: bool) -> None:
     """Book the work of the impulses, by the mean of the speeds that were noted and of those now.
 
-    Of the ``whole`` impulses, or of what they have changed by since they were noted.
+    Taken of the ``whole`` impulses, or of their change since they were noted.
     """
     state = joints.state
     for k in range(len(state)):
@@ -395,7 +395,7 @@ def book_work(joints: Joints, motion: Motion, account: Vectors, whole: bool) -> 
 def book_momentum(joints: Joints, motion: Motion, inverse: Inverse, account: Vectors, whole: bool) -> None:
     """Book the momentum that fixed ends give by impulses where bodies are, and the work of what drives these.
 
-    Of the ``whole`` impulses, or of what they have changed by since they were noted.
+    Taken of the ``whole`` impulses, or of their change since they were noted.
     """
     position, linear, state, g = motion.position, motion.linear, joints.state, joints.gradient
     for k in range(len(state)):

@@ -4,7 +4,7 @@ It is the splitting of :mod:`physicslab.kernels.ode.spring_flow`, whose kicks ar
 velocities while all places stay: it is linear in them, and followed by its Taylor series. The splitting is
 symmetric, so that it is of order 4 for these kicks as well. Springs are taken eight at a time, as there.
 
-What dampers take is the integral of their power over the same series. Bodies that only drag and gravity act
+Dampers take the integral of their power over the same series. Bodies that only drag and gravity act
 on are followed each by itself (:func:`_fall`).
 """
 
@@ -58,7 +58,7 @@ _FOLLOWED = 0.05
 
 
 class Full(NamedTuple):
-    """What dampers and arms need beside :class:`Places` and :class:`Links`.
+    """Properties of dampers and arms beside :class:`Places` and :class:`Links`.
 
     It is of p places, m bodies and n springs. ``spin_gain`` (m,) is the inverse inertia, 0 where no spring
     may turn a body; ``angle`` (m,) [rad] and ``spin`` (p,) [rad/s], ``cosine`` and ``sine`` (p,) of it.

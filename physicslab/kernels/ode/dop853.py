@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, always_inlined, inlined
-from physicslab.kernels.accounts import PX, PY, SPIN
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, PX, PY
 from physicslab.kernels.forces.bookings import ACCOUNTS, CLOCK, END
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add, add_pair
@@ -20,11 +20,11 @@ from physicslab.kernels.ode.dop853_tableau import (
 )
 
 TOO_SHORT = -1
-"""What is returned where no step is short enough."""
+"""Result where no step is short enough."""
 NOT_FINITE = -2
-"""What is returned where the forces at the start are not finite."""
+"""Result where the forces at the start are not finite."""
 EXHAUSTED = -3
-"""What is returned where more force evaluations were made than are allowed."""
+"""Result where more force evaluations were made than are allowed."""
 _SAFETY, _MAX_GROWTH, _MIN_GROWTH = 0.9, 6.0, 0.2
 """Safety factor of a step, and the limits of its growth and shrinkage at once."""
 _LEADS = 1e-4
@@ -186,7 +186,7 @@ def _restore_origin(q: Numbers, q_low: Numbers, bodies: int, origin: Numbers) ->
 def _move_torques(pushes: Vectors, n: int, booked: int, x: float, y: float) -> None:
     """Take the torques of the first stage of a step about (x, y) instead of the origin."""
     for account in range(n, n + booked, ACCOUNTS):
-        pushes[account + SPIN, 0] -= x * pushes[account + PY, 0] - y * pushes[account + PX, 0]
+        pushes[account + ANGULAR_MOMENTUM, 0] -= x * pushes[account + PY, 0] - y * pushes[account + PX, 0]
 
 
 @inlined
@@ -205,9 +205,9 @@ def _book(
         v[clock + 1 + i] += taken * given
         pushes[n + i, 0] = pushes[n + i, LAST]
         if i % ACCOUNTS == PX:
-            v[clock + 1 + i - PX + SPIN] -= origin[1] * taken * given
+            v[clock + 1 + i - PX + ANGULAR_MOMENTUM] -= origin[1] * taken * given
         elif i % ACCOUNTS == PY:
-            v[clock + 1 + i - PY + SPIN] += origin[0] * taken * given
+            v[clock + 1 + i - PY + ANGULAR_MOMENTUM] += origin[0] * taken * given
 
 
 @allocating_kernel

@@ -41,7 +41,7 @@ WEIGHTS = _table(
     (0.054293734116568765, 0.0, 0.0, 0.0, 0.0, 4.450312892752409, 1.8915178993145003, -5.801203960010585,
      0.3111643669578199, -0.1521609496625161, 0.20136540080403034, 0.04471061572777259),
 )  # fmt: skip
-"""Of the stages before, for each stage (13, 13)."""
+"""Weights of the stages before, for each stage (13, 13)."""
 
 WEIGHTS_LOW = _table(
     (),
@@ -67,7 +67,7 @@ WEIGHTS_LOW = _table(
      1.3317442893008373e-16, -1.0104455449341739e-17, 8.776696451848075e-18, 6.12257216002761e-18,
      3.1043973515105385e-18),
 )  # fmt: skip
-"""What rounding leaves out of the weights (13, 13): orbits would show the bias after 100 rounds."""
+"""Rounding remainders of the weights (13, 13): orbits would show the bias after 100 rounds."""
 
 NODES = np.array([math.fsum((*row, *low)) for row, low in zip(WEIGHTS, WEIGHTS_LOW, strict=True)])
 """The time of each stage, as a share of the step (13,)."""
@@ -75,17 +75,17 @@ NODES = np.array([math.fsum((*row, *low)) for row, low in zip(WEIGHTS, WEIGHTS_L
 NODES_LOW = np.array(
     [math.fsum((*row, *low, -node)) for row, low, node in zip(WEIGHTS, WEIGHTS_LOW, NODES, strict=True)]
 )
-"""What rounding leaves out of it (13,)."""
+"""Its rounding remainders (13,)."""
 
 ESTIMATE_5 = _table(
     (0.01312004499419488, 0.0, 0.0, 0.0, 0.0, -1.2251564463762044, -0.4957589496572502,
      1.6643771824549864, -0.35032884874997366, 0.3341791187130175, 0.08192320648511571,
      -0.022355307863886294),
 )[0]  # fmt: skip
-"""Of the stages, for the step's departure from one of order 5 (13,)."""
+"""Weights of the stages for the step's departure from one of order 5 (13,)."""
 
 ESTIMATE_3 = WEIGHTS[LAST] - _table(
     (0.24409448818897638, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.7338466882816119, 0.0, 0.0,
      0.022058823529411766),
 )[0]  # fmt: skip
-"""Of the stages, for the step's departure from one of order 3 (13,)."""
+"""Weights of the stages for the step's departure from one of order 3 (13,)."""

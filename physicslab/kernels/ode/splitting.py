@@ -52,7 +52,7 @@ def split(
 
     ``gyration`` (bodies,) are the rates [rad/s] at which fields turn velocities, or it is empty: drifts are
     then arcs, which are exact. So the method has the order that it has without the field, as of the forces
-    that kick all commutators of the second order still depend on places alone. What the fields give is booked
+    that kick all commutators of the second order still depend on places alone. Work of the fields is booked
     at ``field``.
     """
     n, clock = len(inverse_mass), places[CLOCK]

@@ -15,11 +15,11 @@ from physicslab.kernels.float64x8 import choose, mask_bits, put_vectors, root, t
 from physicslab.kernels.wide_layout import WIDE
 
 TURNS_FAST = -1
-"""What is returned where a spring is too short, or turns too far, for steps of this length."""
+"""Result where a spring is too short, or turns too far, for steps of this length."""
 MAX_TURN = 0.25
 """Angle [rad] by which a spring with a rest length may turn, or share of its length by which it may change,
 in a step of the method."""
-_ROUNDING = 1e-9
+_STEP_EXCESS = 1e-9
 """Share by which a step may be longer than the longest: half substeps are rounded."""
 FINEST = 64
 """Largest factor by which steps are shortened where springs turn faster, or are short."""
@@ -43,7 +43,7 @@ what is given (GIVEN,), gravity (2,) [m/s^2], the longest step of the method [s]
 
 
 class Places(NamedTuple):
-    """What moves and what springs are attached to, one row each.
+    """Bodies that move and ends that springs are attached to, one row each.
 
     The rows of the world that move (m,); ``place`` and ``speed`` (m + f + 1, 2) of these, of f fixed ends,
     and of one for slots without a spring; ``pull`` of the same shape, which is [0] the force of the springs
@@ -112,7 +112,7 @@ def _turn_fast(places: Places, links: Links, at: int, h: float) -> int:
 @always_inlined
 def steps_of(springs: Springs, span: float) -> int:
     """Return how many steps of the method ``span`` seconds are, if no spring turns fast."""
-    steps: int = max(1, math.ceil(span / springs.numbers[LONGEST] * (1.0 - _ROUNDING)))
+    steps: int = max(1, math.ceil(span / springs.numbers[LONGEST] * (1.0 - _STEP_EXCESS)))
     return steps
 
 
@@ -290,9 +290,9 @@ def book_given(given: Numbers, numbers: Numbers, span: float, account: Vectors) 
 def flow_springs(motion: Motion, springs: Springs, span: float, account: Vectors) -> int:
     """Move bodies on springs for ``span`` seconds; return the number of force evaluations.
 
-    A step is kick, drift, kick, ..., drift, kick, with the method's shares of it. What comes in at ends that
-    springs do not move, and by gravity, is booked: its torque as the corrected trapezoidal rule has it, which
-    is of the order of the method.
+    A step is kick, drift, kick, ..., drift, kick, with the method's shares of it. Energy that comes
+    in at ends that springs do not move, and by gravity, is booked: its torque as the corrected trapezoidal
+    rule has it, which is of the order of the method.
 
     Where a spring becomes so short, or turns so fast, that these do not follow it, steps are halved; where
     those of a FINEST-th do not either, nothing is changed, and :data:`TURNS_FAST` returned.

@@ -1,36 +1,20 @@
-"""What contact forces give in a second, and impulses at once, by account."""
+"""Powers of contact forces, and work of impulses, by account."""
 
 from physicslab.kernels import Numbers, inlined
-from physicslab.kernels.accounts import ENERGY, PX, SPIN, book
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, PX, book
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.equations import STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import (
-    CONTACTS,
-    DRIVEN,
-    FEATURE,
-    JOINED,
-    JOINT,
-    MOTOR,
-    MOTORS,
-    NORMAL,
-    ONE,
-    RUBBING,
-    STATUS,
-    TANGENT,
-    VT,
-    Scene,
-)
+from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.joint_points import motor_rate
-
-__all__ = ["book_contacts", "book_row", "book_speeds"]
 
 
 @inlined
 def book_contacts(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, given: Numbers
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, given: Numbers
 ) -> None:
     """Add what the forces of ``count`` points give in a second, that are measured in the state (q, v).
 
-    What friction takes, force times sliding speed, and the momentum that comes in from what no force moves,
+    Booked are friction, force times sliding speed, and momentum that comes in from bodies no force moves,
     with the work of what moves all the same. Normal forces do no work: what they hold together does not part.
     Motors do, with the speed at which they turn.
     """
@@ -38,22 +22,22 @@ def book_contacts(
         scene.rows,
         equations.points,
         equations.measures,
-        scene.accounts[CONTACTS],
+        scene.accounts[F.CONTACTS],
     )
-    rubbed, work = 0.0, 0.0
+    friction_work, work = 0.0, 0.0
     for i in range(count):
         along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
         account = contacts
-        if points[i, FEATURE] >= JOINT:
-            account = scene.accounts[JOINED]
-            if points[i, FEATURE] == MOTOR:
-                account = scene.accounts[MOTORS]
+        if points[i, F.FEATURE] >= F.JOINT:
+            account = scene.accounts[F.JOINED]
+            if points[i, F.FEATURE] == F.MOTOR:
+                account = scene.accounts[F.MOTORS]
                 given[account + ENERGY] += across * motor_rate(scene, points, measures, i)
-        elif points[i, STATUS] != STICKS:
-            rubbed += across * measures[i, VT]
+        elif points[i, F.STATUS] != STICKS:
+            friction_work += across * measures[i, F.VT]
         for side in range(2):
-            body = points[i, ONE + side]
-            n, t = NORMAL + 3 * side, TANGENT + 3 * side
+            body = points[i, F.ONE + side]
+            n, t = F.NORMAL + 3 * side, F.TANGENT + 3 * side
             x, y, turning = 2 * body, 2 * body + 1, 2 * rows + body
             fx = along * measures[i, n] + across * measures[i, t]
             fy = along * measures[i, n + 1] + across * measures[i, t + 1]
@@ -63,17 +47,17 @@ def book_contacts(
             else:
                 work -= fx * v[x] + fy * v[y]
             if scene.inverse_mass[turning] > 0.0:
-                given[account + SPIN] += torque
+                given[account + ANGULAR_MOMENTUM] += torque
             else:
                 work -= torque * v[turning]
-    given[scene.accounts[RUBBING] + ENERGY] += rubbed
-    if scene.accounts[DRIVEN] >= 0:
-        given[scene.accounts[DRIVEN] + ENERGY] += work
+    given[scene.accounts[F.FRICTION] + ENERGY] += friction_work
+    if scene.accounts[F.DRIVEN] >= 0:
+        given[scene.accounts[F.DRIVEN] + ENERGY] += work
 
 
 @inlined
 def book_row(
-    scene: Scene, equations: Equations, i: int, q: Numbers, old: Numbers, v: Numbers, late: float,
+    scene: RigidScene, equations: Equations, i: int, q: Numbers, old: Numbers, v: Numbers, late: float,
     acceleration: Numbers, account: Numbers, driven: Numbers,
 ) -> None:  # fmt: skip
     """Book the impulse of a row that has changed the speeds ``old`` to v: its work, and and momentum.
@@ -83,7 +67,7 @@ def book_row(
     points, measures = equations.points, equations.measures
     along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
     for side in range(2):
-        body, n, t = points[i, ONE + side], NORMAL + 3 * side, TANGENT + 3 * side
+        body, n, t = points[i, F.ONE + side], F.NORMAL + 3 * side, F.TANGENT + 3 * side
         for k in range(3):
             place = 2 * body + k if k < 2 else 2 * scene.rows + body
             push = along * measures[i, n + k] + across * measures[i, t + k]
@@ -93,15 +77,15 @@ def book_row(
                 driven[ENERGY] -= work
             elif k < 2:
                 account[PX + k] += push
-                account[SPIN] += q[2 * body] * push if k == 1 else -q[2 * body + 1] * push
+                account[ANGULAR_MOMENTUM] += q[2 * body] * push if k == 1 else -q[2 * body + 1] * push
             else:
-                account[SPIN] += push
+                account[ANGULAR_MOMENTUM] += push
 
 
 @inlined
-def book_speeds(scene: Scene, q: Numbers, v: Numbers, sign: float) -> None:
+def book_speeds(scene: RigidScene, q: Numbers, v: Numbers, sign: float) -> None:
     """Book the motion there is to contacts, with a sign: before they change speeds and after that."""
-    contacts, energy, px, py, spin = scene.accounts[CONTACTS], 0.0, 0.0, 0.0, 0.0
+    contacts, energy, px, py, spin = scene.accounts[F.CONTACTS], 0.0, 0.0, 0.0, 0.0
     for row in range(scene.rows):
         x, y, turning = 2 * row, 2 * row + 1, 2 * scene.rows + row
         if scene.inverse_mass[x] > 0.0:

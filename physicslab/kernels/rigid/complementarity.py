@@ -1,6 +1,6 @@
 """Forces of contacts that may open and slide: a linear complementarity problem, solved to rounding.
 
-Point i has a normal and a tangential unknown, z[2 i] and z[2 i + 1]: forces, or impulses. What they cause is
+Point i has a normal and a tangential unknown, z[2 i] and z[2 i + 1]: forces, or impulses. Their effect is
 w = A z + b: accelerations, or velocities. The laws are 0 <= z_n, 0 <= w_n, z_n w_n = 0, and Coulomb's
 |z_t| <= mu z_n, with w_t = 0 where that holds strictly and w_t against z_t where not. In two dimensions the
 cone has two edges, and all of that is linear (Acary & Brogliato, Numerical Methods for Nonsmooth Dynamical
@@ -26,14 +26,6 @@ from physicslab.kernels.rigid.equations import (
 from physicslab.kernels.rigid.features import GIVEN, MU, STATUS
 from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.lemke import find_by_pivots
-
-__all__ = [
-    "FITTING",
-    "NOT_FOUND",
-    "SETTLED",
-    "settle_at_an_edge",
-    "solve_complementarity",
-]
 
 _LEAST_SCALE = 1e-4
 """Share of the largest free rate, that of points that slide in any case too, which the scale of rates is at
@@ -87,18 +79,18 @@ def _change_most_violated(equations: Equations, count: int, w_scale: float, z_sc
     vectors = equations.vectors
     for i in range(count):
         status, given, mu = equations.points[i, STATUS], equations.points[i, GIVEN], equations.measures[i, MU]
-        pressed, rubbed = vectors[UNKNOWN, 2 * i] / z_scale, vectors[UNKNOWN, 2 * i + 1] / z_scale
+        normal, friction = vectors[UNKNOWN, 2 * i] / z_scale, vectors[UNKNOWN, 2 * i + 1] / z_scale
         opening, along = vectors[CAUSED, 2 * i] / w_scale, vectors[CAUSED, 2 * i + 1] / w_scale
         if status == OPEN:
             if -opening - vectors[CHANGE, 2 * i] / w_scale > amount:
                 worst, change, amount = i, _closed_status(equations, i, opening, along), -opening
-        elif -pressed > amount:
-            worst, change, amount = i, OPEN, -pressed
+        elif -normal > amount:
+            worst, change, amount = i, OPEN, -normal
         elif given == STICKS and mu > 0.0:
             if status == STICKS:
-                if abs(rubbed) - mu * pressed > amount:
-                    worst, amount = i, abs(rubbed) - mu * pressed
-                    change = SLIDES_ON if rubbed < 0.0 else SLIDES_BACK
+                if abs(friction) - mu * normal > amount:
+                    worst, amount = i, abs(friction) - mu * normal
+                    change = SLIDES_ON if friction < 0.0 else SLIDES_BACK
             else:  # friction must not drive the sliding
                 driven = -along if status == SLIDES_ON else along
                 if driven - vectors[CHANGE, 2 * i + 1] / w_scale > amount:
@@ -130,16 +122,16 @@ def _take_pivots(equations: Equations, count: int, closed: float, sticking: floa
     _find_caused(equations, count)
     vectors, points = equations.vectors, equations.points
     for i in range(count):
-        pressed, rubbed = vectors[UNKNOWN, 2 * i], vectors[UNKNOWN, 2 * i + 1]
-        edge = equations.measures[i, MU] * pressed
-        if pressed <= 0.0 and vectors[CAUSED, 2 * i] > closed:
+        normal, friction = vectors[UNKNOWN, 2 * i], vectors[UNKNOWN, 2 * i + 1]
+        edge = equations.measures[i, MU] * normal
+        if normal <= 0.0 and vectors[CAUSED, 2 * i] > closed:
             points[i, STATUS] = OPEN
         elif points[i, GIVEN] != STICKS:
             points[i, STATUS] = points[i, GIVEN]
-        elif abs(vectors[CAUSED, 2 * i + 1]) <= sticking or abs(rubbed) < (1.0 - _INSIDE) * edge:
+        elif abs(vectors[CAUSED, 2 * i + 1]) <= sticking or abs(friction) < (1.0 - _INSIDE) * edge:
             points[i, STATUS] = STICKS
         else:
-            points[i, STATUS] = SLIDES_ON if rubbed < 0.0 else SLIDES_BACK
+            points[i, STATUS] = SLIDES_ON if friction < 0.0 else SLIDES_BACK
 
 
 @inlined
@@ -147,10 +139,10 @@ def _largest_violation(equations: Equations, count: int, w_scale: float, z_scale
     """Return the largest violation of a law by what is known, as a share of the largest of its kind."""
     vectors, worst = equations.vectors, 0.0
     for i in range(count):
-        pressed, rubbed = vectors[UNKNOWN, 2 * i] / z_scale, vectors[UNKNOWN, 2 * i + 1] / z_scale
+        normal, friction = vectors[UNKNOWN, 2 * i] / z_scale, vectors[UNKNOWN, 2 * i + 1] / z_scale
         opening = vectors[CAUSED, 2 * i] / w_scale
-        worst = max(worst, -pressed, -opening, min(pressed, opening))
-        worst = max(worst, abs(rubbed) - equations.measures[i, MU] * pressed)
+        worst = max(worst, -normal, -opening, min(normal, opening))
+        worst = max(worst, abs(friction) - equations.measures[i, MU] * normal)
     return worst
 
 

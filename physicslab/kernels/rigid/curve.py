@@ -1,6 +1,6 @@
 """The curve through both ends of a piece of motion: where it crosses a limit, a piece ends.
 
-Of polynomials of degree five in time the one that has the places, speeds and accelerations of both ends
+It is the polynomial of degree five in time that has the places, speeds and accelerations of both ends
 (Hermite). Its error is of order h^6: that of a short piece is rounding, and the state on the curve is the
 state. Where it is not, a time found on the curve is the first trial of a location, and often the last: each
 trial on the piece itself takes twelve sets of contact forces.
@@ -12,10 +12,8 @@ from physicslab.kernels import Numbers, always_inlined, inlined
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
-from physicslab.kernels.rigid.features import Scene
+from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages, largest_free
-
-__all__ = ["curve_is_exact", "fit_curve", "place_bodies", "place_on_curve"]
 
 _THIRD, _FOURTH, _FIFTH = LAST + 1, LAST + 2, LAST + 3
 """Rows of the rates that hold the coefficients of the curve, in shares of the piece [m]."""
@@ -23,14 +21,14 @@ _CHECKED = 0.2
 """Share of a piece at which the accelerations of the curve are checked: errors of places and of speeds at its
 end show there, and those of its form."""
 _TO_SPEED, _TO_PLACE = 0.8, 0.5
-"""What errors of acceleration there are multiplied by, with h or h^2, for those of speeds and places."""
+"""Factors of errors of acceleration, with h or h^2, for those of speeds and places."""
 
 
 @inlined
 def fit_curve(stages: Stages, v: Numbers, h: float, short: bool) -> None:
     """Keep the curve of the piece of ``h`` seconds that was just made; pieces of other lengths leave it.
 
-    What is missing at the end after the first three terms is summed of differences of the stages: for a
+    The rest at the end after the first three terms is summed of differences of the stages: for a
     short piece it would be lost in the rounding of places.
     """
     method, last = 1 if short else 0, SHORT_LAST if short else LAST
@@ -75,7 +73,7 @@ def place_bodies(
 
 @always_inlined
 def curve_is_exact(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
     stages: Stages,
 ) -> bool:  # fmt: skip
     """Whether the state on the curve is that of the motion, to within the tolerance of a piece."""

@@ -5,21 +5,9 @@ import math
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.geometry.shapes import Shapes, face, is_chain, vertex
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.chain_points import find_chain_points
-from physicslab.kernels.rigid.features import (
-    CORNER,
-    FEATURE,
-    FIRST_ROW,
-    ONE,
-    OTHER,
-    PAIR,
-    VERTEX,
-    WALL,
-    Points,
-    Scene,
-)
-
-__all__ = ["TIE", "find_points", "seen_from"]
+from physicslab.kernels.rigid.features import Points, RigidScene
 
 TIE = 1e-9
 """Share of the size within which two faces are equally far, or one takes over from a corner, so that speeds
@@ -31,8 +19,8 @@ them."""
 
 @inlined
 def _write(points: Points, n: int, pair: int, one: int, feature: int, other: int, vertex: int) -> int:
-    points[n, PAIR], points[n, ONE], points[n, OTHER] = pair, one, other
-    points[n, FEATURE], points[n, VERTEX] = feature, vertex
+    points[n, F.PAIR], points[n, F.ONE], points[n, F.OTHER] = pair, one, other
+    points[n, F.FEATURE], points[n, F.VERTEX] = feature, vertex
     return n + 1
 
 
@@ -65,7 +53,7 @@ def _place(lie: Lie, shapes: Shapes, other: int, k: int) -> tuple[float, float]:
 
 @inlined
 def _rates(
-    scene: Scene, q: Numbers, v: Numbers, one: int, other: int, lie: Lie, k: int
+    scene: RigidScene, q: Numbers, v: Numbers, one: int, other: int, lie: Lie, k: int
 ) -> tuple[float, float]:
     """Return how fast vertex k of OTHER moves, seen from ONE, in its own directions [m/s]."""
     rows, (ux, uy) = scene.rows, vertex(scene.shapes, other, k)
@@ -79,7 +67,7 @@ def _rates(
 
 
 @inlined
-def _to_wall(points: Points, pair: int, q: Numbers, scene: Scene, row: int, wall: int) -> int:
+def _to_wall(points: Points, pair: int, q: Numbers, scene: RigidScene, row: int, wall: int) -> int:
     """Find the two vertices of a body that are nearest to a wall, or its only one."""
     axis, sign = (0 if wall == 0 or wall == 2 else 1), (1.0 if wall < 2 else -1.0)
     first, second, low, next_low = 0, 0, math.inf, math.inf
@@ -93,8 +81,8 @@ def _to_wall(points: Points, pair: int, q: Numbers, scene: Scene, row: int, wall
             first, low = k, height
         elif height < next_low:
             second, next_low = k, height
-    n = _write(points, 0, pair, 0, WALL + wall, row, min(first, second))
-    return n if first == second else _write(points, n, pair, 0, WALL + wall, row, max(first, second))
+    n = _write(points, 0, pair, 0, F.WALL + wall, row, min(first, second))
+    return n if first == second else _write(points, n, pair, 0, F.WALL + wall, row, max(first, second))
 
 
 @inlined
@@ -113,7 +101,7 @@ def _nearest_vertex(lie: Lie, shapes: Shapes, one: int, k: int, other: int) -> t
 
 
 @inlined
-def _face_rate(scene: Scene, q: Numbers, v: Numbers, one: int, k: int, other: int, lie: Lie) -> float:
+def _face_rate(scene: RigidScene, q: Numbers, v: Numbers, one: int, k: int, other: int, lie: Lie) -> float:
     """Return how fast the nearest vertex of OTHER recedes from face k of ONE [m/s]."""
     fx, fy, _, _ = face(scene.shapes, one, k)
     _, nearest = _nearest_vertex(lie, scene.shapes, one, k, other)
@@ -124,11 +112,11 @@ def _face_rate(scene: Scene, q: Numbers, v: Numbers, one: int, k: int, other: in
 
 @inlined
 def _farthest_face(
-    scene: Scene, q: Numbers, v: Numbers, one: int, other: int, lie: Lie, tie: float
+    scene: RigidScene, q: Numbers, v: Numbers, one: int, other: int, lie: Lie, tie: float
 ) -> tuple[int, float]:
     """Return the face of ONE from which the core of OTHER is farthest, and how far [m].
 
-    Of faces that are equally far, as where two corners meet, the one that recedes faster: only there could
+    Among faces that are equally far, as where two corners meet, the one that recedes faster: only there could
     they pass each other, and a box that slides over the joint of two tiles is not stopped by the side of
     the next. A core of one vertex has no face.
     """
@@ -166,7 +154,7 @@ def _facing(lie: Lie, shapes: Shapes, one: int, k: int, other: int) -> int:
 
 @inlined
 def _within(
-    scene: Scene, q: Numbers, v: Numbers, one: int, k: int, other: int, j: int, lie: Lie, tie: float
+    scene: RigidScene, q: Numbers, v: Numbers, one: int, k: int, other: int, j: int, lie: Lie, tie: float
 ) -> float:
     """Return how far vertex j of OTHER is from the nearer end of face k of ONE, along it [m].
 
@@ -194,7 +182,7 @@ def _beyond(distance: float, rate: float, tie: float) -> float:
 
 @inlined
 def _is_outside(
-    scene: Scene, q: Numbers, v: Numbers, one: int, i: int, other: int, j: int, lie: Lie, tie: float
+    scene: RigidScene, q: Numbers, v: Numbers, one: int, i: int, other: int, j: int, lie: Lie, tie: float
 ) -> bool:
     """Whether vertex j of OTHER is beyond, or leaves, both faces of ONE that meet at vertex i."""
     if scene.shapes.vertices[one] == 1:
@@ -225,8 +213,8 @@ def _nearest_vertices(lie: Lie, shapes: Shapes, one: int, other: int) -> tuple[i
 
 @inlined
 def _to_faces(
-    scene: Scene, points: Points, p: int, q: Numbers, v: Numbers, a: int, b: int, lie: Lie, lie_back: Lie,
-    tie: float,
+    scene: RigidScene, points: Points, p: int, q: Numbers, v: Numbers, a: int, b: int, lie: Lie,
+    lie_back: Lie, tie: float,
 ) -> tuple[int, float]:  # fmt: skip
     """Find the ends of the stretch along which two bodies face each other.
 
@@ -258,7 +246,7 @@ def _to_faces(
 
 
 @inlined
-def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points) -> tuple[int, float]:
+def find_points(scene: RigidScene, p: int, q: Numbers, v: Numbers, points: Points) -> tuple[int, float]:
     """Write the points where pair ``p`` touches, or would; return how many they are.
 
     And a distance that the two have at least where it is positive [m]; infinity where the smallest gap of
@@ -266,8 +254,8 @@ def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points) ->
     """
     shapes, tie = scene.shapes, TIE * scene.coefficients[p, 2]
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
-    if wall >= FIRST_ROW:
-        return _write(points, 0, p, a, WALL + wall, b, 0), math.inf
+    if wall >= F.FIRST_ROW:
+        return _write(points, 0, p, a, F.WALL + wall, b, 0), math.inf
     if wall >= 0:
         return _to_wall(points, p, q, scene, b, wall), math.inf
     if is_chain(shapes, a) or is_chain(shapes, b):
@@ -275,12 +263,12 @@ def find_points(scene: Scene, p: int, q: Numbers, v: Numbers, points: Points) ->
     if shapes.vertices[a] == 1:
         a, b = (a, b) if shapes.vertices[b] == 1 else (b, a)
     if shapes.vertices[a] == 1:
-        return _write(points, 0, p, a, CORNER, b, 0), math.inf
+        return _write(points, 0, p, a, F.CORNER, b, 0), math.inf
     lie, lie_back = _lie(q, scene.rows, a, b)
     if shapes.radius[a] + shapes.radius[b] > 0.0:
         i, j = _nearest_vertices(lie, shapes, a, b)
         outside = _is_outside(scene, q, v, a, i, b, j, lie, tie)
         if outside and _is_outside(scene, q, v, b, j, a, i, lie_back, tie):
-            return _write(points, 0, p, a, CORNER + i, b, j), math.inf
+            return _write(points, 0, p, a, F.CORNER + i, b, j), math.inf
     n, apart = _to_faces(scene, points, p, q, v, a, b, lie, lie_back, tie)
     return n, math.inf if shapes.vertices[b] == 1 else apart

@@ -31,49 +31,6 @@ from physicslab.kernels.geometry.shapes import (
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
 from physicslab.kernels.records import Pairs
 
-__all__ = [
-    "BIAS_N",
-    "BIAS_T",
-    "CONTACTS",
-    "CORNER",
-    "DRIVEN",
-    "FEATURE",
-    "FIRST_ROW",
-    "GAP",
-    "GIVEN",
-    "JOINED",
-    "JOINT",
-    "LINK",
-    "MARGIN",
-    "MEASURES", "MOTOR",
-    "MOTORS",
-    "MU",
-    "NORMAL",
-    "NX",
-    "NY",
-    "ONE",
-    "OTHER",
-    "PAIR",
-    "POINT_FIELDS",
-    "PX",
-    "PY",
-    "RESTITUTION",
-    "RUBBING",
-    "STATUS",
-    "TANGENT",
-    "VERTEX",
-    "VN",
-    "VT",
-    "WALL",
-    "Points",
-    "Scene",
-    "SceneTuple",
-    "measure_contact",
-    "named_scene",
-    "rate_along",
-    "turned_by",
-]  # fmt: skip
-
 PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)
 """The columns of a point: its pair; bodies and features; what it may do, and what it does."""
 CORNER, WALL, JOINT, MOTOR = MOST_VERTICES, 2 * MOST_VERTICES, 2 * MOST_VERTICES + 4, 2 * MOST_VERTICES + 5
@@ -90,7 +47,7 @@ GAP, VN, VT, BIAS_N, BIAS_T, MARGIN, PX, PY, MU, RESTITUTION, MEASURES = range(1
 """The columns behind them: gap [m]; speeds along normal and tangent [m/s]; their rates at no acceleration
 [m/s^2]; how far it is from the end of its feature [m]; where it is [m]; coefficients of friction and
 restitution."""
-RUBBING, CONTACTS, DRIVEN, JOINED, MOTORS = range(5)
+FRICTION, CONTACTS, DRIVEN, JOINED, MOTORS = range(5)
 """What ``accounts`` of a scene hold: where those of friction, of contacts, of what is driven, of joints and
 of motors begin behind the clock (:mod:`physicslab.kernels.forces.bookings`); -1 where there is none."""
 
@@ -98,8 +55,8 @@ Points = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, POINT_FIELDS)."""
 
 
-class Scene(NamedTuple):
-    """What moves, and what may touch.
+class RigidScene(NamedTuple):
+    """Bodies that move, and bodies that may touch.
 
     The number of rows; inverse masses (3 rows,), damping, forces; shapes, walls of the bounds (4,) [m];
     pairs (n, 3), and of each the friction, restitution and smaller size [m] (n, 3); where accounts are (3,);
@@ -125,16 +82,16 @@ SceneTuple = tuple[int, Numbers, Numbers, Calls, ShapesTuple, Numbers, Pairs, Ve
 
 
 @inlined_by_numba
-def named_scene(plain: SceneTuple) -> Scene:
+def named_scene(plain: SceneTuple) -> RigidScene:
     """Give names to a tuple."""
-    return Scene(
+    return RigidScene(
         plain[0], plain[1], plain[2], plain[3], named_shapes(plain[4]), plain[5], plain[6], plain[7],
         plain[8], plain[9], plain[10],
     )  # fmt: skip
 
 
 @inlined
-def turned_by(scene: Scene, row: int, q: Numbers) -> tuple[float, float]:
+def turned_by(scene: RigidScene, row: int, q: Numbers) -> tuple[float, float]:
     """Return cosine and sine of the angle of a body; those of 0 where a core of one vertex turns nothing."""
     if scene.shapes.vertices[row] == 1:
         return 1.0, 0.0
@@ -180,7 +137,7 @@ def _within_arc(shapes: Shapes, chain: int, k: int, nx: float, ny: float, scale:
 
 
 @inlined
-def measure_contact(scene: Scene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
+def measure_contact(scene: RigidScene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
     """Measure point number i, which is of a contact: where it is, how it moves, and how that changes.
 
     By itself, at no acceleration. The rates follow by differentiating the gap twice, and the sliding speed

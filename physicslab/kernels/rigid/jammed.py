@@ -12,12 +12,10 @@ from physicslab.kernels.rigid.bookings import book_contacts
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import GIVEN, MU, PAIR, STATUS, VN, VT, Points, Scene
+from physicslab.kernels.rigid.features import GIVEN, MU, PAIR, STATUS, VN, VT, Points, RigidScene
 from physicslab.kernels.rigid.joined import book_answer
 from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.touching import SLOW
-
-__all__ = ["stop_sliding"]
 
 _NO_TIME = 0.01
 """Largest speed that forces give in the moment of the impulses, as a share of that treated as zero."""
@@ -25,11 +23,11 @@ _NO_TIME = 0.01
 
 @always_inlined
 def stop_sliding(
-    scene: Scene, equations: Equations, count: int, changed: Points, q: Numbers, v: Numbers, rest: float
+    scene: RigidScene, equations: Equations, count: int, changed: Points, q: Numbers, v: Numbers, rest: float
 ) -> bool:
     """Let impulses act at ``count`` closed points whose free rates are known; return whether any slides less.
 
-    What each point does is found with the speeds that forces would give in a moment, the impulses without
+    The state of each point is found with the speeds that forces would give in a moment, the impulses without
     these. The points of ``changed`` are forgotten.
     """
     points, measures, vectors, largest = equations.points, equations.measures, equations.vectors, 0.0

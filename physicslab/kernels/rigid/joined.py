@@ -7,7 +7,7 @@ for smooth motion (:mod:`physicslab.kernels.joints.rows`), whose force is part o
 """
 
 from physicslab.kernels import Numbers, Vectors, inlined, kernel
-from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, MOTORS, PX, PY, SPIN
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, HAND, JOINTS, MOTORS, PX, PY
 from physicslab.kernels.joints.envelope import factorise, solve
 from physicslab.kernels.joints.layout import (
     ENDS,
@@ -22,27 +22,28 @@ from physicslab.kernels.joints.layout import (
     first_state,
 )
 from physicslab.kernels.joints.rows import book_rows, given_by_rows, measure_rows, push_by_rows
-from physicslab.kernels.rigid.features import NORMAL, ONE, TANGENT, Points, Scene, SceneTuple, named_scene
+from physicslab.kernels.rigid import features as F
+from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, named_scene
 
 _IMMOVABLE = 1e-12
 """Share of what a force causes alone below which joints leave nothing of it."""
 
 
 @inlined
-def measure_joints(scene: Scene, q: Numbers, v: Numbers) -> None:
+def measure_joints(scene: RigidScene, q: Numbers, v: Numbers) -> None:
     """Find the gradients of all rows in a state, and factorise their equations."""
     measure_rows(q, v, scene.joint_numbers, scene.joints)
     factorise(scene.joint_numbers, scene.joints)
 
 
 @inlined
-def _at_row(scene: Scene, points: Points, measures: Vectors, i: int, r: int) -> tuple[float, float]:
+def _at_row(scene: RigidScene, points: Points, measures: Vectors, i: int, r: int) -> tuple[float, float]:
     """Return how unit forces at point i, along its normal and its tangent, accelerate row r of joints."""
     along, across, states = 0.0, 0.0, first_state(scene.joints)
     for side in range(2):
-        body = points[i, ONE + side]
+        body = points[i, F.ONE + side]
         mass, inertia = scene.inverse_mass[2 * body], scene.inverse_mass[2 * scene.rows + body]
-        n, t = NORMAL + 3 * side, TANGENT + 3 * side
+        n, t = F.NORMAL + 3 * side, F.TANGENT + 3 * side
         for end in range(ENDS):
             if scene.joints[FIRST + PLACES * r + 2 * end] != 2 * body:
                 continue
@@ -55,7 +56,7 @@ def _at_row(scene: Scene, points: Points, measures: Vectors, i: int, r: int) -> 
 
 
 @inlined
-def lessen(scene: Scene, points: Points, measures: Vectors, count: int, a: Vectors) -> None:
+def lessen(scene: RigidScene, points: Points, measures: Vectors, count: int, a: Vectors) -> None:
     """Take from what unit forces cause at ``count`` points (2 count, 2 count) what joints hold back.
 
     A force that joints answer in full moves nothing, and is left as if by itself: nothing presses there.
@@ -82,7 +83,7 @@ def lessen(scene: Scene, points: Points, measures: Vectors, count: int, a: Vecto
 
 
 @inlined
-def answer(scene: Scene, points: Points, measures: Vectors, forces: Numbers, count: int) -> None:
+def answer(scene: RigidScene, points: Points, measures: Vectors, forces: Numbers, count: int) -> None:
     """Find the forces with which joints answer the ``forces`` (2 count,) of points."""
     states = first_state(scene.joints)
     for r in range(scene.joints[ROWS]):
@@ -96,7 +97,7 @@ def answer(scene: Scene, points: Points, measures: Vectors, forces: Numbers, cou
 
 @inlined
 def pass_on(
-    scene: Scene, points: Points, measures: Vectors, forces: Numbers, count: int, target: Numbers
+    scene: RigidScene, points: Points, measures: Vectors, forces: Numbers, count: int, target: Numbers
 ) -> None:
     """Add to velocities or accelerations what joints answer to the ``forces`` (2 count,) of points."""
     answer(scene, points, measures, forces, count)
@@ -105,7 +106,7 @@ def pass_on(
 
 @inlined
 def book_answer(
-    scene: Scene, points: Points, measures: Vectors, forces: Numbers, count: int, q: Numbers, v: Numbers,
+    scene: RigidScene, points: Points, measures: Vectors, forces: Numbers, count: int, q: Numbers, v: Numbers,
     given: Numbers,
 ) -> None:  # fmt: skip
     """Add what joints give in a second as they answer the ``forces`` (2 count,) of points in (q, v)."""
@@ -115,8 +116,8 @@ def book_answer(
 
 @inlined
 def book_impulses(
-    scene: Scene, points: Points, measures: Vectors, impulses: Numbers, count: int, q: Numbers, v: Numbers,
-    account: Vectors,
+    scene: RigidScene, points: Points, measures: Vectors, impulses: Numbers, count: int, q: Numbers,
+    v: Numbers, account: Vectors,
 ) -> None:  # fmt: skip
     """Book what joints give as they answer ``impulses`` (2 count,) at points, at a moment."""
     answer(scene, points, measures, impulses, count)
@@ -126,12 +127,12 @@ def book_impulses(
         account[cause, ENERGY] += power if role == MOTOR else 0.0
         account[cause, PX] += px
         account[cause, PY] += py
-        account[cause, SPIN] += spin
+        account[cause, ANGULAR_MOMENTUM] += spin
         account[HAND, ENERGY] -= driven
 
 
 @inlined
-def strongest_joint(scene: Scene) -> float:
+def strongest_joint(scene: RigidScene) -> float:
     """Return the largest acceleration that the force of a row gives to a body by itself [m/s^2]."""
     strongest, states = 0.0, first_state(scene.joints)
     for r in range(scene.joints[ROWS]):

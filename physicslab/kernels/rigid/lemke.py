@@ -13,8 +13,6 @@ from physicslab.kernels import always_inlined, inlined
 from physicslab.kernels.rigid.equations import FREE, STICKS, UNKNOWN, Equations, edge_of
 from physicslab.kernels.rigid.features import GIVEN, MU
 
-__all__ = ["find_by_pivots"]
-
 _APART = 1e-9
 """Share by which right sides are raised, every one differently: equal ones would let the
 pivots go round in circles. Only what each point does is taken from here; the forces are then found
@@ -110,7 +108,7 @@ def _pivot(equations: Equations, size: int, row: int, column: int) -> None:
 def _leaving(equations: Equations, size: int, column: int, slack: float) -> int:
     """Return the row whose variable reaches zero first as a column grows, -1 if none does.
 
-    Of those that reach it within a ``slack`` of their values the one with the largest pivot (Harris), as
+    Among those that reach it within a ``slack`` of their values, the one with the largest pivot (Harris), as
     small pivots are mostly rounding; the covering variable before all.
     """
     tableau, best, first, largest = equations.tableau, -1, math.inf, 0.0
@@ -161,16 +159,16 @@ def find_by_pivots(equations: Equations, count: int, slack: float) -> bool:
     column = size
     for i in range(count):
         sticks = equations.points[i, GIVEN] == STICKS
-        pressed, rubbed = 0.0, 0.0
+        pressed, friction = 0.0, 0.0
         for row in range(size):
             place = equations.order[0, row] - column
             if place == 0:
                 pressed = tableau[row, 2 * size + 1]
             elif sticks and (place == 1 or place == 2):
-                rubbed += (1.0 if place == 1 else -1.0) * tableau[row, 2 * size + 1]
+                friction += (1.0 if place == 1 else -1.0) * tableau[row, 2 * size + 1]
         pressed /= math.sqrt(equations.a[2 * i, 2 * i])
-        rubbed /= math.sqrt(equations.a[2 * i + 1, 2 * i + 1])
+        friction /= math.sqrt(equations.a[2 * i + 1, 2 * i + 1])
         edge = edge_of(equations.points[i, GIVEN], equations.measures[i, MU])
-        vectors[UNKNOWN, 2 * i], vectors[UNKNOWN, 2 * i + 1] = pressed, rubbed if sticks else edge * pressed
+        vectors[UNKNOWN, 2 * i], vectors[UNKNOWN, 2 * i + 1] = pressed, friction if sticks else edge * pressed
         column += 4 if sticks else 1
     return True

@@ -14,6 +14,7 @@ from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.records import Impacts
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED
 from physicslab.kernels.rigid.constraints import apply, find_loads, measure_all, project
@@ -27,20 +28,7 @@ from physicslab.kernels.rigid.equations import (
     EquationsTuple,
     named_equations,
 )
-from physicslab.kernels.rigid.features import (
-    FEATURE,
-    GIVEN,
-    MOTOR,
-    MU,
-    PAIR,
-    STATUS,
-    VN,
-    VT,
-    Points,
-    Scene,
-    SceneTuple,
-    named_scene,
-)
+from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, named_scene
 from physicslab.kernels.rigid.impacts import approaches, resolve_simultaneous_impacts
 from physicslab.kernels.rigid.jammed import stop_sliding
 from physicslab.kernels.rigid.joined import book_answer
@@ -50,7 +38,7 @@ from physicslab.kernels.rigid.piece_end import (
     HOLDS,
     PRESSES,
     SLIDES,
-    cut_at_first_event,
+    locate_event,
     note_start,
 )
 from physicslab.kernels.rigid.pieces import (
@@ -72,18 +60,6 @@ from physicslab.kernels.rigid.touching import (
     rest_limits,
     take_closed,
 )
-
-__all__ = [
-    "DONE",
-    "NO_FORCES",
-    "STOPPED",
-    "TOO_MANY",
-    "UNRESOLVED",
-    "advance_piece",
-    "begin_motion",
-    "collide",
-    "touch",
-]
 
 DONE, NO_FORCES, UNRESOLVED, TOO_MANY, STOPPED = 0, 1, 2, 3, 4
 """Why the motion cannot go on: it can; no contact forces keep all laws; an impact has no solution; more
@@ -114,30 +90,30 @@ def _note_changes(
     n, forces = 0, equations.vectors
     limit = _SAME_MOMENT * abs(forces[UNKNOWN, 2 * index]) if kind <= HOLDS else 0.0
     for i in range(count if kind <= SLIDES else 0):
-        if kind == SLIDES and not (i == index and equations.points[i, FEATURE] == MOTOR):
+        if kind == SLIDES and not (i == index and equations.points[i, F.FEATURE] == F.MOTOR):
             continue
         pressing, rubbing = forces[UNKNOWN, 2 * i], forces[UNKNOWN, 2 * i + 1]
-        left = equations.measures[i, MU] * pressing - abs(rubbing)
+        left = equations.measures[i, F.MU] * pressing - abs(rubbing)
         status = -1
         if kind == SLIDES:
             status = STICKS
         elif kind == PRESSES and i == index:
             status = OPEN
-        elif kind == HOLDS and (i == index or (equations.points[i, STATUS] == STICKS and left <= limit)):
+        elif kind == HOLDS and (i == index or (equations.points[i, F.STATUS] == STICKS and left <= limit)):
             status = SLIDES_ON if rubbing < 0.0 else SLIDES_BACK
-        elif equations.points[i, STATUS] > STICKS and abs(equations.measures[i, VT]) <= SLOW * rest:
-            status = equations.points[i, STATUS]
+        elif equations.points[i, F.STATUS] > STICKS and abs(equations.measures[i, F.VT]) <= SLOW * rest:
+            status = equations.points[i, F.STATUS]
         if status >= 0:
-            for column in range(GIVEN):
+            for column in range(F.GIVEN):
                 changed[n, column] = equations.points[i, column]
-            changed[n, STATUS] = status
+            changed[n, F.STATUS] = status
             n += 1
     if n < len(changed):
-        changed[n, PAIR] = -1
+        changed[n, F.PAIR] = -1
 
 
 @inlined
-def _is_slow(scene: Scene, v: Numbers, rest: float) -> bool:
+def _is_slow(scene: RigidScene, v: Numbers, rest: float) -> bool:
     """Whether nothing moves."""
     slow = True
     for i in range(3 * scene.rows):
@@ -148,7 +124,7 @@ def _is_slow(scene: Scene, v: Numbers, rest: float) -> bool:
 
 @inlined
 def _is_balanced(
-    scene: Scene, equations: Equations, closed: int, share: float, acceleration: Numbers, least: float,
+    scene: RigidScene, equations: Equations, closed: int, share: float, acceleration: Numbers, least: float,
     loads: Numbers,
 ) -> bool:  # fmt: skip
     """Whether the forces found leave no acceleration, but for a ``share`` of what each alone would cause.
@@ -210,19 +186,19 @@ def collide(
 
 @inlined
 def _any_approaches(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, rest: float
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, rest: float
 ) -> bool:
     """Whether any point approaches faster than rounding."""
     measure_all(scene, equations, count, q, v)
     approaching = False
     for i in range(count):
-        approaching = approaching or approaches(equations.measures[i, VN], rest)
+        approaching = approaching or approaches(equations.measures[i, F.VN], rest)
     return approaching
 
 
 @always_inlined
 def _make_smooth(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
     tolerance: float, stages: Stages, allowed: Numbers,
 ) -> tuple[float, int]:  # fmt: skip
     """Make a piece of ``h`` seconds, or less where its error or its ways demand it.
@@ -265,7 +241,7 @@ def advance_piece(
         if not short:
             h, pieces = _make_smooth(of, points, count, q, v, h, left, tolerance, at, allowed)
             evaluations += pieces * LAST
-        passed, kind, index, more = cut_at_first_event(
+        passed, kind, index, more = locate_event(
             of, points, count, scratch, start, at, q, v, h, tolerance, rest, short
         )
         evaluations += more * LAST
@@ -303,7 +279,7 @@ def begin_motion(
         if not solved:
             stopped = stop_sliding(of, points, count, changed, q, v, rest)
             return STOPPED if stopped else NO_FORCES, 0, rest, False
-        # What is light on top of what is heavy is held to more digits by its own mass.
+        # A light body on top of a heavy one is held to more digits by its own mass.
         held = slow and _is_balanced(of, points, count, _BALANCED, at.acceleration, least, at.q)
     closed = keep_pressing(points, count, least)
     if held:

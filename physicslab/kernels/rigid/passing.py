@@ -4,12 +4,10 @@ import math
 
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.ode.dop853_tableau import LAST
-from physicslab.kernels.rigid.features import FIRST_ROW, JOINT, WALL, Scene
+from physicslab.kernels.rigid.features import FIRST_ROW, JOINT, WALL, RigidScene
 from physicslab.kernels.rigid.joint_points import fastest_change, gap_of_row
 from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages
 from physicslab.kernels.rigid.touching import far_apart, length_of
-
-__all__ = ["longest_piece", "share_of_ways", "time_to_pass"]
 
 _NODES = METHODS.sum(axis=2)
 """When the stages of both methods are, as shares of a step."""
@@ -29,14 +27,14 @@ def time_to_pass(way: float, speed: float, acceleration: float) -> float:
 
 
 @inlined
-def _turning_reach(scene: Scene, row: int) -> float:
+def _turning_reach(scene: RigidScene, row: int) -> float:
     """Return how far from its centre the outline of a body moves as it turns [m]."""
     reach: float = scene.shapes.reach[row] - scene.shapes.radius[row]
     return reach
 
 
 @inlined
-def _relative(scene: Scene, a: int, b: int, rates: Numbers) -> float:
+def _relative(scene: RigidScene, a: int, b: int, rates: Numbers) -> float:
     """Return the largest rate at which points of two bodies come together, of speeds or accelerations."""
     rows = scene.rows
     rate: float = length_of(rates[2 * b] - rates[2 * a], rates[2 * b + 1] - rates[2 * a + 1])
@@ -46,7 +44,7 @@ def _relative(scene: Scene, a: int, b: int, rates: Numbers) -> float:
 
 
 @inlined
-def _contacts(scene: Scene) -> int:
+def _contacts(scene: RigidScene) -> int:
     """Return how many pairs are bodies that may touch: rows of joints come behind them."""
     n = len(scene.pairs)
     while n > 0 and scene.pairs[n - 1, 2] >= FIRST_ROW:
@@ -56,7 +54,7 @@ def _contacts(scene: Scene) -> int:
 
 @inlined
 def _longest_before_limits(
-    scene: Scene, first: int, q: Numbers, v: Numbers, acceleration: Numbers, allowed: Numbers
+    scene: RigidScene, first: int, q: Numbers, v: Numbers, acceleration: Numbers, allowed: Numbers
 ) -> float:
     """Return the same for limits, the pairs from ``first`` on."""
     longest, rows, own = math.inf, scene.rows, scene.coefficients
@@ -72,7 +70,9 @@ def _longest_before_limits(
 
 
 @inlined
-def longest_piece(scene: Scene, q: Numbers, v: Numbers, acceleration: Numbers, allowed: Numbers) -> float:
+def longest_piece(
+    scene: RigidScene, q: Numbers, v: Numbers, acceleration: Numbers, allowed: Numbers
+) -> float:
     """Return for how long no pair can pass through each other unseen, and nothing turn far [s].
 
     If all went on as it begins. How far each pair may come together is noted in ``allowed`` [m].
@@ -96,7 +96,9 @@ def longest_piece(scene: Scene, q: Numbers, v: Numbers, acceleration: Numbers, a
 
 
 @inlined
-def share_of_ways(scene: Scene, v: Numbers, h: float, short: bool, stages: Stages, allowed: Numbers) -> float:
+def share_of_ways(
+    scene: RigidScene, v: Numbers, h: float, short: bool, stages: Stages, allowed: Numbers
+) -> float:
     """Return the largest share that two bodies may have come together of what is ``allowed`` [m].
 
     In the piece of ``h`` seconds from speeds v that was just made. Under an even acceleration a body covers

@@ -1,35 +1,21 @@
-"""What ends a smooth piece of motion: functions that fall below zero, and when the first of them does."""
+"""The end of a smooth piece of motion: functions that fall below zero, and when the first of them does."""
 
 import math
 
 from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.constraints import constrained_acceleration, rates_without_forces
 from physicslab.kernels.rigid.curve import curve_is_exact, fit_curve, place_bodies, place_on_curve
 from physicslab.kernels.rigid.detect import TIE
 from physicslab.kernels.rigid.equations import SLIDES_ON, STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import (
-    GAP,
-    MARGIN,
-    MU,
-    ONE,
-    OTHER,
-    PAIR,
-    STATUS,
-    VN,
-    VT,
-    Scene,
-)
+from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.joint_points import measure
 from physicslab.kernels.rigid.pieces import Stages, make_piece
 from physicslab.kernels.rigid.touching import NO_SPEED, SLOW, find_open, moved_closer
 
-__all__ = [
-    "ALLOWED", "APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "STARTS", "cut_at_first_event", "note_start",
-]  # fmt: skip
-
 PRESSES, HOLDS, SLIDES, REACHES, APART = 0, 1, 2, 3, 4
-"""What must stay positive: a normal force, what is
-left of the friction cone, a sliding speed, the distance to the end of a feature, a gap."""
+"""Quantities that must stay positive: a normal force, the rest of the friction cone, a sliding speed, the
+distance to the end of a feature, a gap."""
 _CLEAR, ALLOWED, STARTS = 5, 6, 7
 """The rows of what is noted at a start that hold how far pairs are apart at least, and how far they may come
 together; the number of rows."""
@@ -37,7 +23,7 @@ _CLOSED = 1e-13
 """Share of a size by which a gap may change by rounding."""
 _NO_FORCE = 1e-9
 """Share of the largest force that is rounding."""
-_ROUNDING = 1e-14
+_SIZE_ROUNDING = 1e-14
 """Share of a size that is rounding."""
 _HALVINGS = 40
 """How often a piece is halved to find a time at which a point that has bounced is above the other body."""
@@ -55,22 +41,22 @@ _CUTS = 16
 
 @inlined
 def _value(
-    kind: int, index: int, scene: Scene, equations: Equations, count: int, scratch: Equations,
+    kind: int, index: int, scene: RigidScene, equations: Equations, count: int, scratch: Equations,
     q: Numbers, v: Numbers,
 ) -> float:  # fmt: skip
     """Return what must stay positive, of a point that is measured in the state or of a pair."""
     if kind == APART:
         _, gap, _ = find_open(scene, equations, count, scratch, index, q, v)
         return gap
-    value: float = equations.measures[index, MARGIN]
+    value: float = equations.measures[index, F.MARGIN]
     if kind <= HOLDS:
         value = equations.vectors[UNKNOWN, 2 * index]
         if kind == HOLDS:
             rubbing = abs(equations.vectors[UNKNOWN, 2 * index + 1])
-            value = equations.measures[index, MU] * value - rubbing
+            value = equations.measures[index, F.MU] * value - rubbing
     elif kind == SLIDES:
-        sliding = equations.measures[index, VT]
-        value = sliding if equations.points[index, STATUS] == SLIDES_ON else -sliding
+        sliding = equations.measures[index, F.VT]
+        value = sliding if equations.points[index, F.STATUS] == SLIDES_ON else -sliding
     return value
 
 
@@ -89,7 +75,7 @@ def _time_to_fall(height: float, speed: float, acceleration: float) -> float:
 
 @always_inlined
 def note_start(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
     acceleration: Numbers, start: Vectors,
 ) -> float:  # fmt: skip
     """Note all functions at the start of a piece, and distances of pairs.
@@ -104,9 +90,9 @@ def note_start(
     for p in range(len(scene.pairs)):
         n, start[APART, p], start[_CLEAR, p] = find_open(scene, equations, count, scratch, p, q, v)
         for k in range(n):
-            height = max(scratch.measures[k, GAP], _CLOSED * scene.coefficients[p, 2])
+            height = max(scratch.measures[k, F.GAP], _CLOSED * scene.coefficients[p, 2])
             opening, _ = rates_without_forces(scene, scratch, k, acceleration)
-            soonest = min(soonest, _time_to_fall(height, scratch.measures[k, VN], opening))
+            soonest = min(soonest, _time_to_fall(height, scratch.measures[k, F.VN], opening))
     return soonest
 
 
@@ -114,14 +100,16 @@ def note_start(
 def _can_end(kind: int, i: int, equations: Equations) -> bool:
     """Whether a function can end the piece."""
     if kind in (HOLDS, SLIDES):
-        sticks: bool = equations.points[i, STATUS] == STICKS
-        rubs: bool = equations.measures[i, MU] > 0.0
+        sticks: bool = equations.points[i, F.STATUS] == STICKS
+        rubs: bool = equations.measures[i, F.MU] > 0.0
         return sticks if kind == HOLDS else rubs and not sticks
     return True
 
 
 @inlined
-def _allowance(kind: int, i: int, scene: Scene, equations: Equations, start: float, rest: float) -> float:
+def _allowance(
+    kind: int, i: int, scene: RigidScene, equations: Equations, start: float, rest: float
+) -> float:
     """Return how far a function may fall that begins at zero: by as much as is treated as zero.
 
     A corner at the end of a face is on it as long as both are level.
@@ -130,29 +118,29 @@ def _allowance(kind: int, i: int, scene: Scene, equations: Equations, start: flo
         return SLOW * rest if start <= SLOW * rest else 0.0
     if kind < REACHES:
         return 0.0
-    size, least = scene.coefficients[i if kind == APART else equations.points[i, PAIR], 2], _CLOSED
+    size, least = scene.coefficients[i if kind == APART else equations.points[i, F.PAIR], 2], _CLOSED
     if kind == REACHES:
         radius, points = scene.shapes.radius, equations.points
-        least = _CLOSED if radius[points[i, ONE]] + radius[points[i, OTHER]] > 0.0 else 2.0 * TIE
+        least = _CLOSED if radius[points[i, F.ONE]] + radius[points[i, F.OTHER]] > 0.0 else 2.0 * TIE
     allowance: float = least * size - min(start, 0.0) if start <= least * size else 0.0
     return allowance
 
 
 @inlined
-def _noise(kind: int, index: int, scene: Scene, equations: Equations, rest: float) -> float:
+def _noise(kind: int, index: int, scene: RigidScene, equations: Equations, rest: float) -> float:
     """Return by how much rounding may change a function."""
     if kind <= HOLDS:
         force: float = abs(equations.vectors[UNKNOWN, 2 * index])
         return _NO_FORCE * force
     if kind == SLIDES:
         return NO_SPEED * rest
-    size: float = scene.coefficients[index if kind == APART else equations.points[index, PAIR], 2]
-    return _ROUNDING * size
+    size: float = scene.coefficients[index if kind == APART else equations.points[index, F.PAIR], 2]
+    return _SIZE_ROUNDING * size
 
 
 @inlined
 def _first_event(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
     q: Numbers, rest: float, last_kind: int, last: int,
 ) -> tuple[int, int]:  # fmt: skip
     """Return which function fell below zero first within the piece: kind and index, -1 if none did.
@@ -180,9 +168,9 @@ def _first_event(
 
 @always_inlined
 def _cross(
-    on_curve: bool, kind: int, index: int, scene: Scene, equations: Equations, count: int, scratch: Equations,
-    stages: Stages, q: Numbers, v: Numbers, h: float, t: float, end: float, slope: float, f_low: float,
-    allowance: float, noise: float, tolerance: float,
+    on_curve: bool, kind: int, index: int, scene: RigidScene, equations: Equations, count: int,
+    scratch: Equations, stages: Stages, q: Numbers, v: Numbers, h: float, t: float, end: float, slope: float,
+    f_low: float, allowance: float, noise: float, tolerance: float,
 ) -> tuple[float, float, bool, int]:  # fmt: skip
     """Find where a function falls below zero, from ``t`` on and before ``end``, in a piece of ``h`` seconds.
 
@@ -196,7 +184,7 @@ def _cross(
     if kind == APART:
         one, other = scene.pairs[index, 0], scene.pairs[index, 1]
     else:
-        one, other = equations.points[index, ONE], equations.points[index, OTHER]
+        one, other = equations.points[index, F.ONE], equations.points[index, F.OTHER]
     # A point that has just bounced begins at nothing and rises: the fall back is looked for after that.
     rising = _HALVINGS if on_curve and kind == APART and f_low <= 0.0 else 0
     for trial in range(_TRIALS):
@@ -242,8 +230,8 @@ def _cross(
 
 
 @always_inlined
-def cut_at_first_event(
-    scene: Scene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
+def locate_event(
+    scene: RigidScene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
     q: Numbers, v: Numbers, h: float, tolerance: float, rest: float, short: bool,
 ) -> tuple[float, int, int, int]:  # fmt: skip
     """Cut a piece that was made of ``h`` seconds where its first event is, if there is one in it.

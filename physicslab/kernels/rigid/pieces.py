@@ -9,12 +9,7 @@ from physicslab.kernels import Numbers, Vectors, always_inlined, inlined, inline
 from physicslab.kernels.ode.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, WEIGHTS
 from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
-from physicslab.kernels.rigid.features import Scene
-
-__all__ = [
-    "METHODS", "SHORT_LAST", "Stages", "StagesTuple", "begin_piece", "largest_free", "make_piece",
-    "make_stages", "named_stages",
-]  # fmt: skip
+from physicslab.kernels.rigid.features import RigidScene
 
 SHORT_LAST = 6
 """The stage that is the end of a short step."""
@@ -61,7 +56,7 @@ def named_stages(plain: StagesTuple) -> Stages:
 
 @always_inlined
 def begin_piece(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, stages: Stages
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, stages: Stages
 ) -> None:
     """Compute the first stage, from which pieces of any length can begin."""
     constrained_acceleration(scene, equations, count, q, v, stages.acceleration)
@@ -70,10 +65,10 @@ def begin_piece(
 
 
 @inlined
-def largest_free(scene: Scene, values: Numbers) -> float:
+def largest_free(scene: RigidScene, values: Numbers) -> float:
     """Return the largest magnitude of ``values`` (3 rows,) of what can move.
 
-    What is fixed far away is no measure of errors.
+    A fixed body far away is no measure of errors.
     """
     found = 0.0
     for i in range(3 * scene.rows):
@@ -111,7 +106,7 @@ def _error(
 
 @always_inlined
 def make_stages(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, short: bool,
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, short: bool,
     stages: Stages,
 ) -> None:  # fmt: skip
     """Make a step of ``h`` seconds from (q, v), which stay; the end is left in ``stages``.
@@ -139,7 +134,7 @@ def make_stages(
 
 @inlined
 def make_piece(
-    scene: Scene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
+    scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
     stages: Stages,
 ) -> float:  # fmt: skip
     """Make a step of order 8; return the estimated error, 1 where it is just tolerated."""
@@ -147,7 +142,7 @@ def make_piece(
     n, free = 3 * scene.rows, 0  # without the clock
     for i in range(n):  # rows of what is fixed, or gone, are no reason for another step
         free += 1 if scene.inverse_mass[i] > 0.0 else 0
-    # What the start reaches by itself: in a step beyond the limit of stability the end grows with the error.
+    # The scale is that of the start: in a step beyond the limit of stability the end grows with the error.
     q_start, v_start = largest_free(scene, q), largest_free(scene, v)
     push = 0.0
     for i in range(n):

@@ -31,9 +31,9 @@ _LOADED = 0.01
 """Share of a body's largest load from which on a contact carries it."""
 _PARALLEL = 0.999
 """Cosine between normals of contacts that hold a disc no better than one of them."""
-_ROUNDING = 1e-9
+_TIME_ROUNDING = 1e-9
 """Rounding [s] of a time that was added up step by step."""
-READY = REST - _ROUNDING
+READY = REST - _TIME_ROUNDING
 """Rest [s], as the sum of its steps, from which a body may sleep."""
 
 
@@ -63,7 +63,7 @@ def count_rest(
         slowest[i] = min(speed, slowest[i]) if rest[i] > 0.0 else speed
         rest[i] += h
         longest = max(longest, rest[i])
-    now, before = (longest + _ROUNDING) / _PERIOD, (longest - h + _ROUNDING) / _PERIOD
+    now, before = (longest + _TIME_ROUNDING) / _PERIOD, (longest - h + _TIME_ROUNDING) / _PERIOD
     return bool(longest >= READY and np.floor(now) > np.floor(before))
 
 

@@ -45,7 +45,7 @@ _MAX_SWEEPS = 32
 """Largest number of sweeps over the impacts of a substep; those left are treated as inelastic."""
 
 
-class Window(NamedTuple):
+class ImpactWindow(NamedTuple):
     """When a substep begins and ends, and from when on a pair may meet late: times from now [s]."""
 
     start: float
@@ -84,7 +84,7 @@ def _shift(
 
 
 @inlined
-def _meeting_time(separation: float, v: float, pull: float, window: Window, loaded: bool) -> float:
+def _meeting_time(separation: float, v: float, pull: float, window: ImpactWindow, loaded: bool) -> float:
     """Return the t in a window at which separation + v t + pull t^2 / 2 = 0, for an approach v < 0.
 
     Infinity where that is later. Where it is earlier than its start, an impact with a third body has made
@@ -151,7 +151,7 @@ def _exchange(
 
 @inlined
 def _meeting_times(
-    manifold: Manifold, one: Point, two: Point, motion: Motion, approach: Approach, window: Window
+    manifold: Manifold, one: Point, two: Point, motion: Motion, approach: Approach, window: ImpactWindow
 ) -> tuple[float, float]:
     """Return when both points of a pair meet [s from now]; not finite for one that does not.
 
@@ -306,7 +306,7 @@ def _forced(
 @always_inlined
 def _resolve_once(
     contacts: Contacts, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
-    logged: int, h: float, window: Window, moments: Vectors, again: bool,
+    logged: int, h: float, window: ImpactWindow, moments: Vectors, again: bool,
 ) -> tuple[int, int, int, int, bool]:  # fmt: skip
     """Resolve the pairs one after the other; inelastic ones are resolved once, and not ``again``.
 
@@ -367,7 +367,7 @@ def _resolve_once(
 @always_inlined
 def resolve_impacts(
     contacts: Contacts, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
-    logged: int, h: float, window: Window, moments: Vectors,
+    logged: int, h: float, window: ImpactWindow, moments: Vectors,
 ) -> tuple[int, int, int, int]:  # fmt: skip
     """Bounce the pairs that meet in this substep, each at its own time.
 

@@ -8,7 +8,7 @@ over all points is the change of the kinetic energy, exactly.
 from typing import NamedTuple
 
 from physicslab.kernels import Vectors, always_inlined, inlined
-from physicslab.kernels.accounts import ENERGY, FRICTION, HAND, IMPACTS, SPIN, book
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, FRICTION, HAND, IMPACTS, book
 from physicslab.kernels.constraint.impact_law import ImpactImpulses
 from physicslab.kernels.constraint.pair import (
     ContactFrame,
@@ -86,8 +86,8 @@ def book_impact(
     """Add the work of the impulses of an impact to the accounts, and the momentum that comes from outside.
 
     All of it goes to the cause ``row`` where that is IMPACTS; friction of what rests has its own. A body
-    without an inverse mass is outside: fixed, or moved by a hand or of itself. What moves so works as well,
-    by the impulse times its velocity.
+    without an inverse mass is outside: fixed, or moved by a hand or of itself. A body that moves so works as
+    well, by the impulse times its velocity.
     """
     one, two, (normal1, tangent1, normal2, tangent2) = points
     mean = mean_velocity(before, after)
@@ -117,13 +117,13 @@ def book_outside(
 ) -> None:  # fmt: skip
     """Book what comes from outside by the impulse (px, py) [N s] on B and its opposite on A.
 
-    ``moment_a`` and ``moment_b`` are its moments about both centres [N m s]. What drives a body takes the
+    ``moment_a`` and ``moment_b`` are its moments about both centres [N m s]. A body that is driven takes the
     cause HAND, and does the impulse times its ``mean`` velocity.
     """
-    # What cannot turn takes a torque from outside.
+    # A body that cannot turn takes a torque from outside.
     if mass.a > 0.0 and mass.b > 0.0:
-        account[row, SPIN] += moment_a if mass.inertia_a == 0.0 else 0.0
-        account[row, SPIN] -= moment_b if mass.inertia_b == 0.0 else 0.0
+        account[row, ANGULAR_MOMENTUM] += moment_a if mass.inertia_a == 0.0 else 0.0
+        account[row, ANGULAR_MOMENTUM] -= moment_b if mass.inertia_b == 0.0 else 0.0
         return
     if mass.b > 0.0:
         driven = mean.ax != 0.0 or mean.ay != 0.0 or mean.wa != 0.0
@@ -157,7 +157,7 @@ def write_impact(
         record.x_2, record.y_2 = pose.bx + two.arm_bx, pose.by + two.arm_by
         record.normal_impulse_2, record.tangent_impulse_2 = normal2, tangent2
     record.normal_impulse, record.tangent_impulse = normal1 + normal2, tangent1 + tangent2
-    # Of a pair that meets late, as when a third body has struck one of them, the surfaces overlap: A is put
+    # Surfaces of a pair that meets late, as when a third body has struck one of them, overlap: A is put
     # where both arms lead to one point, so that the record is the impact that was resolved.
     record.center_ax, record.center_ay = record.x - one.arm_ax, record.y - one.arm_ay
     record.angle_a = pose.angle_a

@@ -101,7 +101,7 @@ def solve(
     """Start from the last substep's impulses, then go through all contacts, correcting overlap.
 
     ``warm_start_scale`` is the ratio of this substep to the last one: the impulses of resting contacts grow
-    by that factor. What those of contacts do is booked by :func:`relax`, where points are looked at again.
+    by that factor. Work of those of contacts is booked by :func:`relax`, where points are looked at again.
     """
     joined, loose, stiff = len(joints.impulse) > 0, False, joint_softness(h)
     if joined:

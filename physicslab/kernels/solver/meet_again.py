@@ -1,4 +1,4 @@
-"""What still is swift after an impact is swept again, from then to the end of the substep.
+"""Bodies that are still swift after an impact are swept again, from then to the end of the substep.
 
 The sweeps of a substep go by the velocities from before its impacts. A body that an impact throws back, or
 spins up, may come to another wall within the same substep, or to the same one with its next corner. So pairs
@@ -17,7 +17,7 @@ from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.geometry.sweep import is_swift
 from physicslab.kernels.near_counts import LOGGED, SCALAR
 from physicslab.kernels.records import Manifold
-from physicslab.kernels.solver.impact import Window, resolve_at
+from physicslab.kernels.solver.impact import ImpactWindow, resolve_at
 
 _ROUNDS, _OUTLINES, _ELASTIC = 320, 8, 312
 """Largest number of times that pairs are looked at again in a substep; of those, how many times the outlines
@@ -113,7 +113,7 @@ def _note_meetings(
 @inlined
 def meet_again(
     near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, acting: Acting,
-    log: Log, h: float, window: Window,
+    log: Log, h: float, window: ImpactWindow,
 ) -> int:  # fmt: skip
     """Bounce what meets another time in the substep after an impact; return how many impacts there were."""
     moments, noted, impacts = near.moments, near.noted, 0

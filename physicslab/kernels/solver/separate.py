@@ -4,7 +4,7 @@ import math
 
 from physicslab.kernels import Numbers, Vectors, allocating, always_inlined, inlined
 from physicslab.kernels import wide_layout as L
-from physicslab.kernels.accounts import ENERGY, OVERLAP, SPIN
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, OVERLAP
 from physicslab.kernels.arguments import Acting, Contacts, Motion, Near
 from physicslab.kernels.float64x8 import lesser, mask_bits, take
 from physicslab.kernels.near_counts import DISC_BLOCKS, OUTSIDE
@@ -159,7 +159,7 @@ def _book(near: Near, motion: Motion, before: Vectors, inverse_mass: Numbers, ac
             if acting.any:
                 near.account[OVERLAP, ENERGY] -= acting.force[i, 0] * x + acting.force[i, 1] * y
             moved = x * motion.linear[i, 1] - y * motion.linear[i, 0]
-            near.account[OVERLAP, SPIN] += moved / inverse_mass[i]
+            near.account[OVERLAP, ANGULAR_MOMENTUM] += moved / inverse_mass[i]
 
 
 @allocating

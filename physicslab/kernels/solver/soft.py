@@ -6,7 +6,7 @@ list pairs, to wake bodies, or at a stage where systems act that no kernel compu
 """
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.accounts import BALANCE, BEFORE, ENERGY, PX, PY, SPIN, book
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, BALANCE, BEFORE, ENERGY, PX, PY, book
 from physicslab.kernels.arguments import (
     Acting,
     ActingTuple,
@@ -55,13 +55,6 @@ from physicslab.kernels.solver.stages import find_touching, press, relax, resolv
 from physicslab.kernels.solver.work import book_damping, book_gravity, book_kick, note_flow
 from physicslab.kernels.ticks import charge, ticks
 from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to_blocks
-
-__all__ = [
-    "ACCELERATE", "ALL", "BLOCKS_FULL", "BROAD_PHASE", "CONTACT", "COSTS", "DIVERGED", "DRIFT", "FIND",
-    "GRAVITY", "HOOK", "IMPACTS", "INTEGRATE", "KICK", "OTHER_SUBSTEPS", "OVERLAP", "PACKED", "PAIRS",
-    "PAIRS_STALE", "PREDICT", "PYTHON", "RELAX", "RESOLVE", "SLEEP", "SLEEP_PENDING", "SOLVE", "SPRINGS",
-    "STEPS", "UNIFORM", "WAKE", "WAKE_PENDING", "WALL_PENDING", "WIDEN", "advance",
-]  # fmt: skip
 
 (
     ALL, PYTHON, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING, WALL_PENDING,
@@ -119,7 +112,14 @@ def _balance(account: Vectors, motion: Motion, gravity: Gravity, cause: int) -> 
     energy += -(gravity.gx * mx + gravity.gy * my)
     if cause >= 0:
         last = account[BALANCE]
-        book(account[cause], 0, energy - last[ENERGY], px - last[PX], py - last[PY], spin - last[SPIN])
+        book(
+            account[cause],
+            0,
+            energy - last[ENERGY],
+            px - last[PX],
+            py - last[PY],
+            spin - last[ANGULAR_MOMENTUM],
+        )
     account[BALANCE] = 0.0
     book(account[BALANCE], 0, energy, px, py, spin)
 
@@ -350,8 +350,8 @@ def advance(
     """Advance by ``steps`` steps, beginning at a part of a substep.
 
     ``kept`` has the state now, and receives that in which the last step began. ``impacts`` is the log, and
-    ``cost`` (COSTS,) gets ticks added for each system, and the number of steps. What was changed since the
-    last step is booked to a ``cause``, unless that is negative.
+    ``cost`` (COSTS,) gets ticks added for each system, and the number of steps. A change since the
+    last step is booked to ``cause``, unless that is negative.
 
     Where some parts are Python's, the ends of steps are too: nothing is kept, and energy is not measured.
 

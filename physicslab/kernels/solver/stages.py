@@ -31,7 +31,7 @@ from physicslab.kernels.near_counts import (
     WIDE_COUNT,
 )
 from physicslab.kernels.solver import impulse
-from physicslab.kernels.solver.impact import Window, measure_again, resolve_impacts
+from physicslab.kernels.solver.impact import ImpactWindow, measure_again, resolve_impacts
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.kernels.solver.meet_again import any_swift, meet_again
 from physicslab.kernels.solver.separate import any_deep, separate
@@ -96,7 +96,7 @@ def resolve_all_impacts(
     counts, impacts = near.counts, 0
     counts[LEFT] = 0
     # Without forces there are no piles.
-    window = Window(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
+    window = ImpactWindow(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
     while counts[ACTIVE] > 0:
         came, counts[LEFT], energetic, lowered = resolve_impacts(
             _contacts(near), motion, shapes, inverse, acting, log, counts[LOGGED], h, window, near.moments

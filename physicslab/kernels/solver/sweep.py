@@ -60,7 +60,7 @@ def _one_point(
 ) -> tuple[PairVelocity[float], Done]:
     """Find the impulses of a pair of one point; return the velocities after them, and what was done.
 
-    Of friction the work is computed only where it is ``booked``.
+    Work of friction is computed only where it is ``booked``.
 
     How the normal impulse changes the speed of sliding is added to it: a shorter chain of operations, each of
     which waits for the one before, than by the velocities after it.

@@ -1,4 +1,4 @@
-"""What contacts do to energy and momentum, and what kicks do.
+"""Work and impulse of contacts, and of kicks.
 
 Impulses J that act at one moment do the work J (v + v') / 2 each, with the velocities v and v' of its point
 before and after all of them. Half of what the forces of a substep give to the point's velocity is not there
@@ -12,7 +12,16 @@ import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels import wide_layout as L
-from physicslab.kernels.accounts import CONTACT, DAMPING, ENERGY, FRICTION, GRAVITY, HAND, SPIN, book
+from physicslab.kernels.accounts import (
+    ANGULAR_MOMENTUM,
+    CONTACT,
+    DAMPING,
+    ENERGY,
+    FRICTION,
+    GRAVITY,
+    HAND,
+    book,
+)
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near
 from physicslab.kernels.constraint.pair import (
     along_and_across,
@@ -75,7 +84,7 @@ def note_flow(
 ) -> None:  # fmt: skip
     """Take from the velocities noted what a flow changes those of its bodies by, before contacts are booked.
 
-    Called with 1 and the time ``h`` [s] of the flow before it, and with -1 and 0 after. What was noted is
+    Called with 1 and the time ``h`` [s] of the flow before it, and with -1 and 0 after. A note is
     less than the velocities by the kick of a substep, twice ``h``, which the bodies of a flow do not get:
     half of it is what was predicted for them. Where forces are ``uniform`` it is taken later, of all bodies.
     """
@@ -117,7 +126,7 @@ def _book_moved(
 ) -> None:
     """Book that an impulse from outside acted where B was against A before it moved by (x, y) [m]."""
     driven = _is_driven(motion, a if inverse.mass[a] == 0.0 else b)
-    near.account[HAND if driven else CONTACT, SPIN] -= x * py - y * px
+    near.account[HAND if driven else CONTACT, ANGULAR_MOMENTUM] -= x * py - y * px
 
 
 @always_inlined
@@ -250,7 +259,7 @@ def book_slots(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: 
     """Book what comes from outside by wide contacts in a substep; where it is just ``solved``, note it.
 
     Uniform forces, which have acted for ``h`` seconds, accelerate no more than these bodies against others.
-    What is noted are the impulses that then act, and the place of the body that they move: their moment is
+    Noted are the impulses that then act, and the place of the body that they move: their moment is
     that about where it was, and that of what they change by later about where it is then.
     """
     given = Given(0.0, 0.0, 0.0)

@@ -41,7 +41,7 @@ _ONE_SPOT = 1e-300
 def _restless(slots: L.Slots, k: int, motion: Motion, h: float) -> int:
     """Return the slots of a block whose bodies move too far for their size in a substep, as bits.
 
-    What does not press on each other may meet within it, and bounce at a time and with a normal that are
+    Bodies that do not press on each other may meet within it, and bounce at a time and with a normal that are
     to be found.
     """
     vax, vay = take_vectors(motion.linear, slots.a, k * L.WIDE)
@@ -152,7 +152,7 @@ def refresh(
 ) -> None:  # fmt: skip
     """Find where the contacts of all blocks of a kind touch now.
 
-    What is too fast (looked at in the ``first`` substep of a step), or has come apart is
+    A pair that is too fast (looked at in the ``first`` substep of a step), or has come apart is
     written to its records and added to the scalar pairs. The points of a pair with a box are followed; where
     it has moved, they are found again in the first substep, and it keeps its slot.
     """

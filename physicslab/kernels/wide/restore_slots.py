@@ -1,4 +1,4 @@
-"""What a slot holds of its pair: filled in from the records, and whether it is still up to date."""
+"""Slots filled in from the records of their pairs, and whether they are still up to date."""
 
 import math
 

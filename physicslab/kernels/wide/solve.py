@@ -35,7 +35,7 @@ from physicslab.kernels.near_counts import BOX_BLOCKS, DISC_BLOCKS
 SOFT = 0.02
 """Share of the smaller body's size that the contact spring corrects at its full rate, in addition to what the
 load causes."""
-_ROUNDING = 1e-9
+_NO_OVERLAP = 1e-9
 """Share that does not count as overlap: rounding may put a corner of a box on a floor below its surface."""
 DEEPER = 0.15
 """Share beyond which overlap is not corrected by impulses."""
@@ -63,7 +63,7 @@ class Mean(NamedTuple):
 
 
 type Work = tuple[Wide, Wide]
-"""Of normal and of tangential impulses [J], slot by slot."""
+"""Work of normal and of tangential impulses [J], slot by slot."""
 
 
 @always_inlined
@@ -83,7 +83,7 @@ def free_change[N: (float, Wide)](
     push = choose(separation < -DEEPER * size, 0.0, push)
     corrected = -soft.mass_scale * (mass * v + push) - soft.impulse_scale * impulse
     hard = -mass * (v + separation * soft.inverse_h)
-    apart = separation > -_ROUNDING * size
+    apart = separation > -_NO_OVERLAP * size
     change: N = choose(apart, hard, corrected)
     effective: N = choose(apart, mass, soft.mass_scale * mass)
     return change, effective

@@ -34,7 +34,7 @@ class Departure:
     Attributes
     ----------
     position, angle, velocity, spin : float
-        Of places [m], angles [rad], velocities [m/s] and angular velocities [rad/s].
+        Errors of places [m], angles [rad], velocities [m/s] and angular velocities [rad/s].
     """
 
     position: float

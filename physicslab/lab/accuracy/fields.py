@@ -12,7 +12,8 @@ from physicslab.lab.worlds import empty_world, spawn_point
 from physicslab.world import World
 
 _STIFFNESS, _DRAG, _STRENGTH = 100.0, 0.5, 2.0
-"""Of the driven oscillators of 1 kg [N/m], [kg/s], [N]: their own frequency is 10 rad/s."""
+"""Stiffness [N/m], damping [kg/s] and force [N] of the driven oscillators of 1 kg, whose own frequency is
+10 rad/s."""
 
 
 def _driven(share: float, title: str) -> Problem:
@@ -68,8 +69,8 @@ def _in_fields(name: str, title: str, mass: float, charge: float, laws: PhysicsC
 
 
 _AXIS, _EXCESS, _REPULSION, _BEFORE = 0.2, 1.5, 6.0, -1.0
-"""Of the hyperbola of two charges that meet [m]; k q q (1/m + 1/m) [m^3/s^2]; the start before the nearest
-point [s]."""
+"""Axis and shape of the hyperbola of two charges [m]; k q q (1/m + 1/m) [m^3/s^2]; the start before
+the nearest point [s]."""
 
 
 def _two_charges(simulation: SimulationConfig) -> World:
@@ -93,7 +94,7 @@ def _rutherford_error(world: World, i: int) -> float:
 # ---- molecules ---------------------------------------------------------------------------------------------
 
 _DEPTH, _DISTANCE, _BOUND = 2.0, 0.5, -0.75
-"""Of two molecules of 1 kg [J], [m]; their energy as a share of the depth."""
+"""Depth [J] and distance [m] of two molecules of 1 kg; their energy as a share of the depth."""
 _NEAREST, _PERIOD = molecules_period(_BOUND, math.sqrt(2.0 * _DEPTH) / _DISTANCE)
 
 

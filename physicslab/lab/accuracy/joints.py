@@ -16,9 +16,9 @@ from physicslab.lab.worlds import GRAVITY, empty_world, place, velocity
 from physicslab.world import World
 
 _LENGTH, _WIDTH, _ANGLE = 1.0, 0.1, 2.5
-"""Of the bar [m], and its angle from the lowest at first [rad]."""
+"""Length of the bar [m], and its angle from the lowest at first [rad]."""
 _RATE = math.sqrt(0.5 * GRAVITY * _LENGTH / ((_LENGTH**2 + _WIDTH**2) / 12.0 + 0.25 * _LENGTH**2))
-"""Of small oscillations [rad/s]."""
+"""Rate of small oscillations [rad/s]."""
 _SWING = math.sqrt(GRAVITY)
 """The rate of a pendulum of 1 m [rad/s]."""
 _MOMENTS = (1.0, 10.0)

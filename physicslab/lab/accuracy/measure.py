@@ -33,7 +33,7 @@ class Row:
     dt : float, optional
         The method's step [s], where it is fixed.
     tolerance : float, optional
-        Of an adaptive method, where one was chosen.
+        Tolerance of an adaptive method, where one was chosen.
     steps, force_evaluations : int
         Steps of the method, and how often forces were computed.
     cpu_ms, ms_per_simulated_s : float
@@ -46,7 +46,7 @@ class Row:
         |E - E_true| as a share of |E| at the start (of the largest kinetic energy, where that is 0). E_true
         is the energy at the start, or where friction, drag or a damper acts the exact energy at that time.
     energy_numerical : float, optional
-        What no account explains of the energy, as a share of the energy exchanged.
+        Energy that no account explains, as a share of the energy exchanged.
     momentum_error, angular_momentum_error : float, optional
         The largest departures, as shares of the sum of the bodies' own.
     omega_max_dt : float, optional

@@ -22,7 +22,7 @@ class Ladder:
     Attributes
     ----------
     work : int
-        Of the coarsest rung: force evaluations of the whole time, or steps where ``by_step``.
+        Work of the coarsest rung: force evaluations of the whole time, or steps where ``by_step``.
     rungs : int
         Each takes twice the steps of the one before.
     by_step : bool
@@ -50,7 +50,7 @@ class KnownCase(Case):
     Attributes
     ----------
     compared, measure : str
-        What is compared and when; how the error is measured, with its unit.
+        The quantity compared, and when; the measure of the error, with its unit.
     build : callable
         Takes a configuration of steps and returns the world.
     twin : callable, optional
@@ -108,7 +108,7 @@ class Problem(KnownCase):
     exact_energy : callable, optional
         The energy [J] at a time, where friction, drag or a damper takes some away.
     keeps : set of str
-        What is conserved among ``"energy"``, ``"momentum"`` and ``"angular_momentum"``.
+        The conserved ones among ``"energy"``, ``"momentum"`` and ``"angular_momentum"``.
     collisions : int, optional
         How many impacts there are.
     chaotic : bool
@@ -175,7 +175,7 @@ class Setting:
     steps : int, optional
         Into how many the time is divided; ``None`` for a method that chooses its steps.
     tolerance : float, optional
-        Of an adaptive method.
+        Tolerance of an adaptive method.
     collisions : str
         How contacts are found.
     contacts : str
@@ -234,9 +234,9 @@ def ladder(problem: Problem, method: Integrator) -> Iterator[Setting]:
             yield Setting(method.name, steps, collisions=collisions)
 
 
-def sees_velocity(problem: Problem) -> bool:
+def depends_on_velocity(problem: Problem) -> bool:
     """Whether forces in a problem depend on velocities, other than by turning them."""
     world = problem.build(SimulationConfig(dt=problem.dt))
     world.synchronise()
     forces = [force for force in world.schedule.smooth_forces if force.gyration(world) is None]
-    return any(force.sees_velocity(world) for force in forces)
+    return any(force.depends_on_velocity(world) for force in forces)

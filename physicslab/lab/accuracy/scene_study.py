@@ -104,11 +104,11 @@ class SceneStudy:
     Attributes
     ----------
     name : str
-        Of the scene.
+        Name of the scene.
     seconds : float
         How long it was run [s].
     reference : str
-        What all were compared with.
+        The run that all were compared with.
     estimate : Estimate
         The error of the scene as it is configured.
     rows : list of SceneRow

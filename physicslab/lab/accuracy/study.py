@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from physicslab.integrators import INTEGRATORS, Integrator
 from physicslab.lab.accuracy.measure import Row, measure, rounding_floor
-from physicslab.lab.accuracy.problem import Problem, Setting, ladder, refusal, sees_velocity
+from physicslab.lab.accuracy.problem import Problem, Setting, depends_on_velocity, ladder, refusal
 from physicslab.lab.accuracy.verdict import measured_order, why_order_short
 from physicslab.lab.jobs import Job
 
@@ -60,7 +60,7 @@ class Study:
     floor : float, optional
         How much the error changes when the start moves by one rounding.
     rigid : Row, optional
-        What rigid contacts do with it, in steps of that length; ``None`` where nothing touches.
+        The row of rigid contacts, in steps of that length; ``None`` where nothing touches.
     """
 
     problem: Problem
@@ -126,6 +126,6 @@ def _exception(problem: Problem, method: Integrator) -> str:
     """Return why a method's order does not hold for the forces of a problem; empty where it does."""
     if problem.touches:
         return "bodies touch: contacts are found within steps"
-    if method.positions_only and sees_velocity(problem):
+    if method.positions_only and depends_on_velocity(problem):
         return "forces depend on velocities, and its kicks take those from before"
     return ""

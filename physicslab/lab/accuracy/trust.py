@@ -75,7 +75,7 @@ class Trust:
     Attributes
     ----------
     digits : float
-        Of the position of the worst body; ``nan`` where nothing moves or the run failed.
+        Right digits of the position of the worst body; ``nan`` where nothing moves or the run failed.
     worst : str
         That body.
     cause : str

@@ -83,7 +83,7 @@ class Twin:
     Attributes
     ----------
     name, what : str
-        What it is called, and how it differs.
+        Its name, and how it differs.
     make : callable
         Takes the scene's document, which it leaves as it is, and a world made from it, ready to be stepped;
         returns the twin's world, or ``None`` where a scene has no such twin.
@@ -129,7 +129,7 @@ def refined(document: Document, world: World, factor: float) -> World:
     world : World
         Made from it, ready to be stepped: what ``auto`` chose for it holds for the other.
     factor : float
-        Of the length of steps; 1 for another tolerance alone.
+        Factor of the length of steps; 1 for another tolerance alone.
     """
     tolerance = max(_LEAST_TOLERANCE, 0.1 * tolerance_for(world, world.schedule.forces))
     twin = _with_settings(document, dt=world.simulation.dt / factor, tolerance=tolerance)

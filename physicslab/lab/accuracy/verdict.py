@@ -114,7 +114,7 @@ def why_order_short(
     efforts, errors, even
         As for :func:`measured_order`.
     rates : sequence of floats
-        Of each rung omega h; ``None`` where that is not known.
+        Products omega h of the rungs; ``None`` where that is not known.
     exception : str
         Why the order does not hold for such forces.
 

@@ -97,7 +97,7 @@ class Unused:
     ratio : float
         Median of the second by the first, step by step.
     left_out : tuple of str
-        What the second world has and does not run.
+        Systems that the second world has and does not run.
     same_bits : bool
         Whether both end in the same places, to the bit.
     """

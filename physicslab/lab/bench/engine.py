@@ -30,11 +30,11 @@ class Engine:
     title : str
         The engine's name.
     world : World
-        What is simulated, as it was when :meth:`look` was called last.
+        The simulated world, as it was when :meth:`look` was called last.
     dt : float
         The length of a step [s].
     prepare : callable, optional
-        What is done before every step, as part of what is timed; takes its number, from 0 on.
+        Called before every step, within the timed part, with its number from 0 on.
     """
 
     title = OURS
@@ -88,7 +88,7 @@ class OtherEngine(Engine):
     Parameters
     ----------
     world : World
-        What is built in it.
+        The world that is built in it.
     peer : type of Peer
         Which engine.
 
@@ -121,7 +121,7 @@ class OtherEngine(Engine):
 
     @override
     def look(self) -> World:
-        self._peer.bring_back()
+        self._peer.write_back()
         return self.world
 
 

@@ -31,9 +31,9 @@ def measure_scene(
     Parameters
     ----------
     scene : BenchScene
-        What is timed.
+        The scene to time.
     peers : sequence of type of Peer
-        What it is timed beside; nothing where the scene has no counterpart in others.
+        Engines timed beside it; none where the scene has no counterpart in others.
     make : callable
         Takes its world, and returns the engine that steps it.
     """

@@ -31,19 +31,19 @@ _SHOWN = 10
 _FEW = 4
 """Scenes of a feature from which on their median says something."""
 BESIDE = "beside systems"
-"""What steps take in no system: packing, choosing and calling."""
+"""Name of the time of steps in no system: packing, choosing and calling."""
 
 
 @dataclass(frozen=True, slots=True)
 class RandomResult:
-    """What a run of a random scene showed.
+    """Results of a run of a random scene.
 
     Attributes
     ----------
     result : SceneResult
         Times and quality; ``times_ours`` are ratios of whole times.
     features : list of str
-        What the scene has.
+        Properties of the scene.
     path : str
         The steppers, what moves bodies on springs and in drag, and the substeps of a step.
     scalar, wide : int
@@ -63,7 +63,7 @@ class RandomResult:
 
     @property
     def dearest(self) -> tuple[str, float]:
-        """What took most of the time, and its share of it."""
+        """The system that took most of the time, and its share of it."""
         whole = sum(self.result.systems.values()) or 1.0
         name, spent = max(self.result.systems.items(), key=lambda item: item[1], default=("-", 0.0))
         return name.removesuffix("System"), spent / whole

@@ -37,12 +37,12 @@ _SHAPES = ("discs", "boxes", "polygons", "capsules", "mixed")
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """What a random scene has.
+    """Properties of a random scene.
 
     Attributes
     ----------
     random : numpy.random.Generator
-        What places and sizes of its bodies are drawn from.
+        Generator of places and sizes of its bodies.
     family, shapes : str
         How its bodies are placed, and what they are.
     count : int
@@ -50,7 +50,7 @@ class Drawn:
     sizes, masses : float
         How many times as large, and as heavy, the largest may be as the smallest.
     restitution, friction : float
-        Of all bodies.
+        Coefficients of all bodies.
     springs : str
         ``""``, ``"springs"`` or ``"dampers"``.
     arms, drag, mover, gravity : bool
@@ -74,7 +74,7 @@ class Drawn:
 
     @property
     def features(self) -> list[str]:
-        """What scenes can have in common, in words."""
+        """Properties that scenes can have in common, in words."""
         named = {
             self.shapes: True, "sizes > 3": self.sizes > 3.0, "masses > 10": self.masses > 10.0,
             "bouncing": self.restitution > 0.0, self.springs: bool(self.springs), "arms": self.arms,

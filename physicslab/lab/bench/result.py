@@ -53,7 +53,7 @@ class Times:
     step, read : list of float
         The step, and reading the state back after it [ms].
     wall_ms : float
-        What all turns took on the wall [ms]: what the schedule's own figures are shares of.
+        Time of all turns on the wall [ms]: the schedule's own figures are shares of it.
     """
 
     step: list[float] = field(default_factory=list)
@@ -142,7 +142,7 @@ class EngineResult:
     times_ours, times_ours_with_read, times_ours_first_seconds : float, optional
         Median of how many times longer than PhysicsLab it took for the same step; 1 for PhysicsLab.
     quality : dict of str to float or None
-        What was measured of how well it simulates; ``None`` where it is not finite.
+        Measures of quality; ``None`` where it is not finite.
     failure : str
         Why it was not timed.
     """
@@ -171,7 +171,7 @@ class SceneResult:
     engines : dict of str to EngineResult
         By the engine's name, PhysicsLab first.
     systems : dict of str to float
-        What each of PhysicsLab's systems takes of its median step [ms], by their shares of the whole time.
+        Time of each of PhysicsLab's systems in its median step [ms], by their shares of the whole time.
     """
 
     scene: BenchScene

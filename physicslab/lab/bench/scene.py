@@ -55,7 +55,7 @@ class Quality:
     Attributes
     ----------
     name, unit : str
-        What it is, and its SI unit; no unit for a share or a number.
+        Its name, and its SI unit; no unit for a share or a number.
     limit : float
         The largest that counts as right.
     measure : callable
@@ -169,7 +169,7 @@ class BenchScene(Case):
     steps : int
         How many steps are timed after that.
     quality : tuple of Quality
-        What is measured beside the times.
+        Measures beside the times.
     compiled_runs : bool
         Whether many steps are taken in one call, as headless runs do, and not one by one.
     in_window : bool

@@ -24,9 +24,9 @@ class BenchReport:
     scenes : list of SceneResult
         Scene by scene.
     unused : list of Unused
-        What a step costs more for what it does not use.
+        Costs of a step for systems that it does not use.
     memory : Memory, optional
-        What a body takes, where that was measured.
+        Memory of a body, where that was measured.
     """
 
     peers: bool

@@ -37,9 +37,9 @@ class Check:
     Attributes
     ----------
     name, what : str
-        Of which scene or group, and which figure.
+        The scene or group, and the figure.
     figure, limit : float
-        What was found, and the target.
+        The figure found, and the target.
     at_least : bool
         Whether more is better.
     right : bool

@@ -36,7 +36,7 @@ class PeerBody:
     angle, angular : float
         Its angle [rad], and its angular velocity [rad/s].
     mass, inertia : float
-        Of one that is dynamic [kg], [kg m^2]; the second is 0 where it does not turn.
+        Mass and inertia of a dynamic one [kg], [kg m^2]; the second is 0 where it does not turn.
     """
 
     kind: Literal["static", "kinematic", "dynamic"]
@@ -63,7 +63,7 @@ class PeerJoint:
     collide : bool
         Whether the two touch each other.
     length : float
-        Of a rod or a rope [m].
+        Length of a rod or a rope [m].
     angle : float, optional
         That of B less that of A [rad] of a weld, and of a slot in which B does not turn.
     axis : pair of floats
@@ -102,15 +102,15 @@ class Peer(ABC):
     title, module : str
         The engine's name, and that of its package.
     world : World
-        Where the bodies came from, and where :meth:`bring_back` writes their state.
+        Where the bodies came from, and where :meth:`write_back` writes their state.
     moving : list of int
         The entities that can move.
     space : Any
         The engine's own world.
     ground : Any
-        What is fixed in it, for springs without a second body.
+        The fixed body in it, for springs without a second body.
     step_name, settings : str, tuple of int
-        What steps it, and the settings that follow the step.
+        The function that steps it, and the settings that follow the step.
 
     Raises
     ------
@@ -300,7 +300,7 @@ class Peer(ABC):
         rate = math.sqrt(spring.stiffness / mass)
         return rate / (2.0 * math.pi), spring.damping / (2.0 * mass * rate)
 
-    def bring_back(self) -> None:
+    def write_back(self) -> None:
         """Write where the bodies are, and how they move, into the world's tables.
 
         Raises

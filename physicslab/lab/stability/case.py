@@ -24,9 +24,9 @@ class StabilityCase(Case):
     Attributes
     ----------
     right : str
-        What the right behaviour is.
+        The right behaviour, in words.
     figure, unit : str
-        What is measured, and in which SI unit; no unit for a share or a number of things.
+        The figure measured, and its SI unit; no unit for a share or a number of things.
     limit : float
         The largest figure that passes.
     measure : callable
@@ -58,7 +58,7 @@ class Outcome:
     case : StabilityCase
         Which.
     figure : float, optional
-        What was measured; ``None`` where the run stopped before its end, or the number is not finite.
+        The value measured; ``None`` where the run stopped before its end, or the number is not finite.
     failure : str
         Why there is no figure.
     wall_s : float

@@ -18,7 +18,7 @@ type _Target = Callable[[World, float], int]
 
 _SPEEDS = (50.0, 500.0, 1e5, 1e6)
 _RESTITUTIONS = (0.0, 0.5, 1.0)
-_ROUNDING = 1e-9
+_ROUNDING_SHARE = 1e-9
 _RADIUS, _HEIGHT = 0.25, 5.0
 _CRADLE_LENGTH = 3.0
 
@@ -72,7 +72,7 @@ def _shot(target: _Target, thickness: float, speed: float, restitution: float, c
 
     before = energy()
     through = largest(world, 60, lambda: float(disc.position.x > wall.position.x))
-    return through == 0.0 and energy() <= before * (1.0 + _ROUNDING)
+    return through == 0.0 and energy() <= before * (1.0 + _ROUNDING_SHARE)
 
 
 def _failed_shots(target: _Target, thickness: float, collisions: str) -> float:

@@ -28,7 +28,7 @@ class InputSystem[W: State, E](System):
     events : callable
         Returns the events since it was called last, such as ``pygame.event.get``.
     handler : EventHandler
-        What acts on them.
+        The function that acts on them.
     """
 
     def __init__(self, events: Callable[[], Sequence[E]], handler: EventHandler[W, E]) -> None:

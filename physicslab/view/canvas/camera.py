@@ -122,7 +122,7 @@ class Drawing:
     Attributes
     ----------
     canvas : Canvas
-        What is drawn on.
+        The surface to draw on.
     camera : Camera
         Which part of the world is shown.
     theme : Theme

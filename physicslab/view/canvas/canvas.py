@@ -118,7 +118,7 @@ class Canvas(Protocol):
     """
 
     language: Language
-    """What words are written in."""
+    """The language of words."""
 
     @property
     def size(self) -> tuple[int, int]:

@@ -10,7 +10,7 @@ _LETTERS = {4 + n: letter for n, letter in enumerate("abcdefghijklmnopqrstuvwxyz
 _DIGITS = {30 + n: digit for n, digit in enumerate("1234567890")}
 _SIGNS = {45: "-", 46: "=", 47: "[", 48: "]", 51: ";", 52: "'", 53: "`", 54: ",", 55: ".", 56: "/"}
 _LATIN = _LETTERS | _DIGITS | _SIGNS
-"""What keys are called by their places, the scancodes of USB, on a keyboard with Latin letters."""
+"""Names of keys by their places, the scancodes of USB, on a keyboard with Latin letters."""
 _ALT_GR = pygame.KMOD_CTRL | pygame.KMOD_ALT
 """What Windows reports while AltGr is held."""
 _LARGEST = 0x10FFFF

@@ -23,7 +23,7 @@ class PygameCanvas:
     Parameters
     ----------
     surface : pygame.Surface
-        What to draw on.
+        The surface to draw on.
     """
 
     def __init__(self, surface: pygame.Surface) -> None:

@@ -17,7 +17,7 @@ def rim_of(corners: Numbers, radius: float, lines: int = 48) -> Numbers:
     corners : float64 array (m, 2)
         The vertices of its core [m], counter-clockwise.
     radius : float
-        What rounds it [m].
+        Radius that rounds it [m].
     """
     if radius == 0.0:
         return corners

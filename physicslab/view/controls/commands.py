@@ -25,13 +25,13 @@ from physicslab.world import World
 SHOWN = 10
 """So many are found at most."""
 _APART, _START, _RUN = 1.0, 3.0, 2.0
-"""What a letter counts: anywhere, at the start of a word, and right after the letter found before."""
+"""Score of a letter: anywhere, at the start of a word, and right after the letter found before."""
 _LEAST = 1.5
-"""What letters must count on average, or what they spell is not meant."""
+"""The least average score of letters of a match."""
 _SPREAD = 0.3
-"""What a letter between them takes away."""
+"""Cost of a letter between them."""
 _OF_TIP = 0.3
-"""What is found in a tip counts as much as this share of the same in a name."""
+"""A match in a tip has this share of the score of one in a name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,9 +41,9 @@ class Command:
     Attributes
     ----------
     words, keys, tip : str
-        What it is called, what is pressed for it, or what kind of thing it is, and what it does.
+        Its name, its keys or its kind, and its effect in words.
     action : callable
-        What it does.
+        The action on choice.
     """
 
     words: str

@@ -1,4 +1,4 @@
-"""What the menu of a place is for: the body, the joint or the spring that lies there, or empty space."""
+"""Subject of a place's menu: the body, the joint or the spring that lies there, or empty space."""
 
 from physicslab.components import Transform
 from physicslab.view.controls.picking import body_at, link_at

@@ -129,13 +129,13 @@ class Control:
     Attributes
     ----------
     label : str
-        What is pressed, as on the cap of a key.
+        The key, as on its cap.
     does : str
-        What it does, in a word or two.
+        Its effect, in a word or two.
     key : str
         The key's name in SDL, after ``"ctrl+"`` where that is held too; empty for the mouse.
     action, release : callable, optional
-        What is called when the key goes down, and when it goes up.
+        Called when the key goes down, and when it goes up.
     also : tuple of str
         Other keys that do the same.
     group, tip : str
@@ -143,13 +143,13 @@ class Control:
     tool : Tool, optional
         The tool of the palette that does the same.
     click : callable, optional
-        What its line in a menu does, where that is not what the key does.
+        Called by its line in a menu, where that differs from the key.
     state : callable, optional
         Returns whether what it turns on is on.
     panel : str
         The panel that it opens and closes, one of ``OPENED``; empty if none.
     shows : str
-        What it shows, by the word of scene files; empty if that is not kept in them.
+        The thing that it shows, by the word of scene files; empty if not kept in them.
     """
 
     label: str

@@ -66,9 +66,9 @@ class Drawn:
     is_centred : bool
         Whether a click is at the middle between both points, and not at the first.
     prompts : tuple of str
-        What to do next, by the number of points that were put down; shown beside the cursor.
+        Prompts beside the cursor, by the number of points that were put down.
     remark : str
-        What to say where gravity does not act between bodies.
+        Remark where gravity does not act between bodies.
     by_recipe, stands, pours : bool
         Whether it is made as the recipe for the next body says; whether it is put on what is just below; and
         whether as many are made as fit around the way of the cursor while the button is held.

@@ -34,7 +34,7 @@ READINGS = {
     "at the end": "{}", "the greatest": "greatest({})", "the least": "least({})", "the mean": "mean({})",
     "its change": "{0} - start({0})", "its period": "period({})",
 }  # fmt: skip
-"""What of a run is measured of a quantity, in words, and as an expression."""
+"""Measures of a quantity in a run, in words and as an expression."""
 _PERIOD = "its period"
 _BODIES = 40
 """How many bodies are offered."""

@@ -14,7 +14,7 @@ _TURN = math.pi / 12.0
 MOST = 2_000
 """How many bodies are drawn at once at most."""
 _BETWEEN = re.compile(r"\s*(?:,\s+|;|\bx\b|×)\s*")
-"""What stands between two numbers."""
+"""Separators of two numbers."""
 
 
 _OF_BODY = ("kg", "m/s")

@@ -86,7 +86,7 @@ def varying(world: World) -> dict[str, str]:
 
 
 _ENDS = {"number": ("",), "vector": (".x", ".y")}
-"""What is added to the names of fields to name a number of them."""
+"""Endings that name one number of a field."""
 
 
 def words_of(path: str) -> str:

@@ -38,7 +38,7 @@ _RADII = (0.22, 0.30, 0.18, 0.26, 0.34)
 _SIZES = ((0.5, 0.5), (0.8, 0.4), (0.4, 0.7), (0.6, 0.6), (1.0, 0.3))
 """The sizes of what is made by a click, in turn [m]."""
 _THICKNESS = 0.2
-"""Of planks and beams, and the radius of a bob [m]; a quarter of the length at most."""
+"""Thickness of planks and beams, and the radius of a bob [m]; a quarter of the length at most."""
 _LINK = 0.2
 """About how long a link of a chain is [m]."""
 _LINK_RADIUS = 0.05

@@ -19,13 +19,13 @@ class Tool:
     usage : str
         How it is used.
     press, release : callable
-        What happens.
+        Called when the button goes down and up.
     pans, drags : bool
         Whether dragging moves the picture, and whether it is pressed at one place and let go at another.
     draws : Drawn, optional
-        What it draws.
+        The thing that it draws.
     prompts : tuple of str
-        What to do next, by how many points are placed; shown beside the cursor.
+        Prompts beside the cursor, by how many points are placed.
     """
 
     name: str

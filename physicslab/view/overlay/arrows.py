@@ -60,13 +60,13 @@ class ArrowKind:
     Attributes
     ----------
     name : str
-        What the legend calls it.
+        Its name in the legend.
     paint : str
         The field of the theme that holds its colour.
     head : Head
         The shape of its tip.
     width : float
-        Of its strokes [px].
+        Width of its strokes [px].
     dashed : bool
         Whether its shaft is broken.
     """

@@ -108,7 +108,7 @@ def draw_edge_arrows(world: World, on: Drawing, room: Rect, taken: Sequence[Rect
     room : Rect
         Where the world can be seen: no panel lies over it [px].
     taken : sequence of Rect
-        What the arrows make way for [px].
+        Rectangles that the arrows keep clear of [px].
     size : int
         Height of the text [px].
     """

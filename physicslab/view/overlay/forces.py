@@ -60,7 +60,7 @@ class Measured:
     forces : tuple of NamedForce
         Those on it; none where no body is measured.
     step : LastStep, optional
-        What changed its momentum in the last step, where that is known.
+        Causes of its change of momentum in the last step, where known.
     number : int
         How often was measured: what shows the figures is built again where it has grown.
     """

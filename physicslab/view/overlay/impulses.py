@@ -22,7 +22,7 @@ CROWD, LABELLED_IN_CROWD = 30, 4
 _KEEP_RATIO = 1.5
 """A contact must be that many times as strong as one whose numbers are shown to take its place."""
 
-_ROUNDING = 1e-9
+_ZERO_FRICTION_SHARE = 1e-9
 """Friction of so small a share of the normal impulse is rounding, and written as 0."""
 
 
@@ -166,7 +166,9 @@ def _words_of(one: _Candidate, impulse_dt: float) -> list[str]:
     lines.append(f"normal {_impulse(float(sample['normal']), rate)}")
     if sample["friction"] > 0.0:
         friction_impulse = abs(float(sample["tangent"]))
-        friction_impulse = friction_impulse if friction_impulse > _ROUNDING * sample["normal"] else 0.0
+        friction_impulse = (
+            friction_impulse if friction_impulse > _ZERO_FRICTION_SHARE * sample["normal"] else 0.0
+        )
         lines.append(f"friction {_impulse(friction_impulse, rate)}")
         lines.append(f"{'slips' if one.slips else 'sticks'}, μ = {float(sample['friction']):.3g}")
     else:

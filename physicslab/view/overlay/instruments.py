@@ -35,7 +35,7 @@ class Instrument:
     entity : int
         Its entity, 0 for one that is not made yet.
     kind : component type
-        What it is.
+        Its kind.
     points : mapping of str to Vector2
         Where its points are in the world, by their names [m].
     """

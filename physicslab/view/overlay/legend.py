@@ -36,7 +36,7 @@ class Gauge:
     Parameters
     ----------
     unit : str
-        Of the quantity.
+        Unit of the quantity.
 
     Attributes
     ----------
@@ -123,7 +123,7 @@ class Overlays:
     labels : Labels
         Where the numbers stand.
     covered : list of Rect
-        What the HUD covers [px]; labels keep clear of it.
+        Rectangles that the HUD covers [px]; labels keep clear of them.
     """
 
     def __init__(self) -> None:

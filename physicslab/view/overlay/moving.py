@@ -29,7 +29,7 @@ class MovingPicture:
     size : tuple of two ints
         Width and height [px].
     extent : Extent
-        What is to be seen of the world [m].
+        The part of the world to be seen [m].
     theme : Theme
         The colours.
     """

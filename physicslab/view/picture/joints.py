@@ -251,7 +251,7 @@ _PICTURES: dict[type, Callable[[World, Pen], None]] = {
     Gear: _draw_gears, Slot: _draw_slots, Weld: _draw_welds, Pulley: draw_pulleys, Rope: draw_ropes,
     Rod: draw_rods, Pin: _draw_pins,
 }  # fmt: skip
-"""What draws each kind of joint, the lowest first."""
+"""The function that draws each kind of joint, the lowest first."""
 
 
 # ---- what is under the cursor ------------------------------------------------------------------------------

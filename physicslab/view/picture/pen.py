@@ -9,7 +9,7 @@ from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
 
 _FAR = 1e6
-"""What lies farther out of the picture than this is not drawn [px]."""
+"""Things farther out of the picture than this are not drawn [px]."""
 _USUAL, _LEAST, _MOST = 100.0, 0.6, 1.7
 """The scale at which joints have their usual size [px/m], and how small and large they get."""
 _HEAD, _SLOT = 5.2, 3.2

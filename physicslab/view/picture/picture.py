@@ -33,7 +33,7 @@ def picture_of(
     size : tuple of two ints
         Width and height [px].
     extent : Extent, optional
-        What is to be seen of it; by default what its scene says, or else all.
+        The part to be seen; by default that of its scene, or else all.
     """
     surface = pygame.Surface(size, 0, 32)
     camera = Camera(size, scale=_WINDOW.pixels_per_metre)

@@ -57,7 +57,7 @@ class Toolkit:
     built : int
         How many times panels were built.
     pictures : Pictures
-        What is shown of them.
+        Pictures of them.
     walked : bool
         Whether keys go through the widgets of a panel.
     """
@@ -327,7 +327,7 @@ class Walk:
     Parameters
     ----------
     toolkit : Toolkit
-        What builds the panels; it takes keys for them while ``toolkit.walked``.
+        The builder of panels; it takes keys for them while ``toolkit.walked``.
     """
 
     def __init__(self, toolkit: Toolkit) -> None:

@@ -167,11 +167,11 @@ class Ui(Windows):
         Parameters
         ----------
         label : str
-            What it is found by.
+            Its key.
         action : callable, and its further arguments
-            What a click does next.
+            Called after a click.
         shown : str, optional
-            What is written on it, where that is not the label.
+            Its text, where that is not the label.
         on : bool
             Whether it is marked as what there is now.
         """

@@ -51,7 +51,7 @@ def widget_label(words: str, identity: str) -> str:
 
 
 class Spoken(NamedTuple):
-    """What a widget is, as ``"button"``, and its value in words; ``"on"`` or ``"off"`` for a switch."""
+    """The kind of a widget, as ``"button"``, and its value in words; ``"on"`` or ``"off"`` for a switch."""
 
     role: str
     value: str
@@ -70,7 +70,7 @@ class Windows:
     Attributes
     ----------
     spoken : dict of str to Spoken
-        What widgets are, by their labels, for who hears them.
+        Widgets in words, by their labels, for people who hear them.
     places : dict of str to Rect
         Where each button, field and line of a menu is [px], by its words.
     words : list of str
@@ -80,19 +80,19 @@ class Windows:
     once : Cond_
         When windows that come back where they were are put where they are at first.
     keys_go_to : str
-        What is to get the keys in this frame: ``"menu"`` or ``"fields"``.
+        The receiver of keys in this frame: ``"menu"`` or ``"fields"``.
     scenes : int
         How many scenes were shown: what is half written or dragged in a widget is for one of them.
     focused : str
         The widget that keys go to, by its words.
     room : Rect
-        What of the window is left for the world; what opens lies within it [px].
+        The part of the window left for the world; windows open within it [px].
     language : Language
-        What all words are written in; widgets are found by the program's own words whatever it is.
+        The language of all words; widgets are found by the program's own words whatever it is.
     do_next : callable
         Has an action done next; further arguments are the action's.
     pictures : list of tuples
-        What is laid over panels: a surface, its corner, and the part of the window in which it is seen [px].
+        Overlays of panels: a surface, its corner, and the part of the window in which it is seen [px].
     """
 
     def __init__(self, fonts: Fonts, theme: Theme) -> None:

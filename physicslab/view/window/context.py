@@ -13,7 +13,7 @@ class Context:
     Attributes
     ----------
     entity : int, optional
-        What lies there; ``None`` for empty space.
+        The entity there; ``None`` for empty space.
     is_body : bool
         Whether that is a body.
     pixel, place : tuple of two floats, Vector2

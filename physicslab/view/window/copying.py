@@ -26,9 +26,9 @@ class Copying:
     distance, upward : float
         From one to the next, beside and above each other [m].
     direction : float
-        Of a row, from the right [deg].
+        Direction of a row, from the right [deg].
     radius : float
-        Of the circle, of which the original is at the right [m].
+        Radius of the circle, of which the original is at the right [m].
     """
 
     way: str = ROW

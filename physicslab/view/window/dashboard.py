@@ -35,7 +35,7 @@ class GraphShown:
     entity, number : int
         That of its entity, and its place among the graphs, from 1.
     across : Key, optional
-        What stands on the horizontal axis; ``None`` for the time.
+        Quantity on the horizontal axis; ``None`` for the time.
     side : str
         Where in the window it is.
     lines : tuple of LineShown
@@ -87,9 +87,9 @@ class Dashboard:
     Attributes
     ----------
     graphs, meters, sliders : tuples
-        What is shown.
+        Instruments that are shown.
     record, before : Record
-        What was measured in this run, and in the run of the same scene before it.
+        Measurements of this run, and of the run of the same scene before it.
     pointed : float, optional
         The time under the cursor in a graph [s].
     marks : list of two floats or None
@@ -99,11 +99,11 @@ class Dashboard:
     picture_of : int, optional
         The graph of which a picture is to be written.
     past : PastSamples, optional
-        What is being measured again of the time before there was such a line.
+        Measurements that are made again for the time before there was such a line.
     fitting : Fitting
         The curves that graphs show beside their lines.
     labels : dict of int to str
-        What bodies that are measured are called, those that are gone among them.
+        Names of measured bodies, those that are gone among them.
     """
 
     def __init__(self) -> None:

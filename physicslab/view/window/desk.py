@@ -1,4 +1,4 @@
-"""What a window shows beside the world, as scene files keep it."""
+"""The window beside the world, as scene files keep it."""
 
 from operator import attrgetter
 
@@ -15,7 +15,7 @@ SHOWN_BY = {
     "impulses": "overlays.impulses", "momenta": "overlays.momenta", "panel": "figures",
     "parts": "overlays.parts", "stopwatch": "shows_stopwatch",
 }  # fmt: skip
-"""What of the window says that a thing is shown, by its word in scene files."""
+"""Switches of the window that show a thing, by its word in scene files."""
 
 
 def desk_of(window: Window) -> state.Desk:

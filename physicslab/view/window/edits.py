@@ -92,7 +92,7 @@ class Edits:
     def do(self, command: Command) -> tuple[int, ...]:
         """Carry out an edit and return the entities that it made; where it is refused, say why.
 
-        What is shown as it is dragged is an edit of its own, and the first of the two.
+        The change shown while it is dragged is an edit of its own, and the first of the two.
         """
         self.keep()
         if not self._allows(command):
@@ -217,9 +217,9 @@ class Recipe:
     density : float
         Mass per area [kg/m^2].
     restitution, friction : float
-        Of its surface.
+        Coefficients of its surface.
     material, colour : str
-        What it is made of, if that has a name, and its colour, as "#rrggbb".
+        Its material, if that has a name, and its colour, as "#rrggbb".
     """
 
     size: float = 0.0

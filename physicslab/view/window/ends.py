@@ -97,7 +97,7 @@ _CATCH = 8.0
 type Held = tuple[int, type[Any]]
 """An entity, and which of its components has the fixed end."""
 _KINDS: tuple[type[Any], ...] = (Spring, Rod, Rope)
-"""What has a fixed end that can be dragged."""
+"""Components with a fixed end that can be dragged."""
 
 
 def pin_at(world: World, camera: Camera, pixel: tuple[float, float]) -> Held | None:

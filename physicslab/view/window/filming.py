@@ -45,7 +45,7 @@ class Filming:
     choosing : bool
         Whether the panel is shown in which a film is chosen.
     what : str
-        Of what the next film is to be.
+        Part of the run that the next film shows.
     naming : Naming
         The name of its file, and why it could not be begun.
     """
@@ -84,7 +84,7 @@ class Filming:
         what : str
             One of those above.
         history : History
-            What was run.
+            The run to film.
         room : Rect
             The part of the window that is filmed [px]; the film has its size, or a smaller one.
         speed : float

@@ -18,7 +18,7 @@ class Framing:
     Parameters
     ----------
     canvas, camera : Canvas, Camera
-        What is drawn on, and the view of the world.
+        The surface to draw on, and the view of the world.
     scale : float
         The usual scale [px/m].
 

@@ -44,7 +44,7 @@ class Handles:
     Attributes
     ----------
     dragged : str, optional
-        What the handle in the hand changes.
+        The quantity that the held handle changes.
     words : str
         The number that it has given, to stand beside the cursor.
     """

@@ -12,7 +12,7 @@ class KeyChoice:
     chosen : dict of str to str
         The names of keys as SDL has them, after ``"ctrl+"`` and ``"shift+"``, by what their controls do.
     asks : str
-        What the next key is chosen for; empty for nothing.
+        The control that gets the next key; empty for none.
     open : bool
         Whether the list of keys lets one choose.
     """

@@ -27,7 +27,7 @@ class LabProcess:
     Parameters
     ----------
     command : sequence of str
-        What is run, before the path of the scene.
+        The command, before the path of the scene.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class LabProcess:
     """
 
     option = "--json"
-    """What the command is told by to write its report."""
+    """The option by which the command writes its report."""
     niceness = 0
     """How much lower its priority is than that of frames, which take what they need of the machine."""
 
@@ -208,18 +208,18 @@ class ErrorStudy(LabProcess):
     Parameters
     ----------
     command : sequence of str
-        What is run, before the path of the scene.
+        The command, before the path of the scene.
 
     Attributes
     ----------
     samples : tuple of Sample
-        What was found last.
+        The last results.
     seconds : float
         How long the scene was run [s].
     reference : str
-        What the figures are measured against.
+        The reference of the figures.
     rounding : float
-        What a difference of one rounding at the start has grown to [m]: errors below have no meaning.
+        Growth of a difference of one rounding at the start [m]: errors below have no meaning.
     horizon : float, optional
         After how long one rounding has grown to another future [s]; ``None`` where none does.
     shown : bool

@@ -65,7 +65,7 @@ class Trial:
 
     @property
     def key(self) -> Key:
-        """What it is known by."""
+        """Its key."""
         return self.run.line, self.case.values
 
     @property
@@ -99,7 +99,7 @@ class OpenLesson:
     Parameters
     ----------
     lesson : Lesson
-        What is open.
+        The open lesson.
     source : str
         Its name, or its file, by which it was opened.
     folder : Path
@@ -107,7 +107,7 @@ class OpenLesson:
     before : Left
         The scene that it took the place of; it is shown again when the lesson is left.
     desk, tool : Desk, str
-        What the window showed beside that scene, and the tool in hand.
+        The view beside that scene, and the tool in hand.
     find : callable
         Returns an earlier lesson by its name.
 
@@ -122,7 +122,7 @@ class OpenLesson:
     step : int
         The step that is shown, from 0.
     values : dict of str to str
-        What the learner has set of what is open, by the names of parameters.
+        The learner's values of open parameters, by their names.
     world : World, optional
         The last that was made for it.
     trial : Trial, optional
@@ -291,7 +291,7 @@ class OpenLesson:
 
     @property
     def state(self) -> tuple[object, ...]:
-        """What a panel shows of it; it changes with each sample of a run."""
+        """The state that a panel shows; it changes with each sample of a run."""
         samples = len(self.trial.live.record.times) if self.trial is not None else 0
         return self, self.number, samples
 

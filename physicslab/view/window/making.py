@@ -9,7 +9,7 @@ from physicslab.view.window.sharing import FROM_START
 
 @dataclass(slots=True)
 class Making:
-    """What a teacher chooses for a lesson of the scene.
+    """A teacher's choices for a lesson of the scene.
 
     Attributes
     ----------
@@ -18,11 +18,11 @@ class Making:
     naming : Naming
         The name of its file, and why it could not be written.
     draft : Draft
-        What is chosen.
+        The choices.
     begins : str
         ``FROM_START`` or ``FROM_NOW``: of which moment its scene is.
     quantity, reading : str
-        What is measured, as ``ball.x``, and what of the run of it: the last value, the greatest, ...
+        The quantity, as ``ball.x``, and its measure in a run: the last value, the greatest, ...
     refused : dict of (str, str) to str
         Why no lesson could be made, by the kind of block and the key that cannot be so.
     """

@@ -1,4 +1,4 @@
-"""What bodies are made of, by name: density, surface and colour are chosen with it, as one edit."""
+"""Materials of bodies by name: density, surface and colour are chosen with it, as one edit."""
 
 from collections.abc import Sequence
 

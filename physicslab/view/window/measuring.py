@@ -33,7 +33,7 @@ class Writing:
     entity : int, optional
         The note that is there already; ``None`` for a new one.
     text, refusal : str
-        What is written, and why it cannot be.
+        The text, and why it is refused.
     """
 
     spot: Spot
@@ -68,7 +68,7 @@ class Measuring:
     Attributes
     ----------
     kind : component type, optional
-        What is being placed.
+        The instrument that is being placed.
     spots : list of Spot
         The points of it that are placed.
     writing : Writing, optional

@@ -192,7 +192,7 @@ def snapped(
     place : Vector2
         Where its middle would be [m].
     low, high : float64 arrays (2,)
-        What it takes up, from its middle [m]; both zero for a point.
+        Its extent from its middle [m]; both zero for a point.
     without : collection of int
         Entities that it does not snap to: itself.
     """
@@ -235,7 +235,7 @@ class Snapping:
     place : Vector2, optional
         Where what is moved or made goes in place of the cursor [m]; ``None`` where nothing snaps.
     marks : tuple of Mark
-        What shows that.
+        Marks that show that.
     """
 
     def __init__(self) -> None:
@@ -263,7 +263,7 @@ class Snapping:
         cursor, middle : Vector2
             Where the cursor is, and where the middle of what it holds would be [m].
         about : Outlines, optional
-            What takes up room, where its middle is at the origin; ``None`` for a point.
+            Its outlines, with its middle at the origin; ``None`` for a point.
         without : collection of int
             Entities that it does not snap to.
         """

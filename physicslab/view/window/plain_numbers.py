@@ -12,7 +12,7 @@ from physicslab.view.window.ends import point_of
 from physicslab.world import World
 
 _LENGTHS: dict[type[Any], str] = {Rod: "length", Rope: "length", Spring: "rest_length"}
-"""The field of the length of what a pendulum hangs on."""
+"""The field of the length of a pendulum's link."""
 _SQUARE = 1e-9
 """Share of its sides by which a corner of a ramp may not be a right angle, or a side not be level."""
 
@@ -35,7 +35,7 @@ class Hanging(NamedTuple):
     Attributes
     ----------
     body, link : int
-        The body, and the entity that carries what it hangs on.
+        The body, and the entity that carries its link.
     kind : type
         Which component that is.
     pivot, arm : Vector2

@@ -136,7 +136,7 @@ class Record:
 # ---- what is plotted of them -------------------------------------------------------------------------------
 
 
-_ROUNDING = 1e-9
+_ZERO_RANGE_SHARE = 1e-9
 """Share of the largest value below which a range is rounding."""
 _NEEDED = 4
 """Points that a pixel's width can need: the first, the lowest, the highest and the last of those in it."""
@@ -155,7 +155,7 @@ def line_to_show(x: Numbers, y: Numbers, low: float, high: float, width: int) ->
     low, high : float
         The range of ``x`` that the plot shows; the nearest point outside it stays at each side.
     width : int
-        Of the plot [px].
+        Width of the plot [px].
     """
     begin = max(int(np.searchsorted(x, low)) - 1, 0)
     end = min(int(np.searchsorted(x, high, side="right")) + 1, len(x))
@@ -189,7 +189,7 @@ def path_to_show(
     x, y : float64 arrays (n,)
         The path, in the order in which it was gone along.
     low, high : tuple of two floats
-        What the plot shows of ``x`` and ``y``.
+        Ranges of ``x`` and ``y`` in the plot.
     size : tuple of two ints
         Width and height of the plot [px].
     """
@@ -214,14 +214,14 @@ def range_to_show(values: Sequence[Numbers], room: float = 0.06, none: float = 0
     values : sequence of float64 arrays (n,)
         NaN among them does not count.
     room : float
-        What is left at each side, as a share of their range.
+        Free room at each side, as a share of their range.
     """
     ends = [(np.nanmin(one), np.nanmax(one)) for one in values if not np.isnan(one).all()]
     if not ends:
         return 0.0, 1.0
     low, high = float(min(end[0] for end in ends)), float(max(end[1] for end in ends))
     largest = max(abs(low), abs(high))
-    if high - low <= max(_ROUNDING * largest, none):
+    if high - low <= max(_ZERO_RANGE_SHARE * largest, none):
         spread = 0.1 * largest if largest > none else 1.0
         return low - spread, high + spread
     return low - room * (high - low), high + room * (high - low)
@@ -269,7 +269,7 @@ class PastSamples:
     history : History
         Its world stays as it is; another one goes through the steps.
     keys : tuple of Key
-        What is measured.
+        Quantities that are measured.
 
     Attributes
     ----------

@@ -50,13 +50,13 @@ class Scenes:
     source : str or path, optional
         The built-in scene or the file that is shown: restarting opens it again, saving writes the file.
     saved : Changes
-        What had been done to the world when it was opened or saved last.
+        Edits at the time when it was opened or saved last.
     naming, opening : Naming, Opening, optional
         The name that is being written for the scene, and the file that is being chosen; ``None`` if none is.
     shows_gallery : bool
         Whether the gallery of scenes is shown.
     tag : str
-        What it shows when it opens: scenes of a tag, or all.
+        The tag whose scenes it shows when it opens, or all.
     next_world, starts_again : World, optional, bool
         The world that is to be shown from the next frame on, and whether it is the present scene once more.
     left : Left, optional

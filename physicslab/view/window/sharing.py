@@ -10,7 +10,7 @@ from physicslab.view.window.naming import Naming
 
 _COMMAND, _LESSON = own_command("export"), own_command("lesson")
 FROM_START, FROM_NOW, WHOLE_LESSON = "From the start", "From now on", "The whole lesson"
-"""What a page begins with, or holds."""
+"""The start of a page, or its contents."""
 SLIDERS = 2
 """How many quantities the sliders of a page may change."""
 
@@ -48,7 +48,7 @@ class Sharing(LabProcess):
     begins : str
         ``FROM_START`` or ``FROM_NOW``, or ``WHOLE_LESSON``.
     slid : list of Slid
-        What its sliders are to change.
+        Fields of its sliders.
     path : path
         Where it is written.
     """

@@ -1,4 +1,4 @@
-"""What is being drawn with the mouse: the points that were put down, and the numbers that are typed."""
+"""A drawing by the mouse: the points that were put down, and the numbers that are typed."""
 
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -22,7 +22,7 @@ class Grip(NamedTuple):
 
 @dataclass(slots=True)
 class Sketch:
-    """What is being drawn.
+    """A drawing that is not finished.
 
     Attributes
     ----------

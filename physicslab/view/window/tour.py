@@ -26,7 +26,7 @@ class Tour:
 
 @dataclass(frozen=True, slots=True)
 class Search:
-    """What is searched for among all commands, and which line of what was found is marked, from 0."""
+    """A search among all commands, and the marked line of its results, from 0."""
 
     text: str = ""
     row: int = 0

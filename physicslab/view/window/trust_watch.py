@@ -65,7 +65,7 @@ class TrustWatch(LabProcess):
     Parameters
     ----------
     command : sequence of str
-        What is run, before the path of the scene.
+        The command, before the path of the scene.
 
     Attributes
     ----------
@@ -198,7 +198,7 @@ class TrustWatch(LabProcess):
             self.failure = error.strerror or str(error)
 
     def _text(self) -> bytes | None:
-        """Go on to write the scene; return its text once it is whole. What hinders it is a failure."""
+        """Go on to write the scene; return its text once it is whole. An obstacle is a failure."""
         if self._scene is None:
             assert self._snapshot is not None
             self._writing = self._writing or SceneText(self._snapshot, time.perf_counter)

@@ -71,7 +71,7 @@ class Window:
     Attributes
     ----------
     canvas : Canvas
-        What is drawn on.
+        The surface to draw on.
     config : WindowConfig
         Size, frame rate and limits.
     theme : Theme
@@ -79,15 +79,15 @@ class Window:
     camera : Camera
         Which part of the world is shown.
     framing : Framing
-        What of the world it shows, and in which room.
+        The part of the world that it shows, and the room for it.
     pace : Pace
         Whether time runs, and how fast.
     hand : Hand
-        What is held.
+        The bodies that are held.
     overlays : Overlays
         Which arrows are shown.
     sparks, dust, squash : Sparks, Dust, Squash
-        What flies where bodies hit each other, and rises where they slide; how what was hit gives way.
+        Sparks of impacts, dust of sliding, and how bodies give way when hit.
     reduced_motion : bool
         Whether nothing moves in the window but what moves in the world.
     sounds : Sounds
@@ -122,9 +122,9 @@ class Window:
     shows_cards, welcomed : bool
         Whether the cards of the first minute are shown, and whether they were used and closed before.
     search, tour : Search, Tour, optional
-        What is searched for among all commands, and where the tour is; ``None`` while there is none.
+        The search among all commands, and the place in the tour; ``None`` while closed.
     tool : str
-        What the left mouse button does: the name of a tool of :mod:`physicslab.view.controls.tools`.
+        The tool of the left mouse button: a name of :mod:`physicslab.view.controls.tools`.
     level : str
         How much is shown: one of :data:`physicslab.view.window.desk.LEVELS`.
     text_scale : float
@@ -147,7 +147,7 @@ class Window:
     handles : Handles
         Those of the selection.
     recipe : Recipe
-        What the next body is like.
+        Properties of the next body.
     measured : Measured
         The forces on the selection.
     snapping : Snapping
@@ -157,11 +157,11 @@ class Window:
     context : Context, optional
         The menu of a place that is open.
     picking : Picking, optional
-        What is given the body that is clicked next, or none where there is none.
+        The function that gets the body that is clicked next, or ``None``.
     impacts, microscope : ImpactList, Microscope
         The table of impacts; the impact that is looked at closely, and what waits for the next one.
     measuring, shows_stopwatch, shows_words : Measuring, bool, bool
-        What is being placed, dragged or written of instruments; whether times between gates are shown, and
+        Instruments that are being placed, dragged or written; whether times between gates are shown, and
         the scene in words.
     scenes : Scenes
         The scene that is shown, its file, and other scenes.
@@ -176,13 +176,13 @@ class Window:
     closed_at : float
         When something was closed or given up last, by ``now`` [s].
     pending : list of Action
-        What panels were clicked for: it is done when the next frame begins.
+        Actions of clicks on panels: they are done when the next frame begins.
     preparing : float, optional
         How long [s] it takes about until what moves the world is compiled; until then it is interpreted.
     has_kernels : callable
         Returns whether all kernels are there, so that no step of any scene waits for one.
     sketch : Sketch
-        What is being drawn with the mouse.
+        The drawing by the mouse.
     lesson : OpenLesson, optional
         The lesson that is open, which shuts what it does not name.
     language : str

@@ -27,13 +27,13 @@ class Step:
     Attributes
     ----------
     words : str
-        What it is, in words.
+        Its name in words.
     formula, numbers : str
         The formula, and the same with the numbers put in.
     value : str
-        What comes of it, with its unit.
+        Its result, with the unit.
     solver : str
-        What the solver has; empty where it keeps no such number.
+        The solver's value; empty where it keeps no such number.
     difference : float
         Between the two, as a share of the largest such number of this impact.
     """

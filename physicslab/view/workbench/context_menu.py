@@ -29,7 +29,7 @@ from physicslab.world import World
 
 _LAYERS = 4
 _SPEEDS = (0.5, 1.0, 2.0, 5.0)
-"""Of motors that are chosen [rad/s, m/s]."""
+"""Speeds of motors to choose from [rad/s, m/s]."""
 _LIMITS, _STRENGTHS = (15.0, 45.0, 90.0), (1.5, 3.0)
 """Angles [deg], and how many times its present force a joint may bear."""
 _PUT_DOWN = ("wall", "dominoes", "brush", "stack", "pyramid")

@@ -15,7 +15,7 @@ _WIDTH, _FROM_BELOW = 15.0, 7.5
 
 
 class CopiesPanel:
-    """What is half written in it is kept from frame to frame."""
+    """The panel of copies; text half written is kept from frame to frame."""
 
     def __init__(self) -> None:
         self._numbers = NumberFields()

@@ -74,7 +74,7 @@ class WorldFigures:
     energy : Energy
         Kinetic and potential [J].
     audit : Audit
-        What gave energy and took it since the accounts of the world began, and the error.
+        Energy by cause since the accounts of the world began, and the error.
     held, driven : bool
         Whether a hand holds a body, which then has that body's energy, and whether bodies are driven.
     since : float
@@ -115,7 +115,7 @@ class FrameMeter:
     Attributes
     ----------
     cost : dict of str to float
-        What each system takes a frame [ms], by name.
+        Time of each system in a frame [ms], by name.
     """
 
     def __init__(self) -> None:

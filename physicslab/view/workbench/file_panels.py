@@ -51,7 +51,7 @@ def build_answers(
     Parameters
     ----------
     labels : two str
-        What is on the first and on the last.
+        Labels of the first and of the last.
     write : callable
         Called with the world, the window and the file that is to be written over, if there is one.
     """

@@ -1,4 +1,4 @@
-"""What helps in the first minute: three cards, the tour, and the search of commands; each can be left."""
+"""Help for the first minute: three cards, the tour, and the search of commands; each can be left."""
 
 import pygame
 from imgui_bundle import ImVec2, imgui

@@ -85,7 +85,7 @@ def build_quantities(
     Parameters
     ----------
     shown : iterable of Key
-        What is marked: it is chosen already.
+        The marked ones: they are chosen already.
     choose : callable
         Called with what is clicked.
     """

@@ -41,7 +41,7 @@ class Hud:
     Attributes
     ----------
     readings : mapping of callable to float
-        What is read of a world, and how often [s]: figures that change faster cannot be read.
+        Readers of a world, and their intervals [s]: figures that change faster cannot be read.
     """
 
     def __init__(self, window: Window, interface: Interface) -> None:

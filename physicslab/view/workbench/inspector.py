@@ -50,7 +50,7 @@ from physicslab.world import World
 # ---- derived values: they are shown and cannot be changed --------------------------------------------------
 
 
-_ROUNDING = 1e-9
+_ZERO_FORCE_SHARE = 1e-9
 """A sum of forces below this share of the largest is treated as zero."""
 
 
@@ -183,7 +183,7 @@ def _build_impulses(ui: Ui, step: LastStep) -> None:
 
 def _vector_row(ui: Ui, label: str, value: Vector2, largest: float, unit: str, tip: str) -> None:
     """Write how large a vector is; rounding beside the ``largest`` is treated as zero."""
-    shown = value.magnitude if value.magnitude > _ROUNDING * largest else 0.0
+    shown = value.magnitude if value.magnitude > _ZERO_FORCE_SHARE * largest else 0.0
     words = f"{tip}: {vector_quantity(value, unit)}" if tip else vector_quantity(value, unit)
     ui.row(label, quantity(shown, unit), words)
 

@@ -122,14 +122,14 @@ class Interface:
     Parameters
     ----------
     window : Window
-        What is shown and what is on.
+        The window as it is shown.
 
     Attributes
     ----------
     ui : Ui
-        What was built last: where each widget is, and all that is written.
+        The panels built last: where each widget is, and all texts.
     toolkit : Toolkit
-        What builds and paints them.
+        The builder and painter of panels.
     """
 
     def __init__(self, window: Window) -> None:
@@ -225,9 +225,9 @@ class Interface:
         Parameters
         ----------
         figures : WorldFigures
-            What was measured of the world.
+            Figures of the world.
         lines : sequence of Line
-            What those see beside who measure, and engineers.
+            Further lines, for those who measure and for engineers.
         elapsed : float
             Time [s] since the last frame.
         """

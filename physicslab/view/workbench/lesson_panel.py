@@ -30,7 +30,7 @@ _NUMBER = 8.0
 
 
 class LessonPanel:
-    """What is half written or chosen in it is kept from frame to frame."""
+    """The panel of a lesson; text half written and choices are kept from frame to frame."""
 
     def __init__(self) -> None:
         self._lesson: OpenLesson | None = None

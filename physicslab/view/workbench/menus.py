@@ -34,7 +34,7 @@ _MENUS = {"File": ("file", "quit"), "Edit": ("edit",), "World": ("laws",), "Inst
           "Help": ("help",)}  # fmt: skip
 """Which groups of controls each menu shows."""
 _LANGUAGES = {"en": "English", "de": "Deutsch"}
-"""What speakers of languages call them, by their codes."""
+"""Names of languages in themselves, by their codes."""
 _MAX_TITLE = 60
 
 

@@ -117,9 +117,9 @@ class NumberFields:
         Parameters
         ----------
         key : str
-            What the field is found by; its label is found by ``"label " + key``.
+            Key of the field; that of its label is ``"label " + key``.
         words : str
-            What is written on the label.
+            Text of the label.
         spec : Field
             The unit, and what is shown as the tip.
         value : float or str, optional
@@ -130,7 +130,7 @@ class NumberFields:
         drags : bool
             Whether dragging the label changes the number.
         zero : str
-            What is shown in place of 0, without a unit, where that has a meaning of its own.
+            Text in place of 0, without a unit, where 0 has a meaning of its own.
         """
         number = 0.0 if value == ABSENT else None if isinstance(value, str) else value
         self.label(ui, key, words, spec, number if drags else None, commit)

@@ -35,7 +35,7 @@ def places(area: Rect, text: float, small: Sequence[Small]) -> dict[int, Rect]:
     Parameters
     ----------
     area : Rect
-        What is left for them [px].
+        The room left for them [px].
     text : float
         Height of the text [px].
     small : sequence of Small

@@ -34,14 +34,14 @@ _PLAYED = 6.0
 
 @dataclass(slots=True)
 class Known:
-    """What is known of a scene once it was read.
+    """Facts of a scene once it was read.
 
     Attributes
     ----------
     title, words : str
-        What it is called, and what is said of it.
+        Its title and description.
     tags : tuple of str
-        What it teaches, and what is in it.
+        Its subjects and contents.
     failure : str
         Why it cannot be read.
     """

@@ -298,7 +298,7 @@ _CHOICES = {
 }  # fmt: skip
 _ROWS = ("dt", "substeps", *_CHOICES, "linear_damping", "angular_damping")
 _OF_CHARGES = ("coulomb_constant", "magnetic_field")
-"""What is added where anything is charged; the electric field, a vector, comes after it."""
+"""Fields added where anything is charged; the electric field, a vector, comes after it."""
 
 
 def build_settings(ui: Ui, numbers: NumberFields, world: World, window: Window) -> None:

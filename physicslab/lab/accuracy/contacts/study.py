@@ -61,7 +61,7 @@ def _theirs(peer: type[Peer], world: World, dt: float) -> Advance:
     def advance(seconds: float) -> None:
         steps = round(seconds / dt)
         mirror.run(seconds / steps, steps)
-        mirror.bring_back()
+        mirror.write_back()
 
     return advance
 
@@ -134,7 +134,7 @@ class ContactCurve:
     order : float, optional
         The power of the step with which errors fall; ``None`` where they are rounding, or too few.
     verdict : Verdict, optional
-        Of our own engines only.
+        Verdict on our own engines only.
     refused : str
         Why there are no rows.
     """

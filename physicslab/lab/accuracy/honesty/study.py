@@ -47,14 +47,14 @@ class HonestRow:
     Attributes
     ----------
     family : str
-        What it was drawn from.
+        The family that it was drawn from.
     seed : int
         With which it was drawn.
     ratios : tuple of floats
         The true error over its estimate, of position, velocity, angle and spin, of the worst body; the true
         error is taken to be a rounding at least, and all there is (no digit) at most.
     estimate, error : float
-        Of the position of the worst body, as shares of it or of its size.
+        Errors of the position of the worst body, as shares of it or of its size.
     too_large : bool
         Whether the estimate is more than 100 times the error, and none of rounding.
     failure : str
