@@ -249,14 +249,17 @@ class Runner:
                 setattr(handle, place.spec.name, whole)
             except InvalidValue as error:
                 raise SceneError(f"{place.words} = {shown(value)}: must be {error.allowed}") from error
-        if not self._alone:
-            world.stale = world.entity_index.motion_edited = True
-            return True
         with world.active():
-            if self._bounces():
+            if not self._alone:
+                world.islands.forget(world)
+            elif self._bounces():
                 return True
             world.synchronise()
-            return self._chooses_the_same()
+            if self._chooses_the_same():
+                return True
+        if not self._alone:
+            world.stale = world.entity_index.motion_edited = True
+        return not self._alone
 
     def _chooses_the_same(self) -> bool:
         """Whether the same systems and the same method would be chosen for the values of now."""
