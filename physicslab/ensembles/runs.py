@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from physicslab.ecs.fields import InvalidValue
 from physicslab.ensembles.measures import Measure, Measures
 from physicslab.ensembles.result import EnsembleResult, check_format, write_result
 from physicslab.ensembles.sink import Sink
@@ -21,6 +22,7 @@ from physicslab.files.json_text import json_bytes
 from physicslab.files.replace import check_writable, reason_of
 from physicslab.files.scene import load_scene
 from physicslab.files.writer import write_scene
+from physicslab.state.run import BODY_COLUMNS
 from physicslab.stepping.run import run_length
 from physicslab.world import World
 
@@ -36,6 +38,7 @@ def ensemble(
     measure: Measure | Mapping[str, Measure],
     seconds: float | None = None,
     steps: int | None = None,
+    until: str | None = None,
     samples: int | None = None,
     seed: int = 0,
     replicas: int = 1,
@@ -61,6 +64,8 @@ def ensemble(
         (:mod:`physicslab.ensembles.measures`), or an importable function of the world at its end.
     seconds, steps : float or int
         How long a run is: one of the two.
+    until : str, optional
+        A condition with which a run ends, as of :meth:`World.record`; within ``seconds``, or it failed.
     samples, seed : int
         How many are drawn, for each combination of the grids, and by which seed. A row's numbers depend on
         the seed and on its place alone.
@@ -95,7 +100,7 @@ def ensemble(
     [1.126, 1.685, 1.964]
     """
     task = task_of(
-        scene, space, measure=measure, seconds=seconds, steps=steps, samples=samples, seed=seed,
+        scene, space, measure=measure, seconds=seconds, steps=steps, until=until, samples=samples, seed=seed,
         replicas=replicas, jitter=jitter,
     )  # fmt: skip
     if isinstance(executor, str) and executor not in KINDS:
@@ -106,7 +111,7 @@ def ensemble(
 def task_of(
     scene: str | os.PathLike[str] | Mapping[str, Any] | World, space: Mapping[str, Given], *,
     measure: Measure | Mapping[str, Measure], seconds: float | None = None, steps: int | None = None,
-    samples: int | None = None, seed: int = 0, replicas: int = 1,
+    until: str | None = None, samples: int | None = None, seed: int = 0, replicas: int = 1,
     jitter: float | str | Mapping[str, float | str] = 0.0,
 ) -> Task:  # fmt: skip
     """Return what :func:`ensemble` of the same arguments runs, all of it checked."""
@@ -121,9 +126,22 @@ def task_of(
     for name in measures:
         if name in taken:
             raise SceneError(f"measure {shown(name)}: is the name of another column")
-    Measures(trial, measures)
+    tried = Measures(trial, measures)
     run_length(trial, seconds, steps)
-    return Task(document, rows, dict(measures), seconds, steps)
+    if until is not None:
+        _check_until(trial, until, tried)
+    return Task(document, rows, dict(measures), seconds, steps, until)
+
+
+def _check_until(world: World, until: str, measures: Measures) -> None:
+    """Refuse a condition that a world has not, and measures that runs until one have not."""
+    try:
+        world.record(0.0, until=until)
+    except InvalidValue as error:
+        raise SceneError(f"until {shown(until)}: must be {error.allowed}") from error
+    if measures.needs_path and not measures.path_is_motion:
+        words = ", ".join(BODY_COLUMNS)
+        raise SceneError(f"measure: with until, what looks at the whole run must be of {words} of what moves")
 
 
 def run_task(

@@ -10,7 +10,7 @@ import pickle
 import threading
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -52,7 +52,9 @@ class Task:
     measures : mapping of str to str or callable
         Measures of each run, by their columns.
     seconds, steps : float or int, optional
-        How long a run is; one of the two.
+        How long a run is, at most; one of the two.
+    until : str, optional
+        A condition with which it ends.
     """
 
     scene: bytes
@@ -60,12 +62,12 @@ class Task:
     measures: Mapping[str, Measure]
     seconds: float | None
     steps: int | None
+    until: str | None = None
 
     @cached_property
     def payload(self) -> bytes:
         """The bytes sent with each piece of work."""
-        own = {name: getattr(self, name) for name in ("scene", "space", "measures", "seconds", "steps")}
-        return pickle.dumps(own)
+        return pickle.dumps({part.name: getattr(self, part.name) for part in fields(self)})
 
     @cached_property
     def digest(self) -> bytes:
@@ -73,7 +75,7 @@ class Task:
         measures = {
             name: one if isinstance(one, str) else _code_of(one) for name, one in self.measures.items()
         }
-        settings = json.dumps([self.seconds, self.steps, measures, sources_key()])
+        settings = json.dumps([self.seconds, self.steps, self.until, measures, sources_key()])
         return hashlib.sha256(self.scene + b"\0" + settings.encode()).digest()
 
     def keys(self, columns: Mapping[str, Values]) -> NDArray[np.uint8]:
@@ -173,7 +175,7 @@ class Runner:
             if any(kind in kinds and kind.__name__ not in _SETTLED for kind in system.needs)
         ]
         self._rollout: Rollout | None = None
-        if self._in_place and self._alone and self._places and read is not None:
+        if self._in_place and self._alone and self._places and read is not None and task.until is None:
             self._rollout = Rollout(world, self._places, read, self._chooses_the_same)
 
     def block(self, first: int, last: int) -> Block:
@@ -214,12 +216,22 @@ class Runner:
             put(world, dict(zip(self._places.values(), row, strict=True)))
             measures = Measures(world, self.task.measures)
         measures.begin()
-        if measures.needs_path:
+        if self.task.until is not None or measures.path_is_motion:
+            self._record(world, measures)
+        elif measures.needs_path:
             for _ in world.stepping(seconds=self.task.seconds, steps=self.task.steps):
                 measures.sample()
         else:
             world.run(seconds=self.task.seconds, steps=self.task.steps)
         return measures.values()
+
+    def _record(self, world: World, measures: Measures) -> None:
+        """Make a run that is recorded, as it ends with a condition or measures look at its motion."""
+        task, length = self.task, run_length(world, self.task.seconds, self.task.steps)
+        run = world.record(length.seconds, until=task.until)
+        if task.until is not None and run.found is None:
+            raise SceneError(f"until {shown(task.until)}: does not begin to hold within {length.seconds:g} s")
+        measures.take(run)
 
     def _set(self, row: Sequence[Any]) -> bool:
         """Go back and give the fields their values; return whether all else is as in a world made so."""
@@ -237,14 +249,17 @@ class Runner:
                 setattr(handle, place.spec.name, whole)
             except InvalidValue as error:
                 raise SceneError(f"{place.words} = {shown(value)}: must be {error.allowed}") from error
-        if not self._alone:
-            world.stale = world.entity_index.motion_edited = True
-            return True
         with world.active():
-            if self._bounces():
+            if not self._alone:
+                world.islands.forget(world)
+            elif self._bounces():
                 return True
             world.synchronise()
-            return self._chooses_the_same()
+            if self._chooses_the_same():
+                return True
+        if not self._alone:
+            world.stale = world.entity_index.motion_edited = True
+        return not self._alone
 
     def _chooses_the_same(self) -> bool:
         """Whether the same systems and the same method would be chosen for the values of now."""
