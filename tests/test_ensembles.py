@@ -3,6 +3,7 @@
 import csv
 import itertools
 import re
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -137,6 +138,23 @@ def test_measures_are_expressions_of_a_run_and_functions_of_its_end() -> None:
     assert found["first"] == pytest.approx(np.sqrt(2 * 3.75 / 9.81), rel=1e-12)
     assert found["least"] == pytest.approx(-np.sqrt(2 * 9.81 * 3.75), abs=9.81 / 60)
     assert found["lost"] == pytest.approx(-9.81 * 3.75 * (1 - 0.7**2) - 1 / 6, rel=1e-9), "it leaves rolling"
+
+
+@pytest.mark.notebook
+def test_a_bar_shows_how_many_runs_are_made(capsys: pytest.CaptureFixture[str]) -> None:
+    space = {E: ("uniform", 0.2, 0.9)}
+    ensemble("drop", space, samples=30, measure="ball.y", seconds=0.1, executor="serial", progress=True)
+    shown = capsys.readouterr().err
+    assert "100%" in shown and "30/30" in shown
+
+
+def test_a_bar_without_its_package_is_refused_before_anything_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with pytest.raises(ImportError, match=r"progress=True: needs tqdm\.auto, which is not installed"):
+        ensemble("drop", {E: [0.5]}, measure="ball.y", seconds=0.1, executor="serial", progress=True)
+    shares: list[float] = []
+    ensemble("drop", {E: [0.5]}, measure="ball.y", seconds=0.1, executor="serial", progress=shares.append)
+    assert shares == [1.0]
 
 
 @pytest.mark.parametrize("executor", ["serial", "threads"])

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ensembles.measures import Measure, Measures
-from physicslab.ensembles.result import EnsembleResult, check_format, write_result
+from physicslab.ensembles.result import EnsembleResult, check_format, package, write_result
 from physicslab.ensembles.sink import Sink
 from physicslab.ensembles.space import Given, space_of
 from physicslab.ensembles.task import Task
@@ -46,7 +47,7 @@ def ensemble(
     executor: str | Executor = "processes",
     workers: int | None = None,
     out: str | os.PathLike[str] | None = None,
-    progress: Callable[[float], object] | None = None,
+    progress: Callable[[float], object] | bool = False,
 ) -> EnsembleResult:
     """Run a scene once for each row of a space, and measure each run.
 
@@ -79,8 +80,9 @@ def ensemble(
     out : path, optional
         A file (``.npz``, ``.csv``, ``.parquet``) for the columns. Until it is whole, its rows are in a folder
         beside it, and what is run again goes on there.
-    progress : callable, optional
-        Called with the share that is done, from 0 to 1.
+    progress : callable or bool
+        Called with the share that is done, from 0 to 1; ``True`` shows a bar with the time that is left, in a
+        terminal or a notebook (needs tqdm, which comes with the extra ``notebook``).
 
     Returns
     -------
@@ -105,7 +107,22 @@ def ensemble(
     )  # fmt: skip
     if isinstance(executor, str) and executor not in KINDS:
         raise SceneError(f"executor {shown(executor)}: must be one of {', '.join(KINDS)}, or an Executor")
-    return run_task(task, Workers(executor, workers), None if out is None else Path(out), progress)
+    with _told(progress, len(task.space)) as tell:
+        return run_task(task, Workers(executor, workers), None if out is None else Path(out), tell)
+
+
+@contextmanager
+def _told(
+    progress: Callable[[float], object] | bool, rows: int
+) -> Iterator[Callable[[float], object] | None]:
+    """Give what is told of the share that is done, if anything is."""
+    if not isinstance(progress, bool):
+        yield progress
+    elif not progress:
+        yield None
+    else:
+        with package("tqdm.auto", "progress=True").tqdm(total=rows, unit=" runs") as bar:
+            yield lambda share: bar.update(round(share * rows) - bar.n)
 
 
 def task_of(
