@@ -119,7 +119,9 @@ class MeterPanels:
                     imgui.same_line(style.window_padding.x + ui.width(_words(title)) + style.item_spacing.x)
                 why = why_undefined(world, meter.key[1], meter.key[0])
                 if why:
-                    ui.faint(f"The body is {why}" if why == "gone" else f"It {why}", wrapped=not self._is_flat)
+                    ui.faint(
+                        f"The body is {why}" if why == "gone" else f"It {why}", wrapped=not self._is_flat
+                    )
                 else:
                     large = ui.size if self._is_flat else _LARGE * ui.size
                     _build_number(ui, _figures_of(reading, meter.key, scales), unit_of(meter.key), large)
