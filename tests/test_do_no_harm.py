@@ -181,6 +181,15 @@ def test_letters_right_after_the_key_that_opens_a_window_are_written_in_it(
     assert not is_titled or desk.world.title == "Carts"
 
 
+def test_the_letter_that_opens_the_gallery_is_not_written_in_its_search(desk: Desk) -> None:
+    for letter in "lcarts":
+        pygame.event.post(pygame.Event(pygame.KEYDOWN, key=ord(letter), mod=0, unicode=letter))
+        pygame.event.post(pygame.Event(pygame.TEXTINPUT, text=letter))
+    desk.frames(12)
+    tap(desk, "return")
+    assert desk.world.title == "Carts on a track"
+
+
 def test_no_tip_stays_of_a_tool_that_was_clicked_before_a_scene_was_opened(desk: Desk) -> None:
     desk.frames(SETTLED)
     click(desk, "Circle")

@@ -11,6 +11,8 @@ import pygame
 import pytest
 
 import physicslab
+from physicslab.components.colour import rgb_of
+from physicslab.components.made_of import SUBSTANCES
 from physicslab.theme import DARK, LEGIBLE, LIGHT, THEMES, Colour, Theme, contrast
 from physicslab.view.canvas.canvas import Finish, Look
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
@@ -130,7 +132,10 @@ def test_bodies_as_they_are_painted_stand_out_from_the_sky(theme: Theme) -> None
 @every_theme
 def test_rims_of_bodies_stand_out_all_around_from_sky_and_ground(theme: Theme) -> None:
     """The law: fills are lit and dim, so that the rim, at least 2 px wide, has the contrast everywhere."""
-    chosen = [theme.edge((n, n, n)) for n in range(0, 256, 15)]
+    greys = [(n, n, n) for n in range(0, 256, 15)]
+    strong = list(itertools.product((0, 128, 255), repeat=3))
+    materials = [rgb_of(substance.colour) for substance in SUBSTANCES.values()]
+    chosen = [theme.edge(colour) for colour in (*greys, *strong, *materials)]
     for rim in (*theme.bodies, theme.kinematic, theme.held, *chosen):
         assert min(contrast(rim, sky) for sky in (theme.sky_top, theme.sky_bottom)) >= LEGIBLE
     for rim in (*theme.bodies, theme.kinematic, theme.held):

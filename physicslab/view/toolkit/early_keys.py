@@ -32,6 +32,8 @@ class EarlyKeys:
         """
         if opened != self._open:
             self._open, self._frames = opened, _OPENING if opened else self._frames
+            if opened and event.type == pygame.TEXTINPUT:
+                return True  # the letter of the key that has opened it
         if not self._frames or event.type not in _KEYS:
             return False
         self._kept.append(event)
