@@ -10,7 +10,7 @@ from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
 from physicslab.lessons.answers import Graded
 from physicslab.lessons.lesson import SURENESS, Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
-from physicslab.lessons.words import sureness_words
+from physicslab.lessons.words import formula, sureness_words
 from physicslab.view.canvas.quantities import written_unit
 from physicslab.view.controls import lesson_actions
 from physicslab.view.toolkit.ui import Ui
@@ -238,8 +238,10 @@ class LessonPanel:
             ui.text(f"It is: {graded.expected}", wrapped=True)
         shown = next((one.shown_by for one in part.replies if one.feedback == graded.feedback), None)
         if shown is not None and part.run is not None and kind != "recall" and not graded.right:
+            own = language(lesson.lesson.language)
+            words = f"{RUN}  Show it: {formula(own, shown.text)}"
             ui.button(f"Show {name}", "A run that shows it", lesson_actions.begin_run, part.run, shown,
-                      shown=f"{RUN}  Show it: {shown.text}", enabled=not lesson.running)  # fmt: skip
+                      shown=words, enabled=not lesson.running)  # fmt: skip
 
     def _grade(self, lesson: OpenLesson, part: Question, name: str, kind: str) -> Graded:
         answer, kept = lesson.given[name], self._graded.get(name)
@@ -258,7 +260,8 @@ class LessonPanel:
         mine = trial is not None and trial.run.line == part.line
         made = lesson.made(part)
         words = f"{RUN}  Run again" if made else f"{RUN}  Run"
-        case = f" with {part.case.text}" if part.case.values else ""
+        own = language(lesson.lesson.language)
+        case = f" with {formula(own, part.case.text)}" if part.case.values else ""
         tip = "" if is_open else "Lock in your prediction first"
         ui.button(f"Run {part.name}", tip, lesson_actions.begin_run, part, shown=words + case,
                   on=is_open and not made, enabled=is_open and not lesson.running)  # fmt: skip
@@ -270,7 +273,8 @@ class LessonPanel:
         if shown.failure:
             ui.text(shown.failure, ui.theme.error, wrapped=True)
         if shown.case.values:
-            ui.faint(f"Shown: {', '.join(f'{name} = {text}' for name, text in shown.case.values)}")
+            values = (f"{name} = {formula(own, text)}" for name, text in shown.case.values)
+            ui.faint(f"Shown: {', '.join(values)}")
         plot_run(ui, lesson, shown)
         for question in lesson.predictions(part) if made is not None else ():
             if question.name in lesson.given:
