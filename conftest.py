@@ -22,6 +22,7 @@ _STATE = tempfile.mkdtemp(prefix="physicslab-tests-")
 atexit.register(shutil.rmtree, _STATE, ignore_errors=True)
 os.environ["XDG_STATE_HOME"] = os.environ["LOCALAPPDATA"] = _STATE
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+os.environ.setdefault("PHYSICSLAB_INTERPRET", "0")  # what is not compiled yet is, before it runs
 if sys.dont_write_bytecode:
     # As in many containers: no bytecode beside the sources. Tests start a hundred processes, and each would
     # parse all of numba: 1.2 s of processor time instead of 0.35. It is kept with pytest's own cache.

@@ -32,6 +32,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv : sequence of str, optional
         The arguments, without the program's name; by default those of the process.
     """
+    os.environ.setdefault("PHYSICSLAB_INTERPRET", "0")  # each command decides on when to compile
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(

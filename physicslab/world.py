@@ -14,6 +14,7 @@ from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import check_edits, follow_rows, wake_all
 from physicslab.ecs.config import MAX_TIME, MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
+from physicslab.kernels.tiers import begin_run
 from physicslab.ode.closed_form import NoClosedForm
 from physicslab.state.masses import derive_masses, quiet
 from physicslab.stepping.accounting import book_account, close_account, open_account
@@ -26,6 +27,7 @@ from physicslab.stepping.keyframe import Keyframe
 from physicslab.stepping.plan import StepPlan, default_plan, plan_for_jumps
 from physicslab.stepping.run import run_length, strides
 from physicslab.stepping.select import Steppers, choose, remake, restart, resume
+from physicslab.stepping.small import is_small
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Advance, Advancer
 from physicslab.stepping.undo import StepTransaction, go_back
@@ -130,6 +132,8 @@ class World(Facade):
             If a value would not be finite; the world is then as it was before the step.
         """
         h = self.simulation.dt if dt is None else _STEP.check(dt)
+        if not self.steps:
+            begin_run(lambda: is_small(self))
         with self.active():
             self._synchronise()
             self.advance(h, 1)

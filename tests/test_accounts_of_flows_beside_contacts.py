@@ -129,3 +129,23 @@ def test_a_step_that_is_begun_again_by_another_method_is_booked_once() -> None:
     assert world.plan.integrator.name == "leapfrog"
     assert abs(account.momentum["numerical"].y) < 1e-9
     assert account.momentum["gravity"].y == pytest.approx(-4.0 * 9.81 * world.time, rel=1e-9)
+
+
+@pytest.mark.parametrize("substeps", [2, 4])
+@pytest.mark.parametrize("frame", ["world", "body"])
+@given(x=st.floats(-8.0, 8.0), y=st.floats(-8.0, 4.0), turned=st.floats(0.1, 1.4))
+@settings(max_examples=8)
+def test_a_thrust_works_along_the_way_by_which_impacts_move_what_it_pushes(
+    substeps: int, frame: str, x: float, y: float, turned: float
+) -> None:
+    bouncing = {"restitution": 0.7, "friction": 0.3}
+    thrust = {"force": [x, y], "at": [0.1, 0.05], "torque": 0.3, "frame": frame, "frequency": 2.0}
+    document = scene(
+        {**body(0.0, 1.2, turned, Thrust=thrust), "Velocity": {"linear": [1.0, -2.0]}, "Material": bouncing},
+        fixed(0.0, 0.0, Material=bouncing),
+    )
+    document["simulation"]["substeps"] = substeps
+    world, account = after(document, 40)
+    assert world.collisions > 0
+    assert account.energy["impacts"] < -1e-2
+    assert abs(account.energy["numerical"]) < -1e-9 * account.energy["impacts"]

@@ -261,3 +261,23 @@ def test_the_legend_lies_where_the_fewest_bodies_are(side: float) -> None:
     desk.frames()
     (legend,) = [rect for words, rect in canvas.words if words == "Net force"]
     assert (legend.centerx - left - 0.5 * width) * side < 0.0 or legend.top > top + 110
+
+
+def test_the_legend_is_brief_where_all_its_words_would_cover_bodies() -> None:
+    """Beside a docked graph it covered the balls that fell."""
+    canvas = MeasuringCanvas((1280, 720))
+    desk = Desk(empty_world(gravity_mode="none"), canvas)
+    desk.frames(10)
+    left, top, width, height = desk.sandbox.interface.visible
+    for down in range(10, height, 40):
+        circle(desk.world, desk.window.camera.to_world((left + 0.5 * width, top + down)), radius=0.1)
+    for n in range(height // 40):
+        for across in (225, width - 225):
+            circle(desk.world, desk.window.camera.to_world((left + across, top + 10 + 40 * n)), radius=0.1)
+    desk.key("v")
+    desk.frames(20)
+    canvas.words.clear()
+    desk.frames()
+    words = [words for words, _ in canvas.words]
+    assert "Net force" in words
+    assert not any("strokes across" in line for line in words)

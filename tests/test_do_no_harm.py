@@ -158,6 +158,29 @@ def test_keys_that_come_before_their_field_are_written_there(desk: Desk) -> None
     assert desk.window.pace.paused
 
 
+@pytest.mark.parametrize("is_titled", [False, True])
+def test_letters_right_after_the_key_that_opens_a_window_are_written_in_it(
+    desk: Desk, is_titled: bool
+) -> None:
+    """Letters right after Ctrl+Shift+S were lost, or went on in the title that was being written."""
+    desk.window.selection.clear()
+    desk.frames(SETTLED)
+    if is_titled:
+        click(desk, "Title and notes")
+        write(desk, "Carts")
+    pygame.event.post(
+        pygame.Event(pygame.KEYDOWN, key=pygame.K_s, mod=pygame.KMOD_CTRL | pygame.KMOD_SHIFT, unicode="")
+    )
+    for letter in "mine":
+        pygame.event.post(pygame.Event(pygame.KEYDOWN, key=ord(letter), mod=0, unicode=letter))
+        pygame.event.post(pygame.Event(pygame.TEXTINPUT, text=letter))
+    desk.frames(12)
+    naming = desk.window.scenes.naming
+    assert naming is not None
+    assert naming.text == "mine"
+    assert not is_titled or desk.world.title == "Carts"
+
+
 def test_no_tip_stays_of_a_tool_that_was_clicked_before_a_scene_was_opened(desk: Desk) -> None:
     desk.frames(SETTLED)
     click(desk, "Circle")

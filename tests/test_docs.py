@@ -1,5 +1,6 @@
 """What the README and the documents say is so: worked examples work, files that are named are there."""
 
+import importlib.util
 import os
 import re
 import shutil
@@ -140,3 +141,13 @@ def test_a_key_is_in_the_table_only_where_a_cell_names_it() -> None:
     assert keys_in(f"{table}| wheel, middle drag | zoom |\n") == {"wheel", "middle"}
     rows = f"{table}| P | what W does |\n| G, O | laws |\n| [ and ] | speed |\n\n## More\n\n| X | other |\n"
     assert keys_in(rows) == {"p", "g", "o", "[", "]"}
+
+
+def test_the_page_of_components_has_every_field() -> None:
+    spec = importlib.util.spec_from_file_location("components_page", ROOT / "docs" / "components.py")
+    assert spec is not None and spec.loader is not None
+    writer = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(writer)
+    words = "uv run python docs/components.py writes it again"
+    assert writer.page() == writer.PAGE.read_text(encoding="utf-8"), words
+    assert "| `restitution` | `0.0` | a finite number from 0 to 1 |" in writer.page()

@@ -3,6 +3,7 @@
 import csv
 import itertools
 import re
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from physicslab import SceneError, World, ensemble, load_scene
-from physicslab.components import Transform
+from physicslab.components import Mass, Material, Transform
 from physicslab.ensembles import sink
 from physicslab.ensembles.runs import task_of
 from physicslab.ensembles.sobol import DIMENSIONS, sobol
@@ -139,6 +140,64 @@ def test_measures_are_expressions_of_a_run_and_functions_of_its_end() -> None:
     assert found["lost"] == pytest.approx(-9.81 * 3.75 * (1 - 0.7**2) - 1 / 6, rel=1e-9), "it leaves rolling"
 
 
+@pytest.mark.notebook
+def test_a_bar_shows_how_many_runs_are_made(capsys: pytest.CaptureFixture[str]) -> None:
+    space = {E: ("uniform", 0.2, 0.9)}
+    ensemble("drop", space, samples=30, measure="ball.y", seconds=0.1, executor="serial", progress=True)
+    shown = capsys.readouterr().err
+    assert "100%" in shown and "30/30" in shown
+
+
+def test_a_bar_without_its_package_is_refused_before_anything_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with pytest.raises(ImportError, match=r"progress=True: needs tqdm\.auto, which is not installed"):
+        ensemble("drop", {E: [0.5]}, measure="ball.y", seconds=0.1, executor="serial", progress=True)
+    shares: list[float] = []
+    ensemble("drop", {E: [0.5]}, measure="ball.y", seconds=0.1, executor="serial", progress=shares.append)
+    assert shares == [1.0]
+
+
+@pytest.mark.parametrize("executor", ["serial", "threads"])
+def test_a_run_ends_with_a_condition_as_a_record_does(executor: str) -> None:
+    measure = {
+        "t": "time",
+        "x": "ball.x",
+        "top": "max(ball.y)",
+        "first": "first_impact.time",
+        "n": "collisions",
+    }
+    until = "ball.vy > 0 and ball.x >= -1 m"
+    columns = ensemble(
+        "drop", {E: [0.5, 0.8]}, measure=measure, seconds=4, until=until, executor=executor
+    ).columns
+    for row, restitution in enumerate((0.5, 0.8)):
+        world = load_scene("drop")
+        world.component("ball", Material).restitution = restitution
+        run = world.record(4.0, until=until)
+        ends = run.found, run.columns["ball.x"][-1], 4.0, run.impacts["time"][0], world.collisions
+        assert tuple(columns[name][row] for name in measure) == ends
+    late = ensemble("drop", {E: [0.5, 0.8]}, measure="ball.x", seconds=0.5, until=until, executor=executor)
+    assert np.isnan(late.columns["ball.x"]).all()
+    assert set(late.failures.values()) == {f'until "{until}": does not begin to hold within 0.5 s'}
+
+
+@pytest.mark.parametrize("scene", ["drop", "pendulum", "two_planets"])
+def test_measures_of_the_whole_run_are_those_of_its_record(scene: str) -> None:
+    world = load_scene(scene)
+    body = next(name for name in world.record(0.0).bodies if name.isidentifier())
+    measure = {"top": f"max({body}.y)", "at": f"at(0.7 s, {body}.vx)", "mean": f"mean({body}.x)"}
+    columns = ensemble(
+        scene, {f"{body}.Mass.mass": [1.5]}, measure=measure, seconds=1.33, executor="serial"
+    ).columns
+    world.reset()
+    world.component(body, Mass).mass = 1.5
+    run = world.record(1.33)
+    times, x = run.times, run.columns[f"{body}.x"]
+    assert columns["mean"][0] == pytest.approx(np.trapezoid(x, times) / times[-1], rel=1e-14)
+    assert columns["top"][0] >= run.columns[f"{body}.y"].max()
+    assert columns["at"][0] == pytest.approx(np.interp(0.7, times, run.columns[f"{body}.vx"]), abs=2e-2)
+
+
 def test_what_has_no_value_is_nan_and_a_run_that_cannot_be_is_kept_with_its_reason() -> None:
     space = {M: ("normal", 1.0, 1.0)}
     measure = {"when": "when(ball.y > 100 m)", "first": "first_impact.time", "y": "ball.y"}
@@ -235,6 +294,13 @@ REFUSED: tuple[tuple[dict[str, Any], dict[str, Any], str], ...] = (
     ({M: [1]}, {"measure": "first_impact.q"}, "an impact has time, x, y, speed, energy_lost"),
     ({M: [1]}, {"measure": {"f": lambda world: 1.0}}, "a function of a module"),
     ({M: [1]}, {"measure": {M: "ball.x"}}, "is the name of another column"),
+    ({M: [1]}, {"until": "ball.x"}, "until \"ball.x\": must be a condition, as 'ball.x >= 8 m' is one"),
+    ({M: [1]}, {"until": "bal.x > 1"}, "'bal.x' is no quantity"),
+    (
+        {M: [1]},
+        {"until": "ball.x > 1", "measure": "max(world.kinetic)"},
+        "with until, what looks at the whole",
+    ),
     ({M: [1]}, {"out": "there/is/none.csv"}, "cannot be written"),
     ({M: [1]}, {"out": "x.txt"}, "must end in .npz, .csv, .parquet"),
     ({M: [1]}, {"executor": "process"}, "must be one of processes, threads, serial, or an Executor"),

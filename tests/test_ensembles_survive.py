@@ -127,8 +127,11 @@ def children(process: int) -> list[int]:
     return spawned
 
 
-def killed_and_resumed(out: Path, kills: int, rng: random.Random) -> None:
-    """Run the sweep, kill a worker or the sweep itself at random moments, and let it come to its end."""
+def killed_and_resumed(out: Path, kills: int, rng: random.Random) -> int:
+    """Run the sweep, kill a worker or the sweep itself at random moments, and let it come to its end.
+
+    Returns how many of the kills are left.
+    """
     while True:
         process = subprocess.Popen(command("--out", str(out), "--workers", "2"), stdout=subprocess.DEVNULL)
         while process.poll() is None and kills:
@@ -146,7 +149,7 @@ def killed_and_resumed(out: Path, kills: int, rng: random.Random) -> None:
                     continue
                 kills -= 1
         if process.wait(timeout=900) == 0:
-            return
+            return kills
         assert process.returncode == -signal.SIGKILL
 
 
@@ -155,9 +158,11 @@ def killed_and_resumed(out: Path, kills: int, rng: random.Random) -> None:
 def test_killed_at_random_moments_it_comes_to_the_same_bytes(tmp_path: Path) -> None:
     whole, out = tmp_path / "whole.npz", tmp_path / "killed.npz"
     subprocess.run(command("--out", str(whole), "--workers", "1"), check=True, timeout=900)
-    killed_and_resumed(out, int(os.environ.get("PHYSICSLAB_KILLS", "4")), random.Random(1))
-    assert kept(whole) == kept(out)
-    assert not (tmp_path / "killed.npz.parts").exists()
+    kills, rng = int(os.environ.get("PHYSICSLAB_KILLS", "4")), random.Random(1)
+    while kills:
+        kills = killed_and_resumed(out, kills, rng)
+        assert kept(whole) == kept(out)
+        assert not (tmp_path / "killed.npz.parts").exists()
 
 
 def ends_its_process(world: World) -> float:

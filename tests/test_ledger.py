@@ -18,7 +18,7 @@ from physicslab import World, cli, load_scene
 from physicslab.components import Velocity
 from physicslab.diagnostics import ledger as ledger_of_impacts
 from physicslab.diagnostics.energy import measure_account, measure_momentum
-from physicslab.diagnostics.ledger import LedgerWriter, names_of, read_impacts, speeds_at
+from physicslab.diagnostics.ledger import LedgerWriter, names_of, read_impacts, since_last, speeds_at
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels.constraint.impact_law import NEWTON
 from physicslab.kernels.records import IMPACT
@@ -137,10 +137,10 @@ def test_the_time_since_a_pairs_last_impact() -> None:
     world = load_scene("drop")
     world.run(seconds=5.0)
     records = world.contacts.impacts
-    since = read_impacts(records).since
+    since = since_last(records, {})
     assert math.isnan(since[0]) and since[1:] == pytest.approx(np.diff(records["time"]), abs=1e-15)
     last: dict[tuple[int, int, int], float] = {}
-    parts = [read_impacts(records[k : k + 2], last).since for k in range(0, len(records), 2)]
+    parts = [since_last(records[k : k + 2], last) for k in range(0, len(records), 2)]
     assert np.array_equal(np.concatenate(parts), since, equal_nan=True)
 
 

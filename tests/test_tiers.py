@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any
 import pytest
 
 from physicslab.cli import main
+from physicslab.components import Transform
 from physicslab.files.scene import load_scene
 from physicslab.kernels import cache, interpreter, motion, tiers
 from physicslab.kernels.events.events import run_events
@@ -171,3 +173,63 @@ def test_afterwards_kernels_are_compiled_where_they_are_called() -> None:
     finally:
         if overloads:
             interpreter._take_back(motion.drift, overloads)
+
+
+_PROGRAM = """
+import json
+from physicslab import load_scene
+from physicslab.components import Transform
+from physicslab.kernels import KERNELS
+world = load_scene("drop")
+for seconds in (1.0, 0.5):
+    world.run(seconds=seconds)
+first = [one.__name__ for one in KERNELS if one.compiled]
+world.step()
+from physicslab.ensembles.runs import task_of
+from physicslab.ensembles.task import Runner
+Runner(task_of("pendulum", {"bob.Mass.mass": [1.0]}, measure="bob.x", seconds=0.1)).block(0, 1)
+print(json.dumps([world.component("ball", Transform).position.y, first,
+                  [one.__name__ for one in KERNELS if one.compiled]]))
+"""
+
+
+def test_the_first_run_of_a_program_is_interpreted_and_says_so(tmp_path: Path) -> None:
+    kernels = tmp_path / "kernels"
+    environment = {**os.environ, "PHYSICSLAB_KERNELS": str(kernels)}
+    del environment["PHYSICSLAB_INTERPRET"]
+    done = subprocess.run(
+        [sys.executable, "-c", _PROGRAM],
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=ROOT,
+    )
+    y, first, then = json.loads(done.stdout)
+    assert done.stderr.count("\n") == 1 and "not compiled for this processor yet" in done.stderr
+    assert "run_events" not in first and then, "an ensemble compiles before it makes rows"
+    world = load_scene("drop")
+    for seconds in (1.0, 0.5):
+        world.run(seconds=seconds)
+    world.step()
+    assert world.component("ball", Transform).position.y == y
+
+
+def test_a_large_scene_is_compiled_first_and_that_is_announced(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(tiers, "_compiles_first", False)
+    monkeypatch.setattr(cache, "is_kept", lambda function: False)
+    runs = tiers.begin_run(lambda: False)
+    assert runs is not None
+    try:
+        assert list(runs._ask((soft.advance,))) == []
+        assert re.fullmatch(r"compiling advance, once: about \d+ s", caplog.messages[-1])
+        runs.small = True
+        assert list(runs._ask((soft.advance,))) == [soft.advance]
+        assert len(caplog.messages) == 2
+        with Tiers(True):
+            assert tiers.begin_run(lambda: True) is None, "a command decides"
+    finally:
+        tiers.compile_first()
+    assert not runs.decides and tiers.begin_run(lambda: True) is None

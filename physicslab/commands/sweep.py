@@ -53,6 +53,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--measure", metavar="EXPR", action="append", default=[], help=words)
     add("--seconds", metavar="T", type=positive_duration, default=_DEFAULT_S,
         help=f"how long a run is, in the scene's time ({_DEFAULT_S:g})")  # fmt: skip
+    add("--until", metavar="CONDITION", help="a run ends when this begins to hold: 'ball.x >= 8 m'")
     add("--out", metavar="FILE", help="where the rows go: .npz, .csv or .parquet; else a summary on stdout")
     words = "a picture of the first measure over the two fields that --vary names (extra: plot)"
     add("--map", metavar="FILE.png", help=words)
@@ -74,8 +75,8 @@ def execute(arguments: Namespace) -> int:
     check_seconds(arguments.seconds, world.simulation.dt)
     space = _space(world, arguments)
     task = task_of(
-        world, space, measure=_measures(arguments), seconds=arguments.seconds, samples=arguments.samples,
-        seed=arguments.seed or 0,
+        world, space, measure=_measures(arguments), seconds=arguments.seconds, until=arguments.until,
+        samples=arguments.samples, seed=arguments.seed or 0,
     )  # fmt: skip
     if arguments.open is not None:
         return _open(task, arguments.open)

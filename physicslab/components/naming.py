@@ -1,6 +1,7 @@
 """Names of entities without an id: their kind, in plain words, and their number."""
 
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any
 
 from physicslab.components.colour import Colour
@@ -48,5 +49,6 @@ def name_by_kinds(number: int, kinds: Iterable[type], shape: str | None) -> str:
     return _numbered(in_words(other.__name__) if other is not None else "entity", number)
 
 
+@lru_cache(8192)
 def _numbered(kind: str, number: int) -> str:
     return Sentence("{kind} {number}", kind=Sentence(kind), number=number)

@@ -15,7 +15,15 @@ from collections.abc import Callable, Iterable, Sequence
 from physicslab.components.quantities import QUANTITIES, carrier_of, why_not_of
 from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.conditions import Comparison, comparison, difference
-from physicslab.ecs.quantity_text import Dimension, Expression, InvalidText, Quantity, Scope, Undefined
+from physicslab.ecs.quantity_text import (
+    Dimension,
+    Expression,
+    InvalidText,
+    Quantity,
+    Scope,
+    Undefined,
+    dotted,
+)
 from physicslab.world import World
 
 AROUND = 6
@@ -100,6 +108,11 @@ class Record:
         for column in self.columns.values():
             column.clear()
 
+    def take(self, times: list[float], columns: Iterable[list[float]]) -> None:
+        """Take samples from elsewhere: times [s], and as many values of each column [SI]."""
+        self.end, self.times = times[-1], times
+        self.columns = dict(zip(self.columns, columns, strict=True))
+
     def add(self) -> None:
         """Take a sample of the world as it is now."""
         self.end = self._world.time
@@ -160,6 +173,9 @@ class Figures:
 
     def series(self, expression: Expression) -> list[float]:
         """Return an expression's value at each sample [SI]."""
+        name = dotted(expression.node)
+        if name in self.record.columns and not (self.parameters and self.parameters.named(name)):
+            return self.record.columns[name][: len(self.record.samples)]
         return [expression.value(self.at(sample)).value for sample in self.record.samples]
 
     def moment(self, margin: Callable[[Figures], float], number: int = 1) -> float:

@@ -47,7 +47,7 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
     if not moves.any():
         return
     yield from _light_to_turn(world)
-    figures, dependent = figures_of(world), _dependent(world) & moves[joints_of_rows(world)]
+    figures, dependent = figures_of(world), _dependent(world) & _acts(world)
     worst = int(np.argmax(np.where(moves, figures.stretch / figures.size, -1.0)))
     stretch, limit = float(figures.stretch[worst]), STRETCH_LIMIT * float(figures.size[worst])
     if stretch > limit:
@@ -63,6 +63,9 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
             what = sentence("ends_in_one_place")
             yield ModelWarning.about(world, joint.entity, what, None, "", None, sentence("a_pin"))
             return
+        if (world.joints.role[dependent] == Role.MOTOR).all():
+            yield ModelWarning.about(world, joint.entity, sentence("blocked_motor"), None, "", None, "")
+            return
         what = sentence("redundant")
         count = float(np.count_nonzero(dependent))
         yield ModelWarning.about(world, joint.entity, what, count, "", 0.0, sentence("one_joint_less"))
@@ -75,6 +78,18 @@ def _moves(world: World) -> NDArray[np.bool_]:
     moves = np.zeros(len(joints.joints), np.bool_)
     np.logical_or.at(moves, owner, free[joints.a] | free[joints.b])
     return moves
+
+
+def _acts(world: World) -> NDArray[np.bool_]:
+    """Return which rows (n,) do not hold what no force moves, as the angle of a body without inertia."""
+    terms, bodies, joints, owner = measured_terms(world), world.bodies, world.joints, rows_of_terms(world)
+    free = np.stack((bodies.inverse_mass, bodies.inverse_mass, bodies.inverse_inertia), axis=1) > 0.0
+    free |= world.table(Held).present[:, None]
+    holds, acts = np.zeros((2, len(joints)), np.bool_)
+    for ends, gradient in ((joints.a, terms[:, AX : TURN_A + 1]), (joints.b, terms[:, BX:])):
+        np.logical_or.at(holds, owner, (gradient != 0.0).any(axis=1))
+        np.logical_or.at(acts, owner, ((gradient != 0.0) & free[ends]).any(axis=1))
+    return acts | ~holds
 
 
 def _light_to_turn(world: World) -> Iterator[ModelWarning]:

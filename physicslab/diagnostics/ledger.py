@@ -66,8 +66,6 @@ class ImpactColumns:
     energy_lost : float64 array
         -J . (u- + u+) / 2 of all points [J]: the kinetic energy of both bodies before minus after, by the
         impulses of this pair alone. The work of a kinematic or held body by its motion is not part of it.
-    since : float64 array
-        Seconds since the last impact of the same pair; NaN for the first.
     """
 
     vn_before: Floats
@@ -77,7 +75,6 @@ class ImpactColumns:
     e_found: Floats
     sticks: NDArray[np.bool_]
     energy_lost: Floats
-    since: Floats
 
 
 def speeds_at(records: NDArray[Any], x: Floats, y: Floats, moment: str) -> tuple[Floats, Floats]:
@@ -104,16 +101,13 @@ def speeds_at(records: NDArray[Any], x: Floats, y: Floats, moment: str) -> tuple
     return state.v, state.sliding
 
 
-def read_impacts(records: NDArray[Any], last: LastTimes | None = None) -> ImpactColumns:
+def read_impacts(records: NDArray[Any]) -> ImpactColumns:
     """Return the derived columns of impacts, in the order of the records.
 
     Parameters
     ----------
     records : array of IMPACT (n,)
-        The impacts, in the order in which they were logged.
-    last : dict, optional
-        When each pair met last before them; brought up to date. Without it, the first of each pair has no
-        last.
+        The impacts.
 
     Returns
     -------
@@ -132,12 +126,20 @@ def read_impacts(records: NDArray[Any], last: LastTimes | None = None) -> Impact
     work += normal_2 * (second[0][0] + second[1][0]) + tangent_2 * (second[0][1] + second[1][1])
     return ImpactColumns(
         vn_before, vn_after, vt_before, vt_after, e_found, none & (records["friction"] > 0.0),
-        0.0 - 0.5 * work, _since_last(records, {} if last is None else last),
+        0.0 - 0.5 * work,
     )  # fmt: skip
 
 
-def _since_last(records: NDArray[Any], last: LastTimes) -> Floats:
-    """Return how long since the last impact of each pair [s], and note the last ones."""
+def since_last(records: NDArray[Any], last: LastTimes) -> Floats:
+    """Return how long since the last impact of the same pair [s] (n,), NaN for the first of each.
+
+    Parameters
+    ----------
+    records : array of IMPACT (n,)
+        The impacts, in the order in which they were logged.
+    last : dict
+        When each pair met last before them; brought up to date.
+    """
     since = np.full(len(records), np.nan)
     a, b, wall, times = (records[name] for name in ("entity_a", "entity_b", "wall", "time"))
     order = np.lexsort((times, wall, b, a))
@@ -274,7 +276,7 @@ class LedgerWriter:
 
     def write_rows(self, records: NDArray[Any]) -> None:
         """Write some impacts, an array of IMPACT (n,)."""
-        found, (a, b) = read_impacts(records, self._last), names_of(self._state, records)
+        found, (a, b) = read_impacts(records), names_of(self._state, records)
         columns = (
             records["time"].tolist(), a, b,
             *(records[name].tolist() for name in ("x", "y", "normal_x", "normal_y")),
@@ -283,7 +285,7 @@ class LedgerWriter:
             records["normal_impulse"].tolist(), records["tangent_impulse"].tolist(),
             np.where(found.sticks, "sticks", "slips").tolist(),
             records["restitution"].tolist(), _or_empty(found.e_found), found.energy_lost.tolist(),
-            _or_empty(found.since), [LAWS[law] for law in records["law"].tolist()],
+            _or_empty(since_last(records, self._last)), [LAWS[law] for law in records["law"].tolist()],
             records["points"].tolist(), np.where(records["alone"] == 1, "no", "yes").tolist(),
         )  # fmt: skip
         self._rows.write(zip(*columns, strict=True))

@@ -208,6 +208,7 @@ SENTENCES = {
     "contradicts": "contradicts other joints: not all can be kept",
     "does_not_hold": "does not hold what it joins",
     "redundant": "holds what other joints hold already: how they share the load is not determined (rows)",
+    "blocked_motor": "has a motor that does nothing, as other joints hold what it would move",
     "mass_at_one_end": "a Mass and a Velocity at one end",
     "ends_in_one_place": "has both ends in one place, where a distance has no direction",
     "one_joint_less": "one joint less",

@@ -14,6 +14,7 @@ import math
 import pickle
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
+from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import ENERGY_CAUSES
 from physicslab.diagnostics.figures import COLLISIONS, FUNCTIONS, Figures, Record, quantity_of
 from physicslab.diagnostics.ledger import read_impacts
@@ -26,8 +27,10 @@ from physicslab.ecs.quantity_text import (
     in_words,
     is_known,
 )
+from physicslab.ensembles.rollout import MOTION
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import entity_names
+from physicslab.state.run import Run
 from physicslab.world import World
 
 type Measure = str | Callable[[World], float]
@@ -187,11 +190,48 @@ class Measures:
         if self.needs_path:
             self._record.add()
 
+    @property
+    def path_is_motion(self) -> bool:
+        """Whether some measure looks at the whole run, and at nothing but the motion of bodies there."""
+        return self.needs_path and self._motion(self._record) is not None
+
+    @property
+    def read_at_end(self) -> list[tuple[int, str]] | None:
+        """Entities and what is read of their motion at the end, where no measure needs anything else."""
+        return None if self._functions or self.needs_path or self._impacts else self._motion(self._ends)
+
+    def _motion(self, record: Record) -> list[tuple[int, str]] | None:
+        """Return the entities that move, and what of their motion, that are all of a record's columns."""
+        ids = {self._world.label(entity): entity for entity in self._world.entities()}
+        found: list[tuple[int, str]] = []
+        for name in record.columns:
+            body, _, quantity = name.rpartition(".")
+            if quantity not in MOTION or body not in ids:
+                return None
+            if not all(self._world.has(ids[body], kind) for kind in (Transform, Velocity)):
+                return None
+            found.append((ids[body], quantity))
+        return found
+
+    def take(self, run: Run) -> None:
+        """Take the samples of a run that was recorded."""
+        if self.needs_path:
+            self._record.take(
+                run.times.tolist(), [run.columns[name].tolist() for name in self._record.columns]
+            )
+
+    def values_at(self, time: float, read: Sequence[float]) -> tuple[list[float], str]:
+        """Return the measures of a run that ended at a time [s], where this was read, and why one is NaN."""
+        self._ends.take([time], [[value] for value in read])
+        return self._evaluated(_Impacts(None, 0))
+
     def values(self) -> tuple[list[float], str]:
         """Return the measures of the run that has ended [SI], and why one of them is NaN."""
-        impacts = _Impacts(self._world if self._impacts else None, self._since)
         self._ends.clear()
         self._ends.add()
+        return self._evaluated(_Impacts(self._world if self._impacts else None, self._since))
+
+    def _evaluated(self, impacts: _Impacts) -> tuple[list[float], str]:
         path, end = Figures(self._record, impacts), Figures(self._ends, impacts)
         found, why = [], ""
         for name in self._names:

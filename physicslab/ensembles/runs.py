@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from physicslab.ecs.fields import InvalidValue
 from physicslab.ensembles.measures import Measure, Measures
-from physicslab.ensembles.result import EnsembleResult, check_format, write_result
+from physicslab.ensembles.result import EnsembleResult, check_format, package, write_result
 from physicslab.ensembles.sink import Sink
 from physicslab.ensembles.space import Given, space_of
 from physicslab.ensembles.task import Task
@@ -21,6 +23,7 @@ from physicslab.files.json_text import json_bytes
 from physicslab.files.replace import check_writable, reason_of
 from physicslab.files.scene import load_scene
 from physicslab.files.writer import write_scene
+from physicslab.state.run import BODY_COLUMNS
 from physicslab.stepping.run import run_length
 from physicslab.world import World
 
@@ -36,6 +39,7 @@ def ensemble(
     measure: Measure | Mapping[str, Measure],
     seconds: float | None = None,
     steps: int | None = None,
+    until: str | None = None,
     samples: int | None = None,
     seed: int = 0,
     replicas: int = 1,
@@ -43,7 +47,7 @@ def ensemble(
     executor: str | Executor = "processes",
     workers: int | None = None,
     out: str | os.PathLike[str] | None = None,
-    progress: Callable[[float], object] | None = None,
+    progress: Callable[[float], object] | bool = False,
 ) -> EnsembleResult:
     """Run a scene once for each row of a space, and measure each run.
 
@@ -61,6 +65,8 @@ def ensemble(
         (:mod:`physicslab.ensembles.measures`), or an importable function of the world at its end.
     seconds, steps : float or int
         How long a run is: one of the two.
+    until : str, optional
+        A condition with which a run ends, as of :meth:`World.record`; within ``seconds``, or it failed.
     samples, seed : int
         How many are drawn, for each combination of the grids, and by which seed. A row's numbers depend on
         the seed and on its place alone.
@@ -74,8 +80,9 @@ def ensemble(
     out : path, optional
         A file (``.npz``, ``.csv``, ``.parquet``) for the columns. Until it is whole, its rows are in a folder
         beside it, and what is run again goes on there.
-    progress : callable, optional
-        Called with the share that is done, from 0 to 1.
+    progress : callable or bool
+        Called with the share that is done, from 0 to 1; ``True`` shows a bar with the time that is left, in a
+        terminal or a notebook (needs tqdm, which comes with the extra ``notebook``).
 
     Returns
     -------
@@ -95,18 +102,33 @@ def ensemble(
     [1.126, 1.685, 1.964]
     """
     task = task_of(
-        scene, space, measure=measure, seconds=seconds, steps=steps, samples=samples, seed=seed,
+        scene, space, measure=measure, seconds=seconds, steps=steps, until=until, samples=samples, seed=seed,
         replicas=replicas, jitter=jitter,
     )  # fmt: skip
     if isinstance(executor, str) and executor not in KINDS:
         raise SceneError(f"executor {shown(executor)}: must be one of {', '.join(KINDS)}, or an Executor")
-    return run_task(task, Workers(executor, workers), None if out is None else Path(out), progress)
+    with _told(progress, len(task.space)) as tell:
+        return run_task(task, Workers(executor, workers), None if out is None else Path(out), tell)
+
+
+@contextmanager
+def _told(
+    progress: Callable[[float], object] | bool, rows: int
+) -> Iterator[Callable[[float], object] | None]:
+    """Give what is told of the share that is done, if anything is."""
+    if not isinstance(progress, bool):
+        yield progress
+    elif not progress:
+        yield None
+    else:
+        with package("tqdm.auto", "progress=True").tqdm(total=rows, unit=" runs") as bar:
+            yield lambda share: bar.update(round(share * rows) - bar.n)
 
 
 def task_of(
     scene: str | os.PathLike[str] | Mapping[str, Any] | World, space: Mapping[str, Given], *,
     measure: Measure | Mapping[str, Measure], seconds: float | None = None, steps: int | None = None,
-    samples: int | None = None, seed: int = 0, replicas: int = 1,
+    until: str | None = None, samples: int | None = None, seed: int = 0, replicas: int = 1,
     jitter: float | str | Mapping[str, float | str] = 0.0,
 ) -> Task:  # fmt: skip
     """Return what :func:`ensemble` of the same arguments runs, all of it checked."""
@@ -121,9 +143,22 @@ def task_of(
     for name in measures:
         if name in taken:
             raise SceneError(f"measure {shown(name)}: is the name of another column")
-    Measures(trial, measures)
+    tried = Measures(trial, measures)
     run_length(trial, seconds, steps)
-    return Task(document, rows, dict(measures), seconds, steps)
+    if until is not None:
+        _check_until(trial, until, tried)
+    return Task(document, rows, dict(measures), seconds, steps, until)
+
+
+def _check_until(world: World, until: str, measures: Measures) -> None:
+    """Refuse a condition that a world has not, and measures that runs until one have not."""
+    try:
+        world.record(0.0, until=until)
+    except InvalidValue as error:
+        raise SceneError(f"until {shown(until)}: must be {error.allowed}") from error
+    if measures.needs_path and not measures.path_is_motion:
+        words = ", ".join(BODY_COLUMNS)
+        raise SceneError(f"measure: with until, what looks at the whole run must be of {words} of what moves")
 
 
 def run_task(

@@ -10,7 +10,7 @@ import pickle
 import threading
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any
 
@@ -21,17 +21,20 @@ from physicslab.components import Material, Shape, Velocity
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
 from physicslab.ensembles.measures import Measure, Measures
+from physicslab.ensembles.rollout import Rollout
 from physicslab.ensembles.space import Space, Values
 from physicslab.files.assignments import put
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import SECTIONS, Place, entity_names, find_place
 from physicslab.files.reader import read_scene
 from physicslab.kernels.keys import sources_key
-from physicslab.stepping.partition import movable_in, why_whole
+from physicslab.kernels.tiers import compile_first
+from physicslab.stepping.partition import is_one
 from physicslab.stepping.plan import choose_plan
+from physicslab.stepping.run import run_length
 from physicslab.world import World
 
-_SETTLED = ("Transform", "Velocity")
+_SETTLED = ("Transform", "Velocity", "Mass")
 """Components whose values decide nothing about which systems a world needs."""
 _REASON_LIMIT = 300
 
@@ -49,7 +52,9 @@ class Task:
     measures : mapping of str to str or callable
         Measures of each run, by their columns.
     seconds, steps : float or int, optional
-        How long a run is; one of the two.
+        How long a run is, at most; one of the two.
+    until : str, optional
+        A condition with which it ends.
     """
 
     scene: bytes
@@ -57,12 +62,12 @@ class Task:
     measures: Mapping[str, Measure]
     seconds: float | None
     steps: int | None
+    until: str | None = None
 
     @cached_property
     def payload(self) -> bytes:
         """The bytes sent with each piece of work."""
-        own = {name: getattr(self, name) for name in ("scene", "space", "measures", "seconds", "steps")}
-        return pickle.dumps(own)
+        return pickle.dumps({part.name: getattr(self, part.name) for part in fields(self)})
 
     @cached_property
     def digest(self) -> bytes:
@@ -70,7 +75,7 @@ class Task:
         measures = {
             name: one if isinstance(one, str) else _code_of(one) for name, one in self.measures.items()
         }
-        settings = json.dumps([self.seconds, self.steps, measures, sources_key()])
+        settings = json.dumps([self.seconds, self.steps, self.until, measures, sources_key()])
         return hashlib.sha256(self.scene + b"\0" + settings.encode()).digest()
 
     def keys(self, columns: Mapping[str, Values]) -> NDArray[np.uint8]:
@@ -135,11 +140,17 @@ class Block:
     wall_s: NDArray[np.float64]
     failures: dict[int, str]
 
+    def note(self, number: int, why: str) -> None:
+        """Keep why a run, by its place in the block, has no result, if there is a reason."""
+        if why:
+            self.failures[self.first + number] = shortened(printable(why), _REASON_LIMIT)
+
 
 class Runner:
     """Runs rows of a task, one after the other, in one world where that is possible."""
 
     def __init__(self, task: Task) -> None:
+        compile_first()
         self.task = task
         self._names = list(task.measures)
         world = read_scene(json.loads(task.scene), "the scene")
@@ -156,35 +167,46 @@ class Runner:
         )
         self._changes = world.entity_index.changes
         self._plan = world.plan
-        self._alone = why_whole(world, world.schedule) is not None or np.count_nonzero(movable_in(world)) < 2
-        running = set(world.schedule.running)
+        self._alone = is_one(world, world.schedule)
+        running, read = set(world.schedule.running), self._measures.read_at_end
         self._asked = [
             (system, system in running)
             for system in world.schedule.systems
             if any(kind in kinds and kind.__name__ not in _SETTLED for kind in system.needs)
         ]
+        self._rollout: Rollout | None = None
+        if self._in_place and self._alone and self._places and read is not None and task.until is None:
+            self._rollout = Rollout(world, self._places, read, self._chooses_the_same)
 
     def block(self, first: int, last: int) -> Block:
         """Run the rows from ``first`` up to ``last``."""
         columns = self.task.space.columns(first, last)
-        values = np.full((last - first, len(self._names)), math.nan)
-        wall_s, failures = np.zeros(last - first), {}
-        rows = (
-            zip(*(columns[name].tolist() for name in self._places), strict=True)
-            if self._places
-            else [()] * len(values)
-        )
-        for number, row in enumerate(rows):
-            began = time.perf_counter()
+        block = Block(first, np.full((last - first, len(self._names)), math.nan), np.zeros(last - first), {})
+        made = self._roll_out(block, columns)
+        rows = [*zip(*(columns[name].tolist() for name in self._places), strict=True)] or [()] * len(made)
+        for number in np.flatnonzero(~made).tolist():
+            began, why = time.perf_counter(), ""
             try:
-                found, why = self._run(row)
-                values[number] = found
+                block.values[number], why = self._run(rows[number])
             except Exception as error:  # of whatever kind: the other rows go on
                 why = _reason(error)
-            if why:
-                failures[first + number] = shortened(printable(why), _REASON_LIMIT)
-            wall_s[number] = time.perf_counter() - began
-        return Block(first, values, wall_s, failures)
+            block.note(number, why)
+            block.wall_s[number] = time.perf_counter() - began
+        return block
+
+    def _roll_out(self, block: Block, columns: Mapping[str, Values]) -> NDArray[np.bool_]:
+        """Make what runs of a block need no world of their own; return which (n,) those are."""
+        if self._rollout is None:
+            return np.zeros(len(block.wall_s), np.bool_)
+        began, world = time.perf_counter(), self._world
+        length = run_length(world, self.task.seconds, self.task.steps)
+        ends, made = self._rollout.run(columns, length)
+        end = world.time + length.seconds
+        for number in np.flatnonzero(made).tolist():
+            block.values[number], why = self._measures.values_at(end, ends[number].tolist())
+            block.note(number, why)
+        block.wall_s[made] = (time.perf_counter() - began) / max(1, int(made.sum()))
+        return made
 
     def _run(self, row: Sequence[Any]) -> tuple[list[float], str]:
         """Make the run of a row; return its measures, and why one of them is no number."""
@@ -194,12 +216,22 @@ class Runner:
             put(world, dict(zip(self._places.values(), row, strict=True)))
             measures = Measures(world, self.task.measures)
         measures.begin()
-        if measures.needs_path:
+        if self.task.until is not None or measures.path_is_motion:
+            self._record(world, measures)
+        elif measures.needs_path:
             for _ in world.stepping(seconds=self.task.seconds, steps=self.task.steps):
                 measures.sample()
         else:
             world.run(seconds=self.task.seconds, steps=self.task.steps)
         return measures.values()
+
+    def _record(self, world: World, measures: Measures) -> None:
+        """Make a run that is recorded, as it ends with a condition or measures look at its motion."""
+        task, length = self.task, run_length(world, self.task.seconds, self.task.steps)
+        run = world.record(length.seconds, until=task.until)
+        if task.until is not None and run.found is None:
+            raise SceneError(f"until {shown(task.until)}: does not begin to hold within {length.seconds:g} s")
+        measures.take(run)
 
     def _set(self, row: Sequence[Any]) -> bool:
         """Go back and give the fields their values; return whether all else is as in a world made so."""
@@ -217,28 +249,33 @@ class Runner:
                 setattr(handle, place.spec.name, whole)
             except InvalidValue as error:
                 raise SceneError(f"{place.words} = {shown(value)}: must be {error.allowed}") from error
+        with world.active():
+            if not self._alone:
+                world.islands.forget(world)
+            elif self._bounces():
+                return True
+            world.synchronise()
+            if self._chooses_the_same():
+                return True
         if not self._alone:
             world.stale = world.entity_index.motion_edited = True
-            return True
-        return self._chooses_the_same()
+        return not self._alone
 
     def _chooses_the_same(self) -> bool:
         """Whether the same systems and the same method would be chosen for the values of now."""
         world = self._world
-        with world.active():
-            if not self._asked and self._bounces():
-                return True
-            world.synchronise()
-            for system, runs in self._asked:
-                if (system.why_left_out(world) is None) != runs:
-                    return False
-            return choose_plan(world, world.schedule) == self._plan
+        if self._bounces():
+            return True
+        for system, runs in self._asked:
+            if (system.why_left_out(world) is None) != runs:
+                return False
+        return choose_plan(world, world.schedule) == self._plan
 
     def _bounces(self) -> bool:
         """Whether the flight of one body from impact to impact, which was chosen, is chosen again."""
         world, plan = self._world, self._plan
         velocity = world.table(Velocity)
-        if plan.collisions != "exact" or np.count_nonzero(velocity.present) != 1:
+        if self._asked or plan.collisions != "exact" or np.count_nonzero(velocity.present) != 1:
             return False
         x, y = velocity["linear"][velocity.present][0]
         shaped, physics = world.table(Shape).present, world.physics

@@ -39,6 +39,11 @@ def ask_before_compiling(ask: _Ask | None) -> None:
     _ask = ask
 
 
+def asked() -> _Ask | None:
+    """Return what is called with kernels that are needed and not loaded, if anything is."""
+    return _ask
+
+
 def seconds_waited() -> float:
     """Return how long [s] this process has spent on compiling kernels, or on loading them, so far."""
     return _waited_ns / 1e9

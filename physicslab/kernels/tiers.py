@@ -13,16 +13,21 @@ bits), and each is compiled when one of these is reached:
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Iterator, Sequence
+import logging
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from types import ModuleType, TracebackType
 from typing import Any
 
 from numba.extending import is_jitted
 
 from physicslab.kernels import cache, interpreter
-from physicslab.kernels.loading import ask_before_compiling, load
+from physicslab.kernels.loading import ask_before_compiling, asked, load
 from physicslab.kernels.twins import natives
 
+_log = logging.getLogger(__name__)
+_WORTH_TELLING = 1.0
+"""Time [s] of a wait that is announced."""
 _PER_BYTE = 2.0e-4
 """Time [s] to compile a byte of Python's bytecode: 41 s for all kernels on an AMD EPYC of 2026."""
 _FIRST = 1.0
@@ -153,3 +158,81 @@ class Tiers:
         for jitted in dict.fromkeys((*due, *forces)):
             load(jitted)
             self._compiled_any = True
+
+
+class FirstRuns(Tiers):
+    """The same for a program that uses the library, whose runs are many: from its first run to its end.
+
+    It says once by ``logging`` that scenes are interpreted, and what is compiled, which is worth a wait.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(True)
+        self._told = False
+        self.small = True
+
+    def _ask(self, missing: Sequence[Any]) -> Sequence[Any]:
+        if self.small:
+            absent = super()._ask(missing)
+            if absent and not self._told:
+                self._told = True
+                _log.warning(
+                    "kernels are not compiled for this processor yet: they are interpreted, "
+                    "until compiling costs less"
+                )
+            return absent
+        self._tell([jitted for jitted in missing if not cache.is_kept(jitted.py_func)])
+        return ()
+
+    def _compile(self, due: Iterable[Any]) -> None:
+        due = [jitted for jitted in due if not jitted.compiled]
+        self._tell(due)
+        super()._compile(due)
+
+    def _tell(self, due: Sequence[Any]) -> None:
+        """Say what is compiled, and about how long that takes."""
+        seconds = sum(map(compile_seconds, due)) + (self._beginning if due else 0.0)
+        if seconds >= _WORTH_TELLING:
+            _log.warning("compiling %s, once: about %.0f s", ", ".join(one.__name__ for one in due), seconds)
+
+    @property
+    def decides(self) -> bool:
+        """Whether it is what decides on kernels that are not compiled."""
+        return asked() == self._ask
+
+
+_first_runs: FirstRuns | None = None
+_compiles_first = os.environ.get("PHYSICSLAB_INTERPRET") == "0"
+
+
+def begin_run(is_small: Callable[[], bool]) -> FirstRuns | None:
+    """Let what a run needs be interpreted at first, where nothing else has decided on that.
+
+    Parameters
+    ----------
+    is_small : callable
+        Tells whether steps are interpreted in tens of milliseconds.
+
+    Returns
+    -------
+    FirstRuns or None
+        What is to be told how far the run is (:meth:`Tiers.foresee`).
+    """
+    global _first_runs
+    if _compiles_first or interpreter.is_forced():
+        return None
+    if asked() is None:
+        _first_runs = FirstRuns()
+        _first_runs.__enter__()
+    if _first_runs is None or not _first_runs.decides:
+        return None
+    _first_runs.small = is_small()
+    return _first_runs
+
+
+def compile_first() -> None:
+    """Let all be compiled before it is called, as where many processes share what one has compiled."""
+    global _compiles_first
+    _compiles_first = True
+    if _first_runs is not None and _first_runs.decides:
+        _first_runs.__exit__(None, None, None)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.kernels.joints.blocks import ENTRY, GROUP, NODE, NODE_STATE, OF_NODE
-from physicslab.kernels.joints.soft import HOLD
+from physicslab.kernels.joints.soft import HOLD, LIMIT, MOTOR
 from physicslab.state.joint_rows import Row
 
 _MOST = 100_000
@@ -64,11 +64,12 @@ def order_rows(rows: Sequence[Row], joints: Sequence[range], moves: Sequence[boo
     Joints that share a moving body are one block, in an order in which little has to be computed. A block
     that would cost too much is one for each joint instead.
     """
-    nodes = [_nodes_of(joint, rows, moves) for joint in joints]
+    nodes, motors = _nodes_of(joints, rows, moves)
     held = [sorted({body for node in own for body in node.bodies}) for own in nodes]
     made = _Blocks(rows)
     for group in _groups(held):
-        order = _eliminated(group, held, [len(own) for own in nodes])
+        sizes = [len(own) for own in nodes]
+        order = _eliminated(group, held, sizes, motors) or _eliminated(group, held, sizes, range(0))
         if order is not None:
             made.add(order, nodes)
             continue
@@ -77,17 +78,26 @@ def order_rows(rows: Sequence[Row], joints: Sequence[range], moves: Sequence[boo
     return made.blocks()
 
 
-def _nodes_of(joint: range, rows: Sequence[Row], moves: Sequence[bool]) -> list[_Node]:
-    """Return the nodes of a joint: those that have bounds first, which are mostly passed over."""
-    bounded = [[row] for row in joint if rows[row].role != HOLD]
-    holding = [row for row in joint if rows[row].role == HOLD]
-    pairs = [holding[n : n + 2] for n in range(0, len(holding), 2)]
-    return [
-        _Node(
-            own, sorted({end for row in own for term in rows[row].terms for end in term[1:3] if moves[end]})
-        )
-        for own in bounded + pairs
-    ]
+def _nodes_of(
+    joints: Sequence[range], rows: Sequence[Row], moves: Sequence[bool]
+) -> tuple[list[list[_Node]], range]:
+    """Return the nodes of each joint, those of limits first, which are mostly passed over; then each motor's.
+
+    Also which are the motors': a row that depends on those before it gives way.
+    """
+
+    def node(own: Sequence[int]) -> _Node:
+        ends = {end for row in own for term in rows[row].terms for end in term[1:3] if moves[end]}
+        return _Node(own, sorted(ends))
+
+    holding, motors = list[list[_Node]](), list[list[_Node]]()
+    for joint in joints:
+        held = [row for row in joint if rows[row].role == HOLD]
+        limits = [[row] for row in joint if rows[row].role == LIMIT]
+        pairs = [held[n : n + 2] for n in range(0, len(held), 2)]
+        holding.append([node(own) for own in limits + pairs])
+        motors += [[node([row])] for row in joint if rows[row].role == MOTOR]
+    return holding + motors, range(len(holding), len(holding) + len(motors))
 
 
 def _groups(held: Sequence[Sequence[int]]) -> list[list[int]]:
@@ -115,12 +125,12 @@ def _groups(held: Sequence[Sequence[int]]) -> list[list[int]]:
 
 
 def _eliminated(
-    group: Sequence[int], held: Sequence[Sequence[int]], sizes: Sequence[int]
+    group: Sequence[int], held: Sequence[Sequence[int]], sizes: Sequence[int], motors: range
 ) -> list[tuple[int, list[int]]] | None:
     """Return the joints of a group as they are eliminated, each with the later ones that it then acts on.
 
     The joint with the fewest neighbours is next (Tinney & Walker, Proc. IEEE 55, 1967, 1801): trees from
-    their tips on. ``None`` where that would take too long.
+    their tips on; ``motors`` come last. ``None`` where that would take too long.
     """
     of: dict[int, set[int]] = {}
     for joint in group:
@@ -129,12 +139,12 @@ def _eliminated(
     if any(len(beside) ** 3 > 6 * _MOST for beside in of.values()):  # at a body all act on each other
         return None
     beside = {joint: set[int]().union(*(of[body] for body in held[joint])) - {joint} for joint in group}
-    waiting = [(len(others), joint) for joint, others in beside.items()]
+    waiting = [(joint in motors, len(others), joint) for joint, others in beside.items()]
     heapq.heapify(waiting)
     order: list[tuple[int, list[int]]] = []
     left, cost = set(group), 0
     while left:
-        size, joint = heapq.heappop(waiting)
+        _, size, joint = heapq.heappop(waiting)
         if joint not in left or size != len(beside[joint]):
             continue
         left.discard(joint)
@@ -147,7 +157,7 @@ def _eliminated(
         for other in order[-1][1]:
             beside[other] |= later
             beside[other] -= {joint, other}
-            heapq.heappush(waiting, (len(beside[other]), other))
+            heapq.heappush(waiting, (other in motors, len(beside[other]), other))
     return order
 
 

@@ -1,6 +1,7 @@
 """Scenes of few bodies that bounce: ballistic motion between impacts, each impact at its own time."""
 
 import time
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,13 +13,13 @@ from physicslab.contacts.near_pairs import list_all
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.events import events, path
 from physicslab.kernels.wide import slots
-from physicslab.state.masses import check_finite
+from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.remainders import Remainders, coordinate_keys
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import pairs_that_may_meet, turning_rows, with_links
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.rigid import Rigid
-from physicslab.stepping.stepper import Advance, divisions
+from physicslab.stepping.stepper import Advance, Stretch, divisions
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
@@ -33,6 +34,7 @@ _MASS = 12
 """The column of the mass that gravity accelerates."""
 _LONGER = 1e-2
 """Share by which a step may be longer than the scene's own without being divided."""
+_run_events: Callable[..., tuple[int, int, int, float]] = events.run_events
 _IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 
 
@@ -199,20 +201,16 @@ class EventDriven:
         Returns how many steps were made, why no more, and how far into the next one bodies are [s].
         """
         began = time.perf_counter_ns()
-        contacts, bodies = state.contacts, state.bodies
-        self._paths[:, _MASS] = np.where(self._ballistic, state.table(Mass)["mass"], 0.0)
+        contacts = state.contacts
+        self._take_masses(state)
         samples, taken = state.samples, np.zeros((0, 0))
         first, stride = steps + 1, 1
         if samples is not None and span <= samples.dt * (1.0 + _LONGER):
             places, after = samples.due(state.time, steps * span)
             taken = samples.put(places, state.time + after).reshape(len(places), 6 * len(self._moving))
             first, stride = samples.steps_ahead(state.time), samples.stride
-        made, impacts, why, flown = events.run_events(
-            contacts.manifolds, contacts.points, contacts.recorded,
-            self._paths, self._mode, self._face, self._apart, self._due,
-            self._impact_positions, motion_of(state), shapes_of(state), materials_of(state),
-            (bodies.inverse_mass, bodies.inverse_inertia), self._bounds,
-            state.account.sums, contacts.log, contacts.logged, state.time, span, steps,
+        made, impacts, why, flown = _run_events(
+            *self._arguments(state), contacts.logged, state.time, span, steps,
             self._moving, first, stride, taken,
         )  # fmt: skip
         contacts.logged += impacts
@@ -221,6 +219,47 @@ class EventDriven:
         for name in self._within:
             self._schedule.note(name, made, 0)  # their time is part of the loop's
         return made, why, flown
+
+    def _take_masses(self, state: State) -> None:
+        """Take the masses that gravity accelerates."""
+        self._paths[:, _MASS] = np.where(self._ballistic, state.table(Mass)["mass"], 0.0)
+
+    def _arguments(self, state: State) -> tuple[Any, ...]:
+        """Return the arrays that the loop takes, which stay the same while structure and pairs do."""
+        contacts, bodies = state.contacts, state.bodies
+        return (
+            contacts.manifolds, contacts.points, contacts.recorded,
+            self._paths, self._mode, self._face, self._apart, self._due,
+            self._impact_positions, motion_of(state), shapes_of(state), materials_of(state),
+            (bodies.inverse_mass, bodies.inverse_inertia), self._bounds, state.account.sums, contacts.log,
+        )  # fmt: skip
+
+    def repeatable(self, state: State, stretches: Sequence[Stretch]) -> Callable[[], bool]:
+        """Return what makes steps from the present places, velocities and masses, as a new stepper does."""
+        self.forget()
+        self._begin(state)
+        contacts, moving = state.contacts, self._moving
+        arrays = contacts.manifolds[: contacts.recorded], contacts.points[: 2 * contacts.recorded]
+        records = [array.view(np.uint8) for array in arrays]
+        blank = [record.copy() for record in records]
+        fixed, nothing, logged = self._arguments(state), np.zeros((0, 0)), contacts.logged
+
+        def make() -> bool:
+            self.forget()
+            self._take_masses(state)
+            for record, then in zip(records, blank, strict=True):
+                record[:] = then
+            for began, h, steps in stretches:
+                made, _, _, _ = _run_events(*fixed, logged, began, h, steps, moving, steps + 1, 1, nothing)
+                if made < steps:
+                    return False
+            try:
+                check_finite(state, state.time)
+            except Diverged:
+                return False
+            return True
+
+        return make
 
 
 def _held(state: State) -> NDArray[np.bool_]:

@@ -2,6 +2,7 @@
 
 import math
 import time
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -15,7 +16,7 @@ from physicslab.state.state import State
 from physicslab.stepping.accounting import put_together
 from physicslab.stepping.fastest_body import fastest_body
 from physicslab.stepping.plan import StepPlan, tolerance_for
-from physicslab.stepping.stepper import Advance, divisions
+from physicslab.stepping.stepper import Advance, Stretch, divisions
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.joint import JointSystem
 from physicslab.systems.schedule import Schedule
@@ -95,6 +96,24 @@ class Flow:
             state.time = start
         check_finite(state, state.time + h * steps)
         return Advance(steps, parts)
+
+    def repeatable(self, state: State, stretches: Sequence[Stretch]) -> Callable[[], bool]:
+        """Return what makes steps from the present places and velocities; see :class:`Repeatable`."""
+        low, rates = state.remainders, dict(state.fastest_rates)
+
+        def make() -> bool:
+            state.remainders = low
+            state.fastest_rates.clear()
+            state.fastest_rates.update(rates)
+            try:
+                for began, h, steps in stretches:
+                    state.time = began
+                    self.advance(state, h, steps)
+            except (Diverged, NotSmooth):
+                return False
+            return True
+
+        return make
 
     def _flow(self, state: State, h: float, steps: int) -> None:
         method, ode = self._method, self._ode

@@ -89,6 +89,14 @@ def _why_coupled(state: State, schedule: Schedule) -> str | None:
     return None
 
 
+def is_one(state: State, schedule: Schedule) -> bool:
+    """Whether a world is one island wherever its bodies are: they are few, or all coupled."""
+    rows = np.flatnonzero(movable_in(state))
+    if len(rows) < 2 or why_whole(state, schedule) is not None:
+        return True
+    return not join(np.arange(len(rows)), _couples(state, schedule, rows).tolist()).any()
+
+
 def groups_of(state: State, schedule: Schedule, rows: Rows) -> Partition:
     """Return into which islands some movable bodies are to be divided."""
     if len(rows) < 2:
@@ -134,11 +142,16 @@ def _labels(state: State, schedule: Schedule, rows: Rows) -> Rows:
         number += 1
     shapeless = np.flatnonzero(labels < 0)
     labels[shapeless] = number + np.arange(len(shapeless))
+    return join(labels, labels[_couples(state, schedule, rows)].tolist())
+
+
+def _couples(state: State, schedule: Schedule, rows: Rows) -> Rows:
+    """Return which of some bodies forces and joints hold together, as pairs of places among them (n, 2)."""
     place = np.full(len(state.entity_index), -1)
     place[rows] = np.arange(len(rows))
     pairs = [couples for force in schedule.forces if (couples := force.couples(state)) is not None]
-    ends = place[np.concatenate([state.joints.edges, *pairs])]
-    return join(labels, labels[ends[(ends >= 0).all(axis=1)]].tolist())
+    ends: Rows = place[np.concatenate([state.joints.edges, *pairs])]
+    return ends[(ends >= 0).all(axis=1)]
 
 
 def join(labels: Rows, pairs: Iterable[Iterable[int]]) -> Rows:

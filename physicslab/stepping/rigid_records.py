@@ -8,21 +8,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform
 from physicslab.contacts.near_pairs import list_all
-from physicslab.kernels.rigid.features import (
-    FEATURE,
-    GAP,
-    LINK,
-    MU,
-    NX,
-    NY,
-    ONE,
-    OTHER,
-    PAIR,
-    PX,
-    PY,
-    RESTITUTION,
-    VERTEX,
-)
+from physicslab.kernels.rigid import features as F
 from physicslab.state.chain_links import segment_of_link
 from physicslab.state.state import State
 from physicslab.stepping.rigid_motion import MadeStep
@@ -60,7 +46,7 @@ class RigidRecords:
         of, measures, forces = made.points, made.measures, made.forces
         touching: list[int] = []
         for i in range(made.closed):
-            p = int(of[i, PAIR])
+            p = int(of[i, F.PAIR])
             if p >= len(self._pairs):
                 continue
             if self._chained[p]:
@@ -74,18 +60,18 @@ class RigidRecords:
                 continue
             if k == 0:
                 touching.append(p)
-            sign = 1.0 if of[i, ONE] == a else -1.0
+            sign = 1.0 if of[i, F.ONE] == a else -1.0
             record["count"] = k + 1
             record["normal_x"], record["normal_y"] = (
-                0.0 + sign * measures[i, NX],
-                0.0 + sign * measures[i, NY],
+                0.0 + sign * measures[i, F.NX],
+                0.0 + sign * measures[i, F.NY],
             )
-            record["friction"], record["restitution"] = measures[i, MU], measures[i, RESTITUTION]
+            record["friction"], record["restitution"] = measures[i, F.MU], measures[i, F.RESTITUTION]
             point = points[2 * p + k]
-            place = measures[i, PX : PY + 1]
+            place = measures[i, F.PX : F.PY + 1]
             point["arm_ax"], point["arm_ay"] = place - position[a]
             point["arm_bx"], point["arm_by"] = place - position[b]
-            point["separation"] = measures[i, GAP]
+            point["separation"] = measures[i, F.GAP]
             point["normal_impulse"] = forces[2 * i] * contacts.impulse_dt
             point["tangent_impulse"] = forces[2 * i + 1] * contacts.impulse_dt
         self._write_impacts(state, made.impacts)
@@ -95,9 +81,9 @@ class RigidRecords:
 
     def _key(self, state: State, made: MadeStep, i: int) -> tuple[int, ...]:
         """Return the pair of a point of a chain and its segment."""
-        a, b, _ = self._pairs[made.points[i, PAIR]].tolist()
-        feature, shapes = int(made.points[i, FEATURE]), state.bodies.shapes
-        link, row = (LINK - feature, ONE) if feature < 0 else (int(made.points[i, VERTEX]), OTHER)
+        a, b, _ = self._pairs[made.points[i, F.PAIR]].tolist()
+        feature, shapes = int(made.points[i, F.FEATURE]), state.bodies.shapes
+        link, row = (F.LINK - feature, F.ONE) if feature < 0 else (int(made.points[i, F.VERTEX]), F.OTHER)
         return a, b, -2 - segment_of_link(shapes, int(made.points[i, row]), link)
 
     def _list(self, state: State, made: MadeStep) -> tuple[NDArray[np.int64], dict[tuple[int, ...], int]]:
@@ -111,7 +97,7 @@ class RigidRecords:
         touched = {
             self._key(state, made, i)
             for i in range(made.closed)
-            if made.points[i, PAIR] < known and self._chained[made.points[i, PAIR]]
+            if made.points[i, F.PAIR] < known and self._chained[made.points[i, F.PAIR]]
         }
         entities = state.entity_index.entities
         of = {(int(entities[a]), int(entities[b])): (a, b) for a, b, _ in self._pairs[self._chained].tolist()}

@@ -10,8 +10,11 @@ from typing import Protocol
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import MIN_TIME, SimulationConfig
 from physicslab.ecs.fields import Field
+from physicslab.kernels.tiers import begin_run
 from physicslab.state.masses import Diverged, quiet
+from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
+from physicslab.stepping.small import is_small
 from physicslab.stepping.stepper import Advancer
 from physicslab.systems.schedule import Schedule
 
@@ -130,7 +133,9 @@ def strides(
 def _strides(
     world: Stepped, seconds: float | None, steps: int | None, stride: int, patience: float
 ) -> Iterator[int]:
-    due, at_once = time.monotonic() + patience, 1 if patience < math.inf else stride
+    assert isinstance(world, State)
+    first = begin_run(lambda: is_small(world))
+    due, at_once = time.monotonic() + patience, 1 if first is not None or patience < math.inf else stride
     length, start, done = run_length(world, seconds, steps), world.time, 0
     if not length.steps:
         world.time += length.seconds  # which is nothing, or too short for anything to move
@@ -143,6 +148,8 @@ def _strides(
             world.time = start + (done + world.steps - before) * length.dt
             raise
         world.time = start + length.elapsed(done)
+        if first is not None:
+            first.foresee(done / length.steps)
         taken = time.monotonic() - began
         if taken < 0.25 * patience:
             at_once = min(2 * at_once, stride)

@@ -67,6 +67,7 @@ class StageAccounts:
         driven = state.table(Velocity).present & (bodies.inverse_mass == 0.0) & ~bodies.sub_integrated
         self._driven = driven if others and driven.any() else None
         self._start: tuple[NDArray[np.float64], NDArray[np.float64]]
+        self._met: tuple[NDArray[np.float64], NDArray[np.float64]]
         self._before = bodies.packed[2, : 2 * len(driven)].reshape(-1, 2)
 
     @property
@@ -81,8 +82,7 @@ class StageAccounts:
 
     def begin_substep(self, state: State) -> None:
         """Note where bodies are."""
-        transform = state.table(Transform)
-        self._start = transform["position"].copy(), transform["angle"].copy()
+        self._start = _places(state)
 
     def note_force(self, system: System, before: NDArray[np.float64], state: State) -> None:
         """Note the pull of a force that is booked by itself; ``before`` (3 rows,) is that of those before."""
@@ -149,21 +149,49 @@ class StageAccounts:
 
     def book_way(self, state: State) -> None:
         """Book the work of forces along the way of the substep, and that of what drives against them."""
-        transform, bodies, sums = state.table(Transform), state.bodies, state.account.sums
-        way = np.concatenate(
-            ((transform["position"] - self._start[0]).ravel(), transform["angle"] - self._start[1])
-        )
-        kicked = (bodies.awake_inverse_mass > 0.0) & ~bodies.sub_integrated
-        rows = np.concatenate((np.repeat(kicked, 2), kicked & (bodies.awake_inverse_inertia > 0.0)))
+        bodies, sums, way = state.bodies, state.account.sums, self._way(state, self._start)
+        self._book_work(state, ~bodies.sub_integrated, way)
+        if self._driven is not None:
+            rows = np.concatenate((np.repeat(self._driven, 2), self._driven))
+            sums[HAND, ENERGY] -= float(bodies.pull[rows] @ way[rows])
+
+    def begin_impacts(self, state: State) -> None:
+        """Note where bodies of a flow are before impacts at their own times move them."""
+        self._met = _places(state)
+
+    def book_impacts(self, state: State) -> None:
+        """Book the work of forces along the way by which impacts have moved the bodies of a flow.
+
+        A body that met at the time t is put to where it would be, had it moved from then on with its new
+        velocity. Its flow knows nothing of that way.
+        """
+        way = self._way(state, self._met)
+        if way.any():
+            self._book_work(state, state.bodies.sub_integrated, way)
+
+    @staticmethod
+    def _way(state: State, start: tuple[NDArray[np.float64], NDArray[np.float64]]) -> NDArray[np.float64]:
+        """Return by how much bodies have moved and turned since the ``start``, as in ``bodies.pull``."""
+        (position, angle), (before, turned) = _places(state), start
+        return np.concatenate(((position - before).ravel(), angle - turned))
+
+    def _book_work(self, state: State, of: NDArray[np.bool_], way: NDArray[np.float64]) -> None:
+        """Book the work along a ``way`` of forces that store no energy, on the bodies ``of`` some rows."""
+        bodies, sums = state.bodies, state.account.sums
+        moved = (bodies.awake_inverse_mass > 0.0) & of
+        rows = np.concatenate((np.repeat(moved, 2), moved & (bodies.awake_inverse_inertia > 0.0)))
         worked = [(force.account, float(self._pulls[force][rows] @ way[rows])) for force in self._free]
         if self._damps:
             worked.append((DAMPING, float(self._dampers[rows] @ way[rows])))
         for account, energy in worked:
             # Damping gives no energy: what a kick gives that overshoots is an error of the method.
             sums[account, ENERGY] += min(energy, 0.0) if account == DAMPING else energy
-        if self._driven is not None:
-            rows = np.concatenate((np.repeat(self._driven, 2), self._driven))
-            sums[HAND, ENERGY] -= float(bodies.pull[rows] @ way[rows])
+
+
+def _places(state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return copies of the positions (rows, 2) [m] and angles [rad] of all bodies."""
+    transform = state.table(Transform)
+    return transform["position"].copy(), transform["angle"].copy()
 
 
 def _has_dampers(state: State) -> bool:

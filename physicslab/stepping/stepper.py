@@ -1,8 +1,9 @@
 """Steppers: ways to advance a state."""
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 from physicslab.ecs.fields import InvalidValue
 from physicslab.state.state import State
@@ -91,6 +92,23 @@ class Advancer(Protocol):
         ------
         Diverged
             If a value would not be finite. Whole steps before that one are counted by the stepper.
+        """
+
+
+type Stretch = tuple[float, float, int]
+"""When some steps begin [s], how long each is [s], and how many they are."""
+
+
+@runtime_checkable
+class Repeatable(Advancer, Protocol):
+    """A stepper that makes the same steps from many starts, with nothing chosen or booked in between."""
+
+    def repeatable(self, state: State, stretches: Sequence[Stretch]) -> Callable[[], bool]:
+        """Return what makes steps from where bodies are when it is called, as a new stepper would.
+
+        It returns whether it has made all of them: others are to make some where it has not. What is kept of
+        contacts, and what rounding has left out, is that of the moment at which this method is called, before
+        the first of them.
         """
 
 

@@ -129,7 +129,12 @@ class SubstepParts:
             elif split is not None:
                 self._hook(lambda state, h: split.take_part(stage, state, share * h))
         elif systems:
+            flown = stage is Stage.IMPACT and split is not None and accounts.notes_forces
+            if flown:
+                self._hook(lambda state, h: accounts.begin_impacts(state))
             reason = self._add_systems(state, stage, systems, share)
+            if flown:
+                self._hook(lambda state, h: accounts.book_impacts(state))
         if split is not None and stage is Stage.DRIFT:
             self._hook(lambda state, h: split.take_part(stage, state, share * h), share)
             if split.springs is not None:

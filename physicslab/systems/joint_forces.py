@@ -140,6 +140,11 @@ def _envelope(
 
     given = rows.tolist()
     neighbours = {row: {other for body in bodies[row] for other in acting[body]} - {row} for row in given}
-    orders = [(order, begins(order)) for order in (given, cuthill_mckee(neighbours)[::-1])]
+    # A row that depends on those before it gets no force: motors are last, and give way to what holds.
+    ordered = (
+        sorted(one, key=lambda row: bool(joints.role[row] == packing.MOTOR))
+        for one in (given, cuthill_mckee(neighbours)[::-1])
+    )
+    orders = [(one, begins(one)) for one in ordered]
     order, first = min(orders, key=lambda one: int(((np.arange(len(given)) - one[1]) ** 2).sum()))
     return np.array(order, np.int64), first

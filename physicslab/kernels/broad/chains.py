@@ -6,8 +6,6 @@ from physicslab.kernels import Numbers, Rows, Vectors, kernel
 from physicslab.kernels.geometry.shapes import ShapesTuple, named_shapes
 from physicslab.kernels.records import Pairs
 
-__all__ = ["add_chains"]
-
 _ARC = 0.05
 """How far arcs at its ends may lie beside a segment, of the larger one of its extents: half of the sagitta of
 15 degrees, times the root of 2."""

@@ -12,17 +12,6 @@ from physicslab.kernels.geometry.contact import CACHE_TOLERANCE, CACHE_TURN_TOLE
 from physicslab.kernels.geometry.pair import CONTACT_MARGIN
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents, named_shapes
 
-__all__ = [
-    "CORNERWISE",
-    "HIT_SHARE",
-    "all_inside",
-    "fat_boxes",
-    "fatten",
-    "left",
-    "still_holds",
-    "usual_speed",
-]
-
 CORNERWISE = math.sqrt(2.0)
 """Largest ratio of the distance of two boxes to their distance along the normal of a side."""
 _BOX_SHARE = 0.5 * CORNERWISE * (1.5 * CONTACT_MARGIN + WIDE_TOLERANCE * CACHE_TOLERANCE)

@@ -9,9 +9,6 @@ from numpy.typing import NDArray
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, always_inlined, inlined
 from physicslab.kernels.records import Couples, Pairs
 
-__all__ = ["cell_at", "find_pairs"]
-
-
 _COMPANY_LIMIT = 32
 """Largest number of overlapping bodies of a body's own size that make pairs with it."""
 _CELL_LIMIT = 1e15

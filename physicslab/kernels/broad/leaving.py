@@ -27,8 +27,6 @@ from physicslab.kernels.broad.near_pairs import beside, distance_to_activate, ma
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.near_counts import PROXIMITY, RECORDED, SCALAR, UNORDERED
 
-__all__ = ["add_pairs", "index_bodies"]
-
 _BODIES, _RECORDS = 20, 8
 """All pairs are listed again when one in so many bodies has left, and one more for so many records: to find
 the new pairs of a body takes as long as to list so many again."""

@@ -15,10 +15,6 @@ from physicslab.kernels.geometry.contact import ACTIVATION_RATIO
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.records import Couples, Manifold, Manifolds, Pairs, Points
 
-__all__ = [
-    "activate", "beside", "carry_over", "distance_to_activate", "make_blank", "partition", "sort_scalar",
-]  # fmt: skip
-
 _LONG = 4.0
 """Ratio of bounding radii from which the circle around the larger body shows little of where it is."""
 _FREE = -1

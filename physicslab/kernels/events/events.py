@@ -39,11 +39,6 @@ from physicslab.kernels.solver.impact_log import (
 )
 from physicslab.kernels.twins import endless
 
-__all__ = [
-    "BALLISTIC", "CAME_TO_REST", "DEEP", "DONE", "FIXED", "KINEMATIC", "OVERLAP", "REST", "TOGETHER",
-    "TOO_MANY_IMPACTS", "run_events",
-]  # fmt: skip
-
 FIXED, BALLISTIC, KINEMATIC = range(3)
 """Modes of a row: fixed; moving freely; moving and not deflected."""
 DONE, CAME_TO_REST, OVERLAP, TOO_MANY_IMPACTS, TOGETHER = range(5)

@@ -20,8 +20,6 @@ from physicslab.kernels.geometry.links import Link, beside_arc, link_of
 from physicslab.kernels.geometry.shapes import Shapes, face, vertex
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
 
-__all__ = ["curvature_of", "gap_to_link", "meet_link", "touch_link"]
-
 _FACE = 8
 """Where the features of a body's faces begin; those before are its vertices. A face of the chain is all of
 them."""

@@ -11,8 +11,6 @@ from typing import NamedTuple
 
 from physicslab.kernels import inlined
 
-__all__ = ["ROUNDING", "SEAM", "Course", "cross_line", "leave_circle", "meet_circle", "meet_line", "place_at"]
-
 ROUNDING = 1e-14
 """Share of a speed, or of a length, that rounding may have made."""
 SEAM = 1e-12

@@ -10,8 +10,6 @@ from physicslab.kernels.accounts import GRAVITY, book
 from physicslab.kernels.events.meeting import Course
 from physicslab.kernels.ode.compensated import add_pair, multiply
 
-__all__ = ["FIELDS", "advance_to", "begin", "place", "push", "seen_from", "velocity"]
-
 FIELDS = 13
 """Numbers of a path."""
 _X, _VX, _A, _T, _M = 0, 4, 8, 10, 12

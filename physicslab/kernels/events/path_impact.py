@@ -21,8 +21,6 @@ from physicslab.kernels.events.path import push
 from physicslab.kernels.ode.compensated import add_pair, multiply
 from physicslab.kernels.records import Manifold, Point
 
-__all__ = ["path_velocity", "resolve_ballistic_impacts"]
-
 
 @inlined
 def path_velocity(paths: Vectors, angular: Numbers, a: int, b: int) -> PairVelocity[float]:

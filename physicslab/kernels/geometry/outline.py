@@ -44,15 +44,8 @@ def lying(i: int, shapes: Shapes, c: float, s: float) -> Outline:
 
 
 @always_inlined
-def outline_of(i: int, angle: Numbers, shapes: Shapes) -> Outline:
-    """Return the outline of row i."""
-    c, s = (math.cos(angle[i]), math.sin(angle[i])) if shapes.vertices[i] > 1 else (1.0, 0.0)
-    return lying(i, shapes, c, s)
-
-
-@always_inlined
 def kept_outline(i: int, angle: Numbers, shapes: Shapes, rotations: Vectors) -> Outline:
-    """Return the same; ``rotations`` (rows, 3) keeps angles, and their cosines and sines."""
+    """Return the outline of row i; ``rotations`` (rows, 3) keeps angles, and their cosines and sines."""
     turns = shapes.vertices[i] > 1
     if turns and rotations[i, 0] != angle[i]:
         rotations[i, 0] = angle[i]

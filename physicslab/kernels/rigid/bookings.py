@@ -2,26 +2,10 @@
 
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, PX, book
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.equations import STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import (
-    CONTACTS,
-    DRIVEN,
-    FEATURE,
-    FRICTION,
-    JOINED,
-    JOINT,
-    MOTOR,
-    MOTORS,
-    NORMAL,
-    ONE,
-    STATUS,
-    TANGENT,
-    VT,
-    RigidScene,
-)
+from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.joint_points import motor_rate
-
-__all__ = ["book_contacts", "book_row", "book_speeds"]
 
 
 @inlined
@@ -38,22 +22,22 @@ def book_contacts(
         scene.rows,
         equations.points,
         equations.measures,
-        scene.accounts[CONTACTS],
+        scene.accounts[F.CONTACTS],
     )
     friction_work, work = 0.0, 0.0
     for i in range(count):
         along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
         account = contacts
-        if points[i, FEATURE] >= JOINT:
-            account = scene.accounts[JOINED]
-            if points[i, FEATURE] == MOTOR:
-                account = scene.accounts[MOTORS]
+        if points[i, F.FEATURE] >= F.JOINT:
+            account = scene.accounts[F.JOINED]
+            if points[i, F.FEATURE] == F.MOTOR:
+                account = scene.accounts[F.MOTORS]
                 given[account + ENERGY] += across * motor_rate(scene, points, measures, i)
-        elif points[i, STATUS] != STICKS:
-            friction_work += across * measures[i, VT]
+        elif points[i, F.STATUS] != STICKS:
+            friction_work += across * measures[i, F.VT]
         for side in range(2):
-            body = points[i, ONE + side]
-            n, t = NORMAL + 3 * side, TANGENT + 3 * side
+            body = points[i, F.ONE + side]
+            n, t = F.NORMAL + 3 * side, F.TANGENT + 3 * side
             x, y, turning = 2 * body, 2 * body + 1, 2 * rows + body
             fx = along * measures[i, n] + across * measures[i, t]
             fy = along * measures[i, n + 1] + across * measures[i, t + 1]
@@ -66,9 +50,9 @@ def book_contacts(
                 given[account + ANGULAR_MOMENTUM] += torque
             else:
                 work -= torque * v[turning]
-    given[scene.accounts[FRICTION] + ENERGY] += friction_work
-    if scene.accounts[DRIVEN] >= 0:
-        given[scene.accounts[DRIVEN] + ENERGY] += work
+    given[scene.accounts[F.FRICTION] + ENERGY] += friction_work
+    if scene.accounts[F.DRIVEN] >= 0:
+        given[scene.accounts[F.DRIVEN] + ENERGY] += work
 
 
 @inlined
@@ -83,7 +67,7 @@ def book_row(
     points, measures = equations.points, equations.measures
     along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
     for side in range(2):
-        body, n, t = points[i, ONE + side], NORMAL + 3 * side, TANGENT + 3 * side
+        body, n, t = points[i, F.ONE + side], F.NORMAL + 3 * side, F.TANGENT + 3 * side
         for k in range(3):
             place = 2 * body + k if k < 2 else 2 * scene.rows + body
             push = along * measures[i, n + k] + across * measures[i, t + k]
@@ -101,7 +85,7 @@ def book_row(
 @inlined
 def book_speeds(scene: RigidScene, q: Numbers, v: Numbers, sign: float) -> None:
     """Book the motion there is to contacts, with a sign: before they change speeds and after that."""
-    contacts, energy, px, py, spin = scene.accounts[CONTACTS], 0.0, 0.0, 0.0, 0.0
+    contacts, energy, px, py, spin = scene.accounts[F.CONTACTS], 0.0, 0.0, 0.0, 0.0
     for row in range(scene.rows):
         x, y, turning = 2 * row, 2 * row + 1, 2 * scene.rows + row
         if scene.inverse_mass[x] > 0.0:

@@ -18,19 +18,8 @@ from physicslab.kernels.geometry.links import (
 )
 from physicslab.kernels.geometry.shapes import Shapes, face, is_chain, vertex
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
-from physicslab.kernels.rigid.features import (
-    FEATURE,
-    GIVEN,
-    LINK,
-    ONE,
-    OTHER,
-    PAIR,
-    VERTEX,
-    Points,
-    RigidScene,
-)
-
-__all__ = ["distance_to_chain", "find_chain_points", "is_closed_on_chain"]
+from physicslab.kernels.rigid import features as F
+from physicslab.kernels.rigid.features import Points, RigidScene
 
 _Lie = tuple[float, float, float, float, float, float, float]
 """Where a body is, seen from the chain [m]; cosine and sine of its angle against that; its velocity in the
@@ -86,8 +75,8 @@ def _is_sharp(shapes: Shapes, chain: int, k: int, step: int, radius: float) -> b
 @inlined
 def _write(points: Points, n: int, pair: int, one: int, feature: int, other: int, corner: int) -> int:
     if n < len(points):
-        points[n, PAIR], points[n, ONE], points[n, OTHER] = pair, one, other
-        points[n, FEATURE], points[n, VERTEX] = feature, corner
+        points[n, F.PAIR], points[n, F.ONE], points[n, F.OTHER] = pair, one, other
+        points[n, F.FEATURE], points[n, F.VERTEX] = feature, corner
         n += 1
     return n
 
@@ -124,7 +113,7 @@ def _to_face(
         rate = nx * rate_y - ny * rate_x
         starts = _is_on(along, rate, tie, _is_sharp(shapes, chain, k, -1, radius))
         if starts and _is_on(link.size - along, -rate, tie, _is_sharp(shapes, chain, k, 1, radius)):
-            n = _write(points, n, p, chain, LINK - k, body, j)
+            n = _write(points, n, p, chain, F.LINK - k, body, j)
     return n
 
 
@@ -162,7 +151,7 @@ def _to_arc(
             one_rate, two_rate = beside_vertex(shapes, body, j, c * wx + s * wy, c * wy - s * wx)
             if not (_is_on(one, one_rate, tie, False) and _is_on(two, two_rate, tie, False)):
                 continue
-        n = _write(points, n, p, chain, LINK - k, body, j)
+        n = _write(points, n, p, chain, F.LINK - k, body, j)
     return n
 
 
@@ -247,17 +236,17 @@ def distance_to_chain(scene: RigidScene, chain: int, body: int, q: Numbers, enou
 def _goes_on(shapes: Shapes, points: Points, i: int, others: Points, k: int) -> bool:
     """Whether point i, of a chain, goes over into point k of the same pair as it moves along."""
     for side in range(2):
-        if points[i, ONE] != others[k, ONE]:
+        if points[i, F.ONE] != others[k, F.ONE]:
             return False
-        chain = points[i, ONE] if side == 0 else points[i, OTHER]
+        chain = points[i, F.ONE] if side == 0 else points[i, F.OTHER]
         if not is_chain(shapes, chain):
             continue
         if side == 0:
-            same = points[i, VERTEX] == others[k, VERTEX]
-            one, other = LINK - points[i, FEATURE], LINK - others[k, FEATURE]
+            same = points[i, F.VERTEX] == others[k, F.VERTEX]
+            one, other = F.LINK - points[i, F.FEATURE], F.LINK - others[k, F.FEATURE]
         else:
-            same = points[i, FEATURE] == others[k, FEATURE]
-            one, other = points[i, VERTEX], others[k, VERTEX]
+            same = points[i, F.FEATURE] == others[k, F.FEATURE]
+            one, other = points[i, F.VERTEX], others[k, F.VERTEX]
         return same and are_joined(shapes, chain, one, other)
     return False
 
@@ -269,10 +258,10 @@ def is_closed_on_chain(shapes: Shapes, points: Points, count: int, others: Point
     Or goes over into one of them; but a vertex touches each link by itself.
     """
     for i in range(count):
-        if points[i, PAIR] != others[k, PAIR]:
+        if points[i, F.PAIR] != others[k, F.PAIR]:
             continue
         same = True
-        for column in range(GIVEN):
+        for column in range(F.GIVEN):
             same = same and points[i, column] == others[k, column]
         if same or _goes_on(shapes, points, i, others, k):
             return True

@@ -27,14 +27,6 @@ from physicslab.kernels.rigid.features import GIVEN, MU, STATUS
 from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.lemke import find_by_pivots
 
-__all__ = [
-    "FITTING",
-    "NOT_FOUND",
-    "SETTLED",
-    "settle_at_an_edge",
-    "solve_complementarity",
-]
-
 _LEAST_SCALE = 1e-4
 """Share of the largest free rate, that of points that slide in any case too, which the scale of rates is at
 least: its rounding is in all that they touch."""

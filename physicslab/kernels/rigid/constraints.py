@@ -5,24 +5,10 @@ import math
 from physicslab.kernels import Numbers, always_inlined, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ROWS
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
 from physicslab.kernels.rigid.equations import CHANGE, FREE, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import (
-    BIAS_N,
-    BIAS_T,
-    FEATURE,
-    GAP,
-    JOINT,
-    MOTOR,
-    NORMAL,
-    ONE,
-    PAIR,
-    TANGENT,
-    VN,
-    VT,
-    RigidScene,
-    rate_along,
-)
+from physicslab.kernels.rigid.features import RigidScene, rate_along
 from physicslab.kernels.rigid.joined import book_answer, lessen, measure_joints, pass_on
 from physicslab.kernels.rigid.joint_points import OWN, measure
 from physicslab.kernels.rigid.least_norm import (
@@ -31,11 +17,6 @@ from physicslab.kernels.rigid.least_norm import (
     refine,
     solve_equations,
 )
-
-__all__ = [
-    "apply", "assemble", "constrained_acceleration", "find_free_rates", "find_loads", "measure_all",
-    "project", "rates_without_forces",
-]  # fmt: skip
 
 
 @inlined
@@ -53,17 +34,17 @@ def _coupling(scene: RigidScene, equations: Equations, i: int, j: int) -> tuple[
     points, measures = equations.points, equations.measures
     nn, nt, tn, tt = 0.0, 0.0, 0.0, 0.0
     for side_i in range(2):
-        body = points[i, ONE + side_i]
+        body = points[i, F.ONE + side_i]
         mass, inertia = scene.inverse_mass[2 * body], scene.inverse_mass[2 * scene.rows + body]
         if mass == 0.0 and inertia == 0.0:
             continue
-        n, t = NORMAL + 3 * side_i, TANGENT + 3 * side_i
+        n, t = F.NORMAL + 3 * side_i, F.TANGENT + 3 * side_i
         nx, ny, turn_n = measures[i, n], measures[i, n + 1], inertia * measures[i, n + 2]
         tx, ty, turn_t = measures[i, t], measures[i, t + 1], inertia * measures[i, t + 2]
         for side_j in range(2):
-            if points[j, ONE + side_j] != body:
+            if points[j, F.ONE + side_j] != body:
                 continue
-            n, t = NORMAL + 3 * side_j, TANGENT + 3 * side_j
+            n, t = F.NORMAL + 3 * side_j, F.TANGENT + 3 * side_j
             nn += mass * (nx * measures[j, n] + ny * measures[j, n + 1]) + turn_n * measures[j, n + 2]
             nt += mass * (nx * measures[j, t] + ny * measures[j, t + 1]) + turn_n * measures[j, t + 2]
             tn += mass * (tx * measures[j, n] + ty * measures[j, n + 1]) + turn_t * measures[j, n + 2]
@@ -76,8 +57,8 @@ def _own_response(
     scene: RigidScene, equations: Equations, i: int, nn: float, tt: float
 ) -> tuple[float, float]:
     """Return what unit forces cause at the row of a joint, and what stands for that where it has none."""
-    if equations.points[i, FEATURE] == MOTOR:
-        nn = scene.coefficients[equations.points[i, PAIR], OWN]
+    if equations.points[i, F.FEATURE] == F.MOTOR:
+        nn = scene.coefficients[equations.points[i, F.PAIR], OWN]
     return nn if nn > 0.0 else 1.0, tt if tt > 0.0 else 1.0
 
 
@@ -88,7 +69,7 @@ def assemble(scene: RigidScene, equations: Equations, count: int) -> None:
     for i in range(count):
         for j in range(i + 1):
             nn, nt, tn, tt = _coupling(scene, equations, i, j)
-            if i == j and equations.points[i, FEATURE] >= JOINT:
+            if i == j and equations.points[i, F.FEATURE] >= F.JOINT:
                 nn, tt = _own_response(scene, equations, i, nn, tt)
             a[2 * i, 2 * j], a[2 * i, 2 * j + 1], a[2 * i + 1, 2 * j], a[2 * i + 1, 2 * j + 1] = (
                 nn,
@@ -116,7 +97,7 @@ def apply(scene: RigidScene, equations: Equations, count: int, target: Numbers, 
     for i in range(count):
         along, across = equations.vectors[which, 2 * i], equations.vectors[which, 2 * i + 1]
         for side in range(2):
-            body, n, t = points[i, ONE + side], NORMAL + 3 * side, TANGENT + 3 * side
+            body, n, t = points[i, F.ONE + side], F.NORMAL + 3 * side, F.TANGENT + 3 * side
             for k in range(3):
                 place = 2 * body + k if k < 2 else 2 * rows + body
                 push = along * measures[i, n + k] + across * measures[i, t + k]
@@ -132,7 +113,7 @@ def find_loads(scene: RigidScene, equations: Equations, count: int, loads: Numbe
         along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]
         force = math.sqrt(along * along + across * across)
         for side in range(2):
-            body = equations.points[i, ONE + side]
+            body = equations.points[i, F.ONE + side]
             turning, reach = 2 * scene.rows + body, scene.shapes.reach[body]
             loads[2 * body] += scene.inverse_mass[2 * body] * force
             loads[2 * body + 1] += scene.inverse_mass[2 * body + 1] * force
@@ -145,9 +126,9 @@ def rates_without_forces(
 ) -> tuple[float, float]:
     """Return how the speeds of point i along its normal and its tangent change at given accelerations."""
     points, measures = equations.points, equations.measures
-    opening = rate_along(scene.rows, points, measures, i, NORMAL, acceleration)
-    sliding = rate_along(scene.rows, points, measures, i, TANGENT, acceleration)
-    return opening + measures[i, BIAS_N], sliding + measures[i, BIAS_T]
+    opening = rate_along(scene.rows, points, measures, i, F.NORMAL, acceleration)
+    sliding = rate_along(scene.rows, points, measures, i, F.TANGENT, acceleration)
+    return opening + measures[i, F.BIAS_N], sliding + measures[i, F.BIAS_T]
 
 
 @inlined
@@ -157,7 +138,7 @@ def find_free_rates(
     """Find how the speeds of points change at accelerations, of which ``share`` of the forces are part."""
     for i in range(count):
         opening, sliding = rates_without_forces(scene, equations, i, acceleration)
-        if equations.points[i, FEATURE] == MOTOR:  # nothing moves by what presses on it
+        if equations.points[i, F.FEATURE] == F.MOTOR:  # nothing moves by what presses on it
             opening += share * equations.a[2 * i, 2 * i] * equations.vectors[UNKNOWN, 2 * i]
         equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = opening, sliding
 
@@ -203,9 +184,9 @@ def project(scene: RigidScene, equations: Equations, count: int, q: Numbers, v: 
         measure_all(scene, equations, count, q, v)
         assemble(scene, equations, count)
         for i in range(count):
-            gap = equations.measures[i, GAP]
-            equations.vectors[FREE, 2 * i] = gap if turn < 2 else equations.measures[i, VN]
-            equations.vectors[FREE, 2 * i + 1] = 0.0 if turn < 2 else equations.measures[i, VT]
+            gap = equations.measures[i, F.GAP]
+            equations.vectors[FREE, 2 * i] = gap if turn < 2 else equations.measures[i, F.VN]
+            equations.vectors[FREE, 2 * i + 1] = 0.0 if turn < 2 else equations.measures[i, F.VT]
         solve_equations(equations, count, 0.0)
         if turn < 2:
             apply(scene, equations, count, q)

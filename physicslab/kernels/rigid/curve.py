@@ -15,8 +15,6 @@ from physicslab.kernels.rigid.equations import Equations
 from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages, largest_free
 
-__all__ = ["curve_is_exact", "fit_curve", "place_bodies", "place_on_curve"]
-
 _THIRD, _FOURTH, _FIFTH = LAST + 1, LAST + 2, LAST + 3
 """Rows of the rates that hold the coefficients of the curve, in shares of the piece [m]."""
 _CHECKED = 0.2

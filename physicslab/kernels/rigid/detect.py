@@ -5,21 +5,9 @@ import math
 from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.geometry.shapes import Shapes, face, is_chain, vertex
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.chain_points import find_chain_points
-from physicslab.kernels.rigid.features import (
-    CORNER,
-    FEATURE,
-    FIRST_ROW,
-    ONE,
-    OTHER,
-    PAIR,
-    VERTEX,
-    WALL,
-    Points,
-    RigidScene,
-)
-
-__all__ = ["TIE", "find_points", "seen_from"]
+from physicslab.kernels.rigid.features import Points, RigidScene
 
 TIE = 1e-9
 """Share of the size within which two faces are equally far, or one takes over from a corner, so that speeds
@@ -31,8 +19,8 @@ them."""
 
 @inlined
 def _write(points: Points, n: int, pair: int, one: int, feature: int, other: int, vertex: int) -> int:
-    points[n, PAIR], points[n, ONE], points[n, OTHER] = pair, one, other
-    points[n, FEATURE], points[n, VERTEX] = feature, vertex
+    points[n, F.PAIR], points[n, F.ONE], points[n, F.OTHER] = pair, one, other
+    points[n, F.FEATURE], points[n, F.VERTEX] = feature, vertex
     return n + 1
 
 
@@ -93,8 +81,8 @@ def _to_wall(points: Points, pair: int, q: Numbers, scene: RigidScene, row: int,
             first, low = k, height
         elif height < next_low:
             second, next_low = k, height
-    n = _write(points, 0, pair, 0, WALL + wall, row, min(first, second))
-    return n if first == second else _write(points, n, pair, 0, WALL + wall, row, max(first, second))
+    n = _write(points, 0, pair, 0, F.WALL + wall, row, min(first, second))
+    return n if first == second else _write(points, n, pair, 0, F.WALL + wall, row, max(first, second))
 
 
 @inlined
@@ -266,8 +254,8 @@ def find_points(scene: RigidScene, p: int, q: Numbers, v: Numbers, points: Point
     """
     shapes, tie = scene.shapes, TIE * scene.coefficients[p, 2]
     a, b, wall = scene.pairs[p, 0], scene.pairs[p, 1], scene.pairs[p, 2]
-    if wall >= FIRST_ROW:
-        return _write(points, 0, p, a, WALL + wall, b, 0), math.inf
+    if wall >= F.FIRST_ROW:
+        return _write(points, 0, p, a, F.WALL + wall, b, 0), math.inf
     if wall >= 0:
         return _to_wall(points, p, q, scene, b, wall), math.inf
     if is_chain(shapes, a) or is_chain(shapes, b):
@@ -275,12 +263,12 @@ def find_points(scene: RigidScene, p: int, q: Numbers, v: Numbers, points: Point
     if shapes.vertices[a] == 1:
         a, b = (a, b) if shapes.vertices[b] == 1 else (b, a)
     if shapes.vertices[a] == 1:
-        return _write(points, 0, p, a, CORNER, b, 0), math.inf
+        return _write(points, 0, p, a, F.CORNER, b, 0), math.inf
     lie, lie_back = _lie(q, scene.rows, a, b)
     if shapes.radius[a] + shapes.radius[b] > 0.0:
         i, j = _nearest_vertices(lie, shapes, a, b)
         outside = _is_outside(scene, q, v, a, i, b, j, lie, tie)
         if outside and _is_outside(scene, q, v, b, j, a, i, lie_back, tie):
-            return _write(points, 0, p, a, CORNER + i, b, j), math.inf
+            return _write(points, 0, p, a, F.CORNER + i, b, j), math.inf
     n, apart = _to_faces(scene, points, p, q, v, a, b, lie, lie_back, tie)
     return n, math.inf if shapes.vertices[b] == 1 else apart

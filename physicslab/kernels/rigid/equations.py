@@ -5,11 +5,6 @@ from typing import NamedTuple
 from physicslab.kernels import Vectors, inlined, inlined_by_numba
 from physicslab.kernels.rigid.features import Points
 
-__all__ = [
-    "CAUSED", "CHANGE", "FREE", "OPEN", "RIGHT", "SLIDES_BACK", "SLIDES_ON", "STICKS", "UNKNOWN", "VECTORS",
-    "Equations", "EquationsTuple", "edge_of", "named_equations",
-]  # fmt: skip
-
 OPEN, STICKS, SLIDES_ON, SLIDES_BACK = 0, 1, 2, 3
 """State of a point. One that slides on has z_t = -mu z_n, one that slides back z_t = +mu z_n."""
 FREE, UNKNOWN, CAUSED, RIGHT, CHANGE, VECTORS = range(6)

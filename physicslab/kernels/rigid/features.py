@@ -31,50 +31,6 @@ from physicslab.kernels.geometry.shapes import (
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
 from physicslab.kernels.records import Pairs
 
-__all__ = [
-    "BIAS_N",
-    "BIAS_T",
-    "CONTACTS",
-    "CORNER",
-    "DRIVEN",
-    "FEATURE",
-    "FIRST_ROW",
-    "FRICTION",
-    "GAP",
-    "GIVEN",
-    "JOINED",
-    "JOINT",
-    "LINK",
-    "MARGIN",
-    "MEASURES",
-    "MOTOR",
-    "MOTORS",
-    "MU",
-    "NORMAL",
-    "NX",
-    "NY",
-    "ONE",
-    "OTHER",
-    "PAIR",
-    "POINT_FIELDS",
-    "PX",
-    "PY",
-    "RESTITUTION",
-    "STATUS",
-    "TANGENT",
-    "VERTEX",
-    "VN",
-    "VT",
-    "WALL",
-    "Points",
-    "RigidScene",
-    "SceneTuple",
-    "measure_contact",
-    "named_scene",
-    "rate_along",
-    "turned_by",
-]  # fmt: skip
-
 PAIR, ONE, OTHER, FEATURE, VERTEX, GIVEN, STATUS, POINT_FIELDS = range(8)
 """The columns of a point: its pair; bodies and features; what it may do, and what it does."""
 CORNER, WALL, JOINT, MOTOR = MOST_VERTICES, 2 * MOST_VERTICES, 2 * MOST_VERTICES + 4, 2 * MOST_VERTICES + 5

@@ -27,33 +27,12 @@ from physicslab.kernels.geometry.links import segment_at
 from physicslab.kernels.geometry.shapes import is_chain, wall_of
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.records import Impacts
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.bookings import book_row
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import (
-    FEATURE,
-    FIRST_ROW,
-    GAP,
-    GIVEN,
-    LINK,
-    MEASURES,
-    MOTOR,
-    MU,
-    NX,
-    NY,
-    ONE,
-    OTHER,
-    PAIR,
-    POINT_FIELDS,
-    PX,
-    PY,
-    RESTITUTION,
-    VERTEX,
-    VN,
-    VT,
-    RigidScene,
-)
+from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.joined import book_impulses
 from physicslab.kernels.solver.impact_log import (
     ImpactPoints,
@@ -63,8 +42,6 @@ from physicslab.kernels.solver.impact_log import (
     shares_of,
     write_impact,
 )
-
-__all__ = ["approaches", "resolve_simultaneous_impacts"]
 
 _MAX_ROUNDS, _SHORT_ROUNDS = 500, 3
 """Rounds of impacts at one time, and within a short step; after them all points that touch are inelastic."""
@@ -84,19 +61,19 @@ def approaches(speed: float, rest: float) -> bool:
 
 @inlined
 def _take(equations: Equations, i: int, impact: Equations, n: int, restitution: float) -> int:
-    for k in range(POINT_FIELDS):
+    for k in range(F.POINT_FIELDS):
         impact.points[n, k] = equations.points[i, k]
-    for k in range(MEASURES):
+    for k in range(F.MEASURES):
         impact.measures[n, k] = equations.measures[i, k]
-    impact.measures[n, RESTITUTION] = restitution
-    impact.points[n, GIVEN] = STICKS if impact.measures[n, MU] > 0.0 else SLIDES_ON
+    impact.measures[n, F.RESTITUTION] = restitution
+    impact.points[n, F.GIVEN] = STICKS if impact.measures[n, F.MU] > 0.0 else SLIDES_ON
     return n + 1
 
 
 @inlined
 def _closing_speed(equations: Equations, i: int, rate: float) -> float:
     """Return how fast a point moves along its normal beyond what its gap allows in 1 / ``rate`` seconds."""
-    speed: float = equations.measures[i, VN] + max(equations.measures[i, GAP], 0.0) * rate
+    speed: float = equations.measures[i, F.VN] + max(equations.measures[i, F.GAP], 0.0) * rate
     return speed
 
 
@@ -110,8 +87,8 @@ def _gather(
     """
     n, approaching = 0, False
     for i in range(count):
-        e, speed = equations.measures[i, RESTITUTION], equations.measures[i, VN]
-        if equations.points[i, FEATURE] == MOTOR:
+        e, speed = equations.measures[i, F.RESTITUTION], equations.measures[i, F.VN]
+        if equations.points[i, F.FEATURE] == F.MOTOR:
             continue
         bounces = -e * speed > rest and not last
         # One that bounces in a short step does so before half of the next would take it below the surface.
@@ -128,11 +105,11 @@ def _gather(
 def _solve(impact: Equations, n: int, share: float, rest: float, rate: float) -> bool:
     """Find the impulses at ``share`` of the restitutions; return whether there are any."""
     for i in range(n):
-        back = share * impact.measures[i, RESTITUTION] * min(impact.measures[i, VN], 0.0)
+        back = share * impact.measures[i, F.RESTITUTION] * min(impact.measures[i, F.VN], 0.0)
         impact.vectors[FREE, 2 * i] = (
-            impact.measures[i, VN] + back if back < 0.0 else _closing_speed(impact, i, rate)
+            impact.measures[i, F.VN] + back if back < 0.0 else _closing_speed(impact, i, rate)
         )
-        impact.vectors[FREE, 2 * i + 1] = impact.measures[i, VT]
+        impact.vectors[FREE, 2 * i + 1] = impact.measures[i, F.VT]
     return solve_complementarity(impact, n, _SPEEDS * rest, rate == 0.0) != NOT_FOUND
 
 
@@ -146,7 +123,7 @@ def _energy_gained(impact: Equations, n: int) -> float:
     work, scale, cancelled = 0.0, 0.0, 0.0
     for i in range(n):
         for k in range(2):
-            before = impact.measures[i, VN + k]
+            before = impact.measures[i, F.VN + k]
             after, parts = before, abs(before)
             for j in range(2 * n):
                 gained = impact.a[2 * i + k, j] * impact.vectors[UNKNOWN, j]
@@ -154,7 +131,7 @@ def _energy_gained(impact: Equations, n: int) -> float:
             impulse = impact.vectors[UNKNOWN, 2 * i + k]
             cancelled += abs(impulse) * parts
             work += 0.5 * impulse * (before + after)
-            scale += abs(impulse) * (abs(impact.measures[i, VN]) + abs(impact.measures[i, VT]))
+            scale += abs(impulse) * (abs(impact.measures[i, F.VN]) + abs(impact.measures[i, F.VT]))
     return (work + _SUM_ROUNDING * cancelled) / scale if scale > 0.0 else 0.0
 
 
@@ -162,9 +139,9 @@ def _energy_gained(impact: Equations, n: int) -> float:
 def _find_impulses(impact: Equations, n: int, rest: float, rate: float) -> tuple[bool, int]:
     """Find the impulses of points that meet at once; return whether there are any, and their law."""
     a, measures, vectors = impact.a, impact.measures, impact.vectors
-    if n == 1 and measures[0, RESTITUTION] > 0.0:
-        response = PointResponse(a[0, 0], a[1, 1], a[0, 1], measures[0, VN], measures[0, VT])
-        normal, tangent, law = solve_impact(response, measures[0, RESTITUTION], measures[0, MU])
+    if n == 1 and measures[0, F.RESTITUTION] > 0.0:
+        response = PointResponse(a[0, 0], a[1, 1], a[0, 1], measures[0, F.VN], measures[0, F.VT])
+        normal, tangent, law = solve_impact(response, measures[0, F.RESTITUTION], measures[0, F.MU])
         vectors[UNKNOWN, 0], vectors[UNKNOWN, 1] = normal, tangent
         return True, law
     search, solved = begin_search(), False
@@ -191,12 +168,12 @@ def _pair_velocity(
 @inlined
 def _frame(scene: RigidScene, impact: Equations, i: int, q: Numbers) -> ContactFrame[float]:
     """Return the normal from A to B of a point's pair, and its arms."""
-    pair = impact.points[i, PAIR]
+    pair = impact.points[i, F.PAIR]
     a, b = scene.pairs[pair, 0], scene.pairs[pair, 1]
-    sign = 1.0 if impact.points[i, ONE] == a else -1.0
-    x, y = impact.measures[i, PX], impact.measures[i, PY]
+    sign = 1.0 if impact.points[i, F.ONE] == a else -1.0
+    x, y = impact.measures[i, F.PX], impact.measures[i, F.PY]
     return ContactFrame(
-        sign * impact.measures[i, NX], sign * impact.measures[i, NY],
+        sign * impact.measures[i, F.NX], sign * impact.measures[i, F.NY],
         x - q[2 * a], y - q[2 * a + 1], x - q[2 * b], y - q[2 * b + 1],
     )  # fmt: skip
 
@@ -204,11 +181,11 @@ def _frame(scene: RigidScene, impact: Equations, i: int, q: Numbers) -> ContactF
 @inlined
 def _name_of_wall(scene: RigidScene, impact: Equations, i: int, wall: int) -> int:
     """Return the ``wall`` of a pair; of one with a chain it names the segment where point i is."""
-    one, other = impact.points[i, ONE], impact.points[i, OTHER]
-    if impact.points[i, FEATURE] < 0:
-        return wall_of(segment_at(scene.shapes, one, LINK - impact.points[i, FEATURE]))
+    one, other = impact.points[i, F.ONE], impact.points[i, F.OTHER]
+    if impact.points[i, F.FEATURE] < 0:
+        return wall_of(segment_at(scene.shapes, one, F.LINK - impact.points[i, F.FEATURE]))
     if wall < 0 and is_chain(scene.shapes, other):
-        return wall_of(segment_at(scene.shapes, other, impact.points[i, VERTEX]))
+        return wall_of(segment_at(scene.shapes, other, impact.points[i, F.VERTEX]))
     return wall
 
 
@@ -245,14 +222,14 @@ def _two_points(scene: RigidScene, impact: Equations, i: int, end: int, q: Numbe
 @inlined
 def _alone(scene: RigidScene, impact: Equations, n: int, i: int, end: int) -> bool:
     """Whether no other pair's impulse acts on what the points ``i`` to ``end`` move."""
-    pair, alone = impact.points[i, PAIR], True
+    pair, alone = impact.points[i, F.PAIR], True
     for body in (scene.pairs[pair, 0], scene.pairs[pair, 1]):
         if scene.inverse_mass[2 * body] == 0.0:
             continue
         for k in range(n):
-            other = (k < i or k >= end) and (impact.points[k, ONE] == body or impact.points[k, OTHER] == body)
+            takes_part = impact.points[k, F.ONE] == body or impact.points[k, F.OTHER] == body
             acts = impact.vectors[UNKNOWN, 2 * k] != 0.0 or impact.vectors[UNKNOWN, 2 * k + 1] != 0.0
-            alone = alone and not (other and acts)
+            alone = alone and not ((k < i or k >= end) and takes_part and acts)
     return alone
 
 
@@ -288,14 +265,14 @@ def _note_round(
     bounced, friction_work = account[IMPACTS, ENERGY], account[FRICTION, ENERGY]
     late = 1.0 / rate if rate > 0.0 else 0.0
     while i < n:
-        pair, end, approach, restitution = impact.points[i, PAIR], i, 0.0, 0.0
-        while end < n and impact.points[end, PAIR] == pair:
-            speed = -impact.measures[end, VN]
+        pair, end, approach, restitution = impact.points[i, F.PAIR], i, 0.0, 0.0
+        while end < n and impact.points[end, F.PAIR] == pair:
+            speed = -impact.measures[end, F.VN]
             if impact.vectors[UNKNOWN, 2 * end] > 0.0 and speed > max(rest, approach):
-                approach, restitution = speed, impact.measures[end, RESTITUTION]
+                approach, restitution = speed, impact.measures[end, F.RESTITUTION]
             end += 1
         a, b, wall = scene.pairs[pair, 0], scene.pairs[pair, 1], scene.pairs[pair, 2]
-        if wall >= FIRST_ROW:
+        if wall >= F.FIRST_ROW:
             book_row(scene, impact, i, q, old, v, late, acceleration, account[JOINTS], account[HAND])
             i = end
             continue
@@ -310,7 +287,7 @@ def _note_round(
         if approach > 0.0:
             if len(log) > 0:
                 ids = Pair(
-                    entities[a] if wall < 0 else 0, entities[b], wall, restitution, impact.measures[i, MU]
+                    entities[a] if wall < 0 else 0, entities[b], wall, restitution, impact.measures[i, F.MU]
                 )
                 write_impact(
                     log, logged + written, ids, time, approach, _two_points(scene, impact, i, end, q), pose,

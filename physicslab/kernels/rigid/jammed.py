@@ -17,8 +17,6 @@ from physicslab.kernels.rigid.joined import book_answer
 from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.touching import SLOW
 
-__all__ = ["stop_sliding"]
-
 _NO_TIME = 0.01
 """Largest speed that forces give in the moment of the impulses, as a share of that treated as zero."""
 

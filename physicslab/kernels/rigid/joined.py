@@ -22,15 +22,8 @@ from physicslab.kernels.joints.layout import (
     first_state,
 )
 from physicslab.kernels.joints.rows import book_rows, given_by_rows, measure_rows, push_by_rows
-from physicslab.kernels.rigid.features import (
-    NORMAL,
-    ONE,
-    TANGENT,
-    Points,
-    RigidScene,
-    SceneTuple,
-    named_scene,
-)
+from physicslab.kernels.rigid import features as F
+from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, named_scene
 
 _IMMOVABLE = 1e-12
 """Share of what a force causes alone below which joints leave nothing of it."""
@@ -48,9 +41,9 @@ def _at_row(scene: RigidScene, points: Points, measures: Vectors, i: int, r: int
     """Return how unit forces at point i, along its normal and its tangent, accelerate row r of joints."""
     along, across, states = 0.0, 0.0, first_state(scene.joints)
     for side in range(2):
-        body = points[i, ONE + side]
+        body = points[i, F.ONE + side]
         mass, inertia = scene.inverse_mass[2 * body], scene.inverse_mass[2 * scene.rows + body]
-        n, t = NORMAL + 3 * side, TANGENT + 3 * side
+        n, t = F.NORMAL + 3 * side, F.TANGENT + 3 * side
         for end in range(ENDS):
             if scene.joints[FIRST + PLACES * r + 2 * end] != 2 * body:
                 continue

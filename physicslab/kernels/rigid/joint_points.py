@@ -14,32 +14,8 @@ import math
 
 from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.joints.terms import ALONG_A, ANGLE, MeasuredTerm, TermEnd, measure_term
-from physicslab.kernels.rigid.features import (
-    BIAS_N,
-    BIAS_T,
-    FEATURE,
-    GAP,
-    JOINT,
-    MARGIN,
-    MOTOR,
-    NORMAL,
-    ONE,
-    OTHER,
-    PAIR,
-    PX,
-    TANGENT,
-    VN,
-    VT,
-    Points,
-    RigidScene,
-    measure_contact,
-    rate_along,
-)
-
-__all__ = [
-    "ARM", "AXIS", "ENDS", "FIRST_TERM", "LEVER", "MEASURE", "NUMBERS", "OFFSET", "OWN", "SCALE", "TARGET",
-    "TERM", "TERMS", "UNIT", "fastest_change", "gap_of_row", "measure", "motor_rate",
-]  # fmt: skip
+from physicslab.kernels.rigid import features as F
+from physicslab.kernels.rigid.features import Points, RigidScene, measure_contact, rate_along
 
 LEVER, OFFSET, TARGET, OWN, UNIT, TERMS, FIRST_TERM = range(3, 10)
 """The columns of the coefficients of a pair that is a row, behind its largest force as a motor, a restitution
@@ -78,7 +54,7 @@ def _measure_term(
 @always_inlined
 def measure(scene: RigidScene, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors) -> None:
     """Measure point number i in a state."""
-    if points[i, FEATURE] >= JOINT:
+    if points[i, F.FEATURE] >= F.JOINT:
         _measure_row(scene.rows, scene.coefficients, points, i, q, v, out)
     else:
         measure_contact(scene, points, i, q, v, out)
@@ -89,9 +65,9 @@ def _measure_row(
     rows: int, own: Vectors, points: Points, i: int, q: Numbers, v: Numbers, out: Vectors
 ) -> None:
     """Measure point number i, which is a row of a joint, in a state."""
-    p, motor = points[i, PAIR], points[i, FEATURE] == MOTOR
-    gradient, value, rate = TANGENT if motor else NORMAL, -own[p, OFFSET], 0.0
-    for column in range(PX + 2):
+    p, motor = points[i, F.PAIR], points[i, F.FEATURE] == F.MOTOR
+    gradient, value, rate = F.TANGENT if motor else F.NORMAL, -own[p, OFFSET], 0.0
+    for column in range(F.PX + 2):
         out[i, column] = 0.0
     for t in range(int(own[p, TERMS])):
         term = FIRST_TERM + TERM * t
@@ -100,27 +76,27 @@ def _measure_row(
         scale *= own[p, LEVER]
         for end in range(2):
             body = int(own[p, term + ENDS + end])
-            if body != points[i, ONE] and body != points[i, OTHER]:
+            if body != points[i, F.ONE] and body != points[i, F.OTHER]:
                 continue  # the world, beside two bodies
-            at = gradient + (0 if body == points[i, ONE] else 3)
+            at = gradient + (0 if body == points[i, F.ONE] else 3)
             x, y, turn = (one.ax, one.ay, one.turn_a) if end == 0 else (one.bx, one.by, one.turn_b)
             out[i, at] += scale * x
             out[i, at + 1] += scale * y
             out[i, at + 2] += scale * turn
-    out[i, MARGIN] = math.inf
+    out[i, F.MARGIN] = math.inf
     speed, rate = rate_along(rows, points, out, i, gradient, v), own[p, LEVER] * rate
     if motor:
-        out[i, VT], out[i, BIAS_T] = speed - own[p, LEVER] * own[p, TARGET], rate
-        out[i, BIAS_N] = -own[p, OWN] * own[p, UNIT]
+        out[i, F.VT], out[i, F.BIAS_T] = speed - own[p, LEVER] * own[p, TARGET], rate
+        out[i, F.BIAS_N] = -own[p, OWN] * own[p, UNIT]
     else:
-        out[i, GAP], out[i, VN], out[i, BIAS_N] = own[p, LEVER] * value, speed, rate
+        out[i, F.GAP], out[i, F.VN], out[i, F.BIAS_N] = own[p, LEVER] * value, speed, rate
 
 
 @always_inlined
 def motor_rate(scene: RigidScene, points: Points, measures: Vectors, i: int) -> float:
     """Return how fast a motor that is measured moves against its force [m/s]."""
-    own, p = scene.coefficients, points[i, PAIR]
-    rate: float = measures[i, VT] + own[p, LEVER] * own[p, TARGET]
+    own, p = scene.coefficients, points[i, F.PAIR]
+    rate: float = measures[i, F.VT] + own[p, LEVER] * own[p, TARGET]
     return rate
 
 

@@ -21,8 +21,6 @@ from physicslab.kernels.rigid.equations import (
 )
 from physicslab.kernels.rigid.features import MU, STATUS
 
-__all__ = ["REFINEMENTS", "begin_equations", "refine", "solve_equations"]
-
 _DAMPED = 1e-13
 """Share of the diagonal that is added to a matrix that may be singular; refinement removes its effect."""
 _STALLED = 1e-11

@@ -13,8 +13,6 @@ from physicslab.kernels import always_inlined, inlined
 from physicslab.kernels.rigid.equations import FREE, STICKS, UNKNOWN, Equations, edge_of
 from physicslab.kernels.rigid.features import GIVEN, MU
 
-__all__ = ["find_by_pivots"]
-
 _APART = 1e-9
 """Share by which right sides are raised, every one differently: equal ones would let the
 pivots go round in circles. Only what each point does is taken from here; the forces are then found

@@ -14,6 +14,7 @@ from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.records import Impacts
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED
 from physicslab.kernels.rigid.constraints import apply, find_loads, measure_all, project
@@ -27,20 +28,7 @@ from physicslab.kernels.rigid.equations import (
     EquationsTuple,
     named_equations,
 )
-from physicslab.kernels.rigid.features import (
-    FEATURE,
-    GIVEN,
-    MOTOR,
-    MU,
-    PAIR,
-    STATUS,
-    VN,
-    VT,
-    Points,
-    RigidScene,
-    SceneTuple,
-    named_scene,
-)
+from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, named_scene
 from physicslab.kernels.rigid.impacts import approaches, resolve_simultaneous_impacts
 from physicslab.kernels.rigid.jammed import stop_sliding
 from physicslab.kernels.rigid.joined import book_answer
@@ -73,18 +61,6 @@ from physicslab.kernels.rigid.touching import (
     take_closed,
 )
 
-__all__ = [
-    "DONE",
-    "NO_FORCES",
-    "STOPPED",
-    "TOO_MANY",
-    "UNRESOLVED",
-    "advance_piece",
-    "begin_motion",
-    "collide",
-    "touch",
-]
-
 DONE, NO_FORCES, UNRESOLVED, TOO_MANY, STOPPED = 0, 1, 2, 3, 4
 """Why the motion cannot go on: it can; no contact forces keep all laws; an impact has no solution; more
 points touch than there is room for; sliding was stopped by impulses, so that all has to be found again."""
@@ -114,26 +90,26 @@ def _note_changes(
     n, forces = 0, equations.vectors
     limit = _SAME_MOMENT * abs(forces[UNKNOWN, 2 * index]) if kind <= HOLDS else 0.0
     for i in range(count if kind <= SLIDES else 0):
-        if kind == SLIDES and not (i == index and equations.points[i, FEATURE] == MOTOR):
+        if kind == SLIDES and not (i == index and equations.points[i, F.FEATURE] == F.MOTOR):
             continue
         pressing, rubbing = forces[UNKNOWN, 2 * i], forces[UNKNOWN, 2 * i + 1]
-        left = equations.measures[i, MU] * pressing - abs(rubbing)
+        left = equations.measures[i, F.MU] * pressing - abs(rubbing)
         status = -1
         if kind == SLIDES:
             status = STICKS
         elif kind == PRESSES and i == index:
             status = OPEN
-        elif kind == HOLDS and (i == index or (equations.points[i, STATUS] == STICKS and left <= limit)):
+        elif kind == HOLDS and (i == index or (equations.points[i, F.STATUS] == STICKS and left <= limit)):
             status = SLIDES_ON if rubbing < 0.0 else SLIDES_BACK
-        elif equations.points[i, STATUS] > STICKS and abs(equations.measures[i, VT]) <= SLOW * rest:
-            status = equations.points[i, STATUS]
+        elif equations.points[i, F.STATUS] > STICKS and abs(equations.measures[i, F.VT]) <= SLOW * rest:
+            status = equations.points[i, F.STATUS]
         if status >= 0:
-            for column in range(GIVEN):
+            for column in range(F.GIVEN):
                 changed[n, column] = equations.points[i, column]
-            changed[n, STATUS] = status
+            changed[n, F.STATUS] = status
             n += 1
     if n < len(changed):
-        changed[n, PAIR] = -1
+        changed[n, F.PAIR] = -1
 
 
 @inlined
@@ -216,7 +192,7 @@ def _any_approaches(
     measure_all(scene, equations, count, q, v)
     approaching = False
     for i in range(count):
-        approaching = approaching or approaches(equations.measures[i, VN], rest)
+        approaching = approaching or approaches(equations.measures[i, F.VN], rest)
     return approaching
 
 

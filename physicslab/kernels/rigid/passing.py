@@ -9,8 +9,6 @@ from physicslab.kernels.rigid.joint_points import fastest_change, gap_of_row
 from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages
 from physicslab.kernels.rigid.touching import far_apart, length_of
 
-__all__ = ["longest_piece", "share_of_ways", "time_to_pass"]
-
 _NODES = METHODS.sum(axis=2)
 """When the stages of both methods are, as shares of a step."""
 _STRAYS = LAST + 1

@@ -3,29 +3,15 @@
 import math
 
 from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.constraints import constrained_acceleration, rates_without_forces
 from physicslab.kernels.rigid.curve import curve_is_exact, fit_curve, place_bodies, place_on_curve
 from physicslab.kernels.rigid.detect import TIE
 from physicslab.kernels.rigid.equations import SLIDES_ON, STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import (
-    GAP,
-    MARGIN,
-    MU,
-    ONE,
-    OTHER,
-    PAIR,
-    STATUS,
-    VN,
-    VT,
-    RigidScene,
-)
+from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.joint_points import measure
 from physicslab.kernels.rigid.pieces import Stages, make_piece
 from physicslab.kernels.rigid.touching import NO_SPEED, SLOW, find_open, moved_closer
-
-__all__ = [
-    "ALLOWED", "APART", "HOLDS", "PRESSES", "REACHES", "SLIDES", "STARTS", "locate_event", "note_start",
-]  # fmt: skip
 
 PRESSES, HOLDS, SLIDES, REACHES, APART = 0, 1, 2, 3, 4
 """Quantities that must stay positive: a normal force, the rest of the friction cone, a sliding speed, the
@@ -62,15 +48,15 @@ def _value(
     if kind == APART:
         _, gap, _ = find_open(scene, equations, count, scratch, index, q, v)
         return gap
-    value: float = equations.measures[index, MARGIN]
+    value: float = equations.measures[index, F.MARGIN]
     if kind <= HOLDS:
         value = equations.vectors[UNKNOWN, 2 * index]
         if kind == HOLDS:
             rubbing = abs(equations.vectors[UNKNOWN, 2 * index + 1])
-            value = equations.measures[index, MU] * value - rubbing
+            value = equations.measures[index, F.MU] * value - rubbing
     elif kind == SLIDES:
-        sliding = equations.measures[index, VT]
-        value = sliding if equations.points[index, STATUS] == SLIDES_ON else -sliding
+        sliding = equations.measures[index, F.VT]
+        value = sliding if equations.points[index, F.STATUS] == SLIDES_ON else -sliding
     return value
 
 
@@ -104,9 +90,9 @@ def note_start(
     for p in range(len(scene.pairs)):
         n, start[APART, p], start[_CLEAR, p] = find_open(scene, equations, count, scratch, p, q, v)
         for k in range(n):
-            height = max(scratch.measures[k, GAP], _CLOSED * scene.coefficients[p, 2])
+            height = max(scratch.measures[k, F.GAP], _CLOSED * scene.coefficients[p, 2])
             opening, _ = rates_without_forces(scene, scratch, k, acceleration)
-            soonest = min(soonest, _time_to_fall(height, scratch.measures[k, VN], opening))
+            soonest = min(soonest, _time_to_fall(height, scratch.measures[k, F.VN], opening))
     return soonest
 
 
@@ -114,8 +100,8 @@ def note_start(
 def _can_end(kind: int, i: int, equations: Equations) -> bool:
     """Whether a function can end the piece."""
     if kind in (HOLDS, SLIDES):
-        sticks: bool = equations.points[i, STATUS] == STICKS
-        rubs: bool = equations.measures[i, MU] > 0.0
+        sticks: bool = equations.points[i, F.STATUS] == STICKS
+        rubs: bool = equations.measures[i, F.MU] > 0.0
         return sticks if kind == HOLDS else rubs and not sticks
     return True
 
@@ -132,10 +118,10 @@ def _allowance(
         return SLOW * rest if start <= SLOW * rest else 0.0
     if kind < REACHES:
         return 0.0
-    size, least = scene.coefficients[i if kind == APART else equations.points[i, PAIR], 2], _CLOSED
+    size, least = scene.coefficients[i if kind == APART else equations.points[i, F.PAIR], 2], _CLOSED
     if kind == REACHES:
         radius, points = scene.shapes.radius, equations.points
-        least = _CLOSED if radius[points[i, ONE]] + radius[points[i, OTHER]] > 0.0 else 2.0 * TIE
+        least = _CLOSED if radius[points[i, F.ONE]] + radius[points[i, F.OTHER]] > 0.0 else 2.0 * TIE
     allowance: float = least * size - min(start, 0.0) if start <= least * size else 0.0
     return allowance
 
@@ -148,7 +134,7 @@ def _noise(kind: int, index: int, scene: RigidScene, equations: Equations, rest:
         return _NO_FORCE * force
     if kind == SLIDES:
         return NO_SPEED * rest
-    size: float = scene.coefficients[index if kind == APART else equations.points[index, PAIR], 2]
+    size: float = scene.coefficients[index if kind == APART else equations.points[index, F.PAIR], 2]
     return _SIZE_ROUNDING * size
 
 
@@ -198,7 +184,7 @@ def _cross(
     if kind == APART:
         one, other = scene.pairs[index, 0], scene.pairs[index, 1]
     else:
-        one, other = equations.points[index, ONE], equations.points[index, OTHER]
+        one, other = equations.points[index, F.ONE], equations.points[index, F.OTHER]
     # A point that has just bounced begins at nothing and rises: the fall back is looked for after that.
     rising = _HALVINGS if on_curve and kind == APART and f_low <= 0.0 else 0
     for trial in range(_TRIALS):

@@ -11,11 +11,6 @@ from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
 from physicslab.kernels.rigid.features import RigidScene
 
-__all__ = [
-    "METHODS", "SHORT_LAST", "Stages", "StagesTuple", "begin_piece", "largest_free", "make_piece",
-    "make_stages", "named_stages",
-]  # fmt: skip
-
 SHORT_LAST = 6
 """The stage that is the end of a short step."""
 METHODS = np.zeros((2, LAST + 1, LAST + 1))

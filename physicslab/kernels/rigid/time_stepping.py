@@ -13,6 +13,7 @@ from physicslab.kernels import Numbers, Vectors, inlined, kernel
 from physicslab.kernels.accounts import HAND, MOTORS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ENDS, FIRST, PLACES, ROWS
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.bookings import book_row
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
@@ -25,26 +26,10 @@ from physicslab.kernels.rigid.equations import (
     EquationsTuple,
     named_equations,
 )
-from physicslab.kernels.rigid.features import (
-    FEATURE,
-    GAP,
-    GIVEN,
-    JOINT,
-    MOTOR,
-    MU,
-    ONE,
-    OTHER,
-    VT,
-    WALL,
-    RigidScene,
-    SceneTuple,
-    named_scene,
-)
+from physicslab.kernels.rigid.features import RigidScene, SceneTuple, named_scene
 from physicslab.kernels.rigid.joined import book_impulses
 from physicslab.kernels.rigid.pieces import StagesTuple, named_stages
 from physicslab.kernels.rigid.touching import length_of
-
-__all__ = ["drift", "drive", "kick", "separate", "take_work"]
 
 _SEPARATIONS = 2
 """How often bodies that overlap are moved apart: gaps are not linear in angles."""
@@ -85,14 +70,14 @@ def drive(
     """
     of, points = named_scene(scene), named_equations(equations)
     for p in range(len(of.pairs)):
-        if of.pairs[p, 2] != MOTOR - WALL:
+        if of.pairs[p, 2] != F.MOTOR - F.WALL:
             continue
         find_points(of, p, q, v, points.points)
         measure_all(of, points, 1, q, v)
         assemble(of, points, 1)
         most = h * of.coefficients[p, 0]
         points.vectors[UNKNOWN, 0] = 0.0
-        points.vectors[UNKNOWN, 1] = max(-most, min(most, -points.measures[0, VT] / points.a[1, 1]))
+        points.vectors[UNKNOWN, 1] = max(-most, min(most, -points.measures[0, F.VT] / points.a[1, 1]))
         for i in range(len(v)):
             old[i] = v[i]
         apply(of, points, 1, v)
@@ -111,8 +96,8 @@ def separate(scene: SceneTuple, equations: EquationsTuple, count: int, q: Number
     for _ in range(_SEPARATIONS):
         measure_all(of, points, count, q, v)
         for i in range(count):
-            points.measures[i, MU], points.points[i, GIVEN] = 0.0, SLIDES_ON
-            points.vectors[FREE, 2 * i], points.vectors[FREE, 2 * i + 1] = points.measures[i, GAP], 0.0
+            points.measures[i, F.MU], points.points[i, F.GIVEN] = 0.0, SLIDES_ON
+            points.vectors[FREE, 2 * i], points.vectors[FREE, 2 * i + 1] = points.measures[i, F.GAP], 0.0
         assemble(of, points, count)
         if solve_complementarity(points, count, 0.0, True) == NOT_FOUND:
             return False
@@ -142,9 +127,9 @@ def _find_islands(scene: RigidScene, equations: Equations, count: int, island: N
                 island[one] = island[other] = min(island[one], island[other])
                 changed = True
         for i in range(count):
-            one, other = equations.points[i, ONE], equations.points[i, OTHER]
+            one, other = equations.points[i, F.ONE], equations.points[i, F.OTHER]
             moving = scene.inverse_mass[2 * one] > 0.0 and scene.inverse_mass[2 * other] > 0.0
-            wall = WALL <= equations.points[i, FEATURE] < JOINT
+            wall = F.WALL <= equations.points[i, F.FEATURE] < F.JOINT
             if moving and not wall and island[one] != island[other]:
                 island[one] = island[other] = min(island[one], island[other])
                 changed = True

@@ -6,6 +6,7 @@ from physicslab.kernels import Numbers, always_inlined, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.geometry.shapes import is_chain
 from physicslab.kernels.joints.layout import ROWS
+from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.bookings import book_speeds
 from physicslab.kernels.rigid.chain_points import distance_to_chain, is_closed_on_chain
 from physicslab.kernels.rigid.complementarity import (
@@ -17,50 +18,10 @@ from physicslab.kernels.rigid.complementarity import (
 from physicslab.kernels.rigid.constraints import apply, assemble, find_free_rates, measure_all
 from physicslab.kernels.rigid.detect import find_points, seen_from
 from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import (
-    CORNER,
-    FEATURE,
-    FIRST_ROW,
-    GAP,
-    GIVEN,
-    JOINT,
-    MEASURES,
-    MOTOR,
-    MU,
-    ONE,
-    OTHER,
-    PAIR,
-    POINT_FIELDS,
-    RESTITUTION,
-    STATUS,
-    TANGENT,
-    VERTEX,
-    VN,
-    VT,
-    WALL,
-    Points,
-    RigidScene,
-    measure_contact,
-)
+from physicslab.kernels.rigid.features import Points, RigidScene, measure_contact
 from physicslab.kernels.rigid.joined import strongest_joint
 from physicslab.kernels.rigid.joint_points import OWN, UNIT, gap_of_row, measure
 from physicslab.kernels.rigid.least_norm import solve_equations
-
-__all__ = [
-    "NO_PUSH",
-    "NO_SPEED",
-    "SLOW",
-    "far_apart",
-    "find_open",
-    "find_touching",
-    "hold_closed",
-    "hold_evenly",
-    "keep_pressing",
-    "length_of",
-    "moved_closer",
-    "rest_limits",
-    "take_closed",
-]
 
 _TOUCH = 1e-10
 """Share of the smaller size within which a gap is closed."""
@@ -119,7 +80,7 @@ def far_apart(scene: RigidScene, p: int, q: Numbers, enough: float) -> float:
 def _is_same(points: Points, i: int, others: Points, k: int) -> bool:
     """Whether two points are of one pair and the same features."""
     same = True
-    for column in range(GIVEN):
+    for column in range(F.GIVEN):
         same = same and points[i, column] == others[k, column]
     return same
 
@@ -127,8 +88,8 @@ def _is_same(points: Points, i: int, others: Points, k: int) -> bool:
 @inlined
 def _has_vertex(points: Points, i: int, row: int, k: int) -> bool:
     """Whether point i is one of vertex k of a row."""
-    other: bool = points[i, OTHER] == row and points[i, VERTEX] == k
-    one: bool = points[i, ONE] == row and points[i, FEATURE] == CORNER + k
+    other: bool = points[i, F.OTHER] == row and points[i, F.VERTEX] == k
+    one: bool = points[i, F.ONE] == row and points[i, F.FEATURE] == F.CORNER + k
     return other or one
 
 
@@ -139,15 +100,15 @@ def _is_closed(radius: Numbers, points: Points, count: int, others: Points, k: i
     A vertex touches a rounded body at one point: where that comes to the end of its feature is an event.
     """
     for i in range(count):
-        if points[i, PAIR] != others[k, PAIR]:
+        if points[i, F.PAIR] != others[k, F.PAIR]:
             continue
         if _is_same(points, i, others, k):
             return True
-        one, other, feature = others[k, ONE], others[k, OTHER], others[k, FEATURE]
+        one, other, feature = others[k, F.ONE], others[k, F.OTHER], others[k, F.FEATURE]
         if radius[one] + radius[other] > 0.0:
-            if _has_vertex(points, i, other, others[k, VERTEX]):
+            if _has_vertex(points, i, other, others[k, F.VERTEX]):
                 return True
-            if CORNER <= feature < WALL and _has_vertex(points, i, one, feature - CORNER):
+            if F.CORNER <= feature < F.WALL and _has_vertex(points, i, one, feature - F.CORNER):
                 return True
     return False
 
@@ -158,14 +119,14 @@ def _find_open_row(
 ) -> tuple[int, float, float]:
     """Do the same as :func:`find_open` for a row of a joint, which a motor always keeps closed."""
     gap: float = scene.coefficients[p, 2]
-    closed = scene.pairs[p, 2] == MOTOR - WALL
+    closed = scene.pairs[p, 2] == F.MOTOR - F.WALL
     for i in range(count):
-        closed = closed or equations.points[i, PAIR] == p
+        closed = closed or equations.points[i, F.PAIR] == p
     if closed:
         return 0, gap, -math.inf
     find_points(scene, p, q, v, scratch.points)
     measure(scene, scratch.points, 0, q, v, scratch.measures)
-    gap = min(gap, scratch.measures[0, GAP])
+    gap = min(gap, scratch.measures[0, F.GAP])
     return 1, gap, gap
 
 
@@ -179,7 +140,7 @@ def find_open(
     least [m], minus infinity where a point is closed.
     """
     gap: float = scene.coefficients[p, 2]
-    if scene.pairs[p, 2] >= FIRST_ROW:
+    if scene.pairs[p, 2] >= F.FIRST_ROW:
         return _find_open_row(scene, equations, count, scratch, p, q, v)
     apart = far_apart(scene, p, q, gap)
     if apart > gap:
@@ -195,10 +156,10 @@ def find_open(
         if closed:
             apart = -math.inf
         else:
-            for column in range(GIVEN):
+            for column in range(F.GIVEN):
                 scratch.points[n, column] = scratch.points[k, column]
             measure_contact(scene, scratch.points, n, q, v, scratch.measures)
-            gap = min(gap, scratch.measures[n, GAP])
+            gap = min(gap, scratch.measures[n, F.GAP])
             n += 1
     return n, gap, min(apart, gap)
 
@@ -210,7 +171,7 @@ def moved_closer(scene: RigidScene, p: int, q: Numbers, later: Numbers) -> float
     That of a limit changes by more than bodies move: it is not estimated.
     """
     rows, a, b = scene.rows, scene.pairs[p, 0], scene.pairs[p, 1]
-    if scene.pairs[p, 2] >= FIRST_ROW:
+    if scene.pairs[p, 2] >= F.FIRST_ROW:
         return math.inf
     x, y = later[2 * b] - q[2 * b], later[2 * b + 1] - q[2 * b + 1]
     turned = abs(later[2 * rows + b] - q[2 * rows + b]) * scene.shapes.reach[b]
@@ -224,9 +185,9 @@ def moved_closer(scene: RigidScene, p: int, q: Numbers, later: Numbers) -> float
 @inlined
 def _find_unit(scene: RigidScene, scratch: Equations, i: int, most: float, strongest: float) -> float:
     """Find what a force at a motor causes, and a unit of force of the size of those there are [N]."""
-    own, rows, p = 0.0, scene.rows, scratch.points[i, PAIR]
+    own, rows, p = 0.0, scene.rows, scratch.points[i, F.PAIR]
     for side in range(2):
-        body, t = scratch.points[i, ONE + side], TANGENT + 3 * side
+        body, t = scratch.points[i, F.ONE + side], F.TANGENT + 3 * side
         for k in range(3):
             place = 2 * body + k if k < 2 else 2 * rows + body
             own += scene.inverse_mass[place] * scratch.measures[i, t + k] * scratch.measures[i, t + k]
@@ -251,9 +212,9 @@ def find_touching(
     for p in range(len(scene.pairs)):
         size = scene.coefficients[p, 2]
         limit = (_TOUCH + within) * size
-        if scene.pairs[p, 2] >= FIRST_ROW:
+        if scene.pairs[p, 2] >= F.FIRST_ROW:
             left = 0.0  # of a motor
-            if scene.pairs[p, 2] == JOINT - WALL:
+            if scene.pairs[p, 2] == F.JOINT - F.WALL:
                 left = gap_of_row(scene.rows, scene.coefficients, p, q)
         else:
             left = far_apart(scene, p, q, limit)
@@ -262,18 +223,18 @@ def find_touching(
         n, _ = find_points(scene, p, q, v, scratch.points)
         for k in range(n):
             measure(scene, scratch.points, k, q, v, scratch.measures)
-            gap = scratch.measures[k, GAP]
+            gap = scratch.measures[k, F.GAP]
             deepest = max(deepest, -gap / size)
             if gap > limit:
                 continue
             if count < len(equations.points):
-                for column in range(GIVEN):
+                for column in range(F.GIVEN):
                     equations.points[count, column] = scratch.points[k, column]
-                equations.measures[count, MU] = scene.coefficients[p, 0]
-                if scratch.points[k, FEATURE] == MOTOR:
+                equations.measures[count, F.MU] = scene.coefficients[p, 0]
+                if scratch.points[k, F.FEATURE] == F.MOTOR:
                     unit = _find_unit(scene, scratch, k, scene.coefficients[p, 0], strongest)
-                    equations.measures[count, MU] /= unit
-                equations.measures[count, RESTITUTION] = scene.coefficients[p, 1]
+                    equations.measures[count, F.MU] /= unit
+                equations.measures[count, F.RESTITUTION] = scene.coefficients[p, 1]
             count += 1
     return count, deepest
 
@@ -303,9 +264,9 @@ def rest_limits(scene: RigidScene, acceleration: Numbers, v: Numbers) -> tuple[f
 @inlined
 def _keep(equations: Equations, i: int, n: int) -> int:
     """Move point i to place n; return the next place."""
-    for column in range(POINT_FIELDS):
+    for column in range(F.POINT_FIELDS):
         equations.points[n, column] = equations.points[i, column]
-    for column in range(MEASURES):
+    for column in range(F.MEASURES):
         equations.measures[n, column] = equations.measures[i, column]
     return n + 1
 
@@ -315,9 +276,9 @@ def _changed_status(equations: Equations, i: int, changed: Points) -> int:
     """Return what point i does since the event that ended the piece before, -1 if it is not of it."""
     status, noted = -1, True
     for k in range(len(changed)):
-        noted = noted and changed[k, PAIR] >= 0
+        noted = noted and changed[k, F.PAIR] >= 0
         if noted and _is_same(equations.points, i, changed, k):
-            status = changed[k, STATUS]
+            status = changed[k, F.STATUS]
     return status
 
 
@@ -325,8 +286,8 @@ def _changed_status(equations: Equations, i: int, changed: Points) -> int:
 def _stop_across(scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers) -> None:
     """Remove speeds below the tolerance: equations of points that rest would contradict each other."""
     for i in range(count):
-        equations.points[i, STATUS] = SLIDES_ON
-        equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = equations.measures[i, VN], 0.0
+        equations.points[i, F.STATUS] = SLIDES_ON
+        equations.vectors[FREE, 2 * i], equations.vectors[FREE, 2 * i + 1] = equations.measures[i, F.VN], 0.0
     solve_equations(equations, count, 0.0)
     book_speeds(scene, q, v, -1.0)
     apply(scene, equations, count, v)
@@ -346,7 +307,7 @@ def take_closed(
     n = 0
     measure_all(scene, equations, count, q, v)
     for i in range(count):
-        if equations.measures[i, VN] <= rest and _changed_status(equations, i, changed) != OPEN:
+        if equations.measures[i, F.VN] <= rest and _changed_status(equations, i, changed) != OPEN:
             n = _keep(equations, i, n)
     return n
 
@@ -355,9 +316,9 @@ def take_closed(
 def _note_given(equations: Equations, count: int, changed: Points, rest: float) -> None:
     """Note what points may do by how they move: those of ``changed`` go on with what they began."""
     for i in range(count):
-        sliding, given = equations.measures[i, VT], STICKS
+        sliding, given = equations.measures[i, F.VT], STICKS
         changed_to = _changed_status(equations, i, changed)
-        if equations.measures[i, MU] == 0.0 or sliding > SLOW * rest:
+        if equations.measures[i, F.MU] == 0.0 or sliding > SLOW * rest:
             given = SLIDES_ON
         elif sliding < -SLOW * rest:
             given = SLIDES_BACK
@@ -365,7 +326,7 @@ def _note_given(equations: Equations, count: int, changed: Points, rest: float) 
             given = changed_to
         if changed_to == STICKS:  # a motor has its speed, however small the speeds are that are rounding
             given = STICKS
-        equations.points[i, GIVEN] = given
+        equations.points[i, F.GIVEN] = given
 
 
 @always_inlined
@@ -380,7 +341,7 @@ def hold_closed(
             return 0, True
         leaves = False
         for i in range(count):
-            leaves = leaves or equations.measures[i, VN] > NO_SPEED * rest
+            leaves = leaves or equations.measures[i, F.VN] > NO_SPEED * rest
         leaves = leaves and attempt == 0
         assemble(scene, equations, count)
         if not leaves:
@@ -393,7 +354,7 @@ def hold_closed(
         if not leaves:
             break
         for i in range(count):  # what has just begun to open, and goes on, keeps its speed
-            opens = equations.points[i, STATUS] == OPEN and equations.measures[i, VN] > NO_SPEED * rest
+            opens = equations.points[i, F.STATUS] == OPEN and equations.measures[i, F.VN] > NO_SPEED * rest
             if not (solved and opens):
                 n = _keep(equations, i, n)
         count, n = n, 0
@@ -436,7 +397,7 @@ def keep_pressing(equations: Equations, count: int, least: float) -> int:
     n, forces = 0, equations.vectors
     for i in range(count):
         pressing = forces[UNKNOWN, 2 * i] * equations.a[2 * i, 2 * i]
-        if equations.points[i, STATUS] != OPEN and pressing > least:
+        if equations.points[i, F.STATUS] != OPEN and pressing > least:
             forces[UNKNOWN, 2 * n] = forces[UNKNOWN, 2 * i]
             forces[UNKNOWN, 2 * n + 1] = forces[UNKNOWN, 2 * i + 1]
             n = _keep(equations, i, n)

@@ -56,13 +56,6 @@ from physicslab.kernels.solver.work import book_damping, book_gravity, book_kick
 from physicslab.kernels.ticks import charge, ticks
 from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to_blocks
 
-__all__ = [
-    "ACCELERATE", "ALL", "BLOCKS_FULL", "BROAD_PHASE", "CONTACT", "COSTS", "DIVERGED", "DRIFT", "FIND",
-    "GRAVITY", "HOOK", "IMPACTS", "INTEGRATE", "KICK", "OTHER_SUBSTEPS", "OVERLAP", "PACKED", "PAIRS",
-    "PAIRS_STALE", "PREDICT", "PYTHON", "RELAX", "RESOLVE", "SLEEP", "SLEEP_PENDING", "SOLVE", "SPRINGS",
-    "STEPS", "UNIFORM", "WAKE", "WAKE_PENDING", "WALL_PENDING", "WIDEN", "advance",
-]  # fmt: skip
-
 (
     ALL, PYTHON, PAIRS_STALE, BLOCKS_FULL, DIVERGED, WAKE_PENDING, SLEEP_PENDING, WALL_PENDING,
     OTHER_SUBSTEPS,

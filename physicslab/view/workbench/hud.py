@@ -57,7 +57,7 @@ class Hud:
         self._windows: list[Rect] = []
         self._said: object = None
         self._beside = 0
-        self._legend: tuple[object, tuple[int, int]] = None, (0, 0)
+        self._legend: tuple[object, int] = None, 0
         self.readings: dict[Callable[[World, float], None], float] = {
             self._follow: 0.0, self._read_figures: 0.2, self._read_costs: 0.2, self._read_advice: 0.25,
         }  # fmt: skip
@@ -162,29 +162,33 @@ class Hud:
     def _draw_legend(
         self, world: World, forms: Iterable[Legend], room: Rect, margin: int, taken: list[Rect]
     ) -> list[Rect]:
-        """Draw the first form of the legend for which there is a place that nothing takes; return where.
+        """Draw a form of the legend where nothing lies that is ``taken``; return where.
 
-        It is the place in which the fewest bodies lay when it was looked for: one that follows them jumps.
+        It is the place, and the form, in which the fewest bodies lay when it was looked for: one that follows
+        them jumps. Of those that are as good the first is drawn.
         """
         left, top, width, height = room
         others = [*taken, *self._windows]
-        tops = [top + margin, *sorted(y + high + margin for _, y, _, high in others)]
-        for legend in forms:
-            across, down = legend.size
-            places = [
-                (x, y)
-                for x in (left + margin, left + width - across - margin)
-                for y in tops
-                if not any(overlap((x, y, across, down), one) for one in others)
-                and top < y <= max(top + height - down - margin, top + margin)
-            ]
-            if places and self._legend[0] != (places, legend.size):
-                camera = self._window.camera
-                best = min(places, key=lambda at: count_under(world, camera, (*at, across, down)))
-                self._legend = (places, legend.size), best
-            if places:
-                return [legend.draw(*self._legend[1], self._window.drawing)]
-        return []
+        tops = {top + margin, *(y + high + margin for _, y, _, high in others)}
+        ends = {top + height, *(y for _, y, _, _ in others)}
+        places = [
+            (legend, (x, y))
+            for legend in forms
+            for across, down in (legend.size,)
+            for x in (left + margin, left + width - across - margin)
+            for y in sorted(tops | {end - down - margin for end in ends})
+            if not any(overlap((x, y, across, down), one) for one in others)
+            and top < y <= max(top + height - down - margin, top + margin)
+        ]
+        if not places:
+            return []
+        sought = [(legend.size, at) for legend, at in places]
+        if self._legend[0] != sought:
+            camera = self._window.camera
+            counts = [count_under(world, camera, (*at, *size)) for size, at in sought]
+            self._legend = sought, counts.index(min(counts))
+        legend, at = places[self._legend[1]]
+        return [legend.draw(*at, self._window.drawing)]
 
     def _free_strip(self, *, at_top: bool) -> tuple[int, int, int]:
         """Return where a strip begins that no window lies over, how wide it is, and its outer edge [px].

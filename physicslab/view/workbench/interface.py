@@ -192,7 +192,10 @@ class Interface:
         """
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self.toolkit.follow_pointer(event.pos)
-        if self._early.take(event) or self._search.take(self._window, event):
+        writes = "" if self._window.measuring.writing is None else "note"
+        if self._early.take(event, self._window.in_front or writes):
+            return True
+        if self._search.take(self._window, event):
             return True
         self._walk.follow(event)
         taken = self.toolkit.take(event)
