@@ -154,8 +154,8 @@ WRONG = [
     ("limit: 10 s", "seconds: 10 s", "must have seconds: TIME or until: CONDITION, one of both"),
     ("limit: 10 s", "limit: 12 m", "line 37: run fall: limit = \"12 m\": '12 m' is in m; this is in s"),
     ("limit: 10 s", "limit: -1", "line 37: run fall: limit = \"-1\": must be a time above 0 s"),
-    ("graph: ball.y", "graph: max(ball.y", "'max(ball.y' is no number: a bracket is not closed"),
-    ("graph: ball.y", "graph: ball.y)", "'ball.y)' is no number: a bracket is closed that was not opened"),
+    ("graph: ball.y", "graph: max(ball.y", "'max(ball.y' is no number: a \")\" is missing"),
+    ("graph: ball.y", "graph: ball.y)", "'ball.y)' is no number: a \"(\" is missing"),
     ("graph: ball.y", "graph: hight", "line 38: run fall: graph = \"hight\": 'hight' is unknown"),
     # compare
     ("measure: time\n", "", "line 41: compare compare_1: must have measure: EXPRESSION or along"),

@@ -7,7 +7,9 @@ import pytest
 from desk import SETTLED, Desk, click, empty_world, point, sized, tap
 from plotting import CTRL, SHIFT, ball_of, pause
 
-from physicslab.components import Mass, Meter, Slider, Spring, Transform
+from physicslab import load_scene
+from physicslab.components import Mass, Meter, Slider, Spring, Transform, Velocity
+from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, History
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.workbench.panel_places import Small, places
@@ -126,6 +128,17 @@ def test_the_slider_of_a_spring_is_for_its_stiffness_and_can_be_given_other_ends
     desk.window.selection.take(ball)
     tap(desk, "delete")
     assert "The body is gone" in desk.ui.words
+
+
+def test_meters_and_sliders_cover_no_cart_where_the_window_is_small_and_its_text_large() -> None:
+    """At 800 x 600 with text of 150 % they hid the carts that they speak of."""
+    desk = sized((800, 600), load_scene("carts"), 1.5)
+    tap(desk, "home")
+    assert {"cart 1: velocity x", "2.000 m/s"} <= set(desk.ui.words)
+    camera, place = desk.window.camera, desk.world.table(Transform)["position"]
+    for row in desk.world.batch(Transform, Velocity).rows:
+        x, y = camera.to_screen(Vector2(*place[row]))
+        assert not desk.sandbox.interface.toolkit.covers((x, y), round(0.3 * camera.scale))
 
 
 def test_small_panels_from_two_corners_do_not_cover_each_other_where_others_leave_room() -> None:

@@ -64,6 +64,33 @@ def test_digits_of_a_pendulum_are_those_by_which_it_is_right() -> None:
     assert found.digits == pytest.approx(right, abs=1.0)
 
 
+def test_a_slot_along_x_is_mirrored_with_its_limits() -> None:
+    box: dict[str, object] = {"id": "box", "Transform": {}, "Velocity": {"linear": [10.0, 0.0]}, "Mass": {}}
+    slot = {"Slot": {"b": "box", "upper": 5.0, "turns": True}}
+    scene = {
+        "format": "physicslab-scene/1", "physics": {"gravity": [0.0, 0.0]}, "entities": [box, slot]
+    }  # fmt: skip
+    found = trust(partial(load_scene, scene), 1.0)
+    assert "mirrored" in found.ways
+    assert found.digits > 13.0
+
+
+def test_digits_of_a_lone_point_are_of_the_rod_that_holds_it() -> None:
+    length, seconds = 1e-6, 0.5  # 250 swings, 8 of them a step
+    point = {"id": "bob", "Transform": {"position": [length, 0.0]}, "Velocity": {}, "Mass": {}}
+    rod = {"Rod": {"b": "bob"}}
+    ends = []
+    for dt in (1 / 60, 1 / 12_000):  # what is left of the length's error is as long as a step
+        world = load_scene(
+            {"format": "physicslab-scene/1", "simulation": {"dt": dt}, "entities": [point, rod]}
+        )
+        world.run(seconds=seconds)
+        ends.append(np.array(world.component(world.entity("bob"), Transform).position) / length)
+    error = float(np.hypot(*(ends[0] - ends[1])))
+    found = trust(partial(load_scene, {"format": "physicslab-scene/1", "entities": [point, rod]}), seconds)
+    assert 1e-11 < error < 10.0 * 10.0**-found.digits
+
+
 def test_a_gas_has_a_horizon_and_no_digits_after_it() -> None:
     def load() -> World:
         world = empty_world(gravity=(0, 0), bounds=(-2, -2, 2, 2), bounds_restitution=1.0)

@@ -121,7 +121,8 @@ def _view(draft: Draft) -> list[float] | None:
     for body in draft.bodies.values():
         shape = body.entity.get("Shape", {})
         vertices = [math.hypot(*vertex) for vertex in shape.get("vertices", ())]
-        reach = max(*(shape.get(size, 0.0) for size in ("radius", "width", "height")), *vertices)
+        half = 0.5 * math.hypot(shape.get("width", 0.0), shape.get("height", 0.0))
+        reach = max(shape.get("radius", 0.0), half, *vertices)
         x, y = body.place
         corners += [(x - reach, y - reach), (x + reach, y + reach)]
     if not corners:

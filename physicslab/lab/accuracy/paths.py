@@ -10,13 +10,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Mass, Shape, Transform, Velocity
+from physicslab.components import Mass, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.contact_warnings import contact_graph
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
+from physicslab.ecs.vector import rotated
 from physicslab.files.reader import read_scene
 from physicslab.lab.accuracy.twins import ROUNDING, Document
 from physicslab.lab.jobs import Job
 from physicslab.state.masses import Diverged
+from physicslab.state.packed import spring_ends
 from physicslab.state.shapes import lengths_of
 from physicslab.world import World
 
@@ -183,15 +185,28 @@ _LOOKS = 400
 
 
 def sizes_of(world: World, bodies: Sequence[str]) -> NDArray[np.float64]:
-    """Return half the extent of each body (n,) [m]; of one without a shape that of the whole scene."""
-    rows = rows_of(world, bodies)
-    places, (half, radius) = (
-        world.table(Transform)["position"][rows],
-        lengths_of(world.table(Shape), np.array(rows)),
-    )
+    """Return half the extent of each body (n,) [m]; of one without a shape that of the whole scene.
+
+    To that belong the points at which springs and joints hold bodies: a pendulum is as large as its rod.
+    """
+    half, radius = lengths_of(world.table(Shape), np.array(rows_of(world, bodies)))
     sizes = radius + np.hypot(half[:, 0], half[:, 1])
+    places = _places(world)
     whole = float(np.abs(places - places.mean(axis=0)).max(initial=0.0)) or 1.0
     return np.where(sizes > 0.0, sizes, whole)
+
+
+def _places(world: World) -> NDArray[np.float64]:
+    """Return where bodies are, and where springs and joints hold them or are fixed (n, 2) [m]."""
+    world.joints.refresh(world.entity_index)
+    (springs, first, second), joints, transform = spring_ends(world), world.joints, world.table(Transform)
+    spring = world.table(Spring)
+    ends = np.concatenate((first, second, joints.a, joints.b))
+    anchors = np.concatenate(
+        (spring["anchor_a"][springs], spring["anchor_b"][springs], joints.anchor_a, joints.anchor_b)
+    )
+    held = transform["position"][ends] + rotated(anchors, transform["angle"][ends])
+    return np.concatenate((transform["position"][world.batch(Transform).rows], held))
 
 
 def find_horizon(document: Document, bodies: Sequence[str], seconds: float) -> Job[float | None]:

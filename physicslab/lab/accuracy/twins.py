@@ -210,9 +210,9 @@ def _mirror(document: Document, world: World) -> World | None:
         return None
     mirrored = _without_past(document)
     for entity in mirrored["entities"]:
-        for name, fields in _MIRRORED.items():
-            for field in fields:
-                value = entity.get(name, {}).get(field)
+        for name in _MIRRORED.keys() & entity.keys():
+            for field in _MIRRORED[name]:
+                value = entity[name].get(field, _default(name, field))
                 if value is not None:
                     entity[name][field] = _across(value)
         if "Pin" in entity:
@@ -225,6 +225,12 @@ def _mirror(document: Document, world: World) -> World | None:
         left, low, right, high = physics["bounds"]
         physics["bounds"] = [-right, low, -left, high]
     return read_scene(mirrored)
+
+
+def _default(component: str, name: str) -> list[float] | None:
+    """Return a vector that a document leaves out and that a mirror changes, as the axis of a Slot."""
+    default = next(spec.default for spec in COMPONENTS[component].FIELDS if spec.name == name)
+    return list(default) if isinstance(default, tuple) and any(default) else None
 
 
 def _across(value: Any) -> Any:

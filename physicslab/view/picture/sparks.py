@@ -32,6 +32,8 @@ _TAIL = 0.035
 """Time of flight that is seen as a streak [s]."""
 _GLOW = 7.0
 """Radius of the light of a spark [px]."""
+_BRIGHT, _LIT = 0.7, 60
+"""Light of a new spark, and how many have it whole: more of them share it, or they hide a pile."""
 _MAX_RINGS, _RING_LIFE = 40, 0.16
 """How many rings are seen at once, and for how long each [s]."""
 _RING_FROM, _RING_TO, _RING_LINES = 3.0, 15.0, 24
@@ -118,7 +120,9 @@ class Sparks:
         inside = ((end > 0.0) & (end < camera.size)).all(axis=1) & (fresh > 0.0)
         bold = self.strength > 0.5
         if theme.is_dark and inside.any():
-            canvas.glows(end[inside], np.full(int(inside.sum()), _GLOW), theme.spark, 0.7 * fresh[inside])
+            count = int(inside.sum())
+            light = _BRIGHT * min(1.0, _LIT / count) * fresh[inside]
+            canvas.glows(end[inside], np.full(count, _GLOW), theme.spark, light)
         for part, width in ((inside & ~bold, 1.6), (inside & bold, 2.4)):
             if part.any():
                 canvas.lines(start[part], end[part], theme.spark, width, fresh[part])

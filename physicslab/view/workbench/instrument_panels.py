@@ -45,11 +45,12 @@ def build_stopwatch(ui: Ui, world: World, window: Window) -> None:
     gates = len(world.batch(Gate))
     every = laps(system.crossings, gates) if system is not None else []
     left, top, width, _ = ui.room
-    columns = _COLUMNS if width > _width(_COLUMNS) * ui.size else _COLUMNS[_NARROW:]
     place = left + 0.5 * width, top + 10.0 * ui.size
     ui.stand_beside("Stopwatch", "right", 0.34, 9.0)
     with ui.floating("Stopwatch", place, window.closing_of("shows_stopwatch"), docks=True):
         _build_times(ui, world, every, gates)
+        across = imgui.get_content_region_avail().x if imgui.is_window_docked() else width
+        columns = _COLUMNS if across > _width(_COLUMNS) * ui.size else _COLUMNS[_NARROW:]
         _build_table(ui, world, every[-(_ROWS if columns is _COLUMNS else _FEWER_ROWS) :], columns)
         table, tip = partial(crossings_csv, world), "Write all of them to a file"
         ui.button("CSV of crossings", tip, save_table, "crossings", table, shown="CSV", enabled=bool(every))

@@ -16,6 +16,8 @@ _NUMBERS = 1.4
 """Room for the numbers of the world's axes at the left and below, beside small panels."""
 _SCALE_BAR, _BAR_WIDTH = 3.4, 5.0
 """Room for the scale bar below panels at the right, and its width, in heights of the text."""
+_CROWDED = 0.3
+"""Share of the room from which on small panels hide too much of the world."""
 _LEAST_GRAPH = 18.0
 """Width that is left for graphs beside small panels; where there is less they lie above or below them."""
 
@@ -51,6 +53,11 @@ def places(area: Rect, text: float, small: Sequence[Small]) -> dict[int, Rect]:
 def has_room(area: Rect, text: float) -> bool:
     """Whether panels can be put there at all."""
     return area[2] >= _ROOM[0] * text and area[3] >= _ROOM[1] * text
+
+
+def is_crowded(area: Rect, small: Sequence[Small]) -> bool:
+    """Whether meters and sliders would take too much of the room."""
+    return sum(one.size[0] * one.size[1] for one in small) > _CROWDED * area[2] * area[3]
 
 
 def bar_at_top(area: Rect, text: float) -> Rect:

@@ -23,7 +23,7 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench import graph_readings
 from physicslab.view.workbench.graph_plot import GraphPlot
 from physicslab.view.workbench.number_field import NumberFields
-from physicslab.view.workbench.panel_places import bar_at_top, has_room, places
+from physicslab.view.workbench.panel_places import Small, bar_at_top, has_room, is_crowded, places
 from physicslab.view.workbench.small_panels import MeterPanels, SliderPanels
 from physicslab.world import World
 
@@ -227,10 +227,15 @@ class ScenePanels:
         if not has_graphs or not has_room(area, ui.size):
             _build_room_maker(ui, window, bar_at_top(area, ui.size))
             return
-        small = [*self._meters.sizes(ui, world, window), *self._sliders.sizes(ui, window)]
+        small = self._small(ui, world, window, flat=False)
+        if is_crowded(area, small):
+            small = self._small(ui, world, window, flat=True)
         found = places(area, ui.size, small)
         self._meters.build(ui, world, window, found)
         self._sliders.build(ui, numbers, world, window, found)
+
+    def _small(self, ui: Ui, world: World, window: Window, *, flat: bool) -> list[Small]:
+        return [*self._meters.sizes(ui, world, window, flat=flat), *self._sliders.sizes(ui, window)]
 
     def forget(self) -> None:
         """Drop what is dragged or half written in panels, and how wide they were."""

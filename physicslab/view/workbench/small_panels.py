@@ -33,11 +33,15 @@ _LETTERS = 34
 
 
 def size_of(ui: Ui, title: str, width: float, height: float) -> tuple[int, int]:
-    """Return the width and height of a small panel [px] with a title above something so large."""
+    """Return the width and height of a small panel [px] with a title above something so large.
+
+    A ``height`` of 0 puts it beside the title.
+    """
     style = imgui.get_style()
     button = imgui.calc_text_size(_MENU).x + 2.0 * style.frame_padding.x + style.item_spacing.x
-    inside = max(width, ui.width(_words(title)) + button)
-    high = imgui.get_frame_height() + style.item_spacing.y + height
+    head = ui.width(_words(title)) + button
+    inside = max(width, head) if height else head + style.item_spacing.x + width
+    high = imgui.get_frame_height() + (style.item_spacing.y + height if height else 0.0)
     return round(inside + 2.0 * style.window_padding.x), round(high + 2.0 * style.window_padding.y)
 
 
@@ -82,37 +86,45 @@ class MeterPanels:
 
     def __init__(self) -> None:
         self._figures: dict[int, str] = {}
+        self._is_flat = False
 
-    def sizes(self, ui: Ui, world: World, window: Window) -> list[Small]:
-        """Return how large each meter is."""
+    def sizes(self, ui: Ui, world: World, window: Window, *, flat: bool) -> list[Small]:
+        """Return how large each meter is; one that is ``flat`` has its number beside its title."""
+        self._is_flat = flat
         found, reading = [], Reading(world)
         scales = scales_of(world)
         shown = {meter.entity: _figures_of(reading, meter.key, scales) for meter in window.dashboard.meters}
         known = {entity: self._figures.get(entity, _WIDEST) for entity in shown}
         self._figures = {entity: max(known[entity], shown[entity], key=len) for entity in shown}
         for meter in window.dashboard.meters:
-            imgui.push_font(ui.fonts.bold, _LARGE * ui.size)
+            imgui.push_font(ui.fonts.bold, ui.size if flat else _LARGE * ui.size)
             number = imgui.calc_text_size(self._figures[meter.entity]).x
             imgui.pop_font()
             number += imgui.get_style().item_spacing.x + imgui.calc_text_size(unit_of(meter.key)).x
-            size = size_of(ui, named_key(meter.key, window), number, _LARGE * ui.size)
+            size = size_of(ui, named_key(meter.key, window), number, 0.0 if flat else _LARGE * ui.size)
             found.append(Small(meter.entity, meter.corner, size))
         return found
 
-    @staticmethod
-    def build(ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
+    def build(self, ui: Ui, world: World, window: Window, places: dict[int, Rect]) -> None:
         """Build every meter at its place."""
         reading, scales = Reading(world), scales_of(world)
         for meter in window.dashboard.meters:
             with ui.panel(f"meter {meter.entity}", places[meter.entity], rounded=True):
-                with build_title(ui, named_key(meter.key, window), f"Meter {meter.number}") as is_open:
+                title = named_key(meter.key, window)
+                with build_title(ui, title, f"Meter {meter.number}") as is_open:
                     if is_open:
                         _build_menu(ui, world, window, meter)
+                if self._is_flat:
+                    style = imgui.get_style()
+                    imgui.same_line(style.window_padding.x + ui.width(_words(title)) + style.item_spacing.x)
                 why = why_undefined(world, meter.key[1], meter.key[0])
                 if why:
-                    ui.faint(f"The body is {why}" if why == "gone" else f"It {why}")
+                    ui.faint(
+                        f"The body is {why}" if why == "gone" else f"It {why}", wrapped=not self._is_flat
+                    )
                 else:
-                    _build_number(ui, _figures_of(reading, meter.key, scales), unit_of(meter.key))
+                    large = ui.size if self._is_flat else _LARGE * ui.size
+                    _build_number(ui, _figures_of(reading, meter.key, scales), unit_of(meter.key), large)
 
 
 def _figures_of(reading: Reading, key: Key, scales: dict[str, float]) -> str:
@@ -121,10 +133,11 @@ def _figures_of(reading: Reading, key: Key, scales: dict[str, float]) -> str:
     return quantity(value, "").strip() if math.isfinite(value) else "-"
 
 
-def _build_number(ui: Ui, words: str, unit: str) -> None:
+def _build_number(ui: Ui, words: str, unit: str, size: float) -> None:
+    """Write a number in figures of a height [px], and its unit."""
     words = ui.said(words)
     ui.words.append(f"{words} {unit}")
-    imgui.push_font(ui.fonts.bold, _LARGE * ui.size)
+    imgui.push_font(ui.fonts.bold, size)
     top, height = imgui.get_cursor_pos_y(), imgui.get_text_line_height()
     imgui.text_unformatted(words)
     imgui.pop_font()
