@@ -152,7 +152,8 @@ class LessonPanel:
         _title(ui, _PREDICT if answer is None else _LOCKED, "Predict" if answer is None else "You predicted")
         ui.text(part.prompt, wrapped=True)
         if answer is not None:
-            ui.text(f"{_given_words(part, answer)} ({answer.get('sure', '')})", wrapped=True)
+            confidence = sureness_words(language(lesson.lesson.language)).get(str(answer.get("sure")), "")
+            ui.text(f"{ui.said(_given_words(part, answer))} ({confidence})", wrapped=True)
             return
         found = self._build_room(ui, lesson, part, part.name)
         ui.faint(language(lesson.lesson.language).say("How sure?"), wrapped=False)
@@ -252,18 +253,22 @@ class LessonPanel:
     # ---- run -----------------------------------------------------------------------------------------------
 
     def _build_run(self, ui: Ui, window: Window, lesson: OpenLesson, part: Run) -> None:
-        ends = (
-            f"for {part.seconds.text}" if part.seconds else f"until {part.until.text}" if part.until else ""
-        )
-        _title(ui, RUN, f"Run {ends}")
+        own = language(lesson.lesson.language)
+        if part.seconds is not None:
+            _title(ui, RUN, Sentence("Run for {time}", time=formula(own, part.seconds.text)))
+        elif part.until is not None:
+            _title(ui, RUN, Sentence("Run until {condition}", condition=formula(own, part.until.text)))
         trial, is_open = lesson.trial, lesson.open_to(part)
         mine = trial is not None and trial.run.line == part.line
         made = lesson.made(part)
-        words = f"{RUN}  Run again" if made else f"{RUN}  Run"
-        own = language(lesson.lesson.language)
-        case = f" with {formula(own, part.case.text)}" if part.case.values else ""
+        case = formula(own, part.case.text)
+        if part.case.values:
+            told = "{icon}  Run again with {case}" if made else "{icon}  Run with {case}"
+            words = Sentence(told, icon=RUN, case=case)
+        else:
+            words = Sentence("{icon}  Run again" if made else "{icon}  Run", icon=RUN)
         tip = "" if is_open else "Lock in your prediction first"
-        ui.button(f"Run {part.name}", tip, lesson_actions.begin_run, part, shown=words + case,
+        ui.button(f"Run {part.name}", tip, lesson_actions.begin_run, part, shown=words,
                   on=is_open and not made, enabled=is_open and not lesson.running)  # fmt: skip
         shown = trial if mine else made
         if shown is None:
