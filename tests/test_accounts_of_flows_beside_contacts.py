@@ -123,7 +123,7 @@ def test_a_step_that_is_begun_again_by_another_method_is_booked_once() -> None:
     one["Thrust"] = {
         "force": [0.0, 1.0],
         "frequency": 1e6,
-    }  # dop853 follows it, and finds no step short enough
+    }  # dop853 finds no step that is short enough
     document = scene(one, two, pin)
     document["simulation"] = {}
     world, account = after(document, 3)
