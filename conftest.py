@@ -50,6 +50,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--commands", metavar="N", type=int, default=10_000, help=words)
     words = f"list tests that take longer than this [s of processor time] in {_COSTLY.name}: they are slow"
     parser.addoption("--costs", metavar="SECONDS", type=float, help=words)
+    words = "folder to keep a picture of each stage in when tests/test_lessons_played.py plays the lessons"
+    parser.addoption("--pictures", metavar="FOLDER", type=Path, help=words)
     words = "keep what the notebooks of docs/examples show when tests/test_notebooks.py executes them"
     parser.addoption("--renew-notebooks", action="store_true", help=words)
 

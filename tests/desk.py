@@ -20,6 +20,8 @@ from physicslab.world import World
 FRAME = 1.0 / 60.0
 BUTTONS = {"left": 1, "middle": 2, "right": 3}
 MENUS = ("File", "Scenes", "Lessons", "Edit", "World", "Instruments", "View", "Help")
+_LINES_A_TURN = 5.0
+"""How far a turn of the wheel scrolls [heights of the text]."""
 SETTLED = 3
 """Frames after which panels show what an event has done, and what it was clicked for is done."""
 
@@ -167,16 +169,21 @@ def click_at(desk: Desk, place: Place, button: str = "left") -> None:
 
 
 def bring_into_sight(desk: Desk, label: str) -> None:
-    """Turn the wheel over the panel at the right until a widget of it is in sight."""
+    """Turn the wheel over what stands at the right of the world until a widget of it is in sight."""
     left, top, width, height = desk.sandbox.interface.layout.side
     if label in (*MENUS, BADGE) or desk.sandbox.interface.toolkit.has_popup():
         return
+    if desk.ui.places[label][0] < left:  # in a window that is docked between the world and the panel
+        world_left, _, world_width, _ = desk.window.framing.room()
+        left, width = world_left + world_width, left - world_left - world_width
+        tab, edge = round(2.5 * desk.ui.size), round(desk.ui.size)
+        top, height, width = top + tab, height - tab, width - edge
     for _ in range(200):
         x, y, _, down = desk.ui.places[label]
         if x < left or (y >= top and y + down <= top + height):
             return
         point(desk, (left + width - 2, top + height // 2))
-        turn = 0.5 if y < top else -0.5
+        turn = (top + 0.5 * (height - down) - y) / (_LINES_A_TURN * desk.ui.size)
         pygame.event.post(pygame.Event(pygame.MOUSEWHEEL, x=0, y=0, precise_x=0.0, precise_y=turn))
         desk.frames(SETTLED)
     raise AssertionError(f"{label} cannot be scrolled into sight")

@@ -289,6 +289,8 @@ REFUSED: tuple[tuple[dict[str, Any], dict[str, Any], str], ...] = (
     ({"ball.Velocity.linear.x": [1], "ball.Velocity.linear[0]": [1]}, {}, "is given twice"),
     ({M: [1]}, {"measure": "ball.q"}, "measure \"ball.q\": 'ball.q' is no quantity"),
     ({M: [1]}, {"measure": "ball.x +"}, "is no number"),
+    ({M: [1]}, {"measure": "max(ball.x"}, "'max(ball.x' is no number: a \")\" is missing"),
+    ({M: [1]}, {"measure": "ball.x)"}, "'ball.x)' is no number: a \"(\" is missing"),
     ({M: [1]}, {"measure": "ball.x + ball.vx"}, "m and m s^-1 cannot be added"),
     ({M: [1]}, {"measure": "__import__(ball.x)"}, "'__import__' is no function"),
     ({M: [1]}, {"measure": "first_impact.q"}, "an impact has time, x, y, speed, energy_lost"),

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 
+from physicslab.lessons.answers import asked
 from physicslab.lessons.blocks import KEYS, LessonError
+from physicslab.lessons.catalogue import LIBRARY, find_lesson
+from physicslab.lessons.check import check_lesson
 from physicslab.lessons.lesson import Compare, Explain, Prose, Question, Recall, Run
 from physicslab.lessons.reader import parse_lesson, read_lesson
 
@@ -102,10 +106,13 @@ WRONG = [
     ("level: 1", "level: 4", "line 4: head: level = \"4\": must be a whole number from 1 to 3"),
     ("minutes: 10", "minutes: soon", "line 5: head: minutes"),
     ("level: 1", "levl: 1", "line 4: head: levl: unknown key; must be one of format, title, level"),
+    ("needs: speed, time", "needs: 5", "line 6: head: needs = \"5\": must be words for what is known before"),
     ("source: doe2001 =", "source: Doe =", "line 7: head: source"),
     ("needs: speed, time", "language: german!", "line 6: head: language"),
     ("needs: speed, time", "scene: drop", "must be named in the head (scene: NAME), or written here"),
     ("## Level 2:", "## Level 7:", "line 21: \"## Level 7: How long?\": a level must be 1, 2 or 3"),
+    ("## Level 2:", "##", "line 21: \"## How long?\": a level must be 1, 2 or 3, as in ## Level 1: QUESTION"),
+    ("## Level 2:", "## Level two:", "line 21: \"## Level two: How long?\": a level must be 1, 2 or 3"),
     ("```explain why", "```explian why", "line 50: \"explian\": unknown block; must be one of scene"),
     ("```explain why", "```explain Why?", "line 50: explain \"Why?\": a block's name"),
     ("```explain why", "```explain fall", "line 50: explain fall: the block of line 35 has this name"),
@@ -115,6 +122,10 @@ WRONG = [
     ("let: height = 5 m", "let: m = 5", "is taken: a unit"),
     ("let: height = 5 m", "let: height = 5 parsec", "line 12: scene: let = "),
     ("open: height = 1 m to 20 m", "open: width = 1 m to 2 m", "line 14: scene: open"),
+    ("open: height = 1 m to 20 m", "open: height = 20 m to 1 m", "line 14: scene: open = "),
+    ("open: height = 1 m to 20 m", "open: height = 6 m to 20 m", "with height = 5 m in between"),
+    ("open: height = 1 m to 20 m", "open: height = 1 kg to 20 kg", "another unit does not fit"),
+    ("\"height\"]", "\"pul\"]", "'pul' is no unit and no parameter; must be one of height, gravity"),
     ("tools: hand", "tools: hammer",
      "line 15: scene: tools = \"hammer, ruler\": \"hammer\": must be some of hand"),
     ("show: arrows", "show: ghosts", "line 16: scene: show"),
@@ -141,6 +152,10 @@ WRONG = [
     ("until: ball.y < 0", "until: ball.z < 0", "ball has x, y, angle, vx"),
     ("until: ball.y < 0\n", "", "line 35: run fall: must have seconds: TIME or until: CONDITION"),
     ("limit: 10 s", "seconds: 10 s", "must have seconds: TIME or until: CONDITION, one of both"),
+    ("limit: 10 s", "limit: 12 m", "line 37: run fall: limit = \"12 m\": '12 m' is in m; this is in s"),
+    ("limit: 10 s", "limit: -1", "line 37: run fall: limit = \"-1\": must be a time above 0 s"),
+    ("graph: ball.y", "graph: max(ball.y", "'max(ball.y' is no number: a \")\" is missing"),
+    ("graph: ball.y", "graph: ball.y)", "'ball.y)' is no number: a \"(\" is missing"),
     ("graph: ball.y", "graph: hight", "line 38: run fall: graph = \"hight\": 'hight' is unknown"),
     # compare
     ("measure: time\n", "", "line 41: compare compare_1: must have measure: EXPRESSION or along"),
@@ -186,9 +201,69 @@ def test_what_is_no_lesson_is_refused(tmp_path: Path, content: bytes | None) -> 
         read_lesson(path)
 
 
+def test_words_of_a_translation_alone_are_no_lesson() -> None:
+    why = r"pendulum\.md: line 2: head: .* must be pendulum\.md of the folder above, with --language de"
+    with pytest.raises(LessonError, match=why):
+        read_lesson(LIBRARY / "de" / "pendulum.md")
+
+
+GOAL = """
+```check reach
+question: Let it fall for 2 s.
+goal: time > 2 s
+solution: {case}
+right: Yes.
+```
+"""
+
+
+@pytest.mark.parametrize(
+    ("case", "words"),
+    [
+        (
+            "gravity = 1 m/s^2",
+            'line 72: check reach: solution = "gravity = 1 m/s^2": must be of what is open',
+        ),
+        ("height = 190 m", 'line 72: check reach: solution = "height = 190 m": height must be from 1 m to'),
+    ],
+)
+def test_a_goal_is_reached_with_what_is_open(case: str, words: str) -> None:
+    with pytest.raises(LessonError, match=re.escape(words)):
+        parse_lesson(LESSON + GOAL.format(case=case), "fall.md")
+
+
+@pytest.mark.parametrize(
+    ("part", "instead", "words"),
+    [
+        ("until: ball.y < 0", "until: ball.y < 0 s", "line 35: run fall: 'ball.y < 0 s': m and s cannot"),
+        ("until: ball.y < 0", "until: ball.y > 9", "line 35: run fall: the run did not come to 'ball.y > 9'"),
+        ("theory: sqrt(2 height/gravity)", "theory: height/gravity", "line 41: compare compare_1: "),
+        ("holds: always", "holds: height > 2 m", "compare_1: 'height > 2 m' must hold in the case"),
+        ("answer: ball.speed", "answer: ball.x", "line 55: check speed: 'ball.x' is in m; this is in m/s"),
+        ("number: m/s", "curve: m", "line 55: check speed: 'ball.speed' is in m s^-1; this is in m"),
+    ],
+)
+def test_what_the_engine_cannot_check_is_refused_with_its_block(part: str, instead: str, words: str) -> None:
+    with pytest.raises(LessonError, match=re.escape(words)):
+        list(check_lesson(parse_lesson(LESSON.replace(part, instead, 1), "fall.md")))
+
+
+@pytest.mark.parametrize(
+    ("ask", "words"),
+    [
+        ("pendulum/mass", "pendulum has no check mass; must be one of seconds, factor"),
+        ("pendulums/mass", "ask = pendulums/mass: pendulums: no such file, and no lesson of this name"),
+    ],
+)
+def test_a_question_that_is_recalled_must_be_there(ask: str, words: str) -> None:
+    lesson = parse_lesson(LESSON.replace("ask: projectile/target", f"ask: {ask}"), "fall.md")
+    with pytest.raises(LessonError, match=f": line 65: recall recall_1: {re.escape(words)}"):
+        list(asked(lesson, find_lesson))
+
+
 def test_a_scene_may_be_a_built_in_one_or_a_file_beside_the_lesson(tmp_path: Path) -> None:
     head, _, rest = LESSON.partition('{"physics"')
-    text = head.replace("needs: speed, time", "scene: drop") + "```\n\n## How far?\n"
+    text = head.replace("needs: speed, time", "scene: drop") + "```\n\n## Level 1: How far?\n"
     assert rest
     lesson = parse_lesson(text, "drop.md")
     assert any(one.get("id") == "ball" for one in lesson.setup.document["entities"])

@@ -2,16 +2,18 @@
 
 from pathlib import Path
 
+import pygame
 import pytest
 from desk import SETTLED, Desk, click, fill, sized
 
 from physicslab.languages.catalogue import languages
 from physicslab.lessons.catalogue import LESSONS
 from physicslab.lessons.lesson import Compare, Explain, Prose, Question, Recall, Run
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.controls.lesson_actions import choose_language, open_lesson
 from physicslab.view.window.lesson import OpenLesson
 
-MOST_ACTS = 400
+MOST_ACTS = 60
 
 
 def now(desk: Desk) -> OpenLesson:
@@ -32,7 +34,7 @@ def answer(desk: Desk, part: Question, name: str) -> None:
 
 def wait_for_run(desk: Desk, name: str) -> None:
     for _ in range(4000):
-        desk.frames(2)
+        desk.frames(2, elapsed=desk.window.pace.max_dt)  # pictures are few, steps are those of each run
         if not now(desk).running:
             break
     trial = now(desk).trial
@@ -66,19 +68,30 @@ def act(desk: Desk, lesson: OpenLesson, part: object) -> None:
     desk.frames(2)
 
 
+def keep_picture(desk: Desk, path: Path) -> None:
+    """Write what the window shows to a file."""
+    assert isinstance(desk.window.canvas, PygameCanvas)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    pygame.image.save(desk.window.canvas.surface, path)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("code", languages())
 @pytest.mark.parametrize("name", LESSONS)
 def test_a_lesson_is_played_to_its_end(
-    name: str, code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    name: str, code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> None:
+    folder = request.config.getoption("--pictures")
+    pictures = None if folder is None else folder.resolve() / f"{name}-{code}"
     monkeypatch.chdir(tmp_path)
-    desk = sized((1280, 5000))  # so high that nothing has to be scrolled to
+    desk = sized((1280, 720))
     choose_language(desk.world, desk.window, code)
     desk.window.do_next(open_lesson, name)
     desk.frames(SETTLED)
     assert now(desk).lesson.language == code
-    for _ in range(MOST_ACTS):
+    for number in range(MOST_ACTS):
+        if pictures is not None:
+            keep_picture(desk, pictures / f"{number:02d}.png")
         lesson = now(desk)
         if "Leave the lesson" in desk.ui.places:
             break

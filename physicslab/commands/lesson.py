@@ -13,6 +13,7 @@ from physicslab.ecs.text import printable
 from physicslab.files.json_text import json_bytes
 from physicslab.kernels.tiers import Tiers
 from physicslab.languages.language import Language, language
+from physicslab.lessons.answers import asked
 from physicslab.lessons.catalogue import LESSONS, find_lesson, lesson_in
 from physicslab.lessons.check import Row, check_lesson
 from physicslab.lessons.lesson import Lesson, Prose
@@ -81,6 +82,7 @@ def _check(lessons: list[Lesson], output: Output | None) -> int:
         print(f"| {' | '.join(_heads(own))} |\n|---|---|---|--:|--:|--:|--:|---|")
     with Tiers(True):
         for lesson in lessons:
+            list(asked(lesson, find_lesson))  # each question that it recalls is there
             for row in check_lesson(lesson):
                 rows.append(row)
                 if told and row.measured == row.measured:

@@ -150,12 +150,9 @@ class Figures:
 
     def named(self, name: str) -> Quantity | None:
         """Return the value of a parameter, of a quantity, or the ``time``."""
-        parameter = None if self.parameters is None else self.parameters.named(name)
-        if parameter is not None:
-            return parameter
         column = self.record.times if name == "time" else self.record.columns.get(name)
         if column is None:
-            return None
+            return None if self.parameters is None else self.parameters.named(name)
         dimension = _SECOND.dimension if name == "time" else self.record.dimensions[name]
         value = column[self.now] if isinstance(self.now, int) else self.between(column, self.now)
         return Quantity(value, dimension, name != COLLISIONS)

@@ -371,7 +371,9 @@ def _parsed(text: str) -> ast.expr:
         with warnings.catch_warnings(action="ignore"):  # of strange literals, for programmers
             return ast.parse(prepared, mode="eval").body
     except (SyntaxError, RecursionError, MemoryError, ValueError):
-        raise InvalidText(f"'{shown}' is no number") from None
+        unclosed = text.count("(") - text.count(")")
+        why = f': a "{")" if unclosed > 0 else "("}" is missing' if unclosed else ""
+        raise InvalidText(f"'{shown}' is no number{why}") from None
 
 
 def _arithmetic_geometric_mean(a: float, b: float) -> float:

@@ -19,7 +19,7 @@ from physicslab.files.scene import parse_json, read_text
 from physicslab.languages.language import language
 from physicslab.lessons.blocks import LessonError
 from physicslab.lessons.check import LessonRuns, curve_gap
-from physicslab.lessons.lesson import SURENESS, Explain, Lesson, Question, Recall, Reply
+from physicslab.lessons.lesson import SURENESS, Explain, Lesson, Question, Recall, Reply, place_of
 from physicslab.lessons.setup import Case
 from physicslab.lessons.words import formula, measure
 from physicslab.state.masses import Diverged
@@ -82,10 +82,16 @@ def asked(lesson: Lesson, find: Callable[[str], Lesson]) -> Iterator[tuple[str, 
             yield part.name, part.kind if isinstance(part, Question) else "explain", part, lesson
         elif isinstance(part, Recall):
             for name, check in part.asks:
-                other = find(name)
+                try:
+                    other = find(name)
+                except LessonError as error:
+                    place = f"{lesson.path}: {place_of(part)}: ask = {name}/{check}"
+                    raise LessonError(f"{place}: {error}") from error
                 question = next((one for one in other.questions("check") if one.name == check), None)
                 if question is None:
-                    raise LessonError(f"{lesson.path}: line {part.line}: {name} has no check {check}")
+                    there = ", ".join(one.name for one in other.questions("check")) or "none"
+                    why = f"{name} has no check {check}; must be one of {there}"
+                    raise LessonError(f"{lesson.path}: {place_of(part)}: {why}")
                 yield f"{name}/{check}", "recall", question, other
 
 

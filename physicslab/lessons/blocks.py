@@ -126,7 +126,7 @@ class Block:
         try:
             return make(entry.value)
         except (InvalidText, SceneError) as error:
-            why = str(error).removeprefix(f"{self.file}: line {self.line}: {self.kind}: ")
+            why = re.sub(rf"^{re.escape(self.file)}: line \d+: \w+: ", "", str(error))
             raise self.refusal(entry, why) from error
 
     def case(self, entry: Entry) -> Case:

@@ -10,7 +10,7 @@ from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity, in_u
 from physicslab.files.checks import SceneError
 from physicslab.languages.language import language
 from physicslab.lessons.blocks import LessonError
-from physicslab.lessons.lesson import Compare, Lesson, Question, Reply, Run
+from physicslab.lessons.lesson import Compare, Lesson, Question, Reply, Run, place_of
 from physicslab.lessons.live_run import record_run
 from physicslab.lessons.setup import AS_IT_IS, Case
 from physicslab.lessons.words import case_words, with_run
@@ -107,12 +107,19 @@ def check_lesson(lesson: Lesson) -> Iterator[Row]:
         If one cannot be evaluated: which line, and why.
     """
     runs = LessonRuns(lesson)
-    for part in lesson.parts():
-        if isinstance(part, Compare | Question):
+    # Runs first: what is wrong with one is said of it, not of the prediction that stands before it.
+    for part in sorted(lesson.parts(), key=lambda one: not isinstance(one, Run)):
+        if isinstance(part, Run | Compare | Question):
             try:
-                yield from _compared(runs, part) if isinstance(part, Compare) else _answered(runs, part)
+                match part:
+                    case Run():
+                        runs.figures(part)
+                    case Compare():
+                        yield from _compared(runs, part)
+                    case Question():
+                        yield from _answered(runs, part)
             except (InvalidText, SceneError, Diverged) as error:
-                raise LessonError(f"{lesson.path}: line {part.line}: {part.name}: {error}") from error
+                raise LessonError(f"{lesson.path}: {place_of(part)}: {error}") from error
 
 
 def _compared(runs: LessonRuns, compare: Compare) -> Iterator[Row]:
@@ -209,6 +216,8 @@ def _answered(runs: LessonRuns, question: Question) -> Iterator[Row]:
             is_wrong = abs(wrong - right) > question.tolerance * abs(right)
             yield _told(runs, question, f"{reply.text} = {wrong:.6g} is a mistake", is_wrong, True)
     if question.form == "curve":
+        assert question.answer is not None
+        in_unit(question.answer.value(figures.at(0)), question.unit, question.answer.text)
         measured = runs.curve(question)
         for reply in question.replies:
             gap = curve_gap(runs.curve(question, reply), measured)

@@ -180,6 +180,12 @@ class Recall:
 type Part = Prose | Run | Question | Compare | Explain | Recall
 
 
+def place_of(part: Run | Question | Compare | Explain | Recall) -> str:
+    """Return where a part stands, as messages have it: ``line 42: compare period``."""
+    kind = part.kind if isinstance(part, Question) else type(part).__name__.lower()
+    return f"line {part.line}: {kind} {part.name}"
+
+
 @dataclass(frozen=True, slots=True)
 class Step:
     """A part of a lesson below one heading: its driving question, how deep it goes, and what is in it."""

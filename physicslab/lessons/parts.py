@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from physicslab.diagnostics.figures import FUNCTIONS, quantity_of
 from physicslab.ecs.conditions import Condition
-from physicslab.ecs.quantity_text import Expression, InvalidText
+from physicslab.ecs.quantity_text import Expression, InvalidText, in_unit
 from physicslab.lessons.blocks import Block, Entry
 from physicslab.lessons.lesson import Compare, Explain, Question, Recall, Reply, Run
 from physicslab.lessons.setup import AS_IT_IS, Case, Setup
@@ -71,9 +71,9 @@ class PartMaker:
         case = block.find("case")
         return Run(
             block.name, block.line,
-            self._expression(block, seconds) if seconds else None,
+            self._duration(block, seconds) if seconds else None,
             self._condition(block, until) if until else None,
-            self._expression(block, limit) if limit else Expression("60 s"),
+            self._duration(block, limit) if limit else Expression("60 s"),
             tuple(self._graph(block, entry) for entry in block.all("graph")),
             self._case(block, case) if case else AS_IT_IS,
         )  # fmt: skip
@@ -136,7 +136,7 @@ class PartMaker:
         if form == "goal":
             solution = block.one("solution", "values of a case that reach the goal")
             goal = self._condition(block, block.one("goal", "a condition"))
-            return replace(made, goal=goal, solution=self._case(block, solution))
+            return replace(made, goal=goal, solution=self._open_case(block, solution))
         unit = block.one(form, 'a unit, as "m/s", or 1')
         block.read(unit, lambda text: Expression(text).value())
         answer = self._expression(block, block.one("answer", "an expression of the right answer"))
@@ -195,12 +195,31 @@ class PartMaker:
     def _expression(self, block: Block, entry: Entry) -> Expression:
         return block.read(entry, lambda text: self._known(Expression(text)))
 
+    def _duration(self, block: Block, entry: Entry) -> Expression:
+        """Return a time above zero, of numbers and parameters."""
+        found = self._expression(block, entry)
+        time = block.read(entry, lambda text: in_unit(found.value(self._setup.values()), "s", text))
+        if time <= 0.0:
+            raise block.refusal(entry, "must be a time above 0 s")
+        return found
+
     def _condition(self, block: Block, entry: Entry) -> Condition:
         return block.read(entry, lambda text: self._known(Condition(text)))
 
     def _case(self, block: Block, entry: Entry) -> Case:
         case = block.case(entry)
         block.read(entry, lambda _: self._setup.world(case))
+        return case
+
+    def _open_case(self, block: Block, entry: Entry) -> Case:
+        """Return a case that learners can set: of what is open, within its limits."""
+        case, setup = self._case(block, entry), self._setup
+        for name, text in case.values:
+            if name not in setup.opened:
+                raise block.refusal(entry, f"must be of what is open: {', '.join(setup.opened) or 'nothing'}")
+            low, high = setup.opened[name]
+            if not setup.quantity(name, low) <= setup.quantity(name, text) <= setup.quantity(name, high):
+                raise block.refusal(entry, f"{name} must be from {low} to {high}")
         return case
 
     def _cited(self, block: Block, entry: Entry) -> str:

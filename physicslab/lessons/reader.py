@@ -17,6 +17,7 @@ from physicslab.lessons.blocks import KEYS, Block, Entry, LessonError, read_case
 from physicslab.lessons.lesson import DEPTHS, HEADING, Lesson, Part, Prose, Step
 from physicslab.lessons.parts import CITED, PartMaker
 from physicslab.lessons.setup import Parameters, Setup
+from physicslab.lessons.translation import FORMAT as WORDS_FORMAT
 from physicslab.lessons.translation import translate
 from physicslab.state.attached import INSTRUMENTS
 from physicslab.state.state import SHOWN
@@ -27,6 +28,7 @@ FILE_LIMIT = 2**20
 TOOLS = ("hand", "stopwatch", *(kind.__name__.lower() for kind in INSTRUMENTS))
 """Tools of the window that a lesson may open to its learners."""
 _HEAD = ("format", "title", "level", "minutes", "needs", "scene", "language", "source")
+_WORDS = re.compile(rf"^format:\s*{re.escape(WORDS_FORMAT)}\s*$", re.MULTILINE)
 _LANGUAGE = re.compile(r"[a-z]{2,3}")
 
 
@@ -70,6 +72,10 @@ def parse_lesson(text: str, file: str, path: Path = Path(), words: tuple[str, st
 
     The ``words`` are the text of its translation, and what messages call that.
     """
+    if found := _WORDS.search(text):
+        why = f"are words of a lesson in another language; must be {path.name} of the folder above"
+        line = text.count("\n", 0, found.start()) + 1
+        raise LessonError(f"{file}: line {line}: head: these {why}, with --language {path.parent.name}")
     head, body = read_document(text, file, _HEAD, KEYS)
     if head.text("format", FORMAT) != FORMAT:
         raise head.refusal(head.one("format", FORMAT), f"must be {FORMAT}")
@@ -82,6 +88,8 @@ def parse_lesson(text: str, file: str, path: Path = Path(), words: tuple[str, st
     language, needs, sources = head.find("language"), head.find("needs"), dict(_sources(head))
     if language and not _LANGUAGE.fullmatch(language.value):
         raise head.refusal(language, 'must be the code of a language, as "en" or "de"')
+    if needs and needs.value and not any(map(str.isalpha, needs.value)):
+        raise head.refusal(needs, "must be words for what is known before, as: speed, forces")
     maker = PartMaker(setup, sources)
     maker.make_runs(one for one in body if isinstance(one, Block) and one.kind == "run")
     return Lesson(
@@ -128,7 +136,7 @@ def _setup(head: Block, block: Block, path: Path) -> Setup:
         except InvalidText as error:
             raise block.refusal(entry, error) from error
     setup = Setup(
-        document, source, parameters, notes, dict(_opened(block, parameters)),
+        document, source, parameters, notes, _opened(block, parameters),
         _words(block, "tools", TOOLS), _words(block, "show", SHOWN),
     )  # fmt: skip
     for entry in block.all("set"):
@@ -137,6 +145,8 @@ def _setup(head: Block, block: Block, path: Path) -> Setup:
         setup.world()  # what is wrong with it is refused with its line
     except (InvalidText, SceneError) as error:
         raise block.error(str(error).removeprefix(f"{source}: ")) from error
+    for entry, name in zip(block.all("open"), setup.opened, strict=True):
+        _check_span(setup, block, entry, name)
     return setup
 
 
@@ -144,16 +154,29 @@ def _fixed(setup: Setup, block: Block, entry: Entry) -> Setup:
     return block.read(entry, lambda text: setup.fixed(read_case(text)))
 
 
-def _opened(block: Block, parameters: dict[str, Expression]) -> Iterator[tuple[str, tuple[str, str]]]:
+def _opened(block: Block, parameters: dict[str, Expression]) -> dict[str, tuple[str, str]]:
+    opened: dict[str, tuple[str, str]] = {}
     for entry in block.all("open"):
         name, _, span = (part.strip() for part in entry.value.partition("="))
         low, to, high = (part.strip() for part in span.partition(" to "))
-        if name not in parameters or not to:
-            names = ", ".join(parameters) or "none"
+        if name not in parameters or not to or name in opened:
+            names = ", ".join(one for one in parameters if one not in opened) or "none"
             raise block.refusal(entry, f"must be NAME = LEAST to GREATEST, the name one of {names}")
         for text in (low, high):
             block.read(replace(entry, value=text), _number)
-        yield name, (low, high)
+        opened[name] = low, high
+    return opened
+
+
+def _check_span(setup: Setup, block: Block, entry: Entry, name: str) -> None:
+    """Refuse limits that the usual value of a parameter is not within, or that are of another unit."""
+    usual = setup.parameters[name].text
+    ends = (*setup.opened[name], usual)
+    low, high, value = block.read(entry, lambda _: [setup.quantity(name, end) for end in ends])
+    if not low <= value <= high or low == high:
+        raise block.refusal(
+            entry, f"must go from the least to the greatest, with {name} = {usual} in between"
+        )
 
 
 def _number(text: str) -> float:
@@ -208,10 +231,10 @@ def _steps(body: list[Prose | Block], maker: PartMaker, file: str) -> Iterator[S
         if heading or parts:
             yield Step(heading, depth, tuple(parts))
         heading, parts = found[2].strip(), []
-        if found[1]:
-            if int(found[1]) not in DEPTHS:
-                raise LessonError(f"{file}: line {one.line}: {shown(first)}: a level must be 1, 2 or 3")
-            depth = int(found[1])
+        if not found[1] or int(found[1]) not in DEPTHS:
+            why = "a level must be 1, 2 or 3, as in ## Level 1: QUESTION"
+            raise LessonError(f"{file}: line {one.line}: {shown(first)}: {why}")
+        depth = int(found[1])
         if rest.strip():
             parts.append(Prose(rest.strip(), one.line + 1))
     if heading or parts:

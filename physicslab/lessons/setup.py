@@ -12,7 +12,7 @@ from typing import Any
 from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
-from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity, in_unit
+from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity, in_unit, is_known
 from physicslab.ecs.text import suggestion
 from physicslab.files.checks import SceneError
 from physicslab.files.reader import read_scene
@@ -41,8 +41,10 @@ class Parameters:
         self.values = values
 
     def named(self, name: str) -> Quantity | None:
-        """Return the value of a parameter."""
-        return self.values.get(name)
+        """Return the value of a parameter; refuse a name that is no unit either."""
+        if name in self.values or "." in name or is_known(name):
+            return self.values.get(name)
+        raise InvalidText(f"'{name}' is no unit and no parameter; must be one of {_listed(self.values)}")
 
     def called(self, name: str, arguments: list[ast.expr], whole: Expression) -> Quantity | None:
         """Return nothing: parameters know no functions of their own."""

@@ -6,6 +6,7 @@ from pathlib import Path
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.text import printable
 from physicslab.files.checks import SceneError
+from physicslab.lessons.answers import asked
 from physicslab.lessons.catalogue import find_lesson
 from physicslab.lessons.lesson import Run
 from physicslab.lessons.setup import AS_IT_IS, Case
@@ -32,6 +33,7 @@ def open_lesson(world: World, window: Window, name: str) -> str:
         desk = desk_of(window) if window.lesson is None else window.lesson.desk
         tool = window.tool if window.lesson is None else window.lesson.tool
         find = partial(find_lesson, language=window.language)
+        list(asked(lesson, find))  # each question that it recalls is there
         opened = OpenLesson(lesson, name, Path.cwd(), window.own, desk, tool, find)
     except (SceneError, InvalidText, OSError) as error:
         reason = f"Not opened: {error}"

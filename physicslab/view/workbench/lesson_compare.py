@@ -1,5 +1,7 @@
 """Theory beside measurement in the panel of a lesson: a table of cases, and the gap in words."""
 
+import math
+
 from imgui_bundle import imgui
 
 from physicslab.ecs.quantity_text import InvalidText, evaluate
@@ -68,7 +70,8 @@ def _build_row(
     ui: Ui, lesson: OpenLesson, part: Compare, number: int, case: Case,
     row: Row | str | None, predicted: float | None,
 ) -> None:  # fmt: skip
-    values = ", ".join(f"{name} = {text}" for name, text in case.values)
+    own = language(lesson.lesson.language)
+    values = ", ".join(f"{name} = {formula(own, text)}" for name, text in case.values)
     imgui.table_next_row()
     imgui.table_next_column()
     what = Sentence("as run") if case is AS_IT_IS else values
@@ -92,9 +95,11 @@ def _build_row(
     imgui.table_next_column()
     ui.text(quantity(row.measured, unit).strip(), wrapped=True)
     imgui.table_next_column()
-    gap = quantity(row.gap, unit) if row.absolute else percentage(row.gap)
+    apart = row.gap if row.absolute else abs(row.measured - row.theory)
+    is_share = not (row.absolute or math.isinf(row.gap))  # nothing is a share of zero
+    gap = percentage(row.gap) if is_share else quantity(apart, unit).strip()
     if "·" in gap:  # one figure says how small it is, and fits a narrow column
-        gap = round_quantity(row.gap if row.absolute else 100.0 * row.gap, unit if row.absolute else "%")
+        gap = round_quantity(100.0 * row.gap, "%") if is_share else round_quantity(apart, unit)
     near = row.gap <= row.tolerance
     mark, colour = (RIGHT, ui.theme.accent) if near else (WRONG, ui.theme.error)
     ui.text(f"{mark}\u00a0{gap}", colour, wrapped=True)

@@ -10,7 +10,7 @@ from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
 from physicslab.lessons.answers import Graded
 from physicslab.lessons.lesson import SURENESS, Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
-from physicslab.lessons.words import sureness_words
+from physicslab.lessons.words import formula, sureness_words
 from physicslab.view.canvas.quantities import written_unit
 from physicslab.view.controls import lesson_actions
 from physicslab.view.toolkit.ui import Ui
@@ -152,7 +152,8 @@ class LessonPanel:
         _title(ui, _PREDICT if answer is None else _LOCKED, "Predict" if answer is None else "You predicted")
         ui.text(part.prompt, wrapped=True)
         if answer is not None:
-            ui.text(f"{_given_words(part, answer)} ({answer.get('sure', '')})", wrapped=True)
+            confidence = sureness_words(language(lesson.lesson.language)).get(str(answer.get("sure")), "")
+            ui.text(f"{ui.said(_given_words(part, answer))} ({confidence})", wrapped=True)
             return
         found = self._build_room(ui, lesson, part, part.name)
         ui.faint(language(lesson.lesson.language).say("How sure?"), wrapped=False)
@@ -238,8 +239,10 @@ class LessonPanel:
             ui.text(f"It is: {graded.expected}", wrapped=True)
         shown = next((one.shown_by for one in part.replies if one.feedback == graded.feedback), None)
         if shown is not None and part.run is not None and kind != "recall" and not graded.right:
+            own = language(lesson.lesson.language)
+            words = f"{RUN}  Show it: {formula(own, shown.text)}"
             ui.button(f"Show {name}", "A run that shows it", lesson_actions.begin_run, part.run, shown,
-                      shown=f"{RUN}  Show it: {shown.text}", enabled=not lesson.running)  # fmt: skip
+                      shown=words, enabled=not lesson.running)  # fmt: skip
 
     def _grade(self, lesson: OpenLesson, part: Question, name: str, kind: str) -> Graded:
         answer, kept = lesson.given[name], self._graded.get(name)
@@ -250,17 +253,22 @@ class LessonPanel:
     # ---- run -----------------------------------------------------------------------------------------------
 
     def _build_run(self, ui: Ui, window: Window, lesson: OpenLesson, part: Run) -> None:
-        ends = (
-            f"for {part.seconds.text}" if part.seconds else f"until {part.until.text}" if part.until else ""
-        )
-        _title(ui, RUN, f"Run {ends}")
+        own = language(lesson.lesson.language)
+        if part.seconds is not None:
+            _title(ui, RUN, Sentence("Run for {time}", time=formula(own, part.seconds.text)))
+        elif part.until is not None:
+            _title(ui, RUN, Sentence("Run until {condition}", condition=formula(own, part.until.text)))
         trial, is_open = lesson.trial, lesson.open_to(part)
         mine = trial is not None and trial.run.line == part.line
         made = lesson.made(part)
-        words = f"{RUN}  Run again" if made else f"{RUN}  Run"
-        case = f" with {part.case.text}" if part.case.values else ""
+        case = formula(own, part.case.text)
+        if part.case.values:
+            told = "{icon}  Run again with {case}" if made else "{icon}  Run with {case}"
+            words = Sentence(told, icon=RUN, case=case)
+        else:
+            words = Sentence("{icon}  Run again" if made else "{icon}  Run", icon=RUN)
         tip = "" if is_open else "Lock in your prediction first"
-        ui.button(f"Run {part.name}", tip, lesson_actions.begin_run, part, shown=words + case,
+        ui.button(f"Run {part.name}", tip, lesson_actions.begin_run, part, shown=words,
                   on=is_open and not made, enabled=is_open and not lesson.running)  # fmt: skip
         shown = trial if mine else made
         if shown is None:
@@ -270,7 +278,8 @@ class LessonPanel:
         if shown.failure:
             ui.text(shown.failure, ui.theme.error, wrapped=True)
         if shown.case.values:
-            ui.faint(f"Shown: {', '.join(f'{name} = {text}' for name, text in shown.case.values)}")
+            values = (f"{name} = {formula(own, text)}" for name, text in shown.case.values)
+            ui.faint(f"Shown: {', '.join(values)}")
         plot_run(ui, lesson, shown)
         for question in lesson.predictions(part) if made is not None else ():
             if question.name in lesson.given:

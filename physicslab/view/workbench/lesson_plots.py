@@ -28,6 +28,8 @@ _DASHES = 40
 """Dashes of a line that is theory."""
 _BINS = 120
 """Places along a curve that is drawn."""
+_AROUND = ImVec2(0.1, 0.2)
+"""Share of what markers span that is left beside them, so that they are whole at the edges."""
 _SHADE = 0.25
 """Opacity of the gap between two lines."""
 _FLAGS = (
@@ -105,6 +107,7 @@ def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predic
     """Build the graph of a comparison: in each case, by its number, theory, measurement and prediction."""
     if not _begin(ui, part.name, "case", _with_unit(proper(part.quantity), rows[0][1].unit)):
         return
+    implot.push_style_var(implot.StyleVar_.fit_padding, _AROUND)
     numbers = np.array([float(n) for n, _ in rows])
     implot.setup_axis_ticks(implot.ImAxis_.x1, [float(n) for n, _ in rows], [f"{n}" for n, _ in rows], False)
     theory = np.array([row.theory for _, row in rows])
@@ -127,6 +130,7 @@ def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predic
         implot.plot_scatter(ui.said(name), x, y, look)
         ui.words.append(name)
     implot.end_plot()
+    implot.pop_style_var()
 
 
 def _plain(expression: Expression) -> str:
