@@ -133,7 +133,7 @@ def test_bodies_as_they_are_painted_stand_out_from_the_sky(theme: Theme) -> None
 def test_rims_of_bodies_stand_out_all_around_from_sky_and_ground(theme: Theme) -> None:
     """The law: fills are lit and dim, so that the rim, at least 2 px wide, has the contrast everywhere."""
     greys = [(n, n, n) for n in range(0, 256, 15)]
-    strong = list(itertools.product((0, 128, 255), repeat=3))
+    strong = list(itertools.product((0, 128, 255), (0, 128, 255), (0, 128, 255)))
     materials = [rgb_of(substance.colour) for substance in SUBSTANCES.values()]
     chosen = [theme.edge(colour) for colour in (*greys, *strong, *materials)]
     for rim in (*theme.bodies, theme.kinematic, theme.held, *chosen):
