@@ -18,7 +18,8 @@ _COLUMNS = "| field | default | allowed | what it is |\n|---|---|---|---|\n"
 
 def page() -> str:
     """Return the page, in Markdown."""
-    own = [kind for kind in COMPONENTS.values() if kind.__module__.startswith("physicslab.")]
+    named = vars(physicslab.components)
+    own = [kind for name, kind in COMPONENTS.items() if named.get(name) is kind]
     return "\n".join([_HEAD, *map(_section, sorted(own, key=lambda kind: kind.__name__))])
 
 

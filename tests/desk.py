@@ -176,7 +176,7 @@ def bring_into_sight(desk: Desk, label: str) -> None:
     if desk.ui.places[label][0] < left:  # in a window that is docked between the world and the panel
         world_left, _, world_width, _ = desk.window.framing.room()
         left, width = world_left + world_width, left - world_left - world_width
-        tab, edge = round(2.5 * desk.ui.size), round(desk.ui.size)
+        tab, edge = round(2.0 * desk.ui.size), round(desk.ui.size)
         top, height, width = top + tab, height - tab, width - edge
     for _ in range(200):
         x, y, _, down = desk.ui.places[label]

@@ -103,7 +103,7 @@ def test_the_key_measures_in_another_process_and_shows_the_plot(
         runs = {(s.cpu_ms, s.error) for s in samples if s.name == name.removesuffix(", at most")}
         assert all((cost, error) in runs or error < 1e-16 for cost, error in zip(costs, errors, strict=True))
     desk.key("escape")
-    desk.frames()
+    desk.frames(SETTLED)
     assert not desk.window.error_study.shown and not desk.window.closing
 
 

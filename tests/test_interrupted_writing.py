@@ -151,7 +151,7 @@ def test_a_full_disk_leaves_the_old_file_whole(
         desk = Desk(world)
         for _ in range(2):  # the second time under the name that is offered
             desk.key("s", CTRL)
-            desk.frames()
+            desk.frames(8)
         assert desk.window.scenes.naming is not None
         refused = desk.window.scenes.naming.refused
         assert "could not be saved" in refused and "No space left" in refused

@@ -216,7 +216,7 @@ def begin_run(is_small: Callable[[], bool]) -> FirstRuns | None:
     Returns
     -------
     FirstRuns or None
-        What is to be told how far the run is (:meth:`Tiers.foresee`).
+        The object that is to be told how far the run is (:meth:`Tiers.foresee`).
     """
     global _first_runs
     if _compiles_first or interpreter.is_forced():

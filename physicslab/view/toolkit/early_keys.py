@@ -30,17 +30,16 @@ class EarlyKeys:
 
         ``opened`` is the panel that keys are for by now, empty if they are for the world.
         """
-        if opened != self._open:
-            self._open, self._frames = opened, _OPENING if opened else self._frames
-            if opened and event.type == pygame.TEXTINPUT:
-                return True  # the letter of the key that has opened it
+        if self._notes(opened) and event.type == pygame.TEXTINPUT:
+            return True  # the letter of the key that has opened it
         if not self._frames or event.type not in _KEYS:
             return False
         self._kept.append(event)
         return True
 
-    def advance(self, *, typing: bool) -> bool:
+    def advance(self, opened: str, *, typing: bool) -> bool:
         """Note a frame; send what was kept once a field has the keys, or none will; return if any wait."""
+        self._notes(opened)
         has_field = typing and self._frames <= _OPENING - _LEAVING
         self._frames = 0 if has_field else max(self._frames - 1, 0)
         if not self._frames:
@@ -48,3 +47,10 @@ class EarlyKeys:
                 pygame.event.post(event)
             self._kept.clear()
         return bool(self._kept)
+
+    def _notes(self, opened: str) -> bool:
+        """Note the panel that keys are for; return whether it has just been opened."""
+        if opened == self._open:
+            return False
+        self._open, self._frames = opened, _OPENING if opened else self._frames
+        return bool(opened)

@@ -185,6 +185,11 @@ class Interface:
         taken = min(self._offer_height, height - 1)
         return left, top + taken, width, height - taken
 
+    @property
+    def _opened(self) -> str:
+        """The panel that keys are for, empty if they are for the world."""
+        return self._window.in_front or ("" if self._window.measuring.writing is None else "note")
+
     def take(self, event: pygame.Event) -> bool:
         """Let panels have an event first; return whether the world is not to see it.
 
@@ -192,8 +197,7 @@ class Interface:
         """
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self.toolkit.follow_pointer(event.pos)
-        writes = "" if self._window.measuring.writing is None else "note"
-        if self._early.take(event, self._window.in_front or writes):
+        if self._early.take(event, self._opened):
             return True
         if self._search.take(self._window, event):
             return True
@@ -262,7 +266,7 @@ class Interface:
             self._walk.end(is_alone=not window.in_front)
             self._built = window.canvas.size, self.text
             window.arrangement = self._arrangement = self.toolkit.arrangement()
-        if self._early.advance(typing=self.toolkit.typing):
+        if self._early.advance(self._opened, typing=self.toolkit.typing):
             self.toolkit.wake()
 
     def _is_cramped(self) -> bool:
