@@ -10,7 +10,7 @@ from desk import bits
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from physicslab.components import Mass, Material, Shape, Transform, Velocity
+from physicslab.components import Mass, Material, Pin, Shape, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels.broad import leaving
 from physicslab.prefabs import gas
@@ -186,6 +186,47 @@ def test_in_a_gas_whose_records_are_few_all_pairs_are_listed_again() -> None:
         listed += not np.array_equal(before, system.boxes)
     assert listed > 10
     assert 2 * world.contacts.recorded < len(world.entity_index)
+
+
+def count_lists(world: World, steps: int) -> int:
+    """Make steps; return how often pairs were listed."""
+    system = world.schedule.find(BroadPhaseSystem)
+    assert system is not None
+    listed, list_pairs = 0, system.list_pairs
+
+    def listing(state: World, h: float) -> None:
+        nonlocal listed
+        listed += 1
+        list_pairs(state, h)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(system, "list_pairs", listing)
+        world.run(steps=steps)
+    return listed
+
+
+def swinging_chains() -> World:
+    """Return four chains of eight links on pins, let go side by side from the horizontal."""
+    world = World(*standard_systems(), simulation=SOFT)
+    for n in range(4):
+        before: int | None = None
+        for k in range(8):
+            link = body(world, k + 0.5, 1.2 * n, Shape.box(0.9, 0.1))
+            at = (0.0, 1.2 * n) if before is None else (0.5, 0.0)
+            world.spawn(Pin(before, link, at, (-0.5, 0.0)))
+            before = link
+    world.synchronise()
+    return world
+
+
+def test_where_joints_keep_bodies_apart_lists_are_few_and_bits_the_same() -> None:
+    seldom, often = swinging_chains(), swinging_chains()
+    few = count_lists(seldom, 120)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(broad_phase, "_LOOKAHEAD_APART", 1.0)
+        many = count_lists(often, 120)
+    assert few < 0.5 * many
+    assert bits(seldom) == bits(often)
 
 
 @pytest.mark.parametrize("bounded", [False, True])
