@@ -19,8 +19,8 @@ MISSING = [tool for tool in ("Xvfb", "xdotool", "import") if shutil.which(tool) 
 needs_screen = pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)}")
 
 ROOT = Path(__file__).parent.parent
-PATIENCE = 120.0
-"""How long [s] a window may take to come up: the first start compiles."""
+PATIENCE = 300.0
+"""How long [s] a window may take to come up: the first start compiles, in processes that yield to others."""
 MAIN = (sys.executable, str(ROOT / "main.py"))
 
 

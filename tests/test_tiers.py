@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from physicslab import World
 from physicslab.cli import main
 from physicslab.components import Transform
 from physicslab.files.scene import load_scene
@@ -233,3 +234,23 @@ def test_a_large_scene_is_compiled_first_and_that_is_announced(
     finally:
         tiers.compile_first()
     assert not runs.decides and tiers.begin_run(lambda: True) is None
+
+
+def test_a_run_is_one_call_once_its_kernels_are_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tiers, "_compiles_first", False)
+    world, calls = load_scene("stack"), list[int]()
+    world.step()
+    advance = World.advance
+
+    def counted(world: World, h: float, steps: int) -> int:
+        calls.append(steps)
+        return advance(world, h, steps)
+
+    monkeypatch.setattr(World, "advance", counted)
+    runs = tiers.begin_run(lambda: True)
+    assert runs is not None and runs.decides
+    try:
+        world.run(steps=20)
+    finally:
+        tiers.compile_first()
+    assert calls == [20]

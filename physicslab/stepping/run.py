@@ -143,7 +143,7 @@ def _strides(
         before, began = world.steps, time.monotonic()
         try:
             with world.active():
-                done += _go_on(world, length, done, stride, at_once)
+                done += _go_on(world, length, done, stride, at_once, patience < math.inf)
         except Diverged:
             world.time = start + (done + world.steps - before) * length.dt
             raise
@@ -161,10 +161,11 @@ def _strides(
 
 
 @quiet
-def _go_on(world: Stepped, length: RunLength, done: int, stride: int, at_once: int) -> int:
+def _go_on(world: Stepped, length: RunLength, done: int, stride: int, at_once: int, is_patient: bool) -> int:
     """Go on with a run of which ``done`` steps are made, as far as one call goes; return how many it made.
 
-    A stepper that goes step by step makes ``at_once`` at most, which changes no bit.
+    A stepper that goes step by step makes ``at_once`` at most where the run has patience, or where its
+    kernels are interpreted. That changes no bit.
     """
     world.synchronise()
     h = length.dt if done < length.whole else length.rest
@@ -174,7 +175,8 @@ def _go_on(world: Stepped, length: RunLength, done: int, stride: int, at_once: i
     best = world.stepper_for(h)
     count = max(1, min(wanted, length.whole - done, world.steps_ahead(h)))
     if not best.leaps:
-        return world.advance(h, min(count, at_once))
+        divides = at_once < count and (is_patient or not all(one.compiled for one in best.kernels))
+        return world.advance(h, at_once if divides else count)
     if isinstance(best, Flow) and best.whole and wanted >= length.steps - done:
         return _leap(world, length.seconds - length.elapsed(done), 1, length.steps - done)
     return _leap(world, h, count, count)
