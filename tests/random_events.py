@@ -367,6 +367,7 @@ class Hands:
         while history.redo() is not None:
             pass
         assert history.difference is None and history.step_count == steps
+        self._desk.window.trails.goes_elsewhere = True  # as where the window goes
         assert self._state() == before, "what was taken back and done again is as it was"
 
     def _written(self) -> None:
