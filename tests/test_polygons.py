@@ -70,6 +70,27 @@ def test_what_is_no_polygon_is_refused_by_what_it_must_be(vertices: Any, allowed
         Shape("polygon", vertices=vertices)
 
 
+@pytest.mark.parametrize("radius", [0.0, 0.3, 1e3, 1e120, 1e150])
+@pytest.mark.parametrize("size", [1e-300, 1e-90, 1.0, 1e150])
+def test_extreme_sizes_are_taken_or_refused_by_the_field_that_is_at_fault(size: float, radius: float) -> None:
+    square = [(-size, -size), (size, -size), (size, size), (-size, size)]
+    if size < 1e-100:
+        with pytest.raises(InvalidValue, match=r"^Shape\.vertices = .* two are at least 1e-100 m apart"):
+            Shape("polygon", vertices=square, radius=radius)
+    else:
+        assert centre_of_mass([Vector2(*corner) for corner in square], radius).magnitude <= 1e-15 * (
+            size + radius
+        )
+        assert Shape("polygon", vertices=square, radius=radius).radius == radius
+
+
+@pytest.mark.parametrize("line", [[0.0, 1.0, 2.0], [0.0, 2.0, 1.0], [2.0, 1.0, 0.0], [0.0, 3.0, 1.0, 2.0]])
+def test_vertices_in_one_line_are_told_so(line: list[float]) -> None:
+    for vertices in ([(x, 0.0) for x in line], [(0.0, x) for x in line], [(x, x) for x in line]):
+        with pytest.raises(InvalidValue, match="in line with its neighbours"):
+            Shape("polygon", vertices=vertices)
+
+
 def test_sizes_and_vertices_of_other_kinds_are_refused() -> None:
     with pytest.raises(InvalidValue, match=r"^Shape\.vertices = \[\[0.0, 0.0\], .*left out: a box has no"):
         Shape("box", width=1.0, height=1.0, vertices=TRIANGLE)

@@ -12,7 +12,7 @@ _ZERO_LENGTH_SHARE = 1e-9
 
 
 _LEAST = 1e-100
-"""The least extent of a chain [m]: squares of it are not zero."""
+"""The least extent of a polygon or a chain [m]: squares of it are not zero."""
 
 
 def why_not_convex(vertices: Sequence[Vector2], least: int, most: int) -> str | None:
@@ -25,14 +25,18 @@ def why_not_convex(vertices: Sequence[Vector2], least: int, most: int) -> str | 
         for j in range(k):
             if (one - vertices[j]).magnitude <= _ZERO_LENGTH_SHARE * size:
                 return f"vertices at different places; number {j + 1} and number {k + 1} are at one"
+    if size < _LEAST:
+        return f"vertices of which two are at least {_LEAST:g} m apart"
     turns = _turns(vertices)
-    if all(turn <= _ZERO_LENGTH_SHARE for turn in turns) and min(turns) < -_ZERO_LENGTH_SHARE:
+    straightest = min(turns, key=lambda turn: abs(math.sin(turn)))
+    if abs(math.sin(straightest)) <= _ZERO_LENGTH_SHARE:
+        k = turns.index(straightest) + 1
+        return f"convex, each vertex a corner; number {k} is in line with its neighbours"
+    if max(turns) < 0.0:
         return f"counter-clockwise; these are clockwise: take {plain(vertices[::-1])}"
-    for k, turn in enumerate(turns):
-        if abs(turn) <= _ZERO_LENGTH_SHARE:
-            return f"convex, each vertex a corner; number {k + 1} is in line with its neighbours"
+    for k, turn in enumerate(turns, start=1):
         if turn < 0.0:
-            return f"convex; at number {k + 1} these turn inwards"
+            return f"convex; at number {k} these turn inwards"
     if sum(turns) > 3.0 * math.pi:
         return "convex; these go around more than once"
     return None
@@ -63,7 +67,7 @@ def _turns(vertices: Sequence[Vector2]) -> list[float]:
 def why_off_centre(vertices: Sequence[Vector2], radius: float) -> str | None:
     """Return by how much a convex polygon that is rounded by a radius [m] is off its centre, or ``None``."""
     centre = centre_of_mass(vertices, radius)
-    if centre.magnitude <= _ZERO_LENGTH_SHARE * max(vertex.magnitude for vertex in vertices):
+    if centre.magnitude <= _ZERO_LENGTH_SHARE * max(radius, *(vertex.magnitude for vertex in vertices)):
         return None
     return (
         f"about the centre of mass; that of these is at [{centre.x!r}, {centre.y!r}] m: shift them by "
@@ -94,10 +98,13 @@ def centred(vertices: Sequence[Vector2 | tuple[float, float]], radius: float = 0
 def centre_of_mass(vertices: Sequence[Vector2], radius: float = 0.0) -> Vector2:
     """Return the centre of mass [m] of a convex polygon of uniform density that is rounded by a radius [m].
 
-    It consists of triangles, a strip along each edge, and a sector at each vertex.
+    It consists of triangles, a strip along each edge, and a sector at each vertex. Lengths are scaled by a
+    power of two first: no bit of the result changes, and third powers of large and small ones are finite.
     """
     first = vertices[0]
-    moved = [vertex - first for vertex in vertices]
+    largest = max(radius, *((vertex - first).magnitude for vertex in vertices))
+    scale = math.ldexp(1.0, -math.frexp(largest)[1])
+    moved, radius = [scale * (vertex - first) for vertex in vertices], scale * radius
     edges = [(one, after - one) for one, after in pairwise((*moved, moved[0]))]
     normals = [Vector2(edge.y, -edge.x) * (1.0 / edge.magnitude) for _, edge in edges]
     area, moment, third = 0.0, Vector2(), radius**3 / 3.0
@@ -110,7 +117,7 @@ def centre_of_mass(vertices: Sequence[Vector2], radius: float = 0.0) -> Vector2:
         moment += (one + 0.5 * edge + 0.5 * radius * normal) * strip
         moment += one * sector + third * Vector2(normal.y - before.y, before.x - normal.x)
         before = normal
-    return first + moment * (1.0 / area)
+    return first + moment * (1.0 / (area * scale))
 
 
 def regular(count: int, radius: float) -> tuple[Vector2, ...]:
