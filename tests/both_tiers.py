@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from physicslab.kernels import KERNELS, compile_kernels, interpreter
 from physicslab.kernels.forces import force_calls
-from physicslab.kernels.interpreter import entry_of, interpreted, twin_of
+from physicslab.kernels.interpreter import entry_of, fallback_of, interpreted
 from physicslab.kernels.warm import load_all
 
 __all__ = ["compared", "name_of", "same_bits"]
@@ -68,9 +68,9 @@ def compared(calls: Counter[str]) -> Iterator[None]:
 
     def noted(force: Any) -> Callable[..., Any]:
         calls[name_of(force)] += 1
-        return twin_of(force)
+        return fallback_of(force)
 
-    called = patch.object(force_calls, "twin_of", noted)
+    called = patch.object(force_calls, "fallback_of", noted)
     with called, patch.object(interpreter, "entry_of", cache(twice)), interpreted():
         yield
 

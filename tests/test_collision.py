@@ -23,7 +23,7 @@ from physicslab.diagnostics.collision import (
     read_collision,
     resolve,
 )
-from physicslab.diagnostics.ledger import read_impacts
+from physicslab.diagnostics.impact_table import read_impacts
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.constraint import impact_law

@@ -28,7 +28,7 @@ def run(asked: str, integrator: str, cpu_ms: float | None, error: float | None) 
 
 FOUND = {
     "kind": "an estimate",
-    "estimate": {"twins": [{"name": "nudged", "spread": {"position": 3e-12}}]},
+    "estimate": {"variants": [{"name": "nudged", "spread": {"position": 3e-12}}]},
     "seconds": 5.0,
     "reference": "the tightest method",
     "rows": [
@@ -193,8 +193,8 @@ def test_a_run_of_the_table_can_be_used_and_taken_back(tmp_path: Path) -> None:
 @pytest.mark.parametrize("grown, chaotic", [(0.0, False), (5e-8, False), (5e-7, False), (0.2, True)])
 def test_a_chaotic_scene_is_called_so(tmp_path: Path, grown: float, chaotic: bool) -> None:
     rows = [run("rk4", "rk4", 0.1, 1e-3), run("leapfrog", "leapfrog", 10.0, 1e-7)]
-    twins = {"twins": [{"name": "nudged", "spread": {"position": grown}}]}
-    report = json.dumps({"scenes": [FOUND | {"rows": rows, "estimate": twins}]})
+    variants = {"variants": [{"name": "nudged", "spread": {"position": grown}}]}
+    report = json.dumps({"scenes": [FOUND | {"rows": rows, "estimate": variants}]})
     desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text({report!r})")
     measured(desk)
     desk.frames(SETTLED)
@@ -250,7 +250,7 @@ def test_the_table_is_saved_as_csv(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 def test_a_plot_without_any_growth_of_rounding_and_without_errors_is_shown(tmp_path: Path) -> None:
     """Nothing grows, and the least error is 0: neither has a logarithm, and 0 is no chaos."""
-    nudged = {"twins": [{"name": "nudged", "spread": {"position": 0.0}}]}
+    nudged = {"variants": [{"name": "nudged", "spread": {"position": 0.0}}]}
     for horizon in (None, 3.0):
         found = FOUND | {"estimate": nudged, "horizon_s": horizon}
         desk, _ = desk_with(tmp_path, f"pathlib.Path(report).write_text({json.dumps({'scenes': [found]})!r})")

@@ -17,7 +17,7 @@ from physicslab.lab.accuracy.honesty.scene import body, still, written
 from physicslab.lab.accuracy.honesty.study import FAMILIES, HonestRow, assess_known, share_of
 from physicslab.lab.accuracy.tables import honest_text
 from physicslab.lab.accuracy.trust import Trust, assess
-from physicslab.lab.accuracy.twins import TWINS, Document
+from physicslab.lab.accuracy.variants import VARIANTS, Document
 from physicslab.lab.jobs import result_of
 from physicslab.world import World
 
@@ -65,7 +65,7 @@ def swing(stiffness: float) -> Document:
 
 
 @pytest.mark.parametrize("stiffness", [1e3, 1e4])
-def test_a_twin_of_half_the_step_has_half_the_inner_step(stiffness: float) -> None:
+def test_a_variant_of_half_the_step_has_half_the_inner_step(stiffness: float) -> None:
     """``auto`` makes steps of blanes_moan by omega h: in half the step it would make the same."""
     document = swing(stiffness)
     found, world = trusted(document, 2.0)
@@ -75,7 +75,7 @@ def test_a_twin_of_half_the_step_has_half_the_inner_step(stiffness: float) -> No
     assert 10.0**-found.digits == pytest.approx(off, rel=9.0) and 10.0**-found.digits > off / 3.0
     world = read_scene(document)
     world.synchronise()
-    half = next(twin for twin in TWINS if twin.name == "half step").make(document, world)
+    half = next(variant for variant in VARIANTS if variant.name == "half step").make(document, world)
     assert half is not None and half.plan.integrator is world.plan.integrator
     assert half.plan.substeps == world.plan.substeps and half.simulation.dt == 0.5 * world.simulation.dt
 

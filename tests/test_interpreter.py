@@ -50,16 +50,16 @@ from physicslab.kernels.forces import gravity
 from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT, pair_potential
 from physicslab.kernels.forces.pairwise import attract_pairwise
 from physicslab.kernels.forces.tree_pull import MAX_ERROR, attract_by_tree
-from physicslab.kernels.interpreter import interpreted, stand_in, twin_of
+from physicslab.kernels.interpreter import fallback_of, install, interpreted
 from physicslab.kernels.loading import direct_entry
 from physicslab.kernels.near_counts import ACTIVE
 from physicslab.kernels.ode.dop853 import dop853
+from physicslab.kernels.python_equivalents import math_functions
+from physicslab.kernels.python_fallback import natives
 from physicslab.kernels.solver import soft
 from physicslab.kernels.solver.lone_sweep import sweep_contacts
 from physicslab.kernels.solver.sweep import sweep
-from physicslab.kernels.stand_ins import math_functions
 from physicslab.kernels.tiers import natives_within
-from physicslab.kernels.twins import natives
 from physicslab.kernels.warm import Warmup
 from physicslab.state.state import State
 from physicslab.stepping import rigid_motion
@@ -519,7 +519,7 @@ def test_what_would_be_interpreted_for_too_long_is_compiled_first(
 
     world.synchronise()
     interpreter._set_aside(jitted)
-    stand_in(jitted)
+    install(jitted)
     interpreter.limit(lambda _: 1e-9, compile_now)
     ask_before_compiling(lambda missing: missing)
     try:
@@ -546,10 +546,10 @@ def test_arguments_of_another_type_are_refused_as_they_are_by_compiled_code(odd:
 
 
 def test_a_debugger_finds_the_lines_of_a_kernel() -> None:
-    twin: Any = twin_of(motion.kick)
+    fallback: Any = fallback_of(motion.kick)
     original = motion.kick.py_func  # type: ignore[attr-defined]
-    assert twin.__code__.co_filename == original.__code__.co_filename
-    assert list(twin.__code__.co_lines()) == list(original.__code__.co_lines())
+    assert fallback.__code__.co_filename == original.__code__.co_filename
+    assert list(fallback.__code__.co_lines()) == list(original.__code__.co_lines())
 
 
 LOOSE = 1e-13
@@ -579,8 +579,8 @@ def test_the_tree_is_as_near_as_stated_when_interpreted() -> None:
     x, y, mass = random.normal(size=n), random.normal(size=n), random.uniform(0.5, 2.0, n)
     direct, tree = np.zeros((2, n)), np.zeros((2, n))
     with np.errstate(all="ignore"):
-        twin_of(attract_pairwise)(x, y, mass, np.float64(0.0), False, *direct)
-        twin_of(attract_by_tree)(x, y, mass, np.float64(0.0), False, *tree)
+        fallback_of(attract_pairwise)(x, y, mass, np.float64(0.0), False, *direct)
+        fallback_of(attract_by_tree)(x, y, mass, np.float64(0.0), False, *tree)
     pulls = np.hypot(*direct)
     assert np.hypot(*(tree - direct)).max() < MAX_ERROR * pulls.mean()
 

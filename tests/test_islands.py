@@ -21,7 +21,7 @@ from physicslab.files.scene import read_scene
 from physicslab.files.writer import write_scene
 from physicslab.history import History, Remove, RemoveComponent
 from physicslab.kernels.accounts import EDITS
-from physicslab.lab.accuracy.twins import TWINS, refined, with_ids
+from physicslab.lab.accuracy.variants import VARIANTS, refined, with_ids
 from physicslab.prefabs import box
 from physicslab.state.masses import Diverged
 from physicslab.systems.standard import standard_systems
@@ -283,21 +283,21 @@ def test_what_is_told_of_a_world_is_so_of_its_islands() -> None:
     said = StepWatch(world).note(1, 5.0)
     assert "rigid contacts go from one event to the next" in said
     document = with_ids(write_scene(world))
-    made = {twin.name for twin in TWINS if twin.make(document, world) is not None}
+    made = {variant.name for variant in VARIANTS if variant.make(document, world) is not None}
     assert "eighth of the step" in made
     assert made.isdisjoint({"half step", "stiffer", "rigid"}), "no contact gives way"
 
 
-def test_the_refined_twin_of_islands_takes_shorter_steps_in_each() -> None:
+def test_the_refined_variant_of_islands_takes_shorter_steps_in_each() -> None:
     world = World()
     for x, stiffness in ((0.0, 40.0), (100.0, 4000.0)):
         spring = Spring(anchor_b=(x, 0), rest_length=1, stiffness=stiffness)
         world.spawn(Transform((x + 1.2, 0)), Velocity(), Mass(1.0), spring)
     world.synchronise()
-    twin = refined(with_ids(write_scene(world)), world, 2.0)
+    variant = refined(with_ids(write_scene(world)), world, 2.0)
     steps = [(plan.integrator.name, plan.substeps) for plan in world.plans]
-    assert [(plan.integrator.name, plan.substeps) for plan in twin.plans] == steps
-    assert twin.simulation.dt == 0.5 * world.simulation.dt and steps[1] == ("blanes_moan", 3)
+    assert [(plan.integrator.name, plan.substeps) for plan in variant.plans] == steps
+    assert variant.simulation.dt == 0.5 * world.simulation.dt and steps[1] == ("blanes_moan", 3)
     world.run(seconds=2.0)
     lost = [lost_phase(part) for part in world.parts]
     assert lost[0] is None and lost[1] is not None and lost_phase(world) is None

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from compiled import compiled
 
-from physicslab.kernels.interpreter import twin_of
+from physicslab.kernels.interpreter import fallback_of
 from physicslab.kernels.joints.terms import ALONG, ALONG_A, ANGLE, DISTANCE, TermEnd, measure_term
 
 MEASURES = pytest.mark.parametrize("measure", [ALONG, ALONG_A, DISTANCE, ANGLE])
-TIERS: list[Any] = [compiled(measure_term), twin_of(measure_term)]
+TIERS: list[Any] = [compiled(measure_term), fallback_of(measure_term)]
 
 
 def by_digits(measure: int, a: TermEnd, b: TermEnd, axis: tuple[float, float]) -> list[mpmath.mpf]:

@@ -13,12 +13,12 @@ from physicslab.kernels.events import encounter, meeting
 from physicslab.kernels.events.meeting import Course
 from physicslab.kernels.events.path import FIELDS
 from physicslab.kernels.geometry.shapes import Shapes
-from physicslab.kernels.interpreter import twin_of
+from physicslab.kernels.interpreter import fallback_of
 from physicslab.kernels.records import MANIFOLD
 from physicslab.state.shapes import blank_shapes, with_names
 
 meet_line, meet_circle = compiled(meeting.meet_line), compiled(meeting.meet_circle)
-time_apart, meeting_of = twin_of(encounter.time_apart), twin_of(encounter.meeting_of)
+time_apart, meeting_of = fallback_of(encounter.time_apart), fallback_of(encounter.meeting_of)
 away = st.floats(1.0, 3.0)
 turns = st.floats(0.0, 6.28).map(lambda angle: angle if angle > 1e-100 else 0.0)
 # The kernels state that squares of numbers other than zero must not underflow.

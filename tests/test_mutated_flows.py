@@ -19,7 +19,7 @@ from physicslab.diagnostics.energy import Accounts, measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators import INTEGRATORS
-from physicslab.kernels import interpreter, twins
+from physicslab.kernels import interpreter, python_fallback
 from physicslab.kernels.forces import force_calls, packed_forces
 from physicslab.kernels.ode import classical, damped_flow, dop853, implicit, propagate, splitting, spring_flow
 from physicslab.state.state import State
@@ -68,9 +68,9 @@ def changed(*changes: Change) -> Iterator[None]:
 
 def _forget() -> None:
     """Let the Python of every kernel be made again."""
-    twins.twin_of.cache_clear()
+    python_fallback.fallback_of.cache_clear()
     interpreter.entry_of.cache_clear()
-    twins._modules.clear()
+    python_fallback._modules.clear()
 
 
 class Wind(ForceSystem):

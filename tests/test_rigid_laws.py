@@ -16,6 +16,7 @@ from physicslab.contacts.report import list_contacts
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.kernels.python_fallback import fallback_of
 from physicslab.kernels.rigid import complementarity, lemke, motion, time_stepping
 from physicslab.kernels.rigid.equations import (
     FREE,
@@ -28,8 +29,7 @@ from physicslab.kernels.rigid.equations import (
     Equations,
 )
 from physicslab.kernels.rigid.features import GIVEN, MEASURES, MU, POINT_FIELDS, STATUS
-from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST
-from physicslab.kernels.twins import twin_of
+from physicslab.kernels.rigid.smooth_segment import METHODS, SHORT_LAST
 from physicslab.prefabs import box, circle
 from physicslab.stepping.rigid import Rigid
 from physicslab.systems.standard import standard_systems
@@ -393,7 +393,7 @@ def largest_violation(equations: Equations) -> float:
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 @pytest.mark.parametrize("sliding", [False, True])
 def test_random_problems_are_solved_to_rounding(sliding: bool) -> None:
-    random, solve = np.random.default_rng(5), twin_of(complementarity.solve_complementarity)
+    random, solve = np.random.default_rng(5), fallback_of(complementarity.solve_complementarity)
     for number in range(150):
         count = int(random.integers(1, 6))
         degrees = int(random.integers(max(1, count // 2), 2 * count + 4))
@@ -409,7 +409,7 @@ def test_random_problems_are_solved_to_rounding(sliding: bool) -> None:
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_pivots_find_forces_wherever_points_may_stick() -> None:
     """They solve a problem whose right sides are raised, each by less than 3e-9 of the largest."""
-    random, solve = np.random.default_rng(6), twin_of(lemke.find_by_pivots)
+    random, solve = np.random.default_rng(6), fallback_of(lemke.find_by_pivots)
     for number in range(100):
         count = int(random.integers(1, 6))
         degrees = int(random.integers(max(1, count // 2), 2 * count + 4))
@@ -427,7 +427,7 @@ def test_pivots_find_forces_wherever_points_may_stick() -> None:
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_rounding_of_speeds_does_not_hide_a_solution() -> None:
     """Both corners of a face slide alike, but for the last digit of a speed far above these ones."""
-    solve = twin_of(complementarity.solve_complementarity)
+    solve = fallback_of(complementarity.solve_complementarity)
     equations = problem(np.random.default_rng(1), 3, 6, False)
     equations.a[:] = (
         (2.0259767807838176, -1.18439679795242, 0.0, 0.0, 0.0, 0.0),
@@ -454,7 +454,7 @@ def test_rounding_of_speeds_does_not_hide_a_solution() -> None:
 @pytest.mark.parametrize("turns", [0.0, 0.5])
 def test_forces_of_a_table_with_four_legs_carry_it(turns: float) -> None:
     """Forces are not determined; where it cannot turn those of least norm are alike."""
-    solve = twin_of(complementarity.solve_complementarity)
+    solve = fallback_of(complementarity.solve_complementarity)
     legs = np.array((-1.5, -0.5, 0.5, 1.5))
     equations = problem(np.random.default_rng(1), 4, 8, False)
     rows = np.zeros((8, 3))
@@ -476,7 +476,7 @@ def test_forces_of_a_table_with_four_legs_carry_it(turns: float) -> None:
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_a_problem_without_a_solution_is_found_out() -> None:
     """Painleve's: a rod slides with so much friction that pressing draws its end down."""
-    solve = twin_of(complementarity.solve_complementarity)
+    solve = fallback_of(complementarity.solve_complementarity)
     equations = problem(np.random.default_rng(1), 1, 3, False)
     equations.a[:] = ((1.0, 2.0), (2.0, 5.0))
     equations.vectors[FREE] = (-1.0, 0.0)

@@ -12,11 +12,15 @@ from physicslab.kernels.geometry import cores, manifold, sweep
 from physicslab.kernels.geometry.cores import Touch
 from physicslab.kernels.geometry.outline import Outline, Way
 from physicslab.kernels.geometry.shapes import BOX
-from physicslab.kernels.interpreter import twin_of
+from physicslab.kernels.interpreter import fallback_of
 from physicslab.state.shapes import Register
 
-touch_cores, sweep_cores = twin_of(cores.touch_cores), twin_of(sweep.sweep_outlines)
-box_box, circle_box, pose_at = twin_of(manifold.box_box), twin_of(manifold.circle_box), twin_of(sweep.pose_at)
+touch_cores, sweep_cores = fallback_of(cores.touch_cores), fallback_of(sweep.sweep_outlines)
+box_box, circle_box, pose_at = (
+    fallback_of(manifold.box_box),
+    fallback_of(manifold.circle_box),
+    fallback_of(sweep.pose_at),
+)
 
 _TURNS = [2.0 * math.pi * k / 5 for k in range(5)]
 FIVE = Kind(tuple((math.cos(turn), math.sin(turn)) for turn in _TURNS), x="radius", y="radius")

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from physicslab.components.shape import KINDS, Kind
 from physicslab.kernels.geometry import moments, shapes
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple
-from physicslab.kernels.interpreter import twin_of
+from physicslab.kernels.interpreter import fallback_of
 from physicslab.state.shapes import Register, with_names
 
 area_and_moment, inertia_of, derive_shape = (
-    twin_of(kernel) for kernel in (moments.area_and_moment, moments.inertia_of, shapes.derive_shape)
+    fallback_of(kernel) for kernel in (moments.area_and_moment, moments.inertia_of, shapes.derive_shape)
 )
 sizes = st.floats(0.01, 100.0)
 

@@ -25,7 +25,7 @@ from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS, SPRING_SPLITTING
 from physicslab.kernels.arguments import Motion, Springs
-from physicslab.kernels.interpreter import twin_of
+from physicslab.kernels.interpreter import fallback_of
 from physicslab.kernels.ode.spring_flow import TURNS_FAST, flow_springs
 from physicslab.lab import worlds
 from physicslab.lab.bench.moving import chains
@@ -234,7 +234,7 @@ def test_a_flow_that_cannot_be_made_changes_nothing() -> None:
         split.begin(world)
         before = bits(world)
         assert split.springs is not None
-        flow = twin_of(flow_springs)
+        flow = fallback_of(flow_springs)
         found = flow(Motion(*motion_of(world)), Springs(*split.springs.arrays), 1e-3, world.account.table)
     assert found == TURNS_FAST and not world.account.table.any()
     assert bits(world) == before

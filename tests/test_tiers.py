@@ -168,9 +168,9 @@ def test_afterwards_kernels_are_compiled_where_they_are_called() -> None:
     try:
         with Tiers(True) as small:
             small._costs[motion.drift] = 1.0
-            interpreter.stand_in(motion.drift)
-            stands_in = motion.drift._compile_for_args  # type: ignore[attr-defined]
-        assert motion.drift._compile_for_args is not stands_in  # type: ignore[attr-defined]
+            interpreter.install(motion.drift)
+            installed = motion.drift._compile_for_args  # type: ignore[attr-defined]
+        assert motion.drift._compile_for_args is not installed  # type: ignore[attr-defined]
     finally:
         if overloads:
             interpreter._take_back(motion.drift, overloads)

@@ -23,7 +23,7 @@ from physicslab.lab.accuracy.estimate import estimate_error
 from physicslab.lab.accuracy.paths import find_horizon
 from physicslab.lab.accuracy.trust import Trust, assess, moments_of
 from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem, summarise
-from physicslab.lab.accuracy.twins import nudged, with_ids
+from physicslab.lab.accuracy.variants import nudged, with_ids
 from physicslab.lab.jobs import result_of
 from physicslab.prefabs import box, circle
 from physicslab.world import World
@@ -132,8 +132,8 @@ def test_a_scene_with_a_body_that_keeps_its_angle_has_an_estimate() -> None:
 def test_zeros_are_not_nudged_and_all_else_is_by_one_rounding() -> None:
     world = empty_world()
     ball = circle(world, (0.0, 3.0), velocity=(2.0, 0.0))
-    twin = nudged(write_scene(world), 1)
-    (entity,) = twin["entities"]
+    variant = nudged(write_scene(world), 1)
+    (entity,) = variant["entities"]
     (x, y), (vx, vy) = entity["Transform"]["position"], entity["Velocity"]["linear"]
     assert x == vy == 0.0
     assert abs(y - 3.0) == math.ulp(2.0) or abs(y - 3.0) == math.ulp(3.0)
@@ -239,12 +239,12 @@ def test_the_horizon_is_when_one_rounding_has_grown_to_another_future() -> None:
     shares: list[float] = []
     found = result_of(find_horizon(document, bodies, 60.0), shares.append)
     assert all(0.0 <= share <= 1.0 for share in shares)
-    world, twin = double_pendulum(), double_pendulum()
-    for one in (world, twin):
+    world, variant = double_pendulum(), double_pendulum()
+    for one in (world, variant):
         one.synchronise()
-    places = world.table(Transform)["position"], twin.table(Transform)["position"]
+    places = world.table(Transform)["position"], variant.table(Transform)["position"]
     places[1][2, 0] = math.nextafter(2.0, 3.0)
-    beside = twin.stepping(seconds=60.0, stride=1)
+    beside = variant.stepping(seconds=60.0, stride=1)
     for _ in world.stepping(seconds=60.0, stride=1):
         next(beside, None)
         if np.abs(places[0] - places[1]).max() > 0.1 * 0.1:

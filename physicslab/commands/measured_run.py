@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from physicslab.commands.arguments import stopped_at
 from physicslab.commands.progress import Progress
 from physicslab.diagnostics.energy import Accounts, Audit
-from physicslab.diagnostics.ledger import LedgerWriter
+from physicslab.diagnostics.impact_table import ImpactTableWriter
 from physicslab.diagnostics.overflow import find_overflow
 from physicslab.diagnostics.run_report import RunRecord
 from physicslab.diagnostics.step_watch import StepWatch
@@ -54,7 +54,7 @@ class MeasuredRun:
     every : float, optional
         The time [s] between what is kept: the first step that ends at or after each multiple of it, counted
         from the start; every step if it is 0.
-    ledger : LedgerWriter, optional
+    ledger : ImpactTableWriter, optional
         The writer of impacts, after each call of a stepper.
 
     Attributes
@@ -73,7 +73,7 @@ class MeasuredRun:
         at_most: float | None = None,
         keep: Keep | None = None,
         every: float = 0.0,
-        ledger: LedgerWriter | None = None,
+        ledger: ImpactTableWriter | None = None,
     ) -> None:
         self.record, self.stopped = RunRecord(name, Audit(world)), ""
         self._world, self._tiers, self._at_most = world, tiers, at_most

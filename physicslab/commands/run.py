@@ -26,7 +26,7 @@ from physicslab.commands.arguments import (
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
-from physicslab.diagnostics.ledger import LedgerWriter
+from physicslab.diagnostics.impact_table import ImpactTableWriter
 from physicslab.diagnostics.precision import find_imprecise, words_of_digits
 from physicslab.diagnostics.run_report import advice_of, find_not_finite, run_report, run_summary
 from physicslab.diagnostics.trajectory import TrajectoryWriter
@@ -94,7 +94,7 @@ def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], 
     for_excel = arguments.csv_for is not None
     with _stream(outputs, "csv") as stream, _stream(outputs, "ledger") as impacts:
         keep = None if stream is None else TrajectoryWriter(stream, world, for_excel=for_excel).write
-        ledger = None if impacts is None else LedgerWriter(impacts, world, for_excel=for_excel)
+        ledger = None if impacts is None else ImpactTableWriter(impacts, world, for_excel=for_excel)
         try:
             run = MeasuredRun(world, name, tiers, arguments.at_most, keep, arguments.every or 0.0, ledger)
             run.go(seconds, arguments.steps)

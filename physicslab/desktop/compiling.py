@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from physicslab.desktop.progress import PAUSE, draw_corner, draw_progress, draw_waiting
 from physicslab.kernels import KERNELS, ask_before_compiling, interpreter, load
+from physicslab.kernels.python_fallback import natives
 from physicslab.kernels.solver import soft
 from physicslab.kernels.tiers import natives_within
-from physicslab.kernels.twins import natives
 from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
 from physicslab.stepping.small import is_small
 from physicslab.theme import DARK, Theme

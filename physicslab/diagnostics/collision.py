@@ -19,7 +19,7 @@ import numpy as np
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.constraint import impact_law, pair
 from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity, PointState
-from physicslab.kernels.interpreter import twin_of
+from physicslab.kernels.interpreter import fallback_of
 from physicslab.kernels.solver.impact_log import shares_of
 
 ENERGETIC, LOWERED, NEWTON = impact_law.ENERGETIC, impact_law.LOWERED, impact_law.NEWTON
@@ -160,7 +160,7 @@ class Collision:
         return ContactFrame(*map(np.float64, (*self.normal, *spot.arm_a, *spot.arm_b)))
 
     def _state(self, spot: Spot, *, after: bool = False) -> PointState[float]:
-        state: PointState[float] = twin_of(pair.point_state)(self.frame(spot), self.velocity(after=after))
+        state: PointState[float] = fallback_of(pair.point_state)(self.frame(spot), self.velocity(after=after))
         return state
 
     @cached_property
@@ -171,12 +171,14 @@ class Collision:
     @cached_property
     def responses(self) -> tuple[impact_law.PointResponse, ...]:
         """How each point answers impulses."""
-        return tuple(twin_of(impact_law.point_response)(state, self.inverse_mass) for state in self.states)
+        return tuple(
+            fallback_of(impact_law.point_response)(state, self.inverse_mass) for state in self.states
+        )
 
     @property
     def pair_response(self) -> impact_law.PairResponse:
         """How both points answer impulses, one and the same twice where there is one."""
-        states, make = self.states, twin_of(impact_law.pair_response)
+        states, make = self.states, fallback_of(impact_law.pair_response)
         response: impact_law.PairResponse = make(states[0], states[-1], self.inverse_mass)
         return response
 
@@ -218,7 +220,7 @@ class Collision:
             (vn, vt), (un, ut) = self.approach(spot), self.approach(spot, after=True)
             along += 0.5 * spot.normal_impulse * (vn + un)
             across += 0.5 * spot.tangent_impulse * (vt + ut)
-        bounced, friction_work = twin_of(shares_of)(along, across)
+        bounced, friction_work = fallback_of(shares_of)(along, across)
         return float(0.0 - bounced), float(0.0 - friction_work)
 
     @property
@@ -296,12 +298,12 @@ def resolve(collision: Collision) -> Result:
     e, mu, impulses = np.float64(collision.restitution), np.float64(collision.friction), (0.0, 0.0, 0.0, 0.0)
     with np.errstate(all="ignore"):
         if collision.law == LOWERED:
-            impulses, e = twin_of(impact_law.solve_impact_of_two)(collision.pair_response, e, mu)
+            impulses, e = fallback_of(impact_law.solve_impact_of_two)(collision.pair_response, e, mu)
         elif len(collision.spots) == 2:
-            impulses = twin_of(impact_law.newton_impulses)(collision.pair_response, e, mu)
+            impulses = fallback_of(impact_law.newton_impulses)(collision.pair_response, e, mu)
         else:
             law = impact_law.stronge_impulse if collision.law == ENERGETIC else impact_law.newton_impulse
-            impulses = *twin_of(law)(collision.responses[0], e, mu), 0.0, 0.0
+            impulses = *fallback_of(law)(collision.responses[0], e, mu), 0.0, 0.0
     normal, tangent = tuple(map(float, impulses[::2])), tuple(map(float, impulses[1::2]))
     if len(collision.spots) == 1:
         normal, tangent = (sum(normal),), (sum(tangent),)
@@ -323,6 +325,6 @@ def _motions_after(
     """Return the motions of A and B after impulses at each point."""
     v, mass = collision.velocity(), collision.inverse_mass
     for spot, along, across in zip(collision.spots, normal, tangent, strict=True):
-        v = twin_of(pair.after_impulse_at)(v, mass, collision.frame(spot), along, across)
+        v = fallback_of(pair.after_impulse_at)(v, mass, collision.frame(spot), along, across)
     ax, ay, wa, bx, by, wb = map(float, v)
     return Motion(Vector2(ax, ay), wa), Motion(Vector2(bx, by), wb)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.figures import Figures, Record
-from physicslab.diagnostics.ledger import ImpactReader, impact_table
+from physicslab.diagnostics.impact_table import ImpactReader, impact_table
 from physicslab.diagnostics.run_report import body_names
 from physicslab.ecs.conditions import Condition
 from physicslab.ecs.fields import Field, InvalidValue

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import ENERGY_CAUSES
 from physicslab.diagnostics.figures import COLLISIONS, FUNCTIONS, Figures, Record, quantity_of
-from physicslab.diagnostics.ledger import read_impacts
+from physicslab.diagnostics.impact_table import read_impacts
 from physicslab.ecs.quantity_text import (
     Expression,
     InvalidText,

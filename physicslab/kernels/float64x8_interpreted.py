@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.kernels import float64x8
-from physicslab.kernels.stand_ins import stands_in_for
+from physicslab.kernels.python_equivalents import equivalent_for
 from physicslab.kernels.wide_layout import WIDE
 
 __all__: list[str] = []
@@ -14,40 +14,40 @@ __all__: list[str] = []
 type _Lanes = NDArray[np.float64]
 
 
-@stands_in_for(float64x8.lesser)
+@equivalent_for(float64x8.lesser)
 def _lesser(x: Any, y: Any) -> Any:
     return _choose(x < y, x, y)
 
 
-@stands_in_for(float64x8.greater)
+@equivalent_for(float64x8.greater)
 def _greater(x: Any, y: Any) -> Any:
     return _choose(x > y, x, y)
 
 
-@stands_in_for(float64x8.choose)
+@equivalent_for(float64x8.choose)
 def _choose(mask: Any, x: Any, y: Any) -> Any:
     if isinstance(mask, np.ndarray):
         return np.where(mask, x, y)
     return x if mask else y
 
 
-@stands_in_for(float64x8.root)
+@equivalent_for(float64x8.root)
 def _root(x: _Lanes) -> _Lanes:
     roots: _Lanes = np.sqrt(x)
     return roots
 
 
-@stands_in_for(float64x8.size_of)
+@equivalent_for(float64x8.size_of)
 def _size_of(x: _Lanes) -> _Lanes:
     return np.abs(x)
 
 
-@stands_in_for(float64x8.everywhere)
+@equivalent_for(float64x8.everywhere)
 def _everywhere(x: float) -> _Lanes:
     return np.full(WIDE, x)
 
 
-@stands_in_for(float64x8.sum_of)
+@equivalent_for(float64x8.sum_of)
 def _sum_of(x: _Lanes) -> Any:
     total = x[0]
     for one in x[1:]:
@@ -55,38 +55,38 @@ def _sum_of(x: _Lanes) -> Any:
     return total
 
 
-@stands_in_for(float64x8.mask_bits)
+@equivalent_for(float64x8.mask_bits)
 def _true_lanes(mask: NDArray[np.bool_]) -> int:
     return int(np.packbits(mask, bitorder="little")[0])
 
 
-@stands_in_for(float64x8.take)
+@equivalent_for(float64x8.take)
 def _take(array: _Lanes, at: int) -> _Lanes:
     return array[at : at + WIDE].copy()
 
 
-@stands_in_for(float64x8.put)
+@equivalent_for(float64x8.put)
 def _put(array: _Lanes, at: int, value: Any) -> None:
     array[at : at + WIDE] = value
 
 
-@stands_in_for(float64x8.take_numbers)
+@equivalent_for(float64x8.take_numbers)
 def _take_numbers(numbers: _Lanes, rows: NDArray[np.int64], first: int) -> _Lanes:
     return numbers[rows[first : first + WIDE]]
 
 
-@stands_in_for(float64x8.put_numbers)
+@equivalent_for(float64x8.put_numbers)
 def _put_numbers(numbers: _Lanes, rows: NDArray[np.int64], first: int, value: _Lanes) -> None:
     numbers[rows[first : first + WIDE]] = value  # of slots with one row the last counts, as in compiled code
 
 
-@stands_in_for(float64x8.take_vectors)
+@equivalent_for(float64x8.take_vectors)
 def _take_vectors(vectors: _Lanes, rows: NDArray[np.int64], first: int) -> tuple[_Lanes, _Lanes]:
     taken = vectors[rows[first : first + WIDE]]
     return taken[:, 0], taken[:, 1]
 
 
-@stands_in_for(float64x8.put_vectors)
+@equivalent_for(float64x8.put_vectors)
 def _put_vectors(vectors: _Lanes, rows: NDArray[np.int64], first: int, x: _Lanes, y: _Lanes) -> None:
     eight = rows[first : first + WIDE]
     vectors[eight, 0], vectors[eight, 1] = x, y

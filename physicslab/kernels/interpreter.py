@@ -1,7 +1,7 @@
 """Runs kernels as the plain Python that they are written in, until they are compiled or for a debugger.
 
-Every kernel has a twin: the same code, in which every kernel and inner function that it calls is a twin too,
-literals are np.float64, and what Python has not is stood in for (:mod:`physicslab.kernels.stand_ins`). Each
+Every kernel has a fallback: the same code, in which all that it calls is a fallback too, literals are
+np.float64, and what Python has not has its equivalent (:mod:`physicslab.kernels.python_equivalents`). Each
 operation is rounded as in compiled code, so both give the same bits, but for what ``@inlined_loosely`` sums
 in any order: gravity of more bodies than :data:`physicslab.kernels.forces.inverse_square.PLAIN_LIMIT`.
 
@@ -24,9 +24,9 @@ from numba.np.numpy_support import as_dtype
 from numpy.typing import NDArray
 
 from physicslab.kernels import compiler, loading
-from physicslab.kernels.stand_ins import Records
-from physicslab.kernels.twins import Overdue, patience
-from physicslab.kernels.twins import twin_of as twin_of
+from physicslab.kernels.python_equivalents import Records
+from physicslab.kernels.python_fallback import Overdue, patience
+from physicslab.kernels.python_fallback import fallback_of as fallback_of
 
 _forced = os.environ.get("PHYSICSLAB_INTERPRET", "0") not in ("", "0")
 
@@ -91,8 +91,8 @@ def compile_all_the_same() -> None:
     _forced = False
 
 
-def stand_in(jitted: Any) -> None:
-    """Let a kernel's twin run wherever it is called, until it is compiled.
+def install(jitted: Any) -> None:
+    """Let a kernel's fallback run wherever it is called, until it is compiled.
 
     The kernel's whole tree is Python then, and native code once :func:`physicslab.kernels.load` has loaded
     it; a call that is under way ends as it began. It costs a compiled kernel nothing.
@@ -107,7 +107,7 @@ def stand_in(jitted: Any) -> None:
         entry = entry_of(jitted)
         jitted._compile_for_args = lambda *arguments: entry
     else:
-        jitted.stands_in = True
+        jitted.is_fallback = True
 
 
 @contextmanager
@@ -128,7 +128,7 @@ def interpreted() -> Iterator[None]:
     for jitted in aside:
         _set_aside(jitted)
     for jitted in compiler.KERNELS:
-        stand_in(jitted)
+        install(jitted)
     try:
         yield
     finally:
@@ -145,11 +145,11 @@ def _is_dispatcher(value: Any) -> bool:
 
 
 def uninstall(jitted: Any) -> None:
-    """Let a kernel be compiled where it is called, as it was before :func:`stand_in`."""
+    """Let a kernel be compiled where it is called, as it was before :func:`install`."""
     if _is_dispatcher(jitted):
         loading.at_first_call(jitted)
     else:
-        jitted.stands_in = False
+        jitted.is_fallback = False
 
 
 def _set_aside(jitted: Any) -> None:
@@ -173,14 +173,14 @@ def _take_back(jitted: Any, overloads: dict[Any, Any]) -> None:
 
 
 def prepare() -> None:
-    """Make the twins of all kernels there are, which the first that is called would else wait for."""
+    """Make the fallbacks of all kernels there are, which the first that is called would else wait for."""
     for jitted in compiler.KERNELS:
-        twin_of(jitted)
+        fallback_of(jitted)
 
 
 @cache
 def entry_of(jitted: Any) -> Callable[..., Any]:
-    """Return what Python calls in place of a kernel: its twin, among values of Python's."""
+    """Return what Python calls in place of a kernel: its fallback, among values of Python's."""
     signature = jitted.declared_signature
     ways_in = [_way_in(kind) for kind in signature.args]
     way_out = _way_out(signature.return_type)
@@ -192,7 +192,7 @@ def entry_of(jitted: Any) -> Callable[..., Any]:
             raise TypeError(f"No matching definition of {jitted.__name__}: {error}") from error
         with np.errstate(all="ignore"):
             if _limit is _endlessly or _forced:
-                return way_out(twin_of(jitted)(*taken))
+                return way_out(fallback_of(jitted)(*taken))
             if (longest := _limit(jitted)) > 0.0:
                 kept = [(array, array.copy()) for array in _arrays(arguments)]
                 try:
@@ -207,11 +207,11 @@ def entry_of(jitted: Any) -> Callable[..., Any]:
 
 
 def _in_time(jitted: Any, taken: list[Any], longest: float) -> Any:
-    """Call a kernel's twin, which raises Overdue if that takes longer than it may; note what it took."""
-    twin, start = twin_of(jitted), time.thread_time()
+    """Call a kernel's fallback, which raises Overdue if that takes longer than it may; note what it took."""
+    fallback, start = fallback_of(jitted), time.thread_time()
     before, patience.until = patience.until, time.perf_counter() + longest
     try:
-        return twin(*taken)
+        return fallback(*taken)
     finally:
         patience.until = before
         _spent[jitted] = spent_on(jitted) + time.thread_time() - start
@@ -227,7 +227,7 @@ def _arrays(arguments: tuple[Any, ...]) -> Iterator[NDArray[Any]]:
 
 
 def _way_in(kind: Any) -> Callable[[Any], Any]:
-    """Return what makes of an argument what a twin takes, and refuses what is of another type."""
+    """Return what makes of an argument what a fallback takes, and refuses what is of another type."""
     if isinstance(kind, types.Array):
         return _way_of_arrays(kind)
     if isinstance(kind, types.BaseTuple):
@@ -274,7 +274,7 @@ def _way_of_arrays(kind: Any) -> Callable[[Any], Any]:
 
 
 def _way_out(kind: Any) -> Callable[[Any], Any]:
-    """Return what makes of a twin's answer what the compiled kernel returns."""
+    """Return what makes of a fallback's answer what the compiled kernel returns."""
     if isinstance(kind, types.BaseTuple):
         ways, make = [_way_out(part) for part in _parts(kind)], _maker(kind)
         return lambda parts: make([give(part) for give, part in zip(ways, parts, strict=True)])

@@ -27,8 +27,8 @@ _PACKAGE = __name__.rpartition(".")[0]
 _WITHOUT_CODE = frozenset(
     f"{_PACKAGE}.{name}"
     for name in (
-        "__main__", "archive", "budget", "cache", "interpreter", "keys", "loading", "program", "stand_ins",
-        "warm",
+        "__main__", "archive", "budget", "cache", "interpreter", "keys", "loading", "program",
+        "python_equivalents", "warm",
     )
 )  # fmt: skip
 """Modules that determine when kernels are compiled and where they are kept, but no instruction of them."""

@@ -13,7 +13,7 @@ from numba.core import bytecode
 from numba.core.registry import cpu_target
 
 from physicslab.kernels import cache
-from physicslab.kernels.interpreter import is_forced, stand_in
+from physicslab.kernels.interpreter import install, is_forced
 
 type _Ask = Callable[[Sequence[Any]], Collection[Any] | None]
 
@@ -92,7 +92,7 @@ def compile_kernels(kernels: Iterable[Any]) -> float:
         waiting = tuple(asked or ())
         for jitted in missing:
             if jitted in waiting:
-                stand_in(jitted)
+                install(jitted)
             else:
                 load(jitted)
     return (_waited_ns - before) / 1e9
@@ -103,7 +103,7 @@ def load(jitted: Any) -> None:
     if jitted.compiled:
         return
     if is_forced():
-        stand_in(jitted)
+        install(jitted)
         return
     with _waiting():
         separate_symbols()

@@ -8,8 +8,8 @@ from numba import int64
 from numba.extending import intrinsic
 
 from physicslab.kernels import Rows, inlined
-from physicslab.kernels.stand_ins import stands_in_for
-from physicslab.kernels.twins import endless
+from physicslab.kernels.python_equivalents import equivalent_for
+from physicslab.kernels.python_fallback import endless
 
 
 def _read_clock(_typing: Any) -> Any:
@@ -23,7 +23,7 @@ def _read_clock(_typing: Any) -> Any:
 
 ticks: Any = intrinsic(_read_clock)
 """Returns the processor's cycle counter, in a kernel; 0 on a processor without one."""
-stands_in_for(ticks)(time.perf_counter_ns)
+equivalent_for(ticks)(time.perf_counter_ns)
 
 
 @endless

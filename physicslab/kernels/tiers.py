@@ -23,7 +23,7 @@ from numba.extending import is_jitted
 
 from physicslab.kernels import cache, interpreter
 from physicslab.kernels.loading import ask_before_compiling, asked, load
-from physicslab.kernels.twins import natives
+from physicslab.kernels.python_fallback import natives
 
 _log = logging.getLogger(__name__)
 _WORTH_TELLING = 1.0
@@ -135,7 +135,7 @@ class Tiers:
         absent = [jitted for jitted in missing if not cache.is_kept(jitted.py_func)]
         for jitted in absent:
             self._costs.setdefault(jitted, compile_seconds(jitted))
-            interpreter.twin_of(jitted)
+            interpreter.fallback_of(jitted)
         return absent
 
     def _seconds(self, jitted: Any) -> float:

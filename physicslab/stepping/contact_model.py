@@ -11,7 +11,7 @@ from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
 
 _MAX_PAIRS = 10_000
-"""Number of pairs above which contacts are soft: each is looked at in every piece of motion."""
+"""Number of pairs above which contacts are soft: each is looked at in every segment of motion."""
 _MAX_BODIES = 12
 """Number of bodies above which ``auto`` takes soft contacts: a step of rigid ones could last for 20 ms."""
 _MAX_RATE = 8.0

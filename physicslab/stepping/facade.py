@@ -36,7 +36,9 @@ class Facade(State):
 
         Those of contacts that are found within steps are there where the run was recorded.
         """
-        return cast(dict[str, NDArray[Any]], _measuring("ledger").impact_table(self, self.contacts.impacts))
+        return cast(
+            dict[str, NDArray[Any]], _measuring("impact_table").impact_table(self, self.contacts.impacts)
+        )
 
     def describe(self, language: str = "en") -> str:
         """Return in words what there is, where it is and how it moves, a sentence a line.

@@ -66,7 +66,7 @@ class Rigid:
     leaves_forces: bool = False
     samples: bool = True
     kernels: tuple[Any, ...] = (
-        motion.touch, motion.collide, motion.advance_piece, motion.begin_motion,
+        motion.touch, motion.collide, motion.advance_segment, motion.begin_motion,
         time_stepping.drift, time_stepping.drive, time_stepping.kick, time_stepping.separate,
         time_stepping.take_work,
         near_pairs.carry_over, slots.list_scalar,

@@ -15,8 +15,8 @@ from physicslab.kernels.joints import layout
 from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.rigid.equations import UNKNOWN, VECTORS
 from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS
-from physicslab.kernels.rigid.piece_end import STARTS
-from physicslab.kernels.rigid.pieces import StagesTuple
+from physicslab.kernels.rigid.segment_end import STARTS
+from physicslab.kernels.rigid.smooth_segment import StagesTuple
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 from physicslab.stepping.forces import fastest_rate
@@ -26,13 +26,13 @@ from physicslab.stepping.rigid_rows import RigidRows
 MAX_POINTS = 64
 """Largest number of points that touch at one time: their equations are dense."""
 _TOLERANCE = 1e-13
-"""Error of a smooth piece, as a share of the largest coordinate and speed."""
+"""Error of a smooth segment, as a share of the largest coordinate and speed."""
 _MAX_EVENTS = 2000
 """Largest number of events in a step."""
 _MAX_WORK = 8_500
 """Largest work of a step by events (:attr:`MadeStep.work`): short steps need the rest of a frame."""
 _WORK_OF_A_PIECE = 8
-"""Units of work of a piece of motion, beside its force evaluations and half a unit for each pair near."""
+"""Units of work of a segment of motion, beside its force evaluations and half a unit for each pair near."""
 _RESTING = 2.0
 """In speeds that a short step gives: what is no faster than that comes to rest."""
 _REPEATS, _SHORT_REPEATS = 8, 3
@@ -82,7 +82,7 @@ class MadeStep:
     energy_added : float
         By moving bodies apart that overlapped [J].
     work : int
-        About as many as microseconds: of pieces, of force evaluations with n points and r rows of joints
+        About as many as microseconds: of segments, of force evaluations with n points and r rows of joints
         (1 + 2 n) (1 + r) / 4, of impacts.
     by_impulses : str
         Why the step, or its last part, was made by impulses in short steps; empty if it was not.
@@ -105,7 +105,7 @@ class MadeStep:
 
 
 def _stages_of(n: int) -> StagesTuple:
-    """Return room for the stages of a piece with n coordinates, the clock and accounts among them."""
+    """Return room for the stages of a segment with n coordinates, the clock and accounts among them."""
     return np.zeros((16, n)), np.zeros((16, n)), np.zeros(n), np.zeros(n), np.zeros(n)
 
 
@@ -172,15 +172,15 @@ class RigidMotion:
                 self._go_on_at_rest(h - done)
             if done >= h or still:
                 return h
-            piece, evaluations, foreseen = motion.advance_piece(
+            segment, evaluations, foreseen = motion.advance_segment(
                 scene, self._equations, count, self._room, self._stages, self._start, changed, q, v,
                 h - done, _TOLERANCE, rest, foreseen,
             )  # fmt: skip
             made.evaluations += evaluations
             made.work += _WORK_OF_A_PIECE + self._pairs // 2 + evaluations * (1 + 2 * count) * rows // 4
-            stalled = stalled + 1 if piece <= _NO_TIME * h else 0
-            done = h if piece == h - done else done + piece
-            if not math.isfinite(piece):
+            stalled = stalled + 1 if segment <= _NO_TIME * h else 0
+            done = h if segment == h - done else done + segment
+            if not math.isfinite(segment):
                 made.refused = sentence("piece_not_finite")
                 return done
             if stalled > _MAX_STALLED or made.work > _MAX_WORK:
@@ -191,7 +191,7 @@ class RigidMotion:
     def _begin(
         self, scene: tuple[Any, ...], state: State, at: float, made: MadeStep
     ) -> tuple[int, int, float, bool]:
-        """Let what approaches bounce, stop what cannot slide on, and begin a piece of motion.
+        """Let what approaches bounce, stop what cannot slide on, and begin a segment of motion.
 
         Returns what :func:`motion.begin_motion` does.
         """

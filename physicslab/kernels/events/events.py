@@ -29,6 +29,7 @@ from physicslab.kernels.events.path_impact import path_velocity, resolve_ballist
 from physicslab.kernels.geometry.contact import effective_masses, mix
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.ode.compensated import add
+from physicslab.kernels.python_fallback import endless
 from physicslab.kernels.records import Impacts, Manifolds, Points
 from physicslab.kernels.solver.impact_log import (
     ImpactPoints,
@@ -37,7 +38,6 @@ from physicslab.kernels.solver.impact_log import (
     pair_of,
     write_impact,
 )
-from physicslab.kernels.twins import endless
 
 FIXED, BALLISTIC, KINEMATIC = range(3)
 """Modes of a row: fixed; moving freely; moving and not deflected."""

@@ -26,8 +26,8 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from physicslab.kernels import KERNELS, Numbers, cached, inlined, kernel
-from physicslab.kernels.stand_ins import Memory, stands_in_for
-from physicslab.kernels.twins import endless, twin_of
+from physicslab.kernels.python_equivalents import Memory, equivalent_for
+from physicslab.kernels.python_fallback import endless, fallback_of
 
 Calls = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, 3): of each force the address, and those of its numbers and of its whole numbers."""
@@ -41,7 +41,7 @@ _C_FUNCTION = ctypes.CFUNCTYPE(None, _REALS, _REALS, ctypes.c_double, _REALS, _R
 class ForceKernel:
     """A force ``f(q, v, span, force, parameters, indices)``: a C function, compiled for its address.
 
-    All but the span [s] are pointers, to float64 and (the last) int64. While ``stands_in`` is true and
+    All but the span [s] are pointers, to float64 and (the last) int64. While ``is_fallback`` is true and
     nothing is compiled, the C function runs the Python body.
     """
 
@@ -56,7 +56,7 @@ class ForceKernel:
         )
         self.overloads: dict[Any, Any] = {}
         self.compiled = False
-        self.stands_in = False
+        self.is_fallback = False
 
     def compile(self, signature: Any) -> None:
         """Compile it, or load it from the cache."""
@@ -79,12 +79,12 @@ class ForceKernel:
             _C_FUNCTION(self.address)(q, v, span, force, numbers, whole)
             return
         with np.errstate(all="ignore"):
-            twin_of(self)(Memory(q), Memory(v), np.float64(span), Memory(force), Memory(numbers), whole)
+            fallback_of(self)(Memory(q), Memory(v), np.float64(span), Memory(force), Memory(numbers), whole)
 
     @property
     def address(self) -> int:
         """The address of the C function, or of one that runs the Python body while that is used instead."""
-        if not self.overloads and self.stands_in:
+        if not self.overloads and self.is_fallback:
             return self._address_of_python
         if not self.overloads:
             self.compile(_SIGNATURE)
@@ -134,7 +134,7 @@ def _call_type(
 _call: Any = intrinsic(_call_type)
 
 
-@stands_in_for(_call)
+@equivalent_for(_call)
 def _call_interpreted(
     address: int, q: Numbers, v: Numbers, span: float, force: Numbers, numbers: int, whole: int
 ) -> None:
@@ -142,7 +142,7 @@ def _call_interpreted(
     behind = ctypes.cast(int(numbers), _REALS), ctypes.cast(int(whole), _WHOLES)
     known = _KERNELS.get(int(address))
     if known is not None:
-        twin_of(known)(q, v, span, force, Memory(behind[0]), behind[1])
+        fallback_of(known)(q, v, span, force, Memory(behind[0]), behind[1])
         return
     q_data, v_data, force_data = (ctypes.cast(array.ctypes.data, _REALS) for array in (q, v, force))
     _C_FUNCTION(int(address))(q_data, v_data, span, force_data, *behind)

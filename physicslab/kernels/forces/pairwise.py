@@ -19,7 +19,7 @@ from numba import float64, int64, types
 from numba.extending import intrinsic
 
 from physicslab.kernels import Numbers, allocating, inlined_loosely
-from physicslab.kernels.stand_ins import stands_in_for
+from physicslab.kernels.python_equivalents import equivalent_for
 
 TILE = 64
 """Bodies in a tile: two of them, forces and all, are 5 kB, which the innermost cache holds."""
@@ -51,9 +51,9 @@ def _start_type(context: Any, array: Any) -> Any:
 _bits: Any = intrinsic(_bits_type)
 _number: Any = intrinsic(_number_type)
 _start: Any = intrinsic(_start_type)
-stands_in_for(_bits)(lambda value: value.view(np.int64))
-stands_in_for(_number)(lambda value: value.view(np.float64))
-stands_in_for(_start)(lambda array: array)
+equivalent_for(_bits)(lambda value: value.view(np.int64))
+equivalent_for(_number)(lambda value: value.view(np.float64))
+equivalent_for(_start)(lambda array: array)
 
 
 @inlined_loosely

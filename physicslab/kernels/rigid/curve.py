@@ -1,9 +1,9 @@
-"""The curve through both ends of a piece of motion: where it crosses a limit, a piece ends.
+"""The curve through both ends of a segment of motion: where it crosses a limit, a segment ends.
 
 It is the polynomial of degree five in time that has the places, speeds and accelerations of both ends
-(Hermite). Its error is of order h^6: that of a short piece is rounding, and the state on the curve is the
+(Hermite). Its error is of order h^6: that of a short segment is rounding, and the state on the curve is the
 state. Where it is not, a time found on the curve is the first trial of a location, and often the last: each
-trial on the piece itself takes twelve sets of contact forces.
+trial on the segment itself takes twelve sets of contact forces.
 """
 
 import math
@@ -13,23 +13,23 @@ from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
 from physicslab.kernels.rigid.features import RigidScene
-from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages, largest_free
+from physicslab.kernels.rigid.smooth_segment import METHODS, SHORT_LAST, Stages, largest_free
 
 _THIRD, _FOURTH, _FIFTH = LAST + 1, LAST + 2, LAST + 3
-"""Rows of the rates that hold the coefficients of the curve, in shares of the piece [m]."""
+"""Rows of the rates that hold the coefficients of the curve, in shares of the segment [m]."""
 _CHECKED = 0.2
-"""Share of a piece at which the accelerations of the curve are checked: errors of places and of speeds at its
-end show there, and those of its form."""
+"""Share of a segment at which the accelerations of the curve are checked: errors of places and of speeds at
+its end show there, and those of its form."""
 _TO_SPEED, _TO_PLACE = 0.8, 0.5
 """Factors of errors of acceleration, with h or h^2, for those of speeds and places."""
 
 
 @inlined
 def fit_curve(stages: Stages, v: Numbers, h: float, short: bool) -> None:
-    """Keep the curve of the piece of ``h`` seconds that was just made; pieces of other lengths leave it.
+    """Keep the curve of the segment of ``h`` seconds that was just made; segments of other lengths leave it.
 
     The rest at the end after the first three terms is summed of differences of the stages: for a
-    short piece it would be lost in the rounding of places.
+    short segment it would be lost in the rounding of places.
     """
     method, last = 1 if short else 0, SHORT_LAST if short else LAST
     for i in range(len(v)):
@@ -55,7 +55,7 @@ def _place(stages: Stages, q: Numbers, v: Numbers, h: float, s: float, i: int) -
 
 @inlined
 def place_on_curve(stages: Stages, q: Numbers, v: Numbers, h: float, t: float) -> None:
-    """Leave in ``stages`` the state at time ``t`` on the curve of a piece of ``h`` seconds from (q, v)."""
+    """Leave in ``stages`` the state at time ``t`` on the curve of a segment of ``h`` seconds from (q, v)."""
     for i in range(len(q)):
         _place(stages, q, v, h, t / h, i)
 
@@ -76,7 +76,7 @@ def curve_is_exact(
     scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
     stages: Stages,
 ) -> bool:  # fmt: skip
-    """Whether the state on the curve is that of the motion, to within the tolerance of a piece."""
+    """Whether the state on the curve is that of the motion, to within the tolerance of a segment."""
     s, n, exact = _CHECKED, 3 * scene.rows, True
     place_on_curve(stages, q, v, h, s * h)
     constrained_acceleration(scene, equations, count, stages.q, stages.v, stages.acceleration)

@@ -1,7 +1,7 @@
-"""Motion of few rigid bodies that touch: smooth pieces between located events.
+"""Motion of few rigid bodies that touch: smooth segments between located events.
 
 While no contact opens, closes, begins to slide or stops, bodies are a constrained system: contact forces
-follow from the equations of motion, and any Runge-Kutta method integrates it. An event ends such a piece;
+follow from the equations of motion, and any Runge-Kutta method integrates it. An event ends such a segment;
 it is located to rounding, and what happens then - an impact, another set of forces - begins the next
 (Pfeiffer & Glocker, Multibody Dynamics with Unilateral Contacts, 1996). Nothing is remembered between
 steps.
@@ -33,7 +33,7 @@ from physicslab.kernels.rigid.impacts import approaches, resolve_simultaneous_im
 from physicslab.kernels.rigid.jammed import stop_sliding
 from physicslab.kernels.rigid.joined import book_answer
 from physicslab.kernels.rigid.passing import longest_piece, share_of_ways
-from physicslab.kernels.rigid.piece_end import (
+from physicslab.kernels.rigid.segment_end import (
     ALLOWED,
     HOLDS,
     PRESSES,
@@ -41,12 +41,12 @@ from physicslab.kernels.rigid.piece_end import (
     locate_event,
     note_start,
 )
-from physicslab.kernels.rigid.pieces import (
+from physicslab.kernels.rigid.smooth_segment import (
     SHORT_LAST,
     Stages,
     StagesTuple,
     begin_piece,
-    make_piece,
+    make_segment,
     make_stages,
     named_stages,
 )
@@ -69,13 +69,13 @@ _SAME_MOMENT = 1e-9
 _BALANCED, _FITTED = 1e-11, 1e-8
 """Share of the loads of a body that forces which hold it may leave: of equations, and of pivots."""
 _SHORTENINGS = 60
-"""How often a piece is shortened for its error."""
+"""How often a segment is shortened for its error."""
 _SHORTEST = 1e-9
-"""Share of the time that is left below which a piece is not shortened."""
+"""Share of the time that is left below which a segment is not shortened."""
 _BEYOND = 1.1
-"""Multiple of the time to the first event, by how all begins, that a piece is to last."""
+"""Multiple of the time to the first event, by how all begins, that a segment is to last."""
 _SHORT = 0.1
-"""Share of the longest piece below which a method of order 5 is tried; its curve shows if it is exact."""
+"""Share of the longest segment below which a method of order 5 is tried; its curve shows if it is exact."""
 
 
 @inlined
@@ -201,12 +201,12 @@ def _make_smooth(
     scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, left: float,
     tolerance: float, stages: Stages, allowed: Numbers,
 ) -> tuple[float, int]:  # fmt: skip
-    """Make a piece of ``h`` seconds, or less where its error or its ways demand it.
+    """Make a segment of ``h`` seconds, or less where its error or its ways demand it.
 
     Returns how long it is, and how many trials there were.
     """
     for trial in range(_SHORTENINGS):
-        error = make_piece(scene, equations, count, q, v, h, tolerance, stages)
+        error = make_segment(scene, equations, count, q, v, h, tolerance, stages)
         share = share_of_ways(scene, v, h, False, stages, allowed) if error <= 1.0 else 1.0
         if max(error, share) <= 1.0 or h <= _SHORTEST * left:
             return h, trial + 1
@@ -215,7 +215,7 @@ def _make_smooth(
 
 
 @kernel
-def advance_piece(
+def advance_segment(
     scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, stages: StagesTuple,
     start: Vectors, changed: Points, q: Numbers, v: Numbers, left: float, tolerance: float, rest: float,
     foreseen: bool,
@@ -223,8 +223,8 @@ def advance_piece(
     """Advance from where :func:`begin_motion` left it to the next event, for ``left`` seconds at most.
 
     Where that is to be ``foreseen``, for little more than the time at which the next gap should close: the
-    curve of a short piece is exact. Returns the time that passed [s], how many force evaluations the piece
-    took, its beginning included, and whether there was an event.
+    curve of a short segment is exact. Returns the time that passed [s], how many force evaluations the
+    segment took, its beginning included, and whether there was an event.
     """
     of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
     scratch = named_equations(room)
@@ -239,8 +239,8 @@ def advance_piece(
             evaluations += SHORT_LAST
             short = share_of_ways(of, v, h, True, at, allowed) <= 1.0
         if not short:
-            h, pieces = _make_smooth(of, points, count, q, v, h, left, tolerance, at, allowed)
-            evaluations += pieces * LAST
+            h, segments = _make_smooth(of, points, count, q, v, h, left, tolerance, at, allowed)
+            evaluations += segments * LAST
         passed, kind, index, more = locate_event(
             of, points, count, scratch, start, at, q, v, h, tolerance, rest, short
         )
@@ -259,9 +259,9 @@ def begin_motion(
     scene: SceneTuple, equations: EquationsTuple, count: int, stages: StagesTuple, changed: Points,
     q: Numbers, v: Numbers, steady: bool,
 ) -> tuple[int, int, float, bool]:  # fmt: skip
-    """Find what each of ``count`` points that touch does, and with what force; begin a piece of motion.
+    """Find what each of ``count`` points that touch does, and with what force; begin a segment of motion.
 
-    ``changed`` has the points that ended the piece before; ``steady`` whether forces depend on the state of
+    ``changed`` has the points that ended the segment before; ``steady`` whether forces depend on the state of
     motion alone. Returns why the motion cannot go on (DONE if it can), the number of closed points, the
     tolerance of speeds [m/s], and whether nothing moves or accelerates.
     """

@@ -1,4 +1,4 @@
-"""How long a piece of motion may last so that no body passes through another one unseen."""
+"""How long a segment of motion may last so that no body passes through another one unseen."""
 
 import math
 
@@ -6,7 +6,7 @@ from physicslab.kernels import Numbers, inlined
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid.features import FIRST_ROW, JOINT, WALL, RigidScene
 from physicslab.kernels.rigid.joint_points import fastest_change, gap_of_row
-from physicslab.kernels.rigid.pieces import METHODS, SHORT_LAST, Stages
+from physicslab.kernels.rigid.smooth_segment import METHODS, SHORT_LAST, Stages
 from physicslab.kernels.rigid.touching import far_apart, length_of
 
 _NODES = METHODS.sum(axis=2)
@@ -14,9 +14,9 @@ _NODES = METHODS.sum(axis=2)
 _STRAYS = LAST + 1
 """The row of pushes that holds how far each body may be from where an even acceleration leads it [m]."""
 _MAX_TURN = 0.25
-"""Largest angle of a piece [rad]."""
+"""Largest angle of a segment [rad]."""
 _STRIDE = 0.2
-"""Share of the smaller size that a pair may approach in a piece, beyond its gap."""
+"""Share of the smaller size that a pair may approach in a segment, beyond its gap."""
 
 
 @inlined
@@ -101,7 +101,7 @@ def share_of_ways(
 ) -> float:
     """Return the largest share that two bodies may have come together of what is ``allowed`` [m].
 
-    In the piece of ``h`` seconds from speeds v that was just made. Under an even acceleration a body covers
+    In the segment of ``h`` seconds from speeds v that was just made. Under an even acceleration a body covers
     no more than by the mean of its speeds at both ends; what the stages are off that is added.
     """
     rows, method, last, worst = scene.rows, 1 if short else 0, SHORT_LAST if short else LAST, 0.0

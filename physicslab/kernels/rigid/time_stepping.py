@@ -28,7 +28,7 @@ from physicslab.kernels.rigid.equations import (
 )
 from physicslab.kernels.rigid.features import RigidScene, SceneTuple, named_scene
 from physicslab.kernels.rigid.joined import book_impulses
-from physicslab.kernels.rigid.pieces import StagesTuple, named_stages
+from physicslab.kernels.rigid.smooth_segment import StagesTuple, named_stages
 from physicslab.kernels.rigid.touching import length_of
 
 _SEPARATIONS = 2

@@ -273,7 +273,7 @@ def _keep(equations: Equations, i: int, n: int) -> int:
 
 @inlined
 def _changed_status(equations: Equations, i: int, changed: Points) -> int:
-    """Return what point i does since the event that ended the piece before, -1 if it is not of it."""
+    """Return what point i does since the event that ended the segment before, -1 if it is not of it."""
     status, noted = -1, True
     for k in range(len(changed)):
         noted = noted and changed[k, F.PAIR] >= 0
@@ -301,8 +301,8 @@ def take_closed(
 ) -> int:
     """Keep the points that do not part; return how many.
 
-    ``changed`` has the points that ended the piece before and what they do from now on, where the laws alone
-    would leave that to rounding.
+    ``changed`` has the points that ended the segment before and what they do from now on, where the laws
+    alone would leave that to rounding.
     """
     n = 0
     measure_all(scene, equations, count, q, v)

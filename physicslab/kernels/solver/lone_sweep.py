@@ -6,9 +6,9 @@ compiled in a twentieth of the time of :func:`physicslab.kernels.solver.soft.adv
 
 from physicslab.kernels import Rows, kernel
 from physicslab.kernels.arguments import Contacts, Inverse, InverseTuple, Motion, MotionTuple
+from physicslab.kernels.python_fallback import native_for
 from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.solver.sweep import sweep
-from physicslab.kernels.twins import native_for
 from physicslab.kernels.wide.solve import SoftConstraint
 
 

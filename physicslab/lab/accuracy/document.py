@@ -80,7 +80,7 @@ def _contacts(study: ContactStudy) -> dict[str, Any]:
 
 
 def _scene(study: SceneStudy) -> dict[str, Any]:
-    estimate = pick(study.estimate, "error", "worst", "order", "order_reason", "twins", "failure")
+    estimate = pick(study.estimate, "error", "worst", "order", "order_reason", "variants", "failure")
     return {
         "scene": study.name, "seconds": study.seconds, "kind": ESTIMATE, "reference": study.reference,
         "estimate": estimate, "rows": study.rows, "horizon_s": study.horizon_s,

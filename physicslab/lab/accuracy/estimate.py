@@ -1,4 +1,4 @@
-"""How far the twins of a scene end apart: an estimate of its error, and of the order of that in the step."""
+"""How far apart variants of a scene end: an estimate of its error, and of its order in the step."""
 
 import math
 import time
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from physicslab.files.writer import write_scene
 from physicslab.lab.accuracy.paths import Path, differences, run_path
-from physicslab.lab.accuracy.twins import TWINS, Document, Twin, refined, with_ids
+from physicslab.lab.accuracy.variants import VARIANTS, Document, Variant, refined, with_ids
 from physicslab.lab.case import attempt
 from physicslab.lab.jobs import Job
 from physicslab.lab.worlds import steps_not_rigid
@@ -44,13 +44,13 @@ class Departure:
 
 
 @dataclass(frozen=True, slots=True)
-class TwinResult:
-    """A twin, how it differs from the scene, and how far apart both end.
+class VariantResult:
+    """A variant, how it differs from the scene, and how far apart both end.
 
     Attributes
     ----------
     name, what : str
-        The twin.
+        The variant.
     spread : Departure, optional
         ``None`` where it failed.
     failure : str
@@ -70,14 +70,14 @@ class Estimate:
     Attributes
     ----------
     error : Departure, optional
-        The largest spread of any twin; ``None`` where the scene or all of its twins fail.
+        The largest spread of any variant; ``None`` where the scene or all of its variants fail.
     worst : str
-        The twin that is furthest off in place.
+        The variant that is furthest off in place.
     order : float, optional
         The power of the step with which the error falls; ``None`` where it has none.
     order_reason : str
         How the order was found, or why there is none.
-    twins : list of TwinResult
+    variants : list of VariantResult
         All that the scene has.
     failure : str
         Why the scene itself could not be run.
@@ -88,7 +88,7 @@ class Estimate:
     path : Path, optional
         That of the scene itself.
     paths : dict of str to Path
-        That of each twin that could be run, by its name; of a mirrored one mirrored back.
+        That of each variant that could be run, by its name; of a mirrored one mirrored back.
     document : Document
         The scene, with ids.
     own_s, left_s : float
@@ -99,7 +99,7 @@ class Estimate:
     worst: str = ""
     order: float | None = None
     order_reason: str = ""
-    twins: list[TwinResult] = field(default_factory=list)
+    variants: list[VariantResult] = field(default_factory=list)
     failure: str = ""
     reference: NDArray[np.float64] | None = None
     bodies: list[str] = field(default_factory=list)
@@ -110,15 +110,15 @@ class Estimate:
     left_s: float = math.inf
 
     def spread_of(self, name: str) -> Departure | None:
-        """Return how far a twin is off, where there is one that did not fail."""
-        return next((twin.spread for twin in self.twins if twin.name == name), None)
+        """Return how far a variant is off, where there is one that did not fail."""
+        return next((variant.spread for variant in self.variants if variant.name == name), None)
 
 
 def estimate_error(
     load: Callable[[], World], seconds: float, moments: Sequence[float] = (), budget_s: float = math.inf,
-    twins: Sequence[Twin] = TWINS,
+    variants: Sequence[Variant] = VARIANTS,
 ) -> Job[Estimate]:  # fmt: skip
-    """Run a scene and its twins; yield the share of the work that is done.
+    """Run a scene and its variants; yield the share of the work that is done.
 
     Parameters
     ----------
@@ -129,8 +129,8 @@ def estimate_error(
     moments : sequence of floats
         When paths are looked at before the end, after the start [s], in order.
     budget_s : float
-        After how much time [s] twins are given up that are not done, compiling left out.
-    twins : sequence of Twin
+        After how much time [s] variants are given up that are not done, compiling left out.
+    variants : sequence of Variant
         In which other ways it is computed.
     """
     scene, found = load(), Estimate()
@@ -149,15 +149,17 @@ def estimate_error(
         return found
     left = max(budget_s, _RUNS_AT_LEAST * found.own_s)
     soft = not _flies(scene) or _something_rests(load(), seconds)
-    for i, twin in enumerate(twins):
-        other = twin.make(document, scene) if soft or twin.name != "rigid" else None
+    for i, variant in enumerate(variants):
+        other = variant.make(document, scene) if soft or variant.name != "rigid" else None
         if other is not None:
             began = time.perf_counter()
-            found.twins.append(_compared(twin, other, partial(run, budget_s=min(left, twin.budget_s)), found))
+            found.variants.append(
+                _compared(variant, other, partial(run, budget_s=min(left, variant.budget_s)), found)
+            )
             left = max(0.0, left - (time.perf_counter() - began - other.compile_s))
-            if twin.name == "rigid" and twin.name in found.paths and not any(steps_not_rigid(other)):
-                found.reference = found.paths[twin.name].places[-1]
-        yield (i + 1) / (len(twins) + 1)
+            if variant.name == "rigid" and variant.name in found.paths and not any(steps_not_rigid(other)):
+                found.reference = found.paths[variant.name].places[-1]
+        yield (i + 1) / (len(variants) + 1)
     found.left_s = left
     _summarise(found)
     return found
@@ -183,18 +185,18 @@ def _flies(world: World) -> bool:
     return all(part.event_driven for part in world.parts)
 
 
-def _compared(twin: Twin, world: World, run: Callable[[World], Path], found: Estimate) -> TwinResult:
-    """Run a twin, and keep its path."""
+def _compared(variant: Variant, world: World, run: Callable[[World], Path], found: Estimate) -> VariantResult:
+    """Run a variant, and keep its path."""
     assert found.path is not None
     path, failure = attempt(partial(run, world))
     if path is None:
-        return TwinResult(twin.name, twin.what, None, failure)
-    found.paths[twin.name] = path = path.mirrored() if twin.mirrored else path
+        return VariantResult(variant.name, variant.what, None, failure)
+    found.paths[variant.name] = path = path.mirrored() if variant.mirrored else path
     soft, by_impulses = steps_not_rigid(world)
-    what = twin.what
+    what = variant.what
     what += f"; {soft} steps were left to soft ones" if soft else ""
     what += f"; {by_impulses} steps were made by impulses, with an error of order one" if by_impulses else ""
-    return TwinResult(twin.name, what, _spread(found.path.end, path.end))
+    return VariantResult(variant.name, what, _spread(found.path.end, path.end))
 
 
 def _spread(own: NDArray[np.float64], other: NDArray[np.float64]) -> Departure:
@@ -203,7 +205,7 @@ def _spread(own: NDArray[np.float64], other: NDArray[np.float64]) -> Departure:
 
 
 def _summarise(found: Estimate) -> None:
-    spreads = {result.name: result.spread for result in found.twins if result.spread is not None}
+    spreads = {result.name: result.spread for result in found.variants if result.spread is not None}
     if not spreads:
         return
     found.worst = max(spreads, key=lambda name: spreads[name].position)

@@ -15,7 +15,7 @@ from physicslab.diagnostics.contact_warnings import contact_graph
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.vector import rotated
 from physicslab.files.reader import read_scene
-from physicslab.lab.accuracy.twins import ROUNDING, Document
+from physicslab.lab.accuracy.variants import ROUNDING, Document
 from physicslab.lab.jobs import Job
 from physicslab.state.masses import Diverged
 from physicslab.state.packed import spring_ends
@@ -177,7 +177,7 @@ def _overlaps(world: World) -> NDArray[np.float64]:
 
 
 _DISPLACED = 1e-10
-"""By what share of its size each body is displaced in the twin that shows how errors grow."""
+"""By what share of its size each body is displaced in the variant that shows how errors grow."""
 _PARTED = 0.1
 """Two runs in which a body is so many of its sizes apart have parted: they are different futures."""
 _LOOKS = 400
@@ -224,20 +224,20 @@ def find_horizon(document: Document, bodies: Sequence[str], seconds: float) -> J
     seconds : float
         How long it is run [s].
     """
-    world, twin = read_scene(document), read_scene(document)
-    rows, other = rows_of(world, bodies), rows_of(twin, bodies)
+    world, variant = read_scene(document), read_scene(document)
+    rows, other = rows_of(world, bodies), rows_of(variant, bodies)
     if not rows:
         return None
     sizes = sizes_of(world, bodies)
     ways = np.random.default_rng(0).choice((-1.0, 1.0), (len(bodies), 2))
-    twin.table(Transform)["position"][other] += _DISPLACED * sizes[:, None] * ways
+    variant.table(Transform)["position"][other] += _DISPLACED * sizes[:, None] * ways
     stride = max(1, round(seconds / world.simulation.dt) // _LOOKS)
     start = world.time
-    beside = twin.stepping(seconds=seconds, stride=stride)
+    beside = variant.stepping(seconds=seconds, stride=stride)
     try:
         for _ in world.stepping(seconds=seconds, stride=stride):
             next(beside, None)
-            apart = world.table(Transform)["position"][rows] - twin.table(Transform)["position"][other]
+            apart = world.table(Transform)["position"][rows] - variant.table(Transform)["position"][other]
             if (np.hypot(*apart.T) > _PARTED * sizes).any():
                 rate = math.log(_PARTED / _DISPLACED) / (world.time - start)
                 return math.log(_PARTED / ROUNDING) / rate

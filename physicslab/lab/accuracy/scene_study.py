@@ -16,7 +16,7 @@ from physicslab.integrators import INTEGRATORS
 from physicslab.integrators.dop853 import DOP853
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error, find_order
 from physicslab.lab.accuracy.paths import find_horizon
-from physicslab.lab.accuracy.twins import GOLDEN, Document, refined, with_ids
+from physicslab.lab.accuracy.variants import GOLDEN, Document, refined, with_ids
 from physicslab.lab.case import attempt, cpu_time
 from physicslab.lab.jobs import Job, scaled
 from physicslab.lab.worlds import steps_not_rigid

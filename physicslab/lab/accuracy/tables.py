@@ -171,13 +171,16 @@ def scene_text(study: SceneStudy) -> str:
 
 
 def _estimate_lines(study: SceneStudy) -> list[str]:
-    """Return how far the scene as it is configured is from its twins."""
+    """Return how far the scene as it is configured is from its variants."""
     found = study.estimate
     if found.error is None:
         return [f"  no estimate: {found.failure or 'no variant of the scene could be run'}"]
     head = ("variant", "place [m]", "angle [rad]", "velocity [m/s]", "spin [rad/s]", "")
     rows = [("largest: the error", *_spread_cells(found.error), "")]
-    rows += [(twin.name, *_spread_cells(twin.spread), twin.failure or twin.what) for twin in found.twins]
+    rows += [
+        (variant.name, *_spread_cells(variant.spread), variant.failure or variant.what)
+        for variant in found.variants
+    ]
     order = "none" if found.order is None else f"{found.order:.1f}"
     return [
         f"  as it is configured, and how far its variants end from it after {study.seconds:g} s, of any body",

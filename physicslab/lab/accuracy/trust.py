@@ -1,6 +1,6 @@
 """How many digits of a result can be relied on, and until when any prediction means anything.
 
-Digits come from runs that compute the same in another way: the twins of
+Digits come from runs that compute the same in another way: the variants of
 :mod:`physicslab.lab.accuracy.estimate`, and more starts that are moved by one rounding, as the rounding of
 every operation is most of the error of a method that is exact otherwise. The horizon comes from a start that
 is moved by far more: the rate at which both runs part is that at which any error grows.
@@ -19,21 +19,21 @@ from numpy.typing import NDArray
 from physicslab.files.reader import read_scene
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error
 from physicslab.lab.accuracy.paths import Path, differences, find_horizon, run_path, sizes_of
-from physicslab.lab.accuracy.twins import NUDGE_SHARE, NUDGES, ROUNDING, TWINS, Document, nudged
+from physicslab.lab.accuracy.variants import NUDGE_SHARE, NUDGES, ROUNDING, VARIANTS, Document, nudged
 from physicslab.lab.case import attempt
 from physicslab.lab.document import plain
 from physicslab.lab.jobs import Job, scaled
 from physicslab.world import World
 
-_TWINS, _NUDGED = 0.6, 0.85
-"""Shares of the work after which the twins are run, and after which the starts are that are moved."""
+_VARIANTS, _NUDGED = 0.6, 0.85
+"""Shares of the work after which the variants are run, and after which the starts are that are moved."""
 BUDGET_S = 60.0
 """How long all other ways to compute a scene may take [s], or three times as long as the scene itself."""
 STEP_SAFETY = 2.0
-"""How many times as far as a twin in other steps a result may be off: the twin's own error may be like it."""
-_WAYS = [twin for twin in TWINS if twin.name != "nudged"]
-"""The twins that are compared: there are more starts that are moved by one rounding."""
-_IN_STEPS = {twin.name for twin in TWINS if twin.differs_in_step}
+"""How many times as far as a variant in other steps a result may be off: both errors may be alike."""
+_WAYS = [variant for variant in VARIANTS if variant.name != "nudged"]
+"""The variants that are compared: there are more starts that are moved by one rounding."""
+_IN_STEPS = {variant.name for variant in VARIANTS if variant.differs_in_step}
 _NUDGED_NAME = "rounding"
 _OVERLAP_NAME = "overlap"
 """The name of an error that no variant shows: bodies at rest overlap, by the limit of a gap."""
@@ -79,7 +79,7 @@ class Trust:
     worst : str
         That body.
     cause : str
-        The twin that is furthest from it, ``"rounding"`` or ``"overlap"``.
+        The variant that is furthest from it, ``"rounding"`` or ``"overlap"``.
     energy, momentum, angular_momentum : float
         Digits of the total energy, as a share of the largest of it and its parts since the start, and of the
         momenta, as shares of the largest sums of those of all bodies.
@@ -90,7 +90,7 @@ class Trust:
         The time from the start [s] at which an error of one rounding has grown to a tenth of a body's size;
         ``None`` where errors do not grow like that within the run.
     ways : list of str
-        Which twins were compared.
+        Which variants were compared.
     left_out : list of str
         Which were not, and why: they fail, or take too long.
     failure : str
@@ -143,15 +143,17 @@ def assess(
     budget_s : float
         After how long [s] ways are left out that are not done, where that is more than three runs.
     """
-    estimate = yield from scaled(estimate_error(load, seconds, moments, budget_s, _WAYS), 0.0, _TWINS)
+    estimate = yield from scaled(estimate_error(load, seconds, moments, budget_s, _WAYS), 0.0, _VARIANTS)
     if estimate.path is None or not estimate.bodies:
         return Trust(failure=estimate.failure or "nothing moves")
     world, own, bodies, times = load(), estimate.path, estimate.bodies, (*moments, seconds)
     world.synchronise()
-    left_out = [f"{twin.name}: {twin.failure}" for twin in estimate.twins if twin.spread is None]
+    left_out = [
+        f"{variant.name}: {variant.failure}" for variant in estimate.variants if variant.spread is None
+    ]
     deadline = time.perf_counter() + estimate.left_s
     run = partial(run_path, bodies=bodies, moments=times, budget_s=max(estimate.left_s, estimate.own_s))
-    nudges = yield from scaled(_nudges(estimate.document, run, deadline, left_out), _TWINS, _NUDGED)
+    nudges = yield from scaled(_nudges(estimate.document, run, deadline, left_out), _VARIANTS, _NUDGED)
     if not estimate.paths and not nudges:
         return Trust(failure="no other way to compute it ends in time", left_out=left_out)
 
@@ -244,9 +246,9 @@ def _horizon(estimate: Estimate, seconds: float, deadline: float, left_out: list
             return None
 
 
-def _errors(compare: _Compare, twins: dict[str, Path], nudges: Sequence[Path]) -> _Errors:
+def _errors(compare: _Compare, variants: dict[str, Path], nudges: Sequence[Path]) -> _Errors:
     """Return what each way to compute it says of an error, at each moment (ways, moments, ...)."""
-    apart = [compare(path) * (STEP_SAFETY if name in _IN_STEPS else 1.0) for name, path in twins.items()]
+    apart = [compare(path) * (STEP_SAFETY if name in _IN_STEPS else 1.0) for name, path in variants.items()]
     squares = [compare(path) ** 2 for path in nudges]
     rounding = NUDGE_SHARE * np.sqrt(np.mean(squares, axis=0)) if squares else np.zeros_like(apart[0])
     return np.array([*apart, rounding])

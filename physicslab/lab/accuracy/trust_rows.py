@@ -8,7 +8,7 @@ from functools import partial
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.reader import read_scene
 from physicslab.files.writer import write_scene
-from physicslab.lab.accuracy import twins
+from physicslab.lab.accuracy import variants
 from physicslab.lab.accuracy.contacts.case import ContactCase
 from physicslab.lab.accuracy.contacts.study import OWN, ContactEngine
 from physicslab.lab.accuracy.problem import KnownCase, Problem, Setting
@@ -50,7 +50,7 @@ class TrustRow:
         """The true error over the estimate; both are taken to be a rounding at least."""
         if self.estimate is None or self.error is None:
             return None
-        return max(self.error, twins.ROUNDING) / max(self.estimate, twins.ROUNDING)
+        return max(self.error, variants.ROUNDING) / max(self.estimate, variants.ROUNDING)
 
     @property
     def near(self) -> bool:
@@ -116,7 +116,7 @@ def _assess(
 ) -> Job[TrustRow]:
     """Estimate an error by how much the case's figure changes where it is computed in other ways."""
     worlds, ready = case.worlds(simulation), case.worlds(simulation)
-    documents = [twins.with_ids(write_scene(world)) for world in worlds]
+    documents = [variants.with_ids(write_scene(world)) for world in worlds]
     for world in ready:
         world.synchronise()
     error, _ = attempt(partial(case.finish, worlds))
@@ -129,23 +129,25 @@ def _assess(
         return 0.0 if found is None else abs(error - found)
 
     known = [change(case.worlds(other)) for other in others]
-    ways = [twin for twin in twins.TWINS if twin.differs_in_step or twin.name == "tightest"]
-    whole = len(ways) + twins.NUDGES + 1
-    for n, twin in enumerate(ways):
-        known.append(change(_twins(twin, documents, ready)) * (STEP_SAFETY if twin.differs_in_step else 1.0))
+    ways = [variant for variant in variants.VARIANTS if variant.differs_in_step or variant.name == "tightest"]
+    whole = len(ways) + variants.NUDGES + 1
+    for n, variant in enumerate(ways):
+        known.append(
+            change(_variants(variant, documents, ready)) * (STEP_SAFETY if variant.differs_in_step else 1.0)
+        )
         yield (n + 1) / whole
     squares = []
-    for n in range(twins.NUDGES):
-        squares.append(change([read_scene(twins.nudged(document, n)) for document in documents]) ** 2)
+    for n in range(variants.NUDGES):
+        squares.append(change([read_scene(variants.nudged(document, n)) for document in documents]) ** 2)
         yield (len(ways) + n + 1) / whole
-    known.append(twins.NUDGE_SHARE * math.sqrt(sum(squares) / twins.NUDGES))
+    known.append(variants.NUDGE_SHARE * math.sqrt(sum(squares) / variants.NUDGES))
     return TrustRow(case, method, max(known), error)
 
 
-def _twins(
-    twin: twins.Twin, documents: Sequence[twins.Document], worlds: Sequence[World]
+def _variants(
+    variant: variants.Variant, documents: Sequence[variants.Document], worlds: Sequence[World]
 ) -> list[World] | None:
-    """Return the twins of all worlds, ``None`` where one has no such."""
-    made = [twin.make(document, world) for document, world in zip(documents, worlds, strict=True)]
+    """Return the variants of all worlds, ``None`` where one has no such."""
+    made = [variant.make(document, world) for document, world in zip(documents, worlds, strict=True)]
     found = [world for world in made if world is not None]
     return found if len(found) == len(made) else None

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.diagnostics.ledger import read_impacts
+from physicslab.diagnostics.impact_table import read_impacts
 from physicslab.theme import Theme
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points

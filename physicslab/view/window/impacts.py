@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from physicslab.contacts.report import ImpactReader
 from physicslab.diagnostics.collision import Collision, Result, read_collision, resolve
-from physicslab.diagnostics.ledger import NO_IMPACTS, read_impacts
+from physicslab.diagnostics.impact_table import NO_IMPACTS, read_impacts
 from physicslab.ecs.vector import Vector2
 from physicslab.history import History
 from physicslab.view.window.pace import Pace

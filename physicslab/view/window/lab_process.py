@@ -274,8 +274,8 @@ class ErrorStudy(LabProcess):
         (found,) = report["scenes"]
         self.seconds, self.reference = found["seconds"], found["reference"]
         self.horizon = found.get("horizon_s")
-        twins = {twin["name"]: twin["spread"] for twin in found["estimate"]["twins"]}
-        nudged = twins.get("nudged")
+        variants = {variant["name"]: variant["spread"] for variant in found["estimate"]["variants"]}
+        nudged = variants.get("nudged")
         self.rounding = nudged["position"] if nudged else 0.0
         self.samples = tuple(
             Sample(*(row[name] for name in Sample.__slots__))

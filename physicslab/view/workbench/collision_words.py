@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from physicslab.diagnostics.collision import ENERGETIC, LOWERED, Body, Collision, Result
-from physicslab.diagnostics.ledger import WALLS
+from physicslab.diagnostics.impact_table import WALLS
 from physicslab.ecs.text import printable
 from physicslab.ecs.vector import Vector2
 from physicslab.languages.sentence import Sentence

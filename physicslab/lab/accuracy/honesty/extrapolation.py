@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.lab.accuracy.twins import Document
+from physicslab.lab.accuracy.variants import Document
 
 type Long = NDArray[np.longdouble]
 """An array of long floats, a point a row (n, 2) [m], [m/s]."""

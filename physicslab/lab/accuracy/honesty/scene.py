@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.lab.accuracy.twins import Document
+from physicslab.lab.accuracy.variants import Document
 
 type State = tuple[float, float, float, float, float, float]
 """x, y [m], angle [rad], vx, vy [m/s], spin [rad/s]."""

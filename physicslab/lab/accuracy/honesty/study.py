@@ -12,7 +12,7 @@ from physicslab.lab.accuracy.honesty import smooth, touching
 from physicslab.lab.accuracy.honesty.scene import KnownScene
 from physicslab.lab.accuracy.paths import differences, run_path
 from physicslab.lab.accuracy.trust import assess, scales
-from physicslab.lab.accuracy.twins import ROUNDING
+from physicslab.lab.accuracy.variants import ROUNDING
 from physicslab.lab.case import attempt
 from physicslab.lab.jobs import Job, scaled
 from physicslab.world import World

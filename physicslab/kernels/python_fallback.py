@@ -12,10 +12,10 @@ import numpy as np
 from numba.core.extending import _Intrinsic
 from numba.extending import is_jitted
 
-from physicslab.kernels.stand_ins import Records, arithmetic, math_functions, stand_in_of
+from physicslab.kernels.python_equivalents import Records, arithmetic, equivalent_of, math_functions
 
 _VECTORS = "physicslab.kernels.float64x8_interpreted"
-"""Where the stand-ins of vectors are: they are imported when the first kernel is interpreted."""
+"""Where the equivalents of vectors are: they are imported when the first kernel is interpreted."""
 _endless: set[Any] = set()
 
 
@@ -33,7 +33,7 @@ natives: dict[Any, Any] = {}
 
 
 def native_for[F: Callable[..., Any]](inner: Any) -> Callable[[F], F]:
-    """Let twins call a kernel in place of an inner function once it is loaded: the bits are the same.
+    """Let fallbacks call a kernel in place of an inner function once it is loaded: the bits are the same.
 
     So what a scene spends most of its time in is compiled long before the whole that it is a part of.
     """
@@ -45,18 +45,18 @@ def native_for[F: Callable[..., Any]](inner: Any) -> Callable[[F], F]:
     return note
 
 
-def _native_or_twin(inner: Any, twin: Callable[..., Any]) -> Callable[..., Any]:
+def _native_or_fallback(inner: Any, fallback: Callable[..., Any]) -> Callable[..., Any]:
     def call(*arguments: Any) -> Any:
         native = natives[inner]
         if not native.compiled:
-            return twin(*arguments)
+            return fallback(*arguments)
         return _of_float64(native(*map(_as_kernels_take, arguments)))
 
     return call
 
 
 def _as_kernels_take(value: Any) -> Any:
-    """Return an argument of a twin as Python passes it to a kernel."""
+    """Return an argument of a fallback as Python passes it to a kernel."""
     if isinstance(value, tuple):
         return tuple(map(_as_kernels_take, value))
     return value.array if isinstance(value, Records) else value
@@ -76,11 +76,12 @@ patience = _Patience()
 
 
 @cache
-def twin_of(jitted: Any) -> Callable[..., Any]:
+def fallback_of(jitted: Any) -> Callable[..., Any]:
     """Return a kernel, or an inner function, as plain Python that calls nothing compiled.
 
-    It takes what kernels give each other: records as :class:`physicslab.kernels.stand_ins.Records`, numbers
-    as np.float64, eight numbers as an array (8,); warnings of NumPy's are the caller's to silence.
+    It takes what kernels give each other: records as
+    :class:`physicslab.kernels.python_equivalents.Records`, numbers as np.float64, eight numbers as an array
+    (8,); warnings of NumPy's are the caller's to silence.
     """
     import_module(_VECTORS)
     function = jitted.py_func
@@ -88,25 +89,25 @@ def twin_of(jitted: Any) -> Callable[..., Any]:
     constants = tuple(_of_float64(constant) for constant in code.co_consts)
     names = _names_of(function.__globals__)
     code = code.replace(co_consts=constants)
-    twin = FunctionType(code, names, function.__name__, function.__defaults__, function.__closure__)
-    return _timed(twin) if jitted in _endless else twin
+    fallback = FunctionType(code, names, function.__name__, function.__defaults__, function.__closure__)
+    return _timed(fallback) if jitted in _endless else fallback
 
 
-def _timed(twin: Callable[..., Any]) -> Callable[..., Any]:
+def _timed(fallback: Callable[..., Any]) -> Callable[..., Any]:
     def call(*arguments: Any) -> Any:
         if time.perf_counter() > patience.until:
             raise Overdue
-        return twin(*arguments)
+        return fallback(*arguments)
 
     return call
 
 
 _modules: dict[int, dict[str, Any]] = {}
-"""The names for the twins of each module, by where the module's own names are."""
+"""The names for the fallbacks of each module, by where the module's own names are."""
 
 
 def _names_of(module: dict[str, Any]) -> dict[str, Any]:
-    """Return the names of a module for the twins of its functions."""
+    """Return the names of a module for the fallbacks of its functions."""
     names = _modules.get(id(module))
     if names is None:
         names = _modules[id(module)] = {**module, **arithmetic}
@@ -115,24 +116,24 @@ def _names_of(module: dict[str, Any]) -> dict[str, Any]:
     return names
 
 
-class _TwinModule:
-    """A module of kernels as its twins use it."""
+class _FallbackModule:
+    """A module of kernels as its fallbacks use it."""
 
     def __init__(self, names: dict[str, Any]) -> None:
         self.__dict__ = names
 
 
 def _counterpart(value: Any) -> Any:
-    """Return what a twin uses in place of something that a kernel refers to by name."""
+    """Return what a fallback uses in place of something that a kernel refers to by name."""
     if value is math:
         return math_functions
     if isinstance(value, ModuleType) and value.__name__.startswith(f"{__package__}."):
-        return _TwinModule(_names_of(vars(value)))
+        return _FallbackModule(_names_of(vars(value)))
     if is_jitted(value):
-        twin = twin_of(value)
-        return _native_or_twin(value, twin) if value in natives else twin
+        fallback = fallback_of(value)
+        return _native_or_fallback(value, fallback) if value in natives else fallback
     if isinstance(value, _Intrinsic):
-        return stand_in_of(value)
+        return equivalent_of(value)
     return _of_float64(value)
 
 

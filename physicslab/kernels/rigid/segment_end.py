@@ -1,4 +1,4 @@
-"""The end of a smooth piece of motion: functions that fall below zero, and when the first of them does."""
+"""The end of a smooth segment of motion: functions that fall below zero, and when the first of them does."""
 
 import math
 
@@ -10,7 +10,7 @@ from physicslab.kernels.rigid.detect import TIE
 from physicslab.kernels.rigid.equations import SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.joint_points import measure
-from physicslab.kernels.rigid.pieces import Stages, make_piece
+from physicslab.kernels.rigid.smooth_segment import Stages, make_segment
 from physicslab.kernels.rigid.touching import NO_SPEED, SLOW, find_open, moved_closer
 
 PRESSES, HOLDS, SLIDES, REACHES, APART = 0, 1, 2, 3, 4
@@ -26,13 +26,13 @@ _NO_FORCE = 1e-9
 _SIZE_ROUNDING = 1e-14
 """Share of a size that is rounding."""
 _HALVINGS = 40
-"""How often a piece is halved to find a time at which a point that has bounced is above the other body."""
+"""How often a segment is halved to find a time at which a point that has bounced is above the other body."""
 _TRIALS = 120
 """Largest number of trials to locate an event."""
 _STEEP = 1e-7
-"""Share of a piece below which rounding may be most of a slope."""
+"""Share of a segment below which rounding may be most of a slope."""
 _LOCATED = 1e-13
-"""Share of a piece by which its end may be past the event, and to which that is located on its curve."""
+"""Share of a segment by which its end may be past the event, and to which that is located on its curve."""
 _BY_SLOPE = 6
 """Trials that follow the slope of the curve; later ones do without it."""
 _CUTS = 16
@@ -78,7 +78,7 @@ def note_start(
     scene: RigidScene, equations: Equations, count: int, scratch: Equations, q: Numbers, v: Numbers,
     acceleration: Numbers, start: Vectors,
 ) -> float:  # fmt: skip
-    """Note all functions at the start of a piece, and distances of pairs.
+    """Note all functions at the start of a segment, and distances of pairs.
 
     ``start`` is (STARTS, points or pairs).
     Returns when the first gap would close if all went on as it begins [s].
@@ -98,7 +98,7 @@ def note_start(
 
 @inlined
 def _can_end(kind: int, i: int, equations: Equations) -> bool:
-    """Whether a function can end the piece."""
+    """Whether a function can end the segment."""
     if kind in (HOLDS, SLIDES):
         sticks: bool = equations.points[i, F.STATUS] == STICKS
         rubs: bool = equations.measures[i, F.MU] > 0.0
@@ -143,9 +143,9 @@ def _first_event(
     scene: RigidScene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
     q: Numbers, rest: float, last_kind: int, last: int,
 ) -> tuple[int, int]:  # fmt: skip
-    """Return which function fell below zero first within the piece: kind and index, -1 if none did.
+    """Return which function fell below zero first within the segment: kind and index, -1 if none did.
 
-    One is left out: that at which the piece was cut.
+    One is left out: that at which the segment was cut.
     """
     first_kind, first, earliest, force = -1, -1, math.inf, 0.0
     for i in range(count):
@@ -172,11 +172,11 @@ def _cross(
     scratch: Equations, stages: Stages, q: Numbers, v: Numbers, h: float, t: float, end: float, slope: float,
     f_low: float, allowance: float, noise: float, tolerance: float,
 ) -> tuple[float, float, bool, int]:  # fmt: skip
-    """Find where a function falls below zero, from ``t`` on and before ``end``, in a piece of ``h`` seconds.
+    """Find where a function falls below zero, from ``t`` on and before ``end``, in a segment of ``h`` [s].
 
-    On its curve, or by pieces that end there. By the slope where one is given, then by regula falsi with the
-    Illinois rule, and by bisection where that is slow. Returns the time, just past it; the slope; whether it
-    falls below zero at all; how many trials there were. The state is left in ``stages``.
+    On its curve, or by segments that end there. By the slope where one is given, then by regula falsi with
+    the Illinois rule, and by bisection where that is slow. Returns the time, just past it; the slope; whether
+    it falls below zero at all; how many trials there were. The state is left in ``stages``.
     """
     low, high, f_high, side, wide = 0.0, end, slope * (end - t), 0, math.inf
     moment = _LOCATED * h
@@ -200,7 +200,7 @@ def _cross(
                 if kind < APART:
                     measure(scene, equations.points, index, stages.q, stages.v, equations.measures)
         else:
-            make_piece(scene, equations, count, q, v, t, tolerance, stages)
+            make_segment(scene, equations, count, q, v, t, tolerance, stages)
         f = _value(kind, index, scene, equations, count, scratch, stages.q, stages.v) + allowance
         if f <= 0.0:
             high, f_high, past, rising = t, f, f, max(rising - 1, 0)
@@ -234,10 +234,10 @@ def locate_event(
     scene: RigidScene, equations: Equations, count: int, scratch: Equations, start: Vectors, stages: Stages,
     q: Numbers, v: Numbers, h: float, tolerance: float, rest: float, short: bool,
 ) -> tuple[float, int, int, int]:  # fmt: skip
-    """Cut a piece that was made of ``h`` seconds where its first event is, if there is one in it.
+    """Cut a segment that was made of ``h`` seconds where its first event is, if there is one in it.
 
-    Returns its length, kind and index of the event, -1 if there is none, and how many pieces were made. The
-    event is found on the curve of the piece. Where the curve is not exact, pieces of other lengths then
+    Returns its length, kind and index of the event, -1 if there is none, and how many segments were made. The
+    event is found on the curve of the segment. Where the curve is not exact, segments of other lengths then
     locate it to rounding; but a ``short`` one, whose length is then returned as -1, has to be made again.
     """
     kind, index, slope, at, end, f_low, allowance, exact = -1, -1, 0.0, h, h, 0.0, 0.0, False

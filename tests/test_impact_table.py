@@ -16,9 +16,15 @@ from numpy.typing import NDArray
 
 from physicslab import World, cli, load_scene
 from physicslab.components import Velocity
-from physicslab.diagnostics import ledger as ledger_of_impacts
+from physicslab.diagnostics import impact_table as impact_tables
 from physicslab.diagnostics.energy import measure_account, measure_momentum
-from physicslab.diagnostics.ledger import LedgerWriter, names_of, read_impacts, since_last, speeds_at
+from physicslab.diagnostics.impact_table import (
+    ImpactTableWriter,
+    names_of,
+    read_impacts,
+    since_last,
+    speeds_at,
+)
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels.constraint.impact_law import NEWTON
 from physicslab.kernels.records import IMPACT
@@ -220,10 +226,10 @@ def test_a_longer_ring_keeps_what_there_was() -> None:
     assert [contacts.log[n % 16]["time"] for n in range(17, 27)] == list(range(17, 27))
 
 
-def written(world: World, steps: int, each: int) -> tuple[list[list[str]], LedgerWriter]:
+def written(world: World, steps: int, each: int) -> tuple[list[list[str]], ImpactTableWriter]:
     """Return the rows that a ledger gets, read after each of so many steps."""
     stream = io.StringIO(newline="")
-    ledger = LedgerWriter(stream, world)
+    ledger = ImpactTableWriter(stream, world)
     for _ in range(steps // each):
         world.run(steps=each)
         ledger.write()
@@ -327,7 +333,7 @@ def test_impacts_that_are_lost_are_told(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(Contacts, "LOGGED", 50)
-    monkeypatch.setattr(ledger_of_impacts, "_MAX_RING", 50)
+    monkeypatch.setattr(impact_tables, "_MAX_RING", 50)
     out = tmp_path / "impacts.csv"
     assert run("gas", "--seconds", "0.2", "--ledger", str(out), "--json", str(tmp_path / "r")) == 0
     lines = [line for line in capsys.readouterr().err.splitlines() if "--ledger" in line]

@@ -1,4 +1,4 @@
-"""A smooth piece of motion: one Runge-Kutta step of bodies whose points go on with what they do."""
+"""A smooth segment of motion: one Runge-Kutta step of bodies whose points go on with what they do."""
 
 import math
 from typing import NamedTuple
@@ -58,7 +58,7 @@ def named_stages(plain: StagesTuple) -> Stages:
 def begin_piece(
     scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, stages: Stages
 ) -> None:
-    """Compute the first stage, from which pieces of any length can begin."""
+    """Compute the first stage, from which segments of any length can begin."""
     constrained_acceleration(scene, equations, count, q, v, stages.acceleration)
     for i in range(len(v)):
         stages.rates[0, i], stages.pushes[0, i] = v[i], stages.acceleration[i]
@@ -81,7 +81,7 @@ def largest_free(scene: RigidScene, values: Numbers) -> float:
 def _error(
     stages: Stages, n: int, free: int, h: float, q_scale: float, v_scale: float, tolerance: float
 ) -> float:
-    """Return the estimated error of a piece (Hairer's), a mean over ``free`` coordinates; 1 is tolerated."""
+    """Return a segment's estimated error (Hairer's), a mean over ``free`` coordinates; 1 is tolerated."""
     fifth, third = 0.0, 0.0
     for i in range(n):
         moved, pushed, moved_low, pushed_low = 0.0, 0.0, 0.0, 0.0
@@ -133,7 +133,7 @@ def make_stages(
 
 
 @inlined
-def make_piece(
+def make_segment(
     scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, h: float, tolerance: float,
     stages: Stages,
 ) -> float:  # fmt: skip

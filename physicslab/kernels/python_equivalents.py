@@ -17,22 +17,22 @@ _INT64_MIN = -(2**63)
 """The int64 that stands for a number that no int64 can hold."""
 
 
-_stand_ins: dict[Any, Callable[..., Any]] = {}
+_equivalents: dict[Any, Callable[..., Any]] = {}
 
 
-def stands_in_for[F: Callable[..., Any]](intrinsic: Any) -> Callable[[F], F]:
+def equivalent_for[F: Callable[..., Any]](intrinsic: Any) -> Callable[[F], F]:
     """Let a plain function be called where a kernel that is interpreted calls an intrinsic of numba's."""
 
     def note(function: F) -> F:
-        _stand_ins[intrinsic] = function
+        _equivalents[intrinsic] = function
         return function
 
     return note
 
 
-def stand_in_of(intrinsic: Any) -> Callable[..., Any] | None:
-    """Return the plain function that stands in for an intrinsic, if one was given."""
-    return _stand_ins.get(intrinsic)
+def equivalent_of(intrinsic: Any) -> Callable[..., Any] | None:
+    """Return the plain function that is called in place of an intrinsic, if one was given."""
+    return _equivalents.get(intrinsic)
 
 
 # ---- arithmetic --------------------------------------------------------------------------------------------
@@ -61,7 +61,7 @@ def _whole(function: Callable[[float], int]) -> Callable[[float], int]:
     return call
 
 
-def _stand_in_for_math() -> SimpleNamespace:
+def _equivalent_of_math() -> SimpleNamespace:
     names: dict[str, Any] = {}
     for name, value in vars(math).items():
         if isinstance(value, float):
@@ -75,7 +75,7 @@ def _stand_in_for_math() -> SimpleNamespace:
     return SimpleNamespace(**names)
 
 
-math_functions = _stand_in_for_math()
+math_functions = _equivalent_of_math()
 """Stands in for the module ``math``, by whose functions compiled code gives the same bits."""
 
 arithmetic: dict[str, Any] = {"float": np.float64, "int": _whole(int)}

@@ -34,7 +34,7 @@ from physicslab.files.scene import load_scene, read_scene, write_scene
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
 from physicslab.lab.accuracy.estimate import Estimate, estimate_error, find_order
 from physicslab.lab.accuracy.scene_study import study_scene
-from physicslab.lab.accuracy.twins import TWINS, Document, with_ids
+from physicslab.lab.accuracy.variants import VARIANTS, Document, with_ids
 from physicslab.lab.jobs import result_of
 from physicslab.prefabs import pendulum
 from physicslab.world import World
@@ -125,7 +125,7 @@ def test_the_estimate_of_contacts_is_within_a_factor_of_ten_of_the_truth(case: s
     true = math.dist(world.component(len(document["entities"]), Transform).position, place)
     assert found.error is not None
     assert 0.1 * true - FLOOR <= found.error.position <= 10.0 * true + FLOOR
-    half_step = next(twin.spread for twin in found.twins if twin.name == "half step")
+    half_step = next(variant.spread for variant in found.variants if variant.name == "half step")
     assert half_step is not None and half_step.position <= found.error.position
 
 
@@ -153,7 +153,7 @@ def test_the_estimate_of_every_contact_case_is_within_a_factor_of_ten(name: str,
     assert 0.1 * true - FLOOR <= estimated <= 10.0 * true + FLOOR
 
 
-def test_the_rigid_twin_of_soft_contacts_is_as_far_off_as_the_truth() -> None:
+def test_the_rigid_variant_of_soft_contacts_is_as_far_off_as_the_truth() -> None:
     case = CONTACTS["corner_rod"]
 
     def load() -> World:
@@ -161,28 +161,32 @@ def test_the_rigid_twin_of_soft_contacts_is_as_far_off_as_the_truth() -> None:
 
     found, world = estimate(load, case.seconds), load()
     world.run(seconds=case.seconds)
-    (rigid,) = [twin.spread for twin in found.twins if twin.name == "rigid"]
+    (rigid,) = [variant.spread for variant in found.variants if variant.name == "rigid"]
     assert rigid is not None and found.reference is not None
     assert max(rigid.position, rigid.angle) == pytest.approx(case.error(world, 0), rel=0.1)
 
 
-def test_rigid_contacts_have_no_stiffer_twin_and_no_rigid_one() -> None:
+def test_rigid_contacts_have_no_stiffer_variant_and_no_rigid_one() -> None:
     load = partial(CONTACTS["slide_stop"].build, SimulationConfig(contacts="rigid"))
     world, found = load(), estimate(load, 0.5)
-    names = {twin.name for twin in found.twins}
+    names = {variant.name for variant in found.variants}
     assert names >= {"eighth of the step", "mirrored", "permuted", "nudged"} and names.isdisjoint(
         {"stiffer", "rigid"}
     )
     assert found.reference is None
     document = with_ids(write_scene(world))
     world.synchronise()
-    assert all(twin.make(document, world) is None for twin in TWINS if twin.name in ("stiffer", "rigid"))
+    assert all(
+        variant.make(document, world) is None for variant in VARIANTS if variant.name in ("stiffer", "rigid")
+    )
 
 
-def test_a_twin_that_takes_too_long_is_given_up() -> None:
-    patient = [replace(twin, budget_s=-1.0) if twin.name == "rigid" else twin for twin in TWINS]
-    found = result_of(estimate_error(lambda: read_scene(CASES["one box"][0]), 0.1, twins=patient))
-    (rigid,) = [twin for twin in found.twins if twin.name == "rigid"]
+def test_a_variant_that_takes_too_long_is_given_up() -> None:
+    patient = [
+        replace(variant, budget_s=-1.0) if variant.name == "rigid" else variant for variant in VARIANTS
+    ]
+    found = result_of(estimate_error(lambda: read_scene(CASES["one box"][0]), 0.1, variants=patient))
+    (rigid,) = [variant for variant in found.variants if variant.name == "rigid"]
     assert rigid.spread is None and rigid.failure.startswith("given up after -1 s, at t = ")
     assert found.error is not None and found.reference is None
 
@@ -299,7 +303,7 @@ def test_the_mirror_image_of_a_scene_without_contacts_is_the_same_scene() -> Non
         world.spawn(Transform((2.0, 1.0), 0.4), *_loose())
         return world
 
-    found = {twin.name: twin.spread for twin in estimate(load).twins}
+    found = {variant.name: variant.spread for variant in estimate(load).variants}
     mirrored, nudged = found["mirrored"], found["nudged"]
     assert mirrored is not None and mirrored.position < 1e-12 and mirrored.angle < 1e-12
     assert nudged is not None and 0.0 < nudged.position < 1e-12
@@ -318,7 +322,7 @@ def test_joints_fields_and_polygons_are_mirrored_too() -> None:
     world.spawn(Slot(b=cart, axis=(1.0, 0.4), anchor_a=(-2.0, 0.0)))
     world.spawn(Transform((1.0, -0.5)), Shape.box(4.0, 0.6), Medium(1.0, viscosity=0.5, flow=(0.4, 0.0)))
     world.synchronise()
-    mirror = next(twin for twin in TWINS if twin.name == "mirrored")
+    mirror = next(variant for variant in VARIANTS if variant.name == "mirrored")
     image = mirror.make(write_scene(world), world)
     assert image is not None
     for each in (world, image):
@@ -338,8 +342,8 @@ def test_twins_leave_the_scene_as_it_is() -> None:
     world = load_scene("drop")
     document = with_ids(write_scene(world))
     before = json.dumps(document)
-    for twin in TWINS:
-        twin.make(document, world)
+    for variant in VARIANTS:
+        variant.make(document, world)
     assert json.dumps(document) == before
 
 
@@ -353,7 +357,7 @@ def test_any_duration_and_what_is_shown(tmp_path: Path, capsys: pytest.CaptureFi
     (found,) = json.loads(capsys.readouterr().out)["scenes"]
     assert found["seconds"] == 0.25
     assert set(found["estimate"]["error"]) == {"position", "angle", "velocity", "spin"}
-    assert [twin["name"] for twin in found["estimate"]["twins"]][:2] == ["other steps", "half step"]
+    assert [variant["name"] for variant in found["estimate"]["variants"]][:2] == ["other steps", "half step"]
 
 
 def test_methods_are_compared_with_the_finest_of_all_and_the_better_one_is_not_blamed() -> None:

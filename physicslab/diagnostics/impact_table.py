@@ -22,7 +22,7 @@ from physicslab.diagnostics.table_rows import TableRows
 from physicslab.ecs.text import table_cell
 from physicslab.kernels.constraint.impact_law import ENERGETIC, LOWERED, NEWTON
 from physicslab.kernels.constraint.pair import ContactFrame, PairVelocity, point_state
-from physicslab.kernels.interpreter import twin_of
+from physicslab.kernels.interpreter import fallback_of
 from physicslab.kernels.records import IMPACT
 from physicslab.state.state import State
 
@@ -97,7 +97,7 @@ def speeds_at(records: NDArray[Any], x: Floats, y: Floats, moment: str) -> tuple
     columns: list[Any] = [records[f"{moment}_{part}"] for part in PairVelocity._fields]
     at: list[Any] = [records["normal_x"], records["normal_y"]]
     at += [place - records[f"center_{body}{axis}"] for body in "ab" for axis, place in (("x", x), ("y", y))]
-    state = twin_of(point_state)(ContactFrame(*at), PairVelocity(*columns))
+    state = fallback_of(point_state)(ContactFrame(*at), PairVelocity(*columns))
     return state.v, state.sliding
 
 
@@ -236,7 +236,7 @@ def impact_table(state: State, records: NDArray[Any]) -> dict[str, NDArray[Any]]
     }  # fmt: skip
 
 
-class LedgerWriter:
+class ImpactTableWriter:
     """Writes every impact of a world to a stream as CSV, from now on: a row each, in the order of the log.
 
     Numbers keep every bit. A cell is empty where there is nothing to tell: a pair's first impact has no last.
@@ -292,8 +292,8 @@ class LedgerWriter:
         self.rows += len(records)
 
 
-def ledger_csv(state: State, records: NDArray[Any]) -> str:
-    """Return impacts as CSV, the same columns as :class:`LedgerWriter` writes, a row each in their order.
+def impact_table_csv(state: State, records: NDArray[Any]) -> str:
+    """Return impacts as CSV, a row each in their order, with the columns of :class:`ImpactTableWriter`.
 
     Parameters
     ----------
@@ -301,7 +301,7 @@ def ledger_csv(state: State, records: NDArray[Any]) -> str:
         The impacts, of the world of ``state``.
     """
     text = io.StringIO()
-    LedgerWriter(text, state).write_rows(records)
+    ImpactTableWriter(text, state).write_rows(records)
     return text.getvalue()
 
 

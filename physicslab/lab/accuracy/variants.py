@@ -1,8 +1,8 @@
-"""Twins of a scene: the same laws from the same start, computed in another way.
+"""Variants of a scene: the same laws from the same start, computed in another way.
 
-The spread of where twins end is an estimate of the error. Runs that differ in their step alone share the
+The spread of where variants end is an estimate of the error. Runs that differ in their step alone share the
 model of contacts, with its overlap and its softness, and the order in which contacts are solved: the errors
-that these make do not show, so some of the twins differ in them.
+that these make do not show, so some of the variants differ in them.
 """
 
 import copy
@@ -77,7 +77,7 @@ _NUMBERS: dict[str, tuple[str, ...]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Twin:
+class Variant:
     """One way to compute a scene differently.
 
     Attributes
@@ -86,7 +86,7 @@ class Twin:
         Its name, and how it differs.
     make : callable
         Takes the scene's document, which it leaves as it is, and a world made from it, ready to be stepped;
-        returns the twin's world, or ``None`` where a scene has no such twin.
+        returns the variant's world, or ``None`` where a scene has no such variant.
     mirrored : bool
         Whether its x coordinates and angles have the opposite sign.
     budget_s : float
@@ -104,7 +104,7 @@ class Twin:
 
 
 def with_ids(document: Document) -> Document:
-    """Return a scene in which every entity has an id, so that its twins can be compared."""
+    """Return a scene in which every entity has an id, so that its variants can be compared."""
     document = copy.deepcopy(document)
     taken = {entity["id"] for entity in document["entities"] if "id" in entity}
     for i, entity in enumerate(document["entities"], 1):
@@ -132,14 +132,14 @@ def refined(document: Document, world: World, factor: float) -> World:
         Factor of the length of steps; 1 for another tolerance alone.
     """
     tolerance = max(_LEAST_TOLERANCE, 0.1 * tolerance_for(world, world.schedule.forces))
-    twin = _with_settings(document, dt=world.simulation.dt / factor, tolerance=tolerance)
-    twin.synchronise()
+    variant = _with_settings(document, dt=world.simulation.dt / factor, tolerance=tolerance)
+    variant.synchronise()
     # Else auto would make the same steps within a shorter one.
-    own, others = _islands(world), _islands(twin)
+    own, others = _islands(world), _islands(variant)
     for part, other in zip(own, others, strict=True) if len(own) == len(others) else ():
         if part.plan.collisions != "exact":
             other.resume(*part.plan.kept)
-    return twin
+    return variant
 
 
 def _islands(world: World) -> list[Part]:
@@ -173,9 +173,9 @@ def _tightest(document: Document, world: World) -> World | None:
     smooth = all(plan.smooth for plan in world.plans)
     if not smooth or all(plan.integrator.chooses_steps for plan in world.plans):
         return None
-    twin = _with_settings(document, integrator=DOP853.name, tolerance=SimulationConfig().tolerance)
-    twin.synchronise()
-    return None if twin.plan.refused else twin
+    variant = _with_settings(document, integrator=DOP853.name, tolerance=SimulationConfig().tolerance)
+    variant.synchronise()
+    return None if variant.plan.refused else variant
 
 
 def _with_settings(document: Document, **changes: Any) -> World:
@@ -186,9 +186,9 @@ def _rigid(document: Document, world: World) -> World | None:
     """Return the scene with contacts that do not give way, where these can be had."""
     if not _gives_way(world):
         return None
-    twin = _with_settings(document, contacts="rigid", collisions="auto", integrator="auto", sleeping=False)
-    twin.synchronise()
-    return twin if any(plan.contacts == "rigid" for plan in twin.plans) else None
+    variant = _with_settings(document, contacts="rigid", collisions="auto", integrator="auto", sleeping=False)
+    variant.synchronise()
+    return variant if any(plan.contacts == "rigid" for plan in variant.plans) else None
 
 
 def _gives_way(world: World) -> bool:
@@ -256,9 +256,9 @@ def _without_past(document: Document) -> Document:
 
 def _nudge(document: Document, world: World) -> World | None:
     """Return the scene with places and velocities of bodies moved by one rounding, some up and some down."""
-    twin = copy.deepcopy(document)
+    variant = copy.deepcopy(document)
     ways = _alternating()
-    for entity in twin["entities"]:
+    for entity in variant["entities"]:
         if "Velocity" not in entity:
             continue
         turns = not entity.get("Mass", {}).get("fixed_rotation", False)
@@ -270,7 +270,7 @@ def _nudge(document: Document, world: World) -> World | None:
                 part[field] = (
                     [_moved(v, ways) for v in value] if isinstance(value, list) else _moved(value, ways)
                 )
-    return read_scene(twin)
+    return read_scene(variant)
 
 
 def _alternating() -> Iterator[float]:
@@ -291,7 +291,7 @@ def nudged(document: Document, seed: int) -> Document:
     These are positions, velocities and masses of bodies that can move, and gravity. Zeros stay: they are
     not rounded, and with it a symmetry that no rounding breaks.
     """
-    twin, order = copy.deepcopy(document), random.Random(seed)
+    variant, order = copy.deepcopy(document), random.Random(seed)
 
     def move(part: dict[str, Any], *names: str) -> None:
         for name in names:
@@ -301,12 +301,12 @@ def nudged(document: Document, seed: int) -> Document:
             elif value is not None:
                 part[name] = _next(value, order)
 
-    for entity in twin["entities"]:
+    for entity in variant["entities"]:
         if "Velocity" in entity:
             for kind, names in _NUMBERS.items():
                 move(entity.get(kind, {}), *names)
-    move(twin.get("physics", {}), "gravity", "G")
-    return twin
+    move(variant.get("physics", {}), "gravity", "G")
+    return variant
 
 
 def _next(number: float, order: random.Random) -> float:
@@ -318,19 +318,20 @@ def _awake(document: Document, world: World) -> World | None:
     return _with_settings(document, sleeping=False) if world.sleep.on else None
 
 
-TWINS: tuple[Twin, ...] = (
-    Twin("other steps", "steps 0.618 times as long, which end at other moments", _other,
+VARIANTS: tuple[Variant, ...] = (
+    Variant("other steps", "steps 0.618 times as long, which end at other moments", _other,
          differs_in_step=True),
-    Twin("half step", "half the step, and a tenth of the tolerance", _half, differs_in_step=True),
-    Twin("eighth of the step", "steps an eighth as long, where contacts are rigid", _fine,
+    Variant("half step", "half the step, and a tenth of the tolerance", _half, differs_in_step=True),
+    Variant("eighth of the step", "steps an eighth as long, where contacts are rigid", _fine,
          differs_in_step=True),
-    Twin("tightest", f"{DOP853.name} with the tightest tolerance", _tightest),
-    Twin("stiffer", "contacts four times as stiff, at half the step", _stiffer, differs_in_step=True),
-    Twin("rigid", "contacts that do not give way: their laws solved to rounding, events at their own times",
-         _rigid, budget_s=_RIGID_BUDGET_S),
-    Twin("mirrored", "left and right exchanged", _mirror, mirrored=True),
-    Twin("permuted", "entities in the opposite order", _permute),
-    Twin("nudged", "the start moved by one rounding", _nudge),
-    Twin("awake", "nothing falls asleep", _awake),
+    Variant("tightest", f"{DOP853.name} with the tightest tolerance", _tightest),
+    Variant("stiffer", "contacts four times as stiff, at half the step", _stiffer, differs_in_step=True),
+    Variant("rigid",
+            "contacts that do not give way: their laws solved to rounding, events at their own times",
+            _rigid, budget_s=_RIGID_BUDGET_S),
+    Variant("mirrored", "left and right exchanged", _mirror, mirrored=True),
+    Variant("permuted", "entities in the opposite order", _permute),
+    Variant("nudged", "the start moved by one rounding", _nudge),
+    Variant("awake", "nothing falls asleep", _awake),
 )  # fmt: skip
 """All of them. Another way to compute the same laws is added here, and nowhere else."""
