@@ -101,7 +101,12 @@ def test_files_that_cannot_be_read_are_refused(tmp_path: Path) -> None:
         return str(caught.value)
 
     assert line(tmp_path) == f"{tmp_path}: is a directory, not a scene file"
-    assert line(tmp_path / "none.json").startswith(f"{tmp_path / 'none.json'}: no such file")
+    missing = tmp_path / "pendulums" / "atwood.json"
+    assert line(missing) == f"{missing}: no such file"
+    missing.parent.mkdir()
+    (missing.parent / "atwoods.json").touch()
+    assert line(missing) == f'{missing}: no such file; did you mean "atwoods.json"?'
+    assert line("drop.step") == 'drop.step: no such file; did you mean "drop"?'
     assert line("pyramide").endswith('did you mean "pyramid"?')
     assert f"the built-in scenes are {', '.join(SCENES)}" in line("qqqq")
     assert "no such file" in line(Path("drop")), "a Path is never a built-in name"

@@ -82,10 +82,22 @@ def load_scene(
     except SceneError as error:
         if not isinstance(error.__cause__, FileNotFoundError):
             raise
-        likely = suggestion(path, SCENES) or f"; the built-in scenes are {', '.join(SCENES)}"
-        raise SceneError(f"{source}: no such file, and no built-in scene{likely}") from error.__cause__
+        raise SceneError(f"{source}: no such file{_likely(path)}") from error.__cause__
     with uncollected():
         return read_scene(parse_json(text, source), source)
+
+
+def _likely(path: str) -> str:
+    """Return the rest of the line that says that a file is not there: which it may have been meant to be."""
+    folder, name = os.path.split(path)
+    if not folder and not os.path.splitext(name)[1]:
+        built_in = suggestion(path, SCENES) or f"; the built-in scenes are {', '.join(SCENES)}"
+        return f", and no built-in scene{built_in}"
+    try:
+        beside = sorted(os.listdir(folder or "."))
+    except OSError:
+        beside = []
+    return suggestion(name, [*beside, *SCENES])
 
 
 def is_step(path: str | os.PathLike[str]) -> bool:
