@@ -103,7 +103,7 @@ def test_a_slow_step_is_reported_once_with_its_place_and_its_reason() -> None:
     assert watch.note(1, 0.5) == "" and not watch.warnings, "half a second is nothing to speak of"
     world.time, world.force_evaluations = 0.5, 40_000
     line = watch.note(2, 5.0)
-    assert line.startswith("slow: the step to t = 0.5 s took 2.5 s: forces change so fast that")
+    assert line.startswith("the step to t = 0.5 s took 2.5 s: forces change so fast that")
     assert "20000" in line.replace("2e+04", "20000")
     assert watch.note(1, 7.0) == "", "one line is enough"
     (advice,) = watch.warnings

@@ -12,6 +12,7 @@ from physicslab.cli import main
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene, save_scene
+from physicslab.languages.language import language
 from physicslab.prefabs import box, circle
 from physicslab.state.masses import Diverged
 from physicslab.systems.standard import standard_systems
@@ -187,6 +188,11 @@ def test_the_window_stays_open_on_the_last_good_state(boom: Path) -> None:
     assert "bob: Transform is no longer finite at t = " in desk.window.error
     assert "saved as boom-before-divergence.json" in desk.window.error
     assert bits(load_scene(boom / "boom-before-divergence.json")) == bits(desk.world)
+    german = language("de").reword(desk.window.error)
+    assert german.startswith("Angehalten: bob: Transform ist bei t = ")
+    assert german.endswith("R entfernt alles.")
+    assert "nicht mehr endlich; ein kleineres dt" in german
+    assert "zu sehen und als boom-before-divergence.json gespeichert" in german
     desk.key("space")
     desk.frames(5)
     assert desk.window.pace.paused and "saved before" in desk.window.error

@@ -1,5 +1,6 @@
 """How graphs look: their pictures, their places, and how many points are drawn."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ from desk import SETTLED, Desk, click, empty_world, sized, tap
 from plotting import ball_of, drawn_lines, graph_of, pause
 
 from physicslab.view.controls import dashboard_actions, saving
+from physicslab.view.controls.lesson_actions import choose_language
 from physicslab.view.window.record import line_to_show
 
 
@@ -35,6 +37,26 @@ def test_the_picture_of_a_graph_is_its_panel(desk: Desk, tmp_path: Path) -> None
     }
     assert desk.window.theme.body(ball) in colours
     assert "Saved" in desk.window.notice
+
+
+def test_ticks_have_the_decimal_mark_of_the_language(desk: Desk) -> None:
+    ball_of(desk)
+    tap(desk, "m")
+    desk.frames(4)
+    english = ticks(desk)
+    assert any("." in one for one in english) and not any("," in one for one in english)
+    desk.window.pace.paused = True
+    desk.frames(2)
+    english = ticks(desk)
+    choose_language(desk.world, desk.window, "de")
+    desk.frames(3)
+    assert ticks(desk) == [one.replace(".", ",") for one in english]
+    assert "Zeit [s]" in desk.ui.words
+
+
+def ticks(desk: Desk) -> list[str]:
+    """Return the numbers that stand at the axes of plots."""
+    return [one for one in desk.ui.words if re.fullmatch(r"-?\d+(?:[.,]\d+)?", one)]
 
 
 def test_a_full_disk_is_one_plain_sentence(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -14,6 +14,7 @@ from physicslab.contacts.report import count_near_pairs
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig, WindowConfig
 from physicslab.files.scene import load_scene
+from physicslab.languages.language import language
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.view.canvas.canvas import Align, Rect, TextStyle
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
@@ -305,6 +306,9 @@ def test_a_step_that_takes_long_is_told_with_its_reason(monkeypatch: pytest.Monk
     assert (
         desk.window.notice.startswith("Slow: the step to t = 0.0") and "much to compute" in desk.window.notice
     )
+    german = language("de").reword(desk.window.notice)
+    assert german.startswith("Langsam: der Schritt bis t = 0,0") and "es gibt viel zu rechnen" in german
+    assert "nahe Paare" in german and german.endswith("Abhilfe: weniger Körper oder Teilschritte")
 
 
 @pytest.mark.parametrize("size", [(1, 1), (60, 40), (200, 100), (320, 200)])

@@ -154,6 +154,8 @@ WRONG = [
     ("limit: 10 s", "seconds: 10 s", "must have seconds: TIME or until: CONDITION, one of both"),
     ("limit: 10 s", "limit: 12 m", "line 37: run fall: limit = \"12 m\": '12 m' is in m; this is in s"),
     ("limit: 10 s", "limit: -1", "line 37: run fall: limit = \"-1\": must be a time above 0 s"),
+    ("limit: 10 s", "limit: 1e9 s",
+     "line 37: run fall: limit = \"1e9 s\": 1e+09 s is too long: must be at most 1,000,000 steps"),
     ("graph: ball.y", "graph: max(ball.y", "'max(ball.y' is no number: a \")\" is missing"),
     ("graph: ball.y", "graph: ball.y)", "'ball.y)' is no number: a \"(\" is missing"),
     ("graph: ball.y", "graph: hight", "line 38: run fall: graph = \"hight\": 'hight' is unknown"),
@@ -161,6 +163,8 @@ WRONG = [
     ("measure: time\n", "", "line 41: compare compare_1: must have measure: EXPRESSION or along"),
     ("theory: sqrt(2 height/gravity)\n", "", "line 41: compare compare_1: theory is missing"),
     ("theory: sqrt(2 height/gravity)", "theory: sqrt(2 height/", "line 44: compare compare_1: theory = "),
+    ("measure: time", "unit: secs\nmeasure: time", "unit = \"secs\": 'secs' is no unit"),
+    ("measure: time", "unit: 0 s\nmeasure: time", "compare_1: unit = \"0 s\": '0 s' is no unit"),
     ("holds: always", "holds: sometimes", "line 45: compare compare_1: holds = "),
     ("tolerance: 1e-9", "tolerance: small", "line 46: compare compare_1: tolerance = "),
     ("case: height = 1 m", "case: ball.Mas.mass = 1", "line 47: compare compare_1: case = "),
@@ -238,6 +242,11 @@ def test_a_goal_is_reached_with_what_is_open(case: str, words: str) -> None:
         ("until: ball.y < 0", "until: ball.y < 0 s", "line 35: run fall: 'ball.y < 0 s': m and s cannot"),
         ("until: ball.y < 0", "until: ball.y > 9", "line 35: run fall: the run did not come to 'ball.y > 9'"),
         ("theory: sqrt(2 height/gravity)", "theory: height/gravity", "line 41: compare compare_1: "),
+        (
+            "measure: time",
+            "unit: cm\nmeasure: time",
+            "line 41: compare compare_1: 'cm': m and s cannot be compared",
+        ),
         ("holds: always", "holds: height > 2 m", "compare_1: 'height > 2 m' must hold in the case"),
         ("answer: ball.speed", "answer: ball.x", "line 55: check speed: 'ball.x' is in m; this is in m/s"),
         ("number: m/s", "curve: m", "line 55: check speed: 'ball.speed' is in m s^-1; this is in m"),
@@ -246,6 +255,19 @@ def test_a_goal_is_reached_with_what_is_open(case: str, words: str) -> None:
 def test_what_the_engine_cannot_check_is_refused_with_its_block(part: str, instead: str, words: str) -> None:
     with pytest.raises(LessonError, match=re.escape(words)):
         list(check_lesson(parse_lesson(LESSON.replace(part, instead, 1), "fall.md")))
+
+
+IN_MS = "unit: ms\nmeasure: time"
+
+
+def test_a_comparison_is_in_its_unit() -> None:
+    text = LESSON.replace("tolerance: 1e-9", "tolerance: 1 ms")
+    both = (parse_lesson(text.replace("measure: time", one), "fall.md") for one in ("measure: time", IN_MS))
+    rows = [next(row for row in check_lesson(one) if row.block == "compare_1") for one in both]
+    assert [row.unit for row in rows] == ["s", "ms"] and all(row.passed and row.absolute for row in rows)
+    for name in ("measured", "theory", "gap", "tolerance"):
+        first, second = (getattr(row, name) for row in rows)
+        assert second == pytest.approx(1000.0 * first, rel=1e-12), name
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pygame
@@ -14,7 +15,7 @@ from physicslab.files.scene import load_scene
 from physicslab.lessons.answers import grade, read_answers
 from physicslab.lessons.catalogue import find_lesson
 from physicslab.prefabs import circle
-from physicslab.view.controls.lesson_actions import open_lesson
+from physicslab.view.controls.lesson_actions import choose_language, open_lesson
 from physicslab.view.window.lesson import OpenLesson
 
 FALL = """---
@@ -323,3 +324,12 @@ def test_a_lesson_is_read_in_another_language_and_keeps_its_answers(desk: Desk) 
     again = desk.window.lesson
     assert again is not None and again is not lesson and again.given == lesson.given and not again.told
     assert "Wovon hängt die Schwingungsdauer eines Pendels ab?" in desk.ui.words
+
+
+def test_graphs_of_a_lesson_have_decimal_commas_in_german(desk: Desk) -> None:
+    choose_language(desk.world, desk.window, "de")
+    lesson = predicted(desk)
+    run(desk)
+    assert lesson.trial is not None and lesson.trial.ended
+    numbers = [one for one in desk.ui.words if re.fullmatch(r"-?\d+[.,]\d+", one)]
+    assert numbers and not [one for one in numbers if "." in one]

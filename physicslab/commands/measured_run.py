@@ -147,8 +147,10 @@ class MeasuredRun:
             record.interpreted_steps += made
             record.interpreted_s += self._tiers.interpreted_s - interpreted
             taken = 0.0  # a body that is slow in Python need not be slow compiled
-        for line in (self._watch.note(made, taken), self._watch.note_impacts(), self._watch.note_breaks()):
-            if line and sys.stderr is not None:
+        slow = self._watch.note(made, taken)
+        told = f"slow: {slow}" if slow else "", self._watch.note_impacts(), self._watch.note_breaks()
+        for line in filter(None, told):
+            if sys.stderr is not None:
                 progress.clear()
                 print(f"physicslab: {self._label}: {printable(line)}", file=sys.stderr, flush=True)
         record.steps = done

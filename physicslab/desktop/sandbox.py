@@ -13,6 +13,7 @@ from physicslab.desktop.autosave import Autosave
 from physicslab.diagnostics.step_watch import StepWatch
 from physicslab.files.scene import SceneError, save_last_good
 from physicslab.history import Changes, History, RemoveComponent
+from physicslab.languages.sentence import Sentence
 from physicslab.state.attached import INSTRUMENTS
 from physicslab.state.masses import Diverged
 from physicslab.systems.frame.hud import HudSystem
@@ -130,7 +131,8 @@ class Sandbox:
         window.selection.clear()
         window.scenes.naming, window.picking, window.band, window.measuring = None, None, None, Measuring()
         window.handles, window.pins = Handles(), Pins()
-        if not is_again:  # what was found of another scene is not for this one
+        if not is_again:  # what was found of another scene is not for this one, nor is its speed
+            window.pace.return_to_life()
             window.error_study.abandon()
             window.error_study.shown = False
         window.impacts.clear()
@@ -272,11 +274,12 @@ class Sandbox:
                     break
         except Diverged as error:
             pace.halt()
-            self.window.error = f"Stopped: {error}. {self._rescue()} R clears all."
+            why = Sentence("Stopped: {why}. {rescue} R clears all.", why=error.args[0], rescue=self._rescue())
+            self.window.error = why
         else:
             pace.done(made, dt)
             if made and (slow := self._watch.note(made, time.thread_time() - worked)):
-                self.window.notify(slow[:1].upper() + slow[1:], 10.0, failed=True)
+                self.window.notify(Sentence("Slow: {what}", what=slow), 10.0, failed=True)
             if broken := self._watch.note_breaks():
                 self.window.notify(broken, 6.0)
         microscope.follow(pace, self.world.time)
@@ -312,10 +315,10 @@ class Sandbox:
     def _rescue(self) -> str:
         """Save the state before the step that failed, once, and return what to say of it."""
         if self._rescued == (self.world, self.world.time):
-            return "The last good state is shown; it was saved before."
+            return Sentence("The last good state is shown; it was saved before.")
         try:
             path = save_last_good(self.world, self.world.name, Path.cwd())
         except (OSError, SceneError) as error:
-            return f"The last good state is shown; it could not be saved: {error}."
+            return Sentence("The last good state is shown; it could not be saved: {why}.", why=error)
         self._rescued = self.world, self.world.time
-        return f"The last good state is shown, and saved as {path.name}."
+        return Sentence("The last good state is shown, and saved as {file}.", file=path.name)

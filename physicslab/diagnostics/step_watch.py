@@ -66,8 +66,9 @@ class StepWatch:
         first, self._worst = self._slow is None, each
         why, setting, figures = self._reason(impacts, evaluations)
         self._slow = ModelWarning(None, sentence("step_takes_long", why=why), each, "s", _SLOW_S, setting)
-        line = f"slow: the step to t = {world.time:.9g} s took {each:.3g} s: {why} ({figures})"
-        return f"{line}; {setting} would help" if first else ""
+        time = f"{world.time:.9g}"
+        line = sentence("slow_step", time=time, seconds=f"{each:.3g}", why=why, figures=figures)
+        return sentence("would_help", what=line, setting=setting) if first else ""
 
     def note_breaks(self) -> str:
         """Return which joints broke since the last call; empty if none did."""
@@ -109,7 +110,7 @@ class StepWatch:
         what = sentence("storm")
         setting = 'simulation.collisions = "step"'
         self._storm = ModelWarning.about(world, struck, what, float(count), "", float(STORM_LIMIT), setting)
-        return f"at t = {start:.9g} s: {self._storm}" if first else ""
+        return sentence("at_time", time=f"{start:.9g}", what=self._storm.words) if first else ""
 
     def _reason(self, impacts: float, evaluations: float) -> tuple[str, str, str]:
         """Return in words what takes the time, what would help, and the figures."""
@@ -117,14 +118,16 @@ class StepWatch:
         # That of the part which has evaluated its forces most often.
         method = max(world.parts, key=lambda part: part.force_evaluations).plan.integrator
         if impacts >= _STORM and any(plan.collisions == "exact" for plan in plans):
-            return sentence("impact_after_impact"), 'simulation.collisions = "step"', f"{impacts:.3g} impacts"
+            figures = sentence("impacts_made", count=f"{impacts:.3g}")
+            return sentence("impact_after_impact"), 'simulation.collisions = "step"', figures
         if evaluations >= _EVALUATIONS:
             setting = sentence("shorter_dt") if not method.chooses_steps else sentence("larger_tolerance")
-            figures = f"{evaluations:.3g} force evaluations by {method.name}"
+            figures = sentence("evaluations_by", count=f"{evaluations:.3g}", method=method.name)
             return sentence("forces_change_fast"), setting, figures
         if any(plan.contacts == "rigid" and plan.collisions == "step" for plan in plans):
-            why = sentence("event_to_event")
-            return why, 'simulation.contacts = "soft"', f"{evaluations:.3g} force evaluations"
+            figures = sentence("evaluations", count=f"{evaluations:.3g}")
+            return sentence("event_to_event"), 'simulation.contacts = "soft"', figures
         bodies = len(world.entity_index) - 1
-        figures = f"{bodies} entities, {count_near_pairs(world)} near pairs, {world.substeps} substeps"
+        pairs = count_near_pairs(world)
+        figures = sentence("size_of_step", bodies=bodies, pairs=pairs, substeps=world.substeps)
         return sentence("much_to_compute"), sentence("fewer"), figures

@@ -140,6 +140,23 @@ def in_unit(found: Quantity, unit: str, text: str) -> float:
     return value
 
 
+def factor_of(unit: str) -> float:
+    """Return how many SI units a unit is; ``"1"`` is that of a pure number.
+
+    Raises
+    ------
+    InvalidText
+        If it is no unit, or not above zero.
+
+    >>> factor_of("cm"), factor_of("1")
+    (0.01, 1.0)
+    """
+    factor = Expression(unit).value().value
+    if not factor > 0.0:
+        raise InvalidText(f"'{_shown(unit)}' is no unit: must be above zero")
+    return factor
+
+
 class Scope(Protocol):
     """Names that an expression may refer to beside units, constants and functions of numbers."""
 

@@ -188,6 +188,28 @@ SENTENCES = {
     "shorter_step": "a shorter step",
     "storm": "is part of a storm of impacts: so many follow each other within a step",
     "step_takes_long": "a step takes long: {why}",
+    "slow_step": "the step to t = {time} s took {seconds} s: {why} ({figures})",
+    "impacts_made": "{count} impacts",
+    "evaluations": "{count} force evaluations",
+    "evaluations_by": "{count} force evaluations by {method}",
+    "size_of_step": "{bodies} entities, {pairs} near pairs, {substeps} substeps",
+    "at_time": "at t = {time} s: {what}",
+    "after_time": "{what} (after t = {time} s)",
+    "not_finite": "{body}: {component} is no longer finite at t = {time} s; {help}",
+    "too_far": "{body}: {component} is beyond {limit} m at t = {time} s; {help}",
+    "smaller_steps_may_help": "a smaller dt or more substeps may help",
+    "velocity_changes_fast": "{body}: Velocity changes too fast: {why}",
+    "forces_not_finite": "forces are no longer finite at t = {time} s",
+    "evaluations_exhausted": (
+        "{most} force evaluations do not make a step of {step} s at a tolerance of {tolerance}; a larger "
+        "tolerance, a smaller dt or the integrator implicit_midpoint may help"
+    ),
+    "no_step_short_enough": (
+        "no step is short enough for a tolerance of {tolerance}: a force changes at once, as where "
+        "planets meet (softening > 0 keeps it finite), or a spring has no length or is too stiff"
+    ),
+    "implicit_unsolved": "no part of the implicit step of {step} s has a solution; more substeps may help",
+    "forces_without_limit": "joints hold bodies by forces that grow without limit",
     "event_to_event": "rigid contacts go from one event to the next",
     "much_to_compute": "there is much to compute",
     "fewer": "fewer bodies or substeps",

@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.ecs.sentences import sentence
 from physicslab.integrators.integrator import Integrator, StepTooSmall
 from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853, dop853_samples
 from physicslab.ode.system import OdeSystem
@@ -33,18 +34,16 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         steps * h, tolerance, state.simulation.dt, most, ode.free_bodies, ode.steepness, _floor(state, ode),
     )  # fmt: skip
     if made == NOT_FINITE:
-        raise StepTooSmall(f"forces are no longer finite at t = {state.time:.9g} s")
+        raise StepTooSmall(sentence("forces_not_finite", time=f"{state.time:.9g}"))
     if made == EXHAUSTED:
         raise StepTooSmall(
-            f"{most:,} force evaluations do not make a step of {state.simulation.dt:g} s "
-            f"at a tolerance of "
-            f"{tolerance:g}; a larger tolerance, a smaller dt or the integrator implicit_midpoint may help"
-        )
+            sentence(
+                "evaluations_exhausted",
+                most=f"{most:,}", step=f"{state.simulation.dt:g}", tolerance=f"{tolerance:g}",
+            )
+        )  # fmt: skip
     if made < 0:
-        raise StepTooSmall(
-            f"no step is short enough for a tolerance of {tolerance:g}: a force changes at once, as where "
-            f"planets meet (softening > 0 keeps it finite), or a spring has no length or is too stiff"
-        )
+        raise StepTooSmall(sentence("no_step_short_enough", tolerance=f"{tolerance:g}"))
     return made
 
 

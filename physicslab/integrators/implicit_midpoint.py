@@ -10,6 +10,7 @@ space are kept only where the force is linear. All other forces are taken at the
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.ecs.sentences import sentence
 from physicslab.integrators.integrator import Integrator, StepTooSmall
 from physicslab.kernels.ode.implicit import implicit_midpoint
 from physicslab.ode.system import OdeSystem
@@ -30,9 +31,7 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         ode.places, order, band, h, steps,
     )  # fmt: skip
     if made < 0:
-        raise StepTooSmall(
-            f"no part of the implicit step of {h:.3g} s has a solution; more substeps may help"
-        )
+        raise StepTooSmall(sentence("implicit_unsolved", step=f"{h:.3g}"))
     return made
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.ecs.sentences import sentence
 from physicslab.integrators.along_joints import follows_joints, split_along_joints
 from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.force_calls import add_forces
@@ -46,7 +47,7 @@ class Splitting:
             state.compile((dop853, add_forces))
             made = split_along_joints(ode, self.drifts, self.kicks, h, steps)
             if made < 0:
-                raise StepTooSmall("joints hold bodies by forces that grow without limit")
+                raise StepTooSmall(sentence("forces_without_limit"))
             return made
         q_low, v_low = ode.remainders(state)
         return split(

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from physicslab.ecs.quantity_text import Expression, InvalidText, evaluate
+from physicslab.ecs.quantity_text import InvalidText, evaluate, factor_of
 from physicslab.ecs.text import printable, suggestion
 from physicslab.files import checks
 from physicslab.files.checks import SceneError
@@ -228,17 +228,13 @@ def _expected(runs: LessonRuns, question: Question) -> str:
         case "goal":
             solution = formula(own, question.solution.text) if question.solution else ""
             return own.say("for example {values}", values=solution)
-    times, values, unit = runs.figures(question.run).record.times, runs.curve(question), _unit(question)
+    times, values = runs.figures(question.run).record.times, runs.curve(question)
+    unit = factor_of(question.unit)
     at = [round(i * (len(values) - 1) / _POINTS) for i in range(_POINTS + 1)]
     shown = (
         f"{measure(own, times[i], 's', 3)}: {measure(own, values[i] / unit, question.unit, 3)}" for i in at
     )
     return "; ".join(shown)
-
-
-def _unit(question: Question) -> float:
-    """Return what one of a question's unit is [SI]."""
-    return Expression(question.unit).value().value
 
 
 def _grade_choice(runs: LessonRuns, question: Question, value: int, blank: Graded) -> Graded:
@@ -292,7 +288,8 @@ def _refuse_closed(runs: LessonRuns, value: Mapping[str, str]) -> None:
 
 def _grade_curve(runs: LessonRuns, question: Question, value: object, blank: Graded) -> Graded:
     """Grade a drawn curve by its distance from what is measured, and from the mistakes that are foreseen."""
-    points, unit, measured = _points(value, question.name), _unit(question), runs.curve(question)
+    points, unit = _points(value, question.name), factor_of(question.unit)
+    measured = runs.curve(question)
     times = runs.figures(question.run).record.times[: len(measured)]
     drawn = [unit * _drawn(points, time) for time in times]
     gap, own = curve_gap(drawn, measured), language(runs.lesson.language)

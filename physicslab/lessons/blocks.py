@@ -20,7 +20,7 @@ KEYS: dict[str, tuple[str, ...]] = {
         "show", "when",
     ),
     "run": ("seconds", "until", "limit", "graph", "case"),
-    "compare": ("quantity", "measure", "along", "theory", "holds", "tolerance", "case", "fails"),
+    "compare": ("quantity", "unit", "measure", "along", "theory", "holds", "tolerance", "case", "fails"),
     "explain": ("question", "answer"),
     "check": (
         "question", "choice", "number", "curve", "goal", "solution", "answer", "tolerance", "mistake",

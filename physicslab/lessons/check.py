@@ -6,7 +6,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from physicslab.diagnostics.figures import Figures
-from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity, in_unit, in_words, same_dimension
+from physicslab.ecs.quantity_text import (
+    Expression,
+    InvalidText,
+    Quantity,
+    factor_of,
+    in_unit,
+    in_words,
+    same_dimension,
+)  # fmt: skip
 from physicslab.files.checks import SceneError
 from physicslab.languages.language import language
 from physicslab.lessons.blocks import LessonError
@@ -142,13 +150,17 @@ def row_of(lesson: Lesson, compare: Compare, case: Case, figures: Figures) -> Ro
     measured, theory, gap = gap_of(compare, figures)
     tolerance = compare.tolerance.value(figures)
     absolute, holds = _is_absolute(tolerance, theory), compare.holds.holds(figures)
-    if not absolute:
-        gap = _share(gap, theory.value)
+    unit, factor = compare.unit or si_unit(theory), 1.0
+    if compare.unit:
+        same_dimension(Expression(compare.unit).value(), theory, compare.unit)
+        factor = factor_of(compare.unit)
+    gap = gap / factor if absolute else _share(gap, theory.value)
+    most = tolerance.value / factor if absolute else tolerance.value
     return Row(
         lesson.name, compare.name, compare.line, compare.quantity,
-        case_words(language(lesson.language), with_run(compare.run, case)), si_unit(theory),
-        measured.value, theory.value, gap, tolerance.value, absolute, holds,
-        (gap <= tolerance.value) == holds,
+        case_words(language(lesson.language), with_run(compare.run, case)), unit,
+        measured.value / factor, theory.value / factor, gap, most, absolute, holds,
+        (gap <= most) == holds,
     )  # fmt: skip
 
 

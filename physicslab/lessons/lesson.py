@@ -131,8 +131,8 @@ class Compare:
 
     Attributes
     ----------
-    quantity : str
-        Its name.
+    quantity, unit : str
+        Its name; the unit in which it is shown, empty for SI units.
     measured, theory : Expression
         Over the figures of the run, and over parameters.
     along : bool
@@ -148,6 +148,7 @@ class Compare:
     name: str
     line: int
     quantity: str
+    unit: str
     measured: Expression
     theory: Expression
     along: bool

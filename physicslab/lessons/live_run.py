@@ -8,6 +8,8 @@ from physicslab.lessons.lesson import Run
 from physicslab.lessons.setup import AS_IT_IS, Case, Setup
 from physicslab.world import World
 
+MOST_STEPS = 1_000_000
+"""Steps that a run of a lesson may take: a minute or two of computing; 4.6 hours at dt = 1/60 s."""
 _STEP_SUM_ROUNDING = 1e-6
 """Share of a step by which a sum of steps is rounded at most."""
 
@@ -34,6 +36,7 @@ class LiveRun:
         self.record.add()
         self._until, self._after = run.until, 0
         self.limit = (run.seconds or run.limit).value(self._parameters).value
+        refuse_long(self.limit, self.world)
 
     @property
     def figures(self) -> Figures:
@@ -60,6 +63,20 @@ class LiveRun:
             return False
         self.record.end = self.figures.moment(self._until.margin)
         return True
+
+
+def refuse_long(limit: float, world: World) -> None:
+    """Refuse a run of so long a time [s] that it needs more steps than a lesson may take.
+
+    Raises
+    ------
+    SceneError
+        If it does.
+    """
+    dt = world.simulation.dt
+    if limit > MOST_STEPS * dt:
+        longest = f"{MOST_STEPS:,} steps of {dt:.6g} s, {MOST_STEPS * dt:.6g} s"
+        raise SceneError(f"{limit:g} s is too long: must be at most {longest}")
 
 
 def record_run(

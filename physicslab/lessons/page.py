@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from physicslab.diagnostics.figures import Figures, quantity_of
-from physicslab.ecs.quantity_text import Expression, InvalidText
+from physicslab.ecs.quantity_text import Expression, InvalidText, factor_of
 from physicslab.export.packing import pack
 from physicslab.export.page import fill_page, run_document
 from physicslab.export.recording import NotShown, RunRecorder
@@ -218,7 +218,7 @@ class _Page:
         setup, ends = lesson.setup, lesson.setup.opened[name]
         found = _UNIT.fullmatch(ends[1])
         unit = (found[1] if found else "") or "1"
-        factor = 1.0 if unit == "1" else Expression(unit).value().value
+        factor = factor_of(unit)
         low, high = (setup.quantity(name, end) / factor for end in ends)
         space = np.geomspace if low > 0.0 and high / low > _WIDE else np.linspace
         parameter = setup.values(run.case).named(name)
@@ -384,7 +384,7 @@ class _Page:
         for one in self.lesson.questions("predict"):
             same = one.run and one.run.line == compare.run.line and one.answer
             if same and one.form == "number" and one.answer and one.answer.text == compare.measured.text:
-                return {"name": one.name, "factor": Expression(one.unit).value().value}
+                return {"name": one.name, "factor": factor_of(one.unit) / factor_of(compare.unit or "1")}
         return None
 
     def _tell(self, name: str, kind: str, part: Question, runs: LessonRuns) -> None:
@@ -409,7 +409,7 @@ class _Page:
                 "graph": [one.text for one, _ in part.run.graphs].index(part.answer.text)
                 if part.run and part.answer and part.answer.text in [one.text for one, _ in part.run.graphs]
                 else None,
-                "factor": Expression(part.unit).value().value,
+                "factor": factor_of(part.unit),
             }  # fmt: skip
         elif part.form == "goal" and part.run and part.goal and part.solution:
             names = [one for one, _ in part.solution.values if one in runs.lesson.setup.opened][:2]
@@ -437,7 +437,7 @@ class _Page:
         return told
 
     def _curve(self, part: Question, runs: LessonRuns, reply: Reply | None = None) -> list[float]:
-        series, unit = runs.curve(part, reply), Expression(part.unit).value().value
+        series, unit = runs.curve(part, reply), factor_of(part.unit)
         return [series[n] / unit for n in self._places(len(series))]
 
     @staticmethod

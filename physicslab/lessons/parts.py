@@ -7,9 +7,10 @@ from dataclasses import replace
 
 from physicslab.diagnostics.figures import FUNCTIONS, quantity_of
 from physicslab.ecs.conditions import Condition
-from physicslab.ecs.quantity_text import Expression, InvalidText, in_unit
+from physicslab.ecs.quantity_text import Expression, InvalidText, factor_of, in_unit
 from physicslab.lessons.blocks import Block, Entry
 from physicslab.lessons.lesson import Compare, Explain, Question, Recall, Reply, Run
+from physicslab.lessons.live_run import refuse_long
 from physicslab.lessons.setup import AS_IT_IS, Case, Setup
 
 CITED = re.compile(r"\[([a-z]+[0-9]{4}[a-z]?)\]")
@@ -90,8 +91,12 @@ class PartMaker:
             why = "measure: EXPRESSION or along: EXPRESSION, one of both" if run else "a run before it"
             raise block.error(f"must have {why}")
         cases = [self._case(block, entry) for entry in block.all("case")]
+        unit = block.find("unit")
+        if unit:
+            block.read(unit, factor_of)
         return Compare(
             block.name, block.line, block.text("quantity", "what is compared, in words"),
+            unit.value if unit else "",
             self._expression(block, measure or block.one("along", "")),
             self._expression(block, block.one("theory", "an expression")),
             along is not None,
@@ -138,7 +143,7 @@ class PartMaker:
             goal = self._condition(block, block.one("goal", "a condition"))
             return replace(made, goal=goal, solution=self._open_case(block, solution))
         unit = block.one(form, 'a unit, as "m/s", or 1')
-        block.read(unit, lambda text: Expression(text).value())
+        block.read(unit, factor_of)
         answer = self._expression(block, block.one("answer", "an expression of the right answer"))
         share = block.one("tolerance", "a share, as 5 %")
         tolerance = block.read(share, lambda text: Expression(text).value())
@@ -201,6 +206,7 @@ class PartMaker:
         time = block.read(entry, lambda text: in_unit(found.value(self._setup.values()), "s", text))
         if time <= 0.0:
             raise block.refusal(entry, "must be a time above 0 s")
+        block.read(entry, lambda _: refuse_long(time, self._setup.world()))
         return found
 
     def _condition(self, block: Block, entry: Entry) -> Condition:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from physicslab.components import Drag, Held, Mass, Material, Medium, Shape, Spring, Transform, Velocity
 from physicslab.components.shape import CHAIN, STAYS, kind_of
 from physicslab.ecs.component import InvalidValue
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels import direct_entry, motion, ranges
 from physicslab.kernels.solver import impulse
 from physicslab.state.shapes import REGISTER, sizes_in, with_names
@@ -151,8 +152,10 @@ def check_finite(state: State, time: float) -> None:
             finite = np.isfinite(table[vectors]).all(axis=1) & np.isfinite(table[numbers])
             lost = ~(finite & (np.abs(table[vectors]) <= limit).all(axis=1))
             row = int(next(iter(np.flatnonzero(lost & (state.bodies.inverse_mass > 0.0))), row))
-            what = f"is beyond {limit:g} m" if finite[row] else "is no longer finite"
             raise Diverged(
-                f"{state.label_of_row(row)}: {table.component.__name__} {what} at "
-                f"t = {time:.9g} s; a smaller dt or more substeps may help"
-            )
+                sentence(
+                    "too_far" if finite[row] else "not_finite",
+                    body=state.label_of_row(row), component=table.component.__name__, limit=f"{limit:g}",
+                    time=f"{time:.9g}", help=sentence("smaller_steps_may_help"),
+                )
+            )  # fmt: skip

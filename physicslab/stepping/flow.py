@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from physicslab.ecs.sentences import sentence
 from physicslab.integrators import StepTooSmall
 from physicslab.ode.system import OdeSystem, steady_turn
 from physicslab.state.masses import Diverged, check_finite
@@ -129,8 +130,9 @@ class Flow:
         except StepTooSmall as error:
             if (ode.undo(state) or self._joined) and state.simulation.integrator == "auto":
                 raise NotSmooth(str(error)) from error
-            what = f"{fastest_body(state, self._schedule.forces)}: Velocity changes too fast: {error}"
-            raise Diverged(f"{what} (after t = {state.time:.9g} s)") from error
+            body = fastest_body(state, self._schedule.forces)
+            what = sentence("velocity_changes_fast", body=body, why=error.args[0])
+            raise Diverged(sentence("after_time", what=what, time=f"{state.time:.9g}")) from error
         ode.scatter(state, h * steps)
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - start)
         for system in ode.forces:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
+from physicslab.ecs.sentences import sentence
 from physicslab.integrators import Integrator, StepTooSmall
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
@@ -159,7 +160,8 @@ class SplitForces:
         try:
             made = method.flow(state, ode, h / steps, steps)
         except StepTooSmall as error:
-            what = f"{fastest_body(state, self._ode.forces)}: Velocity changes too fast: {error}"
-            raise Diverged(f"{what} (after t = {state.time:.9g} s)") from error
+            body = fastest_body(state, self._ode.forces)
+            what = sentence("velocity_changes_fast", body=body, why=error.args[0])
+            raise Diverged(sentence("after_time", what=what, time=f"{state.time:.9g}")) from error
         ode.scatter(state, h)
         return made

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from physicslab.history import SetSimulation
 from physicslab.view.canvas.quantities import round_quantity
 from physicslab.view.controls import file_actions, saving
+from physicslab.view.toolkit.axes import finish_axes
 from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lab_process import ErrorStudy, Sample
@@ -104,25 +105,28 @@ def _build_plot(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, fl
     if not implot.begin_plot("##error", ImVec2(*size), flags):
         return
     series = _series(study)
-    implot.setup_axes("processor time [ms]", "largest error [m]")
+    across, along = ui.said("processor time [ms]"), ui.said("largest error [m]")
+    implot.setup_axes(across, along)
+    ui.words += across, along
     implot.setup_axis_scale(implot.ImAxis_.x1, implot.Scale_.log10)
     implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
     costs = np.concatenate([line[1] for line in series])
     errors = np.concatenate([line[2] for line in series])
     implot.setup_axes_limits(*_limits(costs), *_limits(errors))
     implot.setup_legend(_emptiest_corner(np.log(costs), np.log(errors)))
+    ui.words += finish_axes(ui.language)
     for n, (name, times, distances) in enumerate(series):
         spec = implot.Spec()
         spec.marker, spec.marker_size = n % implot.Marker_.count, 5.0
         spec.line_color = spec.marker_fill_color = spec.marker_line_color = as_vector(
             ui.theme.bodies[n % len(ui.theme.bodies)]
         )
-        implot.plot_line(name, times, distances, spec)
+        implot.plot_line(ui.said(name), times, distances, spec)
         ui.words.append(name)
     if study.rounding > 0.0:
         spec = implot.Spec()
         spec.flags, spec.line_color = implot.InfLinesFlags_.horizontal, as_vector(ui.theme.faint)
-        implot.plot_inf_lines("one rounding at the start", np.array([study.rounding]), spec)
+        implot.plot_inf_lines(ui.said("one rounding at the start"), np.array([study.rounding]), spec)
     _build_marks(ui, study, window)
     implot.end_plot()
 

@@ -12,6 +12,7 @@ from physicslab.diagnostics.scales import scales_of
 from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import ROUNDING, written_unit
 from physicslab.view.controls import dashboard_actions
+from physicslab.view.toolkit.axes import finish_axes
 from physicslab.view.toolkit.style import as_vector, packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.toolkit.windows import widget_label
@@ -82,7 +83,7 @@ class GraphPlot:
             mine = [key for key in keys if QUANTITIES[key[1]].unit in own]
             self._set_up(ui, world, axis, _heading(ui, mine, height), graph, window, mine, follows=follows)
             axis_of |= dict.fromkeys(mine, axis)
-        implot.setup_finish()
+        ui.words += finish_axes(ui.language)
         return axis_of
 
     def _set_up(

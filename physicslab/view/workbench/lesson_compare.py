@@ -4,7 +4,7 @@ import math
 
 from imgui_bundle import imgui
 
-from physicslab.ecs.quantity_text import InvalidText, evaluate
+from physicslab.ecs.quantity_text import InvalidText, evaluate, factor_of
 from physicslab.files.checks import SceneError
 from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
@@ -17,7 +17,7 @@ from physicslab.view.canvas.quantities import percentage, quantity, round_quanti
 from physicslab.view.controls import lesson_actions
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lesson import OpenLesson
-from physicslab.view.workbench.lesson_plots import factor_of, plot_compared
+from physicslab.view.workbench.lesson_plots import plot_compared
 
 RIGHT, WRONG, RUN = "\uf00c", "\uf00d", "\uf04b"
 """Icons of a right answer, a wrong one, and of a run."""
@@ -107,11 +107,12 @@ def _build_row(
 
 
 def _predicted(lesson: OpenLesson, part: Compare) -> float | None:
-    """Return the number that was predicted of what is compared [SI], if there is one."""
+    """Return the number that was predicted of what is compared, in the unit of that, if there is one."""
     for one in lesson.predictions(part.run):
         same = one.answer is not None and one.answer.text == part.measured.text
         if one.form == "number" and same and one.name in lesson.given:
-            return factor_of(one.unit) * evaluate(str(lesson.given[one.name]["value"]), one.unit)
+            given = evaluate(str(lesson.given[one.name]["value"]), one.unit)
+            return factor_of(one.unit) / factor_of(part.unit or "1") * given
     return None
 
 

@@ -4,7 +4,7 @@ from functools import partial
 
 from imgui_bundle import ImVec2, imgui
 
-from physicslab.ecs.quantity_text import InvalidText, evaluate
+from physicslab.ecs.quantity_text import InvalidText, evaluate, factor_of
 from physicslab.ecs.text import printable
 from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
@@ -17,7 +17,7 @@ from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lesson import OpenLesson
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.lesson_compare import RIGHT, RUN, WRONG, Rows, build_compare
-from physicslab.view.workbench.lesson_plots import CurveField, factor_of, plot_run
+from physicslab.view.workbench.lesson_plots import CurveField, plot_run
 
 _SHARE, _LEAST = 0.44, 22.0
 """How much of the world's room it takes, and its least width in heights of the text."""

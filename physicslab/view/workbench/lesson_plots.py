@@ -8,12 +8,13 @@ from imgui_bundle import ImVec2, imgui, implot
 from numpy.typing import NDArray
 
 from physicslab.diagnostics.figures import quantity_of
-from physicslab.ecs.quantity_text import Expression, InvalidText, evaluate
+from physicslab.ecs.quantity_text import Expression, InvalidText, evaluate, factor_of
 from physicslab.languages.sentence import Sentence, proper
 from physicslab.lessons.check import Row, si_unit
 from physicslab.lessons.lesson import Compare, Question
 from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import rounded_up, written_unit
+from physicslab.view.toolkit.axes import finish_axes
 from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lesson import Curve, OpenLesson, Trial
@@ -42,15 +43,6 @@ _LOCK = implot.AxisFlags_.lock
 PREDICTED, THEORY, MEASURED = "predicted", "theory", "measured"
 
 
-def factor_of(unit: str) -> float:
-    """Return how many SI units a unit is.
-
-    >>> factor_of("cm"), factor_of("1")
-    (0.01, 1.0)
-    """
-    return 1.0 if unit == "1" else Expression(unit).value().value
-
-
 def plot_run(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
     """Build the graphs of a run, with what was predicted of them and what theory says."""
     for n, curve in enumerate(trial.curves):
@@ -73,6 +65,7 @@ def _has_more(lesson: OpenLesson, trial: Trial, curve: Curve) -> bool:
 
 
 def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve) -> None:
+    ui.words += finish_axes(ui.language)
     x, y = np.array(curve.x), np.array(curve.y)
     theme = ui.theme
     if curve.against.text == "time":
@@ -110,6 +103,7 @@ def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predic
     implot.push_style_var(implot.StyleVar_.fit_padding, _AROUND)
     numbers = np.array([float(n) for n, _ in rows])
     implot.setup_axis_ticks(implot.ImAxis_.x1, [float(n) for n, _ in rows], [f"{n}" for n, _ in rows], False)
+    ui.words += finish_axes(ui.language)
     theory = np.array([row.theory for _, row in rows])
     measured = np.array([row.measured for _, row in rows])
     gap = _look(ui, ui.theme.error)
@@ -187,7 +181,7 @@ class CurveField:
             across, along = _with_unit(Sentence("time"), "s"), _with_unit(name, part.unit)
             implot.setup_axes(ui.said(across), ui.said(along), _LOCK, _LOCK)
             implot.setup_axes_limits(0.0, end, low, high, implot.Cond_.always)
-            implot.setup_finish()
+            ui.words += finish_axes(ui.language)
             place, size = implot.get_plot_pos(), implot.get_plot_size()
             ui.places.setdefault(
                 f"Draw {part.name}", (round(place.x), round(place.y), round(size.x), round(size.y))
