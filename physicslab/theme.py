@@ -18,8 +18,10 @@ FLUID = 0.5
 """Share of its colour in the rim of a medium: bodies within it are to stand out."""
 RIM = 2.0
 """Width of the rims of bodies [px]."""
-FLOOR, WALL = 40.0, 7.0
-"""Thickness of the ground and of the walls at the end of the world [px]."""
+COORDINATE = 0.5
+"""Share of the colour of text in the numbers at the edges of the world."""
+WALL = 7.0
+"""Thickness of the walls at the end of the world [px]."""
 POINT_RADIUS = 5.0
 """How large a body without a Shape appears [px]."""
 PLANET, LEAST_PLANET = 14.0, 3.5
@@ -169,6 +171,11 @@ class Theme:
     def fluid(self) -> Colour:
         """The rim of a medium."""
         return mixed(self.background, self.bodies[0], FLUID)
+
+    @property
+    def coordinate(self) -> Colour:
+        """The numbers at the edges of the world, over sky and over ground."""
+        return mixed(self.faint, self.text, COORDINATE)
 
     def edge(self, fill: Colour) -> Colour:
         """Return the rim of a body with this fill: it is seen all around on any of the theme's skies."""

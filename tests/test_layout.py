@@ -102,3 +102,14 @@ def test_a_notice_covers_no_moving_body(x: float, aside: bool, monkeypatch: pyte
     place = desk.window.camera.to_screen(desk.world.component(body, Transform).position)
     assert not pause.inflate(20, 20).collidepoint(place)
     assert (abs(pause.centerx - (left + width // 2)) > 20) == aside
+
+
+def test_more_sky_than_ground_is_shown_of_a_world_that_stands_on_ground() -> None:
+    """In a narrow room as much was seen below the ground as above the walls."""
+    for down in (-9.81, 9.81):
+        desk = sized((800, 600), empty_world(bounds=(-6.0, 0.0, 6.0, 6.0), gravity=(0.0, down)))
+        desk.window.framing.fit(desk.world)
+        (_, top, _, height), camera = desk.window.framing.room(), desk.window.camera
+        above = camera.to_screen(Vector2(0.0, 6.0))[1] - top
+        below = top + height - camera.to_screen(Vector2(0.0, 0.0))[1]
+        assert below > 20.0 and (above > 2.0 * below if down < 0.0 else above == pytest.approx(below))

@@ -150,3 +150,10 @@ def test_small_panels_from_two_corners_do_not_cover_each_other_where_others_leav
         assert not any(
             one.colliderect(other) for one, other in ((first, second), (first, third), (second, third))
         )
+
+
+def test_a_stack_of_small_panels_has_one_edge_and_its_first_uppermost() -> None:
+    """Beside the scale bar there is no room for one of them: the other stood 25 px further in, and above."""
+    small = [Small(n, "bottom left", (253, 78)) for n in (1, 2)]
+    found = places((124, 26, 374, 520), 18.0, small)
+    assert found[1][0] == found[2][0] and found[1][1] < found[2][1]

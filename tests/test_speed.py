@@ -1,9 +1,11 @@
 """How fast the world runs: the brackets, and what Tab makes of them."""
 
+import pygame
 import pytest
-from desk import FRAME, Desk, empty_world
+from desk import FRAME, Desk, empty_world, tap
 from test_hud import frame, recorded
 
+from physicslab import load_scene
 from physicslab.components import Transform
 from physicslab.prefabs import circle
 from physicslab.view.window.pace import Pace
@@ -85,3 +87,16 @@ def test_time_dropped_in_fast_motion_is_shown_in_seconds_on_the_wall() -> None:
     assert due == 24
     pace.done(due - 12, FRAME)
     assert pace.dropped == pytest.approx(0.05)
+
+
+def test_another_scene_begins_at_lifes_speed_and_the_same_goes_on_at_the_chosen_one() -> None:
+    desk = Desk(load_scene("drop"))
+    desk.window.scenes.source = "drop"
+    pace = desk.window.pace
+    desk.key("[")
+    desk.frames(3)
+    tap(desk, "r", pygame.KMOD_CTRL)
+    assert pace.speed == 0.5, "once more, slowly"
+    tap(desk, "tab")
+    tap(desk, "n", pygame.KMOD_CTRL)
+    assert desk.world.name != "drop" and pace.speed == 1.0

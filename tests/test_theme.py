@@ -9,11 +9,13 @@ from pathlib import Path
 import numpy as np
 import pygame
 import pytest
+from desk import empty_world
 
 import physicslab
 from physicslab.components.colour import rgb_of
 from physicslab.components.made_of import SUBSTANCES
 from physicslab.theme import DARK, LEGIBLE, LIGHT, THEMES, Colour, Theme, contrast
+from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Finish, Look
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.controls.tools import TOOLS
@@ -24,6 +26,7 @@ from physicslab.view.overlay.arrows import (
     NORMAL_IMPULSE,
     VELOCITY,
 )
+from physicslab.view.picture.backdrop import draw_backdrop
 from physicslab.view.workbench.menus import ICON_BODIES, ICON_COLOURS
 
 # What the three common kinds of colour blindness make of linear RGB (Machado, Oliveira & Fernandes, 2009).
@@ -127,6 +130,17 @@ def test_bodies_as_they_are_painted_stand_out_from_the_sky(theme: Theme) -> None
     for rim in theme.bodies:
         for sky in (theme.sky_top, theme.sky_bottom):
             assert contrast(painted(theme, rim), sky) >= 4.5
+
+
+@every_theme
+def test_coordinates_can_be_read_over_sky_and_over_ground(theme: Theme) -> None:
+    canvas, camera = PygameCanvas(pygame.Surface((120, 900), 0, 32)), Camera((120, 900))
+    draw_backdrop(empty_world(bounds=(-9, -9, 9, 9)), camera, theme, canvas, grid=False)
+    camera.look_at((0.0, -14.0, 0.0, -14.0), 100.0)
+    for _ in range(2):  # first the sky alone, then as much of the ground
+        behind = {tuple(colour) for colour in pygame.surfarray.array3d(canvas.surface)[60].tolist()}
+        assert min(contrast(theme.coordinate, (r, g, b)) for r, g, b in behind) >= LEGIBLE
+        draw_backdrop(empty_world(bounds=(-9, -9, 9, 9)), camera, theme, canvas, grid=False)
 
 
 @every_theme

@@ -131,7 +131,8 @@ class Sandbox:
         window.selection.clear()
         window.scenes.naming, window.picking, window.band, window.measuring = None, None, None, Measuring()
         window.handles, window.pins = Handles(), Pins()
-        if not is_again:  # what was found of another scene is not for this one
+        if not is_again:  # what was found of another scene is not for this one, nor is its speed
+            window.pace.return_to_life()
             window.error_study.abandon()
             window.error_study.shown = False
         window.impacts.clear()

@@ -12,7 +12,7 @@ _OWN = {
 """Colours that a page calls as the window does."""
 _LIGHTS = ("LIGHT_", "BRIGHT", "DIM", "SHADOW_", "WEDGE", "DEEP", "HATCH")
 _SIZES = (
-    "RIM", "FLOOR", "WALL", "POINT_RADIUS", "PLANET", "LEAST_PLANET", "STAR", "GLOW", "GLOWS", "MAX_SHADOWS",
+    "RIM", "WALL", "POINT_RADIUS", "PLANET", "LEAST_PLANET", "STAR", "GLOW", "GLOWS", "MAX_SHADOWS",
 )  # fmt: skip
 """Laws of light, and sizes, as the player gets them."""
 

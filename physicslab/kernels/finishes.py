@@ -64,6 +64,17 @@ def _speck(i: int, j: int) -> float:
 
 
 @inlined
+def _mottle(x: float, y: float) -> float:
+    """Return a number from 0 to 1 that goes smoothly from one speck to the next."""
+    i, j = int(x), int(y)
+    s, t = x - i, y - j
+    s, t = s * s * (3.0 - 2.0 * s), t * t * (3.0 - 2.0 * t)
+    low = _speck(i, j) * (1.0 - s) + _speck(i + 1, j) * s
+    high = _speck(i, j + 1) * (1.0 - s) + _speck(i + 1, j + 1) * s
+    return low * (1.0 - t) + high * t
+
+
+@inlined
 def hatched(diagonal: float, colour: int, edge: int) -> int:
     """Return the colour of the ground at a place, by how far it is along the diagonal of the body [px]."""
     across = HATCH_SPACING * abs(_share_of(diagonal, HATCH_SPACING) - 0.5)
@@ -84,7 +95,8 @@ def textured(finish: int, u: float, v: float, colour: int, edge: int, under: int
         brushed = mixed(colour, BLACK, 0.09 * _speck(int(u / 41.0 + 1e4), int(v + 1e4)))
         return mixed(brushed, WHITE, sheen)
     if finish == _STONE:
-        return mixed(colour, BLACK, 0.2 * _speck(int(0.4 * u + 1e4), int(0.4 * v + 1e4)))
+        grain = _speck(int(u + 1e4), int(v + 1e4))
+        return mixed(colour, BLACK, 0.13 * _mottle(0.2 * u + 1e4, 0.2 * v + 1e4) + 0.08 * grain)
     streak = max(
         1.0 - 14.0 * abs(_share_of(u - 0.6 * v, 47.0) - 0.3),
         0.6 - 14.0 * abs(_share_of(u - 0.6 * v, 47.0) - 0.5),

@@ -44,7 +44,7 @@ BRIDGE = Scene(
     fill=_fill,
     # A plank that is hit takes a way of its own until its pins act, at the end of the substep.
     simulation=SimulationConfig(substeps=8),
-    view=(-5.2, -2.6, 5.2, 3.4),
+    view=(-4.6, -2.0, 4.6, 3.4),
     teaches=("forces", "equilibrium"),
     tags=("joints", "solid bodies"),
 )

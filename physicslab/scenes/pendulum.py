@@ -18,7 +18,7 @@ PENDULUM = Scene(
     title="A pendulum",
     description="A bob on a rod of 2 m; its period is a little above 2 pi sqrt(l / g) = 2.84 s.",
     fill=_fill,
-    view=(-1.4, 0.4, 3.6, 3.3),  # the graph of its energies has the right half
+    view=(-1.5, 0.5, 1.5, 3.3),
     moment=0.9,
     teaches=("oscillations", "energy"),
     tags=("joints",),

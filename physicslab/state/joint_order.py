@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels.joints.blocks import ENTRY, GROUP, NODE, NODE_STATE, OF_NODE
+from physicslab.kernels.joints.blocks import ENTRY, FIRST, GIVES_WAY, GROUP, NODE, NODE_STATE, OF_NODE
 from physicslab.kernels.joints.soft import HOLD, LIMIT, MOTOR
 from physicslab.state.joint_rows import Row
 
 _MOST = 100_000
-"""How many updates of a factorisation a block may take, each of 16 multiplications; its joints are solved one
-by one beyond: more takes a millisecond in each substep."""
+"""How many updates of a factorisation a block may take, each of 16 multiplications: more takes a millisecond
+in each substep. Beyond, its joints are solved one by one, and give way as springs do."""
 
 type _Table = NDArray[np.int64]
 
@@ -36,7 +36,7 @@ class Blocks(NamedTuple):
     targets : int64 array (u,)
         The entry that changes by each two entries of a column, as that is eliminated.
     groups : int64 array (b + 1, GROUP)
-        Where the nodes of each block begin.
+        Where the nodes of each block begin, and whether its rows give way.
     bounded : int64 array (p,)
         Nodes of limits and motors, block by block.
     """
@@ -50,6 +50,11 @@ class Blocks(NamedTuple):
     groups: _Table
     bounded: _Table
 
+    @property
+    def gives_way(self) -> NDArray[np.bool_]:
+        """Whether the rows of each node (k,) give way, as too many joints hold the same bodies."""
+        return np.repeat(self.groups[:-1, GIVES_WAY] != 0, np.diff(self.groups[:, FIRST]))
+
 
 class _Node(NamedTuple):
     """A node: its rows, one or two, and the moving bodies that they act on, in the order of their numbers."""
@@ -62,7 +67,7 @@ def order_rows(rows: Sequence[Row], joints: Sequence[range], moves: Sequence[boo
     """Return the blocks for rows, which are those of ``joints``; ``moves`` tells which bodies may move.
 
     Joints that share a moving body are one block, in an order in which little has to be computed. A block
-    that would cost too much is one for each joint instead.
+    that would cost too much is one for each joint instead, whose rows give way.
     """
     nodes, motors = _nodes_of(joints, rows, moves)
     held = [sorted({body for node in own for body in node.bodies}) for own in nodes]
@@ -74,7 +79,7 @@ def order_rows(rows: Sequence[Row], joints: Sequence[range], moves: Sequence[boo
             made.add(order, nodes)
             continue
         for joint in group:
-            made.add([(joint, [])], nodes)
+            made.add([(joint, [])], nodes, gives_way=True)
     return made.blocks()
 
 
@@ -175,13 +180,19 @@ class _Blocks:
         self._entries: list[tuple[int, int]] = []
         self._shared: list[tuple[int, int]] = []
         self._targets: list[int] = []
-        self._groups: list[tuple[int, int]] = []
+        self._groups: list[tuple[int, int, int]] = []
         self._bounded: list[int] = []
 
-    def add(self, order: Sequence[tuple[int, Sequence[int]]], nodes: Sequence[Sequence[_Node]]) -> None:
+    def add(
+        self,
+        order: Sequence[tuple[int, Sequence[int]]],
+        nodes: Sequence[Sequence[_Node]],
+        *,
+        gives_way: bool = False,
+    ) -> None:
         """Add a block of joints in an order, each with those that are later in it and that it acts on."""
         first, place, ends = len(self._nodes), dict[int, range](), dict[int, dict[int, int]]()
-        self._groups.append((first, len(self._bounded)))
+        self._groups.append((first, len(self._bounded), int(gives_way)))
         for joint, _ in order:
             place[joint] = range(first, first + len(nodes[joint]))
             first = place[joint].stop
@@ -223,7 +234,7 @@ class _Blocks:
         """Return all that were added."""
         self._nodes.append((len(self._rows), 0, *self._counts()))
         self._entries.append((0, len(self._shared)))
-        self._groups.append((len(self._nodes) - 1, len(self._bounded)))
+        self._groups.append((len(self._nodes) - 1, len(self._bounded), 0))
         return Blocks(
             _table(self._nodes, NODE), _table(self._terms, OF_NODE), np.array(self._body, np.int64),
             _table(self._entries, ENTRY), _table(self._shared, 2), np.array(self._targets, np.int64),

@@ -149,13 +149,16 @@ function drawGlow(x, y, size) {
   pen.globalCompositeOperation = "source-over";
 }
 
-// Ground where things fall to, and thin walls, beyond the bounds.
-function drawBounds([x0, y0, x1, y1]) {
+// Beyond the bounds: all is ground below where things fall to; thin walls.
+function drawBounds([x0, y0, x1, y1], across, down) {
   const [left, right, top, bottom] = [toX(x0), toX(x1), toY(y1), toY(y0)];
-  const wall = law.wall, floor = run.gravity && run.gravity[1] < 0 ? law.floor : wall;
+  const wall = law.wall, isGround = run.gravity && run.gravity[1] < 0;
+  const below = isGround
+    ? [0, bottom, across, Math.max(down - bottom, 0)]
+    : [left - wall, bottom, right - left + 2 * wall, wall];
   for (const [x, y, width, height] of [
     [left - wall, top, wall, bottom - top], [right, top, wall, bottom - top],
-    [left - wall, top - wall, right - left + 2 * wall, wall], [left - wall, bottom, right - left + 2 * wall, floor],
+    [left - wall, top - wall, right - left + 2 * wall, wall], below,
   ]) {
     pen.beginPath();
     pen.rect(x, y, width, height);

@@ -335,7 +335,7 @@ function drawWorld(frame, share) {
   if (run.space && darkly.matches) drawStars(width, height);
   marks = [];
   if (show.grid) drawGrid(width, height);
-  if (run.bounds) drawBounds(run.bounds);
+  if (run.bounds) drawBounds(run.bounds, width, height);
   drawFields(width, height);
   const trailed = body => show.trails && (movers.length <= 200 || body === selected);
   for (const body of movers) if (trailed(body)) drawTrail(body, frame, now(body));

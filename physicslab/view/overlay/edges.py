@@ -66,7 +66,7 @@ def draw_axis_numbers(on: Drawing, room: Rect, right: int) -> int:
     left, top, width, height = room
     step = _EVERY * grid_spacing(on.camera.scale)
     low, high = on.camera.to_world((left, top + height)), on.camera.to_world((left + width, top))
-    style = TextStyle(max(on.size - 3, 9), on.theme.faint)
+    style = TextStyle(max(on.size - 3, 9), on.theme.coordinate)
     text_height = on.canvas.text_size("0", style)[1]
     for x in _multiples(low.x, high.x, step):
         place = round(on.camera.to_screen(Vector2(x, on.camera.centre.y))[0])

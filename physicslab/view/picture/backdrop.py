@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from physicslab.theme import FLOOR, WALL, Theme
+from physicslab.theme import WALL, Theme
 from physicslab.view.canvas.camera import Camera, Extent
-from physicslab.view.canvas.canvas import Canvas, Finish, Look, Numbers, Points
+from physicslab.view.canvas.canvas import Canvas, Look, Numbers, Points
 from physicslab.view.canvas.quantities import rounded_up
 from physicslab.world import World
 
@@ -56,11 +56,17 @@ def is_in_space(world: World) -> bool:
     return world.physics.gravity_mode == "planet"
 
 
+def has_ground(world: World) -> bool:
+    """Whether bodies fall to the lower end of the world: all below it is ground."""
+    physics = world.physics
+    return physics.bounds is not None and physics.gravity_mode == "linear" and physics.gravity.y < 0.0
+
+
 def draw_backdrop(world: World, camera: Camera, theme: Theme, canvas: Canvas, *, grid: bool) -> None:
     """Begin a picture with what is behind all bodies; it is kept while the camera stands still."""
     physics = world.physics
     in_space = is_in_space(world)
-    has_floor = physics.gravity_mode == "linear" and physics.gravity.y < 0.0
+    grounded = has_ground(world)
 
     def draw() -> None:
         if in_space and theme.is_dark:
@@ -70,9 +76,9 @@ def draw_backdrop(world: World, camera: Camera, theme: Theme, canvas: Canvas, *,
             canvas.clear(theme.sky_top, theme.sky_bottom, theme.grain)
         if grid:
             draw_grid(camera, theme, canvas)
-        _draw_bounds(physics.bounds, has_floor, camera, theme, canvas)
+        _draw_bounds(physics.bounds, grounded, camera, theme, canvas)
 
-    canvas.keep((camera.centre, camera.scale, theme.name, grid, in_space, has_floor, physics.bounds), draw)
+    canvas.keep((camera.centre, camera.scale, theme.name, grid, in_space, grounded, physics.bounds), draw)
 
 
 _STARS, _LARGEST_SKY = 3000, 4096.0
@@ -96,26 +102,26 @@ _FAR = 1e6
 
 
 def _draw_bounds(
-    bounds: Extent | None, has_floor: bool, camera: Camera, theme: Theme, canvas: Canvas
+    bounds: Extent | None, has_ground: bool, camera: Camera, theme: Theme, canvas: Canvas
 ) -> None:
-    """Draw the end of the world beyond its bounds: ground where things fall to, and thin walls."""
+    """Draw the end of the world beyond its bounds: all is ground below where things fall to; thin walls."""
     if bounds is None:
         return
     xmin, ymin, xmax, ymax = bounds
     (left, bottom), (right, top) = np.clip(
         camera.project(np.array([(xmin, ymin), (xmax, ymax)])), -_FAR, _FAR
     )
-    floor = FLOOR if has_floor else WALL
+    width, height = canvas.size
+    below = left - WALL, bottom, right + WALL, bottom + WALL
+    if has_ground:
+        below = 0.0, bottom, float(width), max(float(height), bottom)
     sides = np.array([
         (left - WALL, top, left, bottom), (right, top, right + WALL, bottom),
-        (left - WALL, top - WALL, right + WALL, top),
-        (left - WALL, bottom, right + WALL, bottom + floor),
+        (left - WALL, top - WALL, right + WALL, top), below,
     ])  # fmt: skip
     shown = (sides[:, 2] > sides[:, 0]) & (sides[:, 3] > sides[:, 1])
     low, high = sides[shown, :2], sides[shown, 2:]
-    count = len(low)
-    look = Look.plain(theme.earth, theme.earth, count)
-    look = Look(look.fill, look.rim, np.full(count, Finish.GROUND, np.int64))
-    canvas.boxes(0.5 * (low + high), high - low, np.zeros(count), look)
+    look = Look.plain(theme.earth, theme.earth, len(low))
+    canvas.boxes(0.5 * (low + high), high - low, np.zeros(len(low)), look)
     corners = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
     canvas.lines(corners, np.roll(corners, -1, axis=0), theme.static, 1.5)

@@ -69,6 +69,10 @@ class Pace:
         self.chosen = min(max(self.speed * factor, self.MIN_SPEED), self.MAX_SPEED)
         self.slow_motion = False
 
+    def return_to_life(self) -> None:
+        """Run as fast as life again."""
+        self.chosen, self.slow_motion = 1.0, False
+
     def begin(self, elapsed: float) -> None:
         """Begin a frame, ``elapsed`` seconds after the last."""
         if self.paused:

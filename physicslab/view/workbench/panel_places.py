@@ -73,9 +73,10 @@ def _small(area: Rect, text: float, gap: int, small: Sequence[Small], *, downwar
     taken: list[Rect] = [(area[0] + area[2] - bar[0], area[1] + area[3] - bar[1], *bar)]
     for corner in dict.fromkeys(one.corner for one in small):
         stack = [one for one in small if one.corner == corner]
-        room = _beside_numbers(area, text, corner)
         if downwards:
-            placed = _stacked(room, gap, stack, corner)
+            placed = _stacked(_beside_numbers(area, text, corner), gap, stack, corner)
+            if _covered([*taken, *placed.values()]):  # over the numbers all of a stack is in one line
+                placed = _stacked(area, gap, stack, corner)
         else:
             below = 0 if "top" in corner else round(_SCALE_BAR * text)
             rows = (area[0], area[1], area[2], max(area[3] - below, 1))
@@ -118,11 +119,14 @@ def _beside_numbers(area: Rect, text: float, corner: str) -> Rect:
 
 
 def _stacked(area: Rect, gap: int, stack: Sequence[Small], corner: str) -> dict[int, Rect]:
-    """Put small panels above each other from a corner on, and go on beside them where the room ends."""
+    """Put small panels above each other from a corner on, and go on beside them where the room ends.
+
+    The first is uppermost, at the bottom, too.
+    """
     left, top, width, height = area
     found: dict[int, Rect] = {}
     down = across = widest = 0
-    for one in stack:
+    for one in stack if "top" in corner else reversed(stack):
         w, h = min(one.size[0], width), min(one.size[1], height)
         if down and down + h > height:
             down, across, widest = 0, across + widest + gap, 0
