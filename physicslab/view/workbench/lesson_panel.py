@@ -298,8 +298,10 @@ class LessonPanel:
             ui.faint(name, wrapped=False)
             ui.tip(note)
             imgui.same_line(4.0 * ui.size)
-            text, editing = ui.field(label, lesson.values[name], _NUMBER * ui.size)
-            lesson.values[name] = text
+            shown = ui.language.decimal(lesson.values[name])
+            text, editing = ui.field(label, shown, _NUMBER * ui.size)
+            if text != shown:
+                lesson.values[name] = text
             try:
                 value, least, most = (setup.quantity(name, one) for one in (text, low, high))
             except InvalidText as error:
@@ -368,7 +370,9 @@ def _given_words(part: Question, answer: dict[str, object]) -> str:
         return part.replies[int(str(answer["choice"])) - 1].text
     if part.form == "number":
         text = str(answer["value"])
-        return text if any(map(str.isalpha, text)) else f"{text} {written_unit(part.unit)}".strip()
+        if any(map(str.isalpha, text)):
+            return text
+        return f"{text} {written_unit(part.unit)}".replace(" °", "°").strip()
     return "A curve, as drawn below"
 
 
