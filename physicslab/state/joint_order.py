@@ -29,6 +29,8 @@ class Blocks(NamedTuple):
         Those of each node.
     body : int64 array (e,)
         The body of each end of a node: those that move, each once.
+    beside : int64 array (e,)
+        How many joints hold that body.
     entries : int64 array (l + 1, ENTRY)
         Where the factor of the matrix is not zero below the diagonal, column by column.
     shared : int64 array (s, 2)
@@ -44,6 +46,7 @@ class Blocks(NamedTuple):
     nodes: _Table
     terms: _Table
     body: _Table
+    beside: _Table
     entries: _Table
     shared: _Table
     targets: _Table
@@ -71,7 +74,8 @@ def order_rows(rows: Sequence[Row], joints: Sequence[range], moves: Sequence[boo
     """
     nodes, motors = _nodes_of(joints, rows, moves)
     held = [sorted({body for node in own for body in node.bodies}) for own in nodes]
-    made = _Blocks(rows)
+    holding = np.array([body for own in held for body in own], np.int64)
+    made = _Blocks(rows, np.bincount(holding, minlength=len(moves)))
     for group in _groups(held):
         sizes = [len(own) for own in nodes]
         order = _eliminated(group, held, sizes, motors) or _eliminated(group, held, sizes, range(0))
@@ -169,8 +173,8 @@ def _eliminated(
 class _Blocks:
     """Blocks as they are added one after the other."""
 
-    def __init__(self, rows: Sequence[Row]) -> None:
-        self._rows = rows
+    def __init__(self, rows: Sequence[Row], beside: _Table) -> None:
+        self._rows, self._beside = rows, beside
         # The second terms stand behind all first ones, in the order of rows.
         two = [row for row in range(len(rows)) if len(rows[row].terms) > 1]
         self._second = {row: len(rows) + n for n, row in enumerate(two)}
@@ -232,11 +236,12 @@ class _Blocks:
 
     def blocks(self) -> Blocks:
         """Return all that were added."""
+        body = np.array(self._body, np.int64)
         self._nodes.append((len(self._rows), 0, *self._counts()))
         self._entries.append((0, len(self._shared)))
         self._groups.append((len(self._nodes) - 1, len(self._bounded), 0))
         return Blocks(
-            _table(self._nodes, NODE), _table(self._terms, OF_NODE), np.array(self._body, np.int64),
+            _table(self._nodes, NODE), _table(self._terms, OF_NODE), body, self._beside[body],
             _table(self._entries, ENTRY), _table(self._shared, 2), np.array(self._targets, np.int64),
             _table(self._groups, GROUP), np.array(self._bounded, np.int64),
         )  # fmt: skip
