@@ -229,6 +229,29 @@ def test_what_turns_too_easily_for_its_joints_is_told_with_an_inertia_that_helps
     assert not advices
 
 
+@pytest.mark.parametrize(("size", "gives_way"), [(6, False), (12, True)])
+def test_a_sheet_of_welded_boxes_gives_way_under_a_load_if_it_is_large_and_gains_nothing(
+    size: int, gives_way: bool
+) -> None:
+    """Joints of a large sheet are solved one by one; rigid, each in turn, they gained 1e30 J in 4 s."""
+    world = World(*standard_systems(), simulation=SimulationConfig(contacts="soft"))
+    boxes: dict[tuple[int, int], int] = {}
+    for i, j in np.ndindex(size, size):
+        mass = 2000.0 if j == size - 1 else 1.0
+        boxes[i, j] = world.spawn(Transform((i, -j)), Velocity(), Mass(mass), Shape.box(1.0, 1.0))
+        for other, arm in (((i - 1, j), (0.5, 0.0)), ((i, j - 1), (0.0, -0.5))):
+            held = {"a": boxes[other], "anchor_a": arm} if other in boxes else {"anchor_a": (i, 0.5)}
+            if other in boxes or other[1] < 0:
+                world.spawn(Weld(b=boxes[i, j], anchor_b=(-arm[0], -arm[1]), **held))
+    before = world.energy.total
+    for _ in range(10):
+        world.run(steps=12)
+        assert world.energy.total <= before + 1e-9 * abs(before)
+    assert world.joints.blocks.gives_way.any() == gives_way
+    (advice,) = [one for one in told(world) if "joint" in one]
+    assert ("gives way as a spring does" if gives_way else "holds what other joints hold already") in advice
+
+
 def test_a_number_as_placed_that_cannot_be_is_refused_with_the_joint_that_has_it() -> None:
     world = world_with((Rod, {"a": 1}))
     with pytest.raises(InvalidValue, match=r"^joint 1: Rod\.length = 0\.0: must be a finite number > 0 m"):

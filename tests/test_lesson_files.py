@@ -247,6 +247,7 @@ def test_a_goal_is_reached_with_what_is_open(case: str, words: str) -> None:
             "unit: cm\nmeasure: time",
             "line 41: compare compare_1: 'cm': m and s cannot be compared",
         ),
+        ("measure: time", "measure: period(ball.y)", "the mean is to be taken away: period(ball.x - mean("),
         ("holds: always", "holds: height > 2 m", "compare_1: 'height > 2 m' must hold in the case"),
         ("answer: ball.speed", "answer: ball.x", "line 55: check speed: 'ball.x' is in m; this is in m/s"),
         ("number: m/s", "curve: m", "line 55: check speed: 'ball.speed' is in m s^-1; this is in m"),

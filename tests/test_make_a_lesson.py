@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from physicslab.components import Velocity
 from physicslab.files.scene import load_scene
+from physicslab.languages.language import language
 from physicslab.lessons.check import check_lesson
 from physicslab.lessons.lesson import Explain
 from physicslab.lessons.reader import parse_lesson, read_lesson
@@ -110,6 +111,37 @@ def test_a_teacher_makes_a_lesson_in_the_window_and_it_opens(desk: Desk, tmp_pat
     lesson = read_lesson(tmp_path / "drop-1.md")
     assert lesson.setup.opened["v0"] == ("0.5 m/s", "1.5 m/s")
     assert all(row.passed for row in check_lesson(lesson))
+
+
+def test_what_is_proposed_lies_around_the_value_with_which_the_lesson_begins(desk: Desk) -> None:
+    """Half a second later the ball is elsewhere: the range of that moment would be refused."""
+    tap(desk, "l", pygame.KMOD_LCTRL)
+    desk.window.pace.paused = False
+    desk.frames(30)
+    desk.window.pace.paused = True
+    tap(desk, "l", pygame.KMOD_LCTRL)
+    time = desk.world.time
+    assert time > 0.3
+    choose(desk, "Opened 1", "Opened 1: ball: position y")
+    desk.frames(2)
+    opened = desk.window.making.draft.opened[0]
+    assert (opened.low, opened.high) == ("2 m", "6 m") and desk.world.time == time
+    click(desk, "Make the lesson")
+    desk.frames(SETTLED)
+    assert desk.window.lesson is not None
+
+
+def test_a_theory_that_does_not_hold_is_said_in_the_language_of_the_window(desk: Desk) -> None:
+    fill(desk, "Seconds of the lesson", "0.5")
+    fill(desk, "theory of the lesson", "sqrt(2*gravity*5 m)")
+    click(desk, "Make the lesson")
+    desk.frames(SETTLED)
+    assert desk.window.notice == (
+        "Saved drop-1.md: measured 5.006 m/s, theory 9.905 m/s: further apart than it says"
+    )
+    assert language("de").reword(desk.window.notice) == (
+        "drop-1.md gespeichert: gemessen 5,006 m/s, Theorie 9,905 m/s: weiter auseinander als angegeben"
+    )
 
 
 @pytest.mark.parametrize(

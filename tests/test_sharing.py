@@ -126,8 +126,8 @@ def test_what_values_of_a_slider_cannot_be_is_said_beside_them(desk: Desk, tmp_p
     """And those that are offered can all be held."""
     tap(desk, "f8")
     first, second = desk.window.sharing.slid
-    share_actions.choose_slid(desk.world, first, "ball.Material.restitution")
-    share_actions.choose_slid(desk.world, second, "ball.Velocity.linear.x")
+    share_actions.choose_slid(desk.world, desk.window, first, "ball.Material.restitution")
+    share_actions.choose_slid(desk.world, desk.window, second, "ball.Velocity.linear.x")
     assert first.span == "0.4:1:9", "0.8 and a half more would be 1.2"
     second.span = "1"
     desk.frames(SETTLED)
@@ -155,7 +155,7 @@ def test_sliders_of_the_scene_become_those_of_the_page(desk: Desk) -> None:
     assert offered["ball.Velocity.linear.x"] == "ball: velocity x"
     assert "ball.Shape.radius" in offered and "ball.Shape.width" not in offered
     assert desk.world.component(ball, Shape).kind == "circle"
-    share_actions.choose_slid(desk.world, second, "ball.Velocity.linear.x")
+    share_actions.choose_slid(desk.world, desk.window, second, "ball.Velocity.linear.x")
     assert second.span == "0.5:1.5:9", "around the 1 m/s that it has"
 
 

@@ -302,7 +302,10 @@ def _period(of: Figures, expression: Expression) -> Quantity:
     series = of.series(expression)
     ups = [i for i in range(1, len(series)) if series[i - 1] <= 0.0 < series[i]]
     if len(ups) < 2:
-        raise Undefined(f"'{expression.text}': it crosses zero upwards fewer than twice within the run")
+        raise Undefined(
+            f"'{expression.text}': it crosses zero upwards fewer than twice within the run; of a motion "
+            "about another place the mean is to be taken away: period(ball.x - mean(ball.x))"
+        )
     first, last = (of._root(lambda figures: expression.value(figures).value, i) for i in (ups[0], ups[-1]))
     return Quantity((last - first) / (len(ups) - 1), _SECOND.dimension, True)
 

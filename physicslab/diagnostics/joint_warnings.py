@@ -55,6 +55,11 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
         told = bool(dependent.any()) or not isinstance(world.stepper, Soft) or _contradict(world, limit)
         what = sentence("contradicts") if told else sentence("does_not_hold")
         setting = "" if told else f"simulation.substeps = {2 * world.simulation.substeps}"
+        if (
+            not told
+            and joints[worst].own.start in world.joints.blocks.nodes[:-1, ROW][world.joints.blocks.gives_way]
+        ):
+            what, setting = sentence("gives_way"), sentence("fewer_joints")
         yield ModelWarning.about(world, joints[worst].entity, what, stretch, "m", limit, setting)
     elif dependent.any():
         first = int(np.argmax(dependent))
@@ -145,7 +150,9 @@ def _dependent(world: World) -> NDArray[np.bool_]:
     owner, (_, state, _) = joints_of_rows(world), joints.rooms
     gives, acts = np.zeros((2, len(joints) + 1))
     for place in (1, 0):  # nodes of one row have none in the second place, which is that of another
-        gives[joints.blocks.nodes[:-1, ROW] + place] = state[:, GIVES + place]
+        gives[joints.blocks.nodes[:-1, ROW] + place] = np.where(
+            joints.blocks.gives_way, 0.0, state[:, GIVES + place]
+        )
         acts[joints.blocks.nodes[:-1, ROW] + place] = state[:, STATE]
     # A motor that stands at a limit of its own joint holds the same as that, which is meant.
     bounds = joints.role != Role.HOLD

@@ -229,11 +229,13 @@ SENTENCES = {
     "idle_joint": "joins what no force moves, and does nothing",
     "contradicts": "contradicts other joints: not all can be kept",
     "does_not_hold": "does not hold what it joins",
+    "gives_way": "gives way as a spring does: more joints hold each other than are solved at once",
     "redundant": "holds what other joints hold already: how they share the load is not determined (rows)",
     "blocked_motor": "has a motor that does nothing, as other joints hold what it would move",
     "mass_at_one_end": "a Mass and a Velocity at one end",
     "ends_in_one_place": "has both ends in one place, where a distance has no direction",
     "one_joint_less": "one joint less",
+    "fewer_joints": "fewer joints in one piece",
     "a_pin": "a Pin",
     "many_evaluations": (
         "force evaluations are made in a step: something is followed that is too fast to be seen"

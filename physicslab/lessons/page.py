@@ -31,6 +31,7 @@ from physicslab.lessons.live_run import record_run
 from physicslab.lessons.setup import AS_IT_IS, Case
 from physicslab.lessons.words import (
     case_words,
+    condition,
     formula,
     kind_words,
     measure,
@@ -334,7 +335,7 @@ class _Page:
 
     def _compare(self, part: Compare) -> Iterator[str]:
         own, when = self.own, part.holds.text
-        when = own.say("always") if when == "always" else formula(own, when)
+        when = condition(own, when)
         heads = [
             own.say("case"),
             own.say("predicted"),

@@ -44,6 +44,17 @@ def formula(language: Language, text: str) -> str:
     return language.decimal(_POWER.sub(lambda found: found[1].translate(_RAISED), text))
 
 
+def condition(language: Language, text: str) -> str:
+    """Return a condition as it is shown.
+
+    >>> condition(Language("de"), "e = 1 and rub = 0.5"), condition(Language("de"), "always")
+    ('e = 1 und rub = 0,5', 'immer')
+    """
+    if text == "always":
+        return language.say("always")
+    return f" {language.say('and')} ".join(formula(language, part) for part in text.split(" and "))
+
+
 def measure(language: Language, number: float, unit: str, figures: int = 4) -> str:
     """Return a number and its unit."""
     return formula(language, f"{number:.{figures}g} {'' if unit == '1' else unit}".rstrip())

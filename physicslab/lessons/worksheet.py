@@ -7,7 +7,7 @@ from html import escape
 from physicslab.languages.language import Language, language
 from physicslab.lessons.answers import asked
 from physicslab.lessons.lesson import Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
-from physicslab.lessons.words import case_words, formula, kind_words, sureness_words
+from physicslab.lessons.words import case_words, condition, formula, kind_words, sureness_words
 
 _STYLE = """
 body { font: 11pt/1.45 sans-serif; max-width: 44em; margin: 1em auto; padding: 0 1em; }
@@ -79,7 +79,7 @@ def _part(part: Part, recalled: Mapping[str, Question], own: Language) -> Iterat
         case Compare():
             kind, theory = "compare", formula(own, f"{part.quantity}: {part.theory.text}")
             when = part.holds.text
-            when = own.say("always") if when == "always" else formula(own, when)
+            when = condition(own, when)
             holds = escape(own.say("holds: {when}", when=when))
             heads = [own.say("case"), own.say("predicted"), own.say("by theory")]
             heads += [own.say("measured"), own.say("gap")]

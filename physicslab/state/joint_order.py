@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels.joints.blocks import ENTRY, GROUP, NODE, NODE_STATE, OF_NODE
+from physicslab.kernels.joints.blocks import ENTRY, FIRST, GIVES_WAY, GROUP, NODE, NODE_STATE, OF_NODE
 from physicslab.kernels.joints.soft import HOLD, LIMIT, MOTOR
 from physicslab.state.joint_rows import Row
 
 _MOST = 100_000
-"""How many updates of a factorisation a block may take, each of 16 multiplications; its joints are solved one
-by one beyond: more takes a millisecond in each substep."""
+"""How many updates of a factorisation a block may take, each of 16 multiplications: more takes a millisecond
+in each substep. Beyond, its joints are solved one by one, and give way as springs do."""
 
 type _Table = NDArray[np.int64]
 
@@ -29,6 +29,8 @@ class Blocks(NamedTuple):
         Those of each node.
     body : int64 array (e,)
         The body of each end of a node: those that move, each once.
+    beside : int64 array (e,)
+        How many joints hold that body.
     entries : int64 array (l + 1, ENTRY)
         Where the factor of the matrix is not zero below the diagonal, column by column.
     shared : int64 array (s, 2)
@@ -36,7 +38,7 @@ class Blocks(NamedTuple):
     targets : int64 array (u,)
         The entry that changes by each two entries of a column, as that is eliminated.
     groups : int64 array (b + 1, GROUP)
-        Where the nodes of each block begin.
+        Where the nodes of each block begin, and whether its rows give way.
     bounded : int64 array (p,)
         Nodes of limits and motors, block by block.
     """
@@ -44,11 +46,17 @@ class Blocks(NamedTuple):
     nodes: _Table
     terms: _Table
     body: _Table
+    beside: _Table
     entries: _Table
     shared: _Table
     targets: _Table
     groups: _Table
     bounded: _Table
+
+    @property
+    def gives_way(self) -> NDArray[np.bool_]:
+        """Whether the rows of each node (k,) give way, as too many joints hold the same bodies."""
+        return np.repeat(self.groups[:-1, GIVES_WAY] != 0, np.diff(self.groups[:, FIRST]))
 
 
 class _Node(NamedTuple):
@@ -62,11 +70,12 @@ def order_rows(rows: Sequence[Row], joints: Sequence[range], moves: Sequence[boo
     """Return the blocks for rows, which are those of ``joints``; ``moves`` tells which bodies may move.
 
     Joints that share a moving body are one block, in an order in which little has to be computed. A block
-    that would cost too much is one for each joint instead.
+    that would cost too much is one for each joint instead, whose rows give way.
     """
     nodes, motors = _nodes_of(joints, rows, moves)
     held = [sorted({body for node in own for body in node.bodies}) for own in nodes]
-    made = _Blocks(rows)
+    holding = np.array([body for own in held for body in own], np.int64)
+    made = _Blocks(rows, np.bincount(holding, minlength=len(moves)))
     for group in _groups(held):
         sizes = [len(own) for own in nodes]
         order = _eliminated(group, held, sizes, motors) or _eliminated(group, held, sizes, range(0))
@@ -74,7 +83,7 @@ def order_rows(rows: Sequence[Row], joints: Sequence[range], moves: Sequence[boo
             made.add(order, nodes)
             continue
         for joint in group:
-            made.add([(joint, [])], nodes)
+            made.add([(joint, [])], nodes, gives_way=True)
     return made.blocks()
 
 
@@ -164,8 +173,8 @@ def _eliminated(
 class _Blocks:
     """Blocks as they are added one after the other."""
 
-    def __init__(self, rows: Sequence[Row]) -> None:
-        self._rows = rows
+    def __init__(self, rows: Sequence[Row], beside: _Table) -> None:
+        self._rows, self._beside = rows, beside
         # The second terms stand behind all first ones, in the order of rows.
         two = [row for row in range(len(rows)) if len(rows[row].terms) > 1]
         self._second = {row: len(rows) + n for n, row in enumerate(two)}
@@ -175,13 +184,19 @@ class _Blocks:
         self._entries: list[tuple[int, int]] = []
         self._shared: list[tuple[int, int]] = []
         self._targets: list[int] = []
-        self._groups: list[tuple[int, int]] = []
+        self._groups: list[tuple[int, int, int]] = []
         self._bounded: list[int] = []
 
-    def add(self, order: Sequence[tuple[int, Sequence[int]]], nodes: Sequence[Sequence[_Node]]) -> None:
+    def add(
+        self,
+        order: Sequence[tuple[int, Sequence[int]]],
+        nodes: Sequence[Sequence[_Node]],
+        *,
+        gives_way: bool = False,
+    ) -> None:
         """Add a block of joints in an order, each with those that are later in it and that it acts on."""
         first, place, ends = len(self._nodes), dict[int, range](), dict[int, dict[int, int]]()
-        self._groups.append((first, len(self._bounded)))
+        self._groups.append((first, len(self._bounded), int(gives_way)))
         for joint, _ in order:
             place[joint] = range(first, first + len(nodes[joint]))
             first = place[joint].stop
@@ -221,11 +236,12 @@ class _Blocks:
 
     def blocks(self) -> Blocks:
         """Return all that were added."""
+        body = np.array(self._body, np.int64)
         self._nodes.append((len(self._rows), 0, *self._counts()))
         self._entries.append((0, len(self._shared)))
-        self._groups.append((len(self._nodes) - 1, len(self._bounded)))
+        self._groups.append((len(self._nodes) - 1, len(self._bounded), 0))
         return Blocks(
-            _table(self._nodes, NODE), _table(self._terms, OF_NODE), np.array(self._body, np.int64),
+            _table(self._nodes, NODE), _table(self._terms, OF_NODE), body, self._beside[body],
             _table(self._entries, ENTRY), _table(self._shared, 2), np.array(self._targets, np.int64),
             _table(self._groups, GROUP), np.array(self._bounded, np.int64),
         )  # fmt: skip

@@ -264,7 +264,7 @@ def factorise_joints(joints: Joints, inverse: Inverse, soft: JointSoftness) -> N
         joints.state[k, STATE] = ACTIVE if acts else OFF
     for block in range(len(joints.groups) - 1):
         first, end = joints.groups[block, FIRST], joints.groups[block + 1, FIRST]
-        factorise(joints, first, end, inverse, soft.spring)
+        factorise(joints, block, inverse, soft.spring)
         if soft.rate > 0.0:
             _limit_correction(joints, first, end, inverse, soft)
 
@@ -338,7 +338,7 @@ def _solve_block(joints: Joints, block: int, motion: Motion, inverse: Inverse, s
         trials += 1
         _solve_once(joints, first, end, motion, soft)
         if trials < _TRIALS and _set_bounds(joints, block, motion, inverse):
-            factorise(joints, first, end, inverse, soft.spring)
+            factorise(joints, block, inverse, soft.spring)
             changed = 1.0
             continue
         for k in range(first, end):
@@ -351,7 +351,7 @@ def _solve_block(joints: Joints, block: int, motion: Motion, inverse: Inverse, s
                 size += abs(now) + abs(other)
         if not _free(joints, block, motion, inverse, soft):
             break
-        factorise(joints, first, end, inverse, soft.spring)
+        factorise(joints, block, inverse, soft.spring)
         changed += size
     return changed > _SETTLED * size
 

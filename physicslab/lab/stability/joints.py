@@ -1,5 +1,6 @@
 """Joints: heavy loads at their ends, motors and pulleys at their stops, and such as contradict each other."""
 
+import math
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -117,6 +118,38 @@ def _contradicted(contacts: str) -> float:
     return float(np.abs(velocity["linear"]).max() + np.abs(velocity["angular"]).max())
 
 
+def _sheet(kind: type[Any], size: int, share: float, hung: set[int]) -> float:
+    """Return the largest gain of energy of a square sheet of boxes, of what lifts it by its own size.
+
+    Boxes of 1 kg, ``share`` of their distance wide, are joined to those beside them, and below the ``hung``
+    columns of the first row to the world.
+    """
+    world, made, half = _soft(), dict[tuple[int, int], int](), 0.5 * _LINK * share
+    for i, j in np.ndindex(size, size):
+        parts = Transform((_LINK * i, -_LINK * j)), Velocity(), Mass(1.0), Shape.box(2.0 * half, 2.0 * half)
+        made[i, j] = world.spawn(*parts)
+        beside = [((i - 1, j), Vector2(half, 0.0))] if i else []
+        beside += [((i, j - 1), Vector2(0.0, -half))] if j or i in hung else []
+        for other, arm in beside:
+            a = made.get(other)
+            at = arm if a is not None else Vector2(_LINK * i, half + _LINK * (1.0 - share))
+            world.spawn(kind(a=a, b=made[i, j], anchor_a=at, anchor_b=-arm))
+    before, lifted = measure_energy(world).total, size * size * 9.81 * size * _LINK
+    return largest(world, 240, lambda: (measure_energy(world).total - before) / lifted)
+
+
+def _wheel() -> float:
+    """Return the largest gain of energy of a wheel of rods that falls on a floor, of what lifts it there."""
+    world, spokes, radius, high = open_space(contacts="soft"), 150, 3.0, 6.0
+    floor(world, Vector2(0.0, -radius - high))
+    hub = circle(world, (0.0, 0.0), radius=0.5)
+    for n in range(spokes):
+        tip = circle(world, Vector2.from_angle(2.0 * math.pi * n / spokes, radius), radius=0.02, mass=1.0)
+        world.spawn(Rod(a=hub, b=tip))
+    before, lifted = measure_energy(world).total, spokes * 9.81 * high
+    return largest(world, 240, lambda: (measure_energy(world).total - before) / lifted)
+
+
 def _unequal() -> float:
     """Return the change of energy of a double pendulum of 1 kg and 10^9 kg, of what its fall exchanges."""
     world, _ = _bars(open_space(), 2, 1e9)
@@ -169,6 +202,19 @@ JOINTS = (
         )
         for name, words, make, limit in (
             ("smooth", "nothing touches", open_space, 1.000001e-6), ("soft", "soft", _soft, 1e-3),
+        )
+    ),
+    *(
+        _case(
+            name=name, title=f"{title}, soft, 4 s", right="no energy comes from it",
+            figure="largest gain of energy, of what lifts it by its size", limit=1e-3, measure=measure,
+        )
+        for name, title, measure in (
+            ("sheet_welded", "144 boxes welded to those beside them, hung from the upper row",
+             partial(_sheet, Weld, 12, 1.0, set(range(12)))),
+            ("sheet_of_rods", "576 boxes, rods between those beside each other, hung from two corners",
+             partial(_sheet, Rod, 24, 0.25, {0, 23})),
+            ("wheel_of_rods", "hub with 150 rods to discs of 1 kg falls by 6 m on a floor", _wheel),
         )
     ),
     _case(

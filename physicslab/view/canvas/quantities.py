@@ -167,9 +167,11 @@ def quotient(unit: str, other: str) -> str:
 def written_unit(unit: str) -> str:
     """Return a unit as people write it.
 
-    >>> written_unit("kg m^2/s"), written_unit("1")
-    ('kg m²/s', '')
+    >>> written_unit("kg m^2/s"), written_unit("1"), written_unit("deg")
+    ('kg m²/s', '', '°')
     """
+    if unit == "deg":
+        return "°"
     parts = unit.split("^")
     raised = [part[:1].translate(_RAISED) + part[1:] for part in parts[1:]]
     return "" if unit == "1" else "".join((parts[0], *raised))

@@ -13,6 +13,7 @@ from physicslab.files.checks import SceneError
 from physicslab.files.replace import create_file, reason_of, replace_file
 from physicslab.files.scene import file_stem
 from physicslab.languages.language import language
+from physicslab.languages.sentence import Sentence
 from physicslab.lessons.blocks import LessonError
 from physicslab.lessons.check import row_of
 from physicslab.lessons.lesson import Lesson, Run
@@ -91,17 +92,18 @@ def _question(draft: Draft) -> str:
     return language(draft.language).say("What comes out in this run: {quantity}?", quantity=draft.quantity)
 
 
-def choose_opened(world: World, draft: Draft, opened: Opened, path: str) -> None:
-    """Let learners change another number of the scene, at first around the value that it has now."""
+def choose_opened(world: World, window: Window, opened: Opened, path: str) -> None:
+    """Let learners change another number of the scene, at first around the value with which it begins."""
     opened.path = path
     if not path:
         return
     body, _, spec, part = parse_path(path)
-    taken = {one.name for one in draft.opened if one is not opened}
+    making = window.making
+    taken = {one.name for one in making.draft.opened if one is not opened}
     opened.name = identifier(f"{body}_{field_words(spec.name, part)}", taken)
-    low, high, unit = span_around(world, path)
+    low, high, unit = span_around(world, window, making.begins, path)
     ending = "" if unit == "1" else f" {unit}"
-    opened.low, opened.high = f"{low:.6g}{ending}", f"{high:.6g}{ending}"
+    opened.low, opened.high = f"{low:.3g}{ending}", f"{high:.3g}{ending}"
 
 
 def make_lesson(world: World, window: Window, over: Path | None = None) -> None:
@@ -132,7 +134,8 @@ def make_lesson(world: World, window: Window, over: Path | None = None) -> None:
         return
     making.choosing = False
     if not open_lesson(world, window, str(path)):
-        window.notify(f"Saved {printable(path.name)}{told}", 8.0)
+        saved = Sentence("Saved {file}", file=printable(path.name))
+        window.notify(Sentence("{what}: {figure}", what=saved, figure=told) if told else saved, 8.0)
 
 
 def _tried(lesson: Lesson) -> str:
@@ -157,5 +160,8 @@ def _tried(lesson: Lesson) -> str:
         row = row_of(lesson, compare, AS_IT_IS, live.figures)
         unit = written_unit(row.unit)
         measured, theory = (quantity(value, unit).strip() for value in (row.measured, row.theory))
-        return f": measured {measured}, theory {theory}"
+        values = {"measured": measured, "theory": theory}
+        if row.passed:
+            return Sentence("measured {measured}, theory {theory}", **values)
+        return Sentence("measured {measured}, theory {theory}: further apart than it says", **values)
     return ""

@@ -8,6 +8,7 @@ from physicslab.ecs.text import printable
 from physicslab.files.listing import is_scene
 from physicslab.files.replace import create_file, reason_of, replace_file
 from physicslab.files.scene import SceneError, file_stem, is_step, scene_bytes
+from physicslab.languages.sentence import Sentence
 from physicslab.prefabs import box
 from physicslab.scenes import SCENES
 from physicslab.view.window.desk import desk_of
@@ -125,8 +126,11 @@ def _written(world: World, window: Window, path: Path, *, copies: bool, is_new: 
         window.scenes.source = path
         window.scenes.saved = window.edits.history.changes
         window.dashboard.keep(world)
-    moment = f", at t = {world.time:.2f} s as shown" if world.time else ""
-    window.notify(f"{'Saved a copy as' if copies else 'Saved'} {printable(str(path))}{moment}")
+    told = "Saved a copy as {file}" if copies else "Saved {file}"
+    saved = Sentence(told, file=printable(str(path)))
+    if world.time:
+        saved = Sentence("{saved}, at t = {time} s as shown", saved=saved, time=f"{world.time:.2f}")
+    window.notify(saved)
     return None
 
 

@@ -101,20 +101,21 @@ def words_of(path: str) -> str:
     return f"{printable(name)}: {field_words(spec.name, part)}"
 
 
-def choose_slid(world: World, slid: Slid, path: str) -> None:
-    """Let a slider of the page change another quantity, at first around the value that it has now."""
+def choose_slid(world: World, window: Window, slid: Slid, path: str) -> None:
+    """Let a slider of the page change another quantity, at first around the value with which it begins."""
     slid.path, slid.refused = path, ""
     if not path:
         return
-    low, high, _ = span_around(world, path)
-    slid.span = f"{low:.6g}:{high:.6g}:{_VALUES}"
+    low, high, _ = span_around(world, window, window.sharing.begins, path)
+    slid.span = f"{low:.3g}:{high:.3g}:{_VALUES}"
 
 
-def span_around(world: World, path: str) -> tuple[float, float, str]:
-    """Return half and one and a half of the value of a field, as far as it may be so, and its unit."""
+def span_around(world: World, window: Window, begins: str, path: str) -> tuple[float, float, str]:
+    """Return half and one and a half of a field's first value, as far as it may be so, and its unit."""
     name, kind, spec, part = parse_path(path)
     entity = next(entity for entity, known in _names(world).items() if known == name)
-    value = getattr(world.component(entity or 0, COMPONENTS[kind]), spec.name)
+    with gone_back(window, begins):
+        value = getattr(world.component(entity or 0, COMPONENTS[kind]), spec.name)
     now = getattr(value, part) if part else value
     low, high = sorted((0.5 * now, 1.5 * now)) if now else (0.0, 5.0)
     return max(low, spec.lowest), min(high, spec.highest), spec.unit

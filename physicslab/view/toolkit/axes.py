@@ -1,35 +1,68 @@
 """The axes of a plot in the language of the window."""
 
-import ctypes
+import math
+from collections.abc import Iterator
 
-from imgui_bundle import implot
+from imgui_bundle import imgui, implot
 
 from physicslab.languages.language import Language
+from physicslab.view.canvas.quantities import rounded_up
 
 _AXES = 3
 """Axes that a plot may have in each direction."""
+_ROUNDING = 1e-9
+"""Share of a step by which a tick may lie beyond an end."""
+_APART = (3.5, 1.6)
+"""Least distance between ticks across and along, in heights of the text."""
 
 
 def finish_axes(language: Language) -> list[str]:
     """End the set-up of a plot's axes: their ticks have the decimal mark of a language.
 
-    ImPlot formats the numbers itself and Python can give it no formatter, so the mark is put into the
-    finished texts; one of several bytes in UTF-8 would not fit there, and leaves them as they are.
+    ImPlot writes the numbers of its own ticks with a point, so in other languages the ticks are given to it.
 
     Returns
     -------
     list of str
-        The texts of the ticks that are shown.
+        The texts of the ticks that are drawn.
     """
+    plot, size = implot.internal.get_current_plot(), imgui.get_font_size()
+    axes = {
+        implot.ImAxis_(n + _AXES * is_vertical): plot.y_axis(n) if is_vertical else plot.x_axis(n)
+        for n in range(_AXES)
+        for is_vertical in (False, True)
+    }
+    used = {name: axis for name, axis in axes.items() if axis.enabled}
+    if language.say(".") != ".":
+        for name, axis in used.items():
+            if axis.show_default_ticks:
+                most = max(round(axis.pixel_size() / (size * _APART[axis.vertical])), 2)
+                low, high = axis.range.min, axis.range.max
+                is_log = axis.scale == implot.Scale_.log10
+                ticks = dict(_powers(low, high) if is_log else _ticks(low, high, most))
+                implot.setup_axis_ticks(name, list(ticks), [language.decimal(one) for one in ticks.values()])
     implot.setup_finish()
-    plot = implot.internal.get_current_plot()
-    axes = [axis for n in range(_AXES) for axis in (plot.x_axis(n), plot.y_axis(n)) if axis.enabled]
-    mark = language.say(".").encode()
-    shown: list[str] = []
-    for axis in axes:
-        letters = axis.ticker.text_buffer.buf
-        if mark != b"." and len(mark) == 1:
-            text = ctypes.string_at(letters.data_address(), letters.size())
-            ctypes.memmove(letters.data_address(), text.replace(b".", mark), len(text))
-        shown += [axis.ticker.get_text(n) for n in range(axis.ticker.tick_count())]
-    return shown
+    return [axis.ticker.get_text(n) for axis in used.values() for n in range(axis.ticker.tick_count())]
+
+
+def _ticks(low: float, high: float, most: int) -> Iterator[tuple[float, str]]:
+    """Yield up to so many round numbers within a range, and their texts.
+
+    >>> [text for _, text in _ticks(-0.21, 0.4, 4)], [text for _, text in _ticks(-12.5, -12.4989, 3)]
+    (['-0.2', '0', '0.2', '0.4'], ['-12.5', '-12.4995', '-12.499'])
+    """
+    if not (math.isfinite(high - low) and high > low):
+        return
+    step = rounded_up((high - low) / most)
+    for k in range(math.ceil(low / step - _ROUNDING), math.floor(high / step + _ROUNDING) + 1):
+        yield k * step, f"{k * step:.7g}"
+
+
+def _powers(low: float, high: float) -> Iterator[tuple[float, str]]:
+    """Yield the powers of ten within a range, and their texts.
+
+    >>> [text for _, text in _powers(0.02, 250.0)]
+    ['0.1', '1', '10', '100']
+    """
+    for power in range(math.ceil(math.log10(low)), math.floor(math.log10(high)) + 1):
+        yield 10.0**power, f"{10.0**power:g}"

@@ -241,10 +241,14 @@ class Ui(Windows):
             if is_open:
                 imgui.end_popup()
 
+    def button_width(self, words: str) -> float:
+        """Return how wide a button with such words is [px]."""
+        return self.width(words) + 2.0 * float(imgui.get_style().frame_padding.x)
+
     def same_line_if_room(self, label: str, end: float | None = None) -> None:
         """Go on in the same line where there is room for a button with such words, up to an ``end`` [px]."""
         imgui.same_line()
-        needed = self.width(label) + 2.0 * imgui.get_style().frame_padding.x
+        needed = self.button_width(label)
         room = imgui.get_content_region_avail().x if end is None else end - imgui.get_cursor_pos_x()
         if room < needed:
             imgui.new_line()

@@ -11,7 +11,7 @@ from physicslab.languages.sentence import Sentence
 from physicslab.lessons.check import Row, row_of
 from physicslab.lessons.lesson import Compare
 from physicslab.lessons.setup import AS_IT_IS, Case
-from physicslab.lessons.words import formula
+from physicslab.lessons.words import condition, formula
 from physicslab.state.masses import Diverged
 from physicslab.view.canvas.quantities import percentage, quantity, round_quantity, written_unit
 from physicslab.view.controls import lesson_actions
@@ -22,6 +22,9 @@ from physicslab.view.workbench.lesson_plots import plot_compared
 RIGHT, WRONG, RUN = "\uf00c", "\uf00d", "\uf04b"
 """Icons of a right answer, a wrong one, and of a run."""
 
+_COUNTS = 1e6
+"""Whole numbers below this are written with all their figures."""
+
 type Rows = dict[tuple[str, object, int], Row | str]
 """Rows that were measured, or why they could not be, by comparison, values and run."""
 
@@ -30,7 +33,9 @@ def build_compare(ui: Ui, lesson: OpenLesson, part: Compare, rows_of: Rows) -> N
     """Build theory beside the runs in a table, a row a case, and as a graph where there are several."""
     own = language(lesson.lesson.language)
     ui.text(f"Theory: {formula(own, part.theory.text)}", wrapped=True)
-    ui.faint(f"It holds for {formula(own, part.holds.text)}")
+    domain = condition(own, part.holds.text)
+    holds = Sentence("It holds for {domain}", domain=domain)
+    ui.faint(Sentence("It holds always") if part.holds.text == "always" else holds)
     tried = lesson.own_cases(part.run)
     cases = list(dict.fromkeys((AS_IT_IS, *part.cases, *part.fails, *tried)))
     rows = [_row(rows_of, lesson, part, case) for case in cases]
@@ -80,7 +85,7 @@ def _build_row(
     imgui.table_next_column()
     if predicted is not None:
         if case is AS_IT_IS and isinstance(row, Row):
-            ui.text(quantity(predicted, written_unit(row.unit)), wrapped=True)
+            ui.text(_figure(predicted, row.unit), wrapped=True)
         imgui.table_next_column()
     if row is None:
         button, tip = f"Run {part.name} {number}", f"Run it with {values}"
@@ -90,20 +95,31 @@ def _build_row(
     if isinstance(row, str):
         ui.text(row, ui.theme.error, wrapped=True)
         return
-    unit = written_unit(row.unit)
-    ui.text(quantity(row.theory, unit).strip(), wrapped=True)
+    ui.text(_figure(row.theory, row.unit), wrapped=True)
     imgui.table_next_column()
-    ui.text(quantity(row.measured, unit).strip(), wrapped=True)
+    ui.text(_figure(row.measured, row.unit), wrapped=True)
     imgui.table_next_column()
     apart = row.gap if row.absolute else abs(row.measured - row.theory)
     is_share = not (row.absolute or math.isinf(row.gap))  # nothing is a share of zero
-    gap = percentage(row.gap) if is_share else quantity(apart, unit).strip()
+    gap = percentage(row.gap) if is_share else _figure(apart, row.unit)
     if "·" in gap:  # one figure says how small it is, and fits a narrow column
-        gap = round_quantity(100.0 * row.gap, "%") if is_share else round_quantity(apart, unit)
+        small = (100.0 * row.gap, "%") if is_share else (apart, written_unit(row.unit))
+        gap = round_quantity(*small)
     near = row.gap <= row.tolerance
     mark, colour = (RIGHT, ui.theme.accent) if near else (WRONG, ui.theme.error)
     ui.text(f"{mark}\u00a0{gap}", colour, wrapped=True)
     ui.tip(_gap_words(row, near=near))
+
+
+def _figure(value: float, unit: str) -> str:
+    """Return a number in a unit as a table has it; a count has no decimals.
+
+    >>> _figure(31.0, ""), _figure(90.0, "deg"), _figure(0.25, "m/s")
+    ('31', '90.00°', '0.2500 m/s')
+    """
+    if not unit and value.is_integer() and abs(value) < _COUNTS:
+        return f"{value:.0f}"
+    return quantity(value, written_unit(unit)).replace(" °", "°").strip()
 
 
 def _predicted(lesson: OpenLesson, part: Compare) -> float | None:

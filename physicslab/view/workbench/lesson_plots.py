@@ -52,7 +52,10 @@ def plot_run(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
             continue
         shown = zip((curve.against, curve.along), units, strict=True)
         labels = [_with_unit(_plain(one), unit) for one, unit in shown]
-        if _begin(ui, f"{trial.run.name} {n}", labels[0], labels[1], legend=_has_more(lesson, trial, curve)):
+        flags = _FLAGS if _has_more(lesson, trial, curve) else _FLAGS | implot.Flags_.no_legend
+        if units == ["m", "m"]:  # a path looks as it is in the world: a right angle is one
+            flags |= implot.Flags_.equal
+        if _begin(ui, f"{trial.run.name} {n}", labels[0], labels[1], flags):
             _plot_lines(ui, lesson, trial, curve)
             implot.end_plot()
 
@@ -130,6 +133,8 @@ def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predic
 def _plain(expression: Expression) -> str:
     """Return the words for an expression: of a quantity as the window calls it, and whose it is."""
     owner = expression.text.partition(".")[0]
+    if owner == "time":
+        return Sentence("time")
     try:
         entity, name = quantity_of(expression.text, [owner])
     except InvalidText:
@@ -143,11 +148,10 @@ def _with_unit(words: str, unit: str) -> str:
     return Sentence("{what} [{unit}]", what=words, unit=unit) if unit else words
 
 
-def _begin(ui: Ui, name: str, across: str, along: str, *, legend: bool = True) -> bool:
+def _begin(ui: Ui, name: str, across: str, along: str, flags: int = _FLAGS) -> bool:
     """Begin a graph with what it shows written above it."""
     implot.get_style().plot_padding = ImVec2(0.3 * ui.size, 0.3 * ui.size)
     ui.faint(along, wrapped=False)
-    flags = _FLAGS if legend else _FLAGS | implot.Flags_.no_legend
     if not implot.begin_plot(f"##{name}", ImVec2(-1.0, _HEIGHT * ui.size), flags):
         return False
     fit = implot.AxisFlags_.auto_fit
@@ -217,7 +221,8 @@ class CurveField:
     def _build_text(self, ui: Ui, part: Question, end: float) -> None:
         """Build the field in which points are typed: who has no mouse draws with it."""
         ui.faint("or type it, time and value: 0 1; 0.5 0.7; 1 0", wrapped=False)
-        text, _ = ui.field(f"Points {part.name}", self._text, -3.5 * ui.size)
+        room = ui.button_width("Clear") + imgui.get_style().item_spacing.x
+        text, _ = ui.field(f"Points {part.name}", self._text, -room)
         if text != self._text:
             self._text, self._refusal = text, ""
             try:

@@ -49,7 +49,7 @@ def build_maker(ui: Ui, world: World, window: Window) -> None:
         imgui.same_line()
         ui.faint("seconds", wrapped=False)
         _say(ui, refused, ("run", "seconds"))
-        _build_opened(ui, world, making, refused)
+        _build_opened(ui, world, window, refused)
         _build_prediction(ui, world, making, refused)
         ui.rule(0.2)
         _build_field(ui, making, refused, "Theory", "theory", "A formula, or nothing: sqrt(2*height/gravity)")
@@ -72,9 +72,9 @@ def build_maker(ui: Ui, world: World, window: Window) -> None:
         )
 
 
-def _build_opened(ui: Ui, world: World, making: Making, refused: dict[tuple[str, str], str]) -> None:
+def _build_opened(ui: Ui, world: World, window: Window, refused: dict[tuple[str, str], str]) -> None:
     """Build what learners may change."""
-    draft = making.draft
+    draft = window.making.draft
     for n, opened in enumerate(draft.opened, start=1):
         _begin(ui, "They may change" if n == 1 else "and")
         path = ui.choice(
@@ -82,7 +82,7 @@ def _build_opened(ui: Ui, world: World, making: Making, refused: dict[tuple[str,
             shown=words_of(opened.path),
         )  # fmt: skip
         if path != opened.path:
-            actions.choose_opened(world, draft, opened, path)
+            window.do_next(actions.choose_opened, opened, path)
         if opened.path:
             imgui.same_line()
             ui.faint("called", wrapped=False)

@@ -50,7 +50,7 @@ def _build_run(ui: Ui, world: World, window: Window) -> None:
             width=_QUANTITY * size, shown=share_actions.words_of(slid.path),
         )  # fmt: skip
         if path != slid.path:
-            share_actions.choose_slid(world, slid, path)
+            window.do_next(share_actions.choose_slid, slid, path)
         if slid.path:
             imgui.same_line()
             before = slid.span
