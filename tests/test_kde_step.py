@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pygame
 import pytest
-from desk import SETTLED, Desk, empty_world, tap, write
+from desk import SETTLED, Desk, empty_world, sized, tap, write
 
 from physicslab import World, cli
 from physicslab.components import (
@@ -297,13 +297,22 @@ def test_a_long_note_stands_whole_in_the_description(file: Path) -> None:
     assert note.endswith(" ...") and len(note) <= 400 and words in world.description
 
 
+def test_a_note_keeps_its_paragraphs_which_the_window_breaks_into_lines(file: Path) -> None:
+    words = "A particle that leaves the drop is slower than it was within"
+    world, _ = opened(file, item(5, "Note", text=f"&lt;p&gt;{words}&lt;/p&gt;&lt;p&gt;- it cools&lt;/p&gt;"))
+    assert world.component(world.entity("Note5"), Note).text.splitlines() == [words, "- it cools"]
+
+
 def test_losses_are_named_in_the_description_too(file: Path) -> None:
     world, losses = opened(file, item(2, "Warp", speed=9), timeScale=100)
     assert losses == [
         'Warp "Warp2" (line 5): there is no "Warp"',
         "timeScale 100: the window chooses how fast time goes",
     ]
-    assert world.description.splitlines() == ["Not taken from the Step file:", *losses]
+    lines = ["Not taken from the Step file:", *losses]
+    assert world.description.splitlines() == lines
+    desk = sized((1280, 720), world)
+    assert set(lines) <= set(desk.ui.words), "each in a line of the panel"
 
 
 LAUGHS = (

@@ -16,7 +16,9 @@ from physicslab.files.scene import load_scene
 from physicslab.languages.catalogue import FOLDER, SOURCE, languages, messages, translations
 from physicslab.languages.language import Language, language
 from physicslab.lessons.catalogue import find_lesson
+from physicslab.lessons.lesson import Question
 from physicslab.lessons.worksheet import worksheet
+from physicslab.view.controls.lesson_actions import go_to_step, open_lesson
 from physicslab.view.controls.tools import PALETTE
 
 PACKAGE = Path(physicslab.__path__[0])
@@ -94,7 +96,7 @@ class Pseudo(Doubled):
         return message if all(word[::2] == word[1::2] for word in words) else super().gettext(message)
 
 
-@pytest.mark.parametrize("keys", [(), ("f1",), ("f3",), ("z",), ("ctrl+k",)])
+@pytest.mark.parametrize("keys", [(), ("f1",), ("f3",), ("z",), ("ctrl+k",), ("ctrl+l",)])
 def test_texts_twice_as_long_keep_widgets_apart_and_within_the_window(
     keys: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -112,6 +114,41 @@ def test_texts_twice_as_long_keep_widgets_apart_and_within_the_window(
     ]
     assert all(one.inflate(-2, -2).collidelist([two for two in fixed if two is not one]) < 0 for one in fixed)
     assert all(desk.ui.places[tool.title][2] > 100 for tool in PALETTE)
+
+
+PREDICTED: dict[str, dict[str, object]] = {
+    "choice": {"choice": 1},
+    "number": {"value": "1"},
+    "curve": {"curve": [[0.0, 1.0], [1.0, 1.0]]},
+}
+
+
+@pytest.mark.parametrize("name", ["terminal_velocity", "billiards"])
+def test_texts_twice_as_long_stay_within_the_panel_of_a_lesson(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    pseudo = Language("qps", Pseudo())
+    monkeypatch.setattr("physicslab.view.workbench.interface.language", lambda code: pseudo)
+    desk = sized((1280, 720))
+    desk.window.do_next(open_lesson, name)
+    desk.frames(SETTLED)
+    lesson = desk.window.lesson
+    assert lesson is not None and "YYoouurr nnaammee" in desk.ui.words
+    seen = 0
+    for step in range(len(lesson.lesson.steps)):
+        desk.window.do_next(go_to_step, step)
+        desk.frames(SETTLED)
+        for part in lesson.shown(step):
+            if isinstance(part, Question) and part.kind == "predict":
+                found = [place for label, place in desk.ui.places.items() if part.name in label]
+                assert found and all(x >= 0 and x + width <= 1280 for x, _, width, _ in found), part.name
+                assert not lesson.answer(part.name, part, {**PREDICTED[part.form], "sure": "sure"})
+                seen += 1
+        desk.frames(SETTLED)
+        outside = [label for label, (x, _, width, _) in desk.ui.places.items() if x < 0 or x + width > 1280]
+        assert not outside
+    assert seen >= 3
 
 
 @pytest.mark.parametrize("code", languages()[1:])

@@ -104,7 +104,7 @@ def test_a_notice_covers_no_moving_body(x: float, aside: bool, monkeypatch: pyte
     assert (abs(pause.centerx - (left + width // 2)) > 20) == aside
 
 
-def test_more_sky_than_ground_is_shown_of_a_world_that_stands_on_ground() -> None:
+def test_more_sky_than_ground_is_shown_where_bodies_fall_down() -> None:
     """In a narrow room as much was seen below the ground as above the walls."""
     for down in (-9.81, 9.81):
         desk = sized((800, 600), empty_world(bounds=(-6.0, 0.0, 6.0, 6.0), gravity=(0.0, down)))

@@ -272,13 +272,32 @@ def test_keys_alone_answer_a_prediction(desk: Desk) -> None:
         tap(desk, "f6")
         if "Lesson" in desk.sandbox.interface._walk._panel:
             break
-    for label in ("faster: faster and faster", "Sure faster: sure", "Lock in faster"):
+    tab_to(desk, "faster: faster and faster", "Sure faster: sure", "Lock in faster")
+    assert lesson.given["faster"] == {"choice": 2, "sure": "sure"}
+    desk.frames(SETTLED)
+    assert desk.ui.focused == "Answer speed", "the keys go on to what has opened"
+    write(desk, "1")
+    tab_to(desk, "Sure speed: sure", "Lock in speed")
+    while desk.ui.focused != "Points path":
+        tap(desk, "tab")
+    write(desk, "0 1; 0.1 1")
+    tab_to(desk, "Sure path: sure", "Lock in path")
+    desk.frames(SETTLED)
+    assert desk.ui.focused == "Run fall"
+    tap(desk, "return")
+    desk.frames(SETTLED)
+    assert lesson.running or lesson.trial is not None
+
+
+def tab_to(desk: Desk, *labels: str) -> None:
+    """Go on by Tab to some widgets in turn, and press Enter on each."""
+    for label in labels:
         for _ in range(12):
             if desk.ui.focused == label:
                 break
             tap(desk, "tab")
+        assert desk.ui.focused == label
         tap(desk, "return")
-    assert lesson.given["faster"] == {"choice": 2, "sure": "sure"}
 
 
 def test_a_file_of_a_lesson_is_dropped_and_a_bad_one_is_refused(desk: Desk, tmp_path: Path) -> None:

@@ -85,3 +85,9 @@ def test_a_tip_lies_beside_the_panel_that_it_is_for() -> None:
     tips = [window for window in imgui.get_current_context().windows if "Tooltip" in window.name]
     (tip,) = (window for window in tips if window.active)
     assert tip.pos.x + tip.size.x <= desk.sandbox.interface.layout.side[0] + 1
+
+
+def test_an_energy_below_zero_is_named_so_beside_its_colour() -> None:
+    """It was called "-potential", as if there were a second kind of energy."""
+    desk = sized((1280, 720), load_scene("solar_system"))
+    assert {"kinetic", "potential < 0"} <= set(desk.ui.words)

@@ -1,6 +1,5 @@
 """Step's notes, graphs, meters, controllers and tracers as those of the workbench."""
 
-import textwrap
 from collections.abc import Callable, Mapping
 from html.parser import HTMLParser
 
@@ -12,8 +11,6 @@ from physicslab.ecs.text import is_line
 from physicslab.files.kde_step.draft import Draft
 from physicslab.files.kde_step.item import Item
 
-_WIDTH = 48
-"""Characters of a line of a note, about as in Step."""
 _TRACE_S = 60.0
 """How far back a tracer goes [s]; Step's go back to the beginning."""
 _NOTE = {spec.name: spec for spec in Note.FIELDS}["text"]
@@ -83,7 +80,7 @@ def plain_text(html: str) -> str:
 def take_note(item: Item, draft: Draft) -> None:
     """Take a note; one that is too long is cut, and stands whole in the description of the scene."""
     text = plain_text(item.text("text"))
-    lines = [part for line in text.splitlines() for part in textwrap.wrap(line, _WIDTH) or [""]]
+    lines = text.splitlines()
     shown = "\n".join(lines[: _NOTE.lines])
     if len(lines) > _NOTE.lines or len(shown) > _NOTE.longest:
         shown = shown[: _NOTE.longest - 4].rstrip() + " ..."

@@ -56,17 +56,16 @@ def is_in_space(world: World) -> bool:
     return world.physics.gravity_mode == "planet"
 
 
-def has_ground(world: World) -> bool:
-    """Whether bodies fall to the lower end of the world: all below it is ground."""
-    physics = world.physics
-    return physics.bounds is not None and physics.gravity_mode == "linear" and physics.gravity.y < 0.0
+def falls_down(world: World) -> bool:
+    """Whether bodies fall downwards: below the world's end is ground, and above it there is more to see."""
+    return world.physics.gravity_mode == "linear" and world.physics.gravity.y < 0.0
 
 
 def draw_backdrop(world: World, camera: Camera, theme: Theme, canvas: Canvas, *, grid: bool) -> None:
     """Begin a picture with what is behind all bodies; it is kept while the camera stands still."""
     physics = world.physics
     in_space = is_in_space(world)
-    grounded = has_ground(world)
+    has_ground = falls_down(world)
 
     def draw() -> None:
         if in_space and theme.is_dark:
@@ -76,9 +75,9 @@ def draw_backdrop(world: World, camera: Camera, theme: Theme, canvas: Canvas, *,
             canvas.clear(theme.sky_top, theme.sky_bottom, theme.grain)
         if grid:
             draw_grid(camera, theme, canvas)
-        _draw_bounds(physics.bounds, grounded, camera, theme, canvas)
+        _draw_bounds(physics.bounds, has_ground, camera, theme, canvas)
 
-    canvas.keep((camera.centre, camera.scale, theme.name, grid, in_space, grounded, physics.bounds), draw)
+    canvas.keep((camera.centre, camera.scale, theme.name, grid, in_space, has_ground, physics.bounds), draw)
 
 
 _STARS, _LARGEST_SKY = 3000, 4096.0

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas, Rect
-from physicslab.view.picture.backdrop import has_ground
+from physicslab.view.picture.backdrop import falls_down
 from physicslab.view.picture.extent import extent_of
 from physicslab.world import World
 
@@ -13,7 +13,7 @@ _AROUND = 0.04
 """Room left around the world, as a share of what the panels leave."""
 
 _SKY = 0.25
-"""Share of the height that is left over by which a world that stands on ground is lower than the middle."""
+"""Share of the height that is left over by which a world is lower than the middle where bodies fall down."""
 
 
 class Framing:
@@ -88,7 +88,7 @@ class Framing:
         else:
             scale = min(self._camera.fitting_scale(extent, room, _AROUND), largest_scale)
             self._camera.look_at(extent, scale, room)
-            if has_ground(world):
+            if falls_down(world):
                 spare = (1.0 - 2.0 * _AROUND) * room[3] - (extent[3] - extent[1]) * self._camera.scale
                 self._camera.pan(0.0, _SKY * max(spare, 0.0))
         self._shown = (self._camera.centre, self._camera.scale, largest_scale, view)

@@ -30,8 +30,8 @@ class AboutPanel:
             return
         ui.heading(world.title or world.name or "Untitled scene")
         begun = self._is_clicked(ui)
-        if world.description:
-            ui.faint(world.description)
+        for line in world.description.splitlines():
+            ui.faint(line)
             begun = self._is_clicked(ui) or begun
         words = f"{ICONS['note']}  Title and notes"
         if ui.button("Title and notes", "Write what the scene is called and what it is about", shown=words):

@@ -88,12 +88,17 @@ class LessonPanel:
     def _build_step(self, ui: Ui, window: Window, lesson: OpenLesson) -> None:
         """Build the parts of a step as far as they are open, and what leads on."""
         step, parts = lesson.lesson.steps[lesson.step], lesson.shown(lesson.step)
+        by_keys = imgui.get_io().nav_visible and imgui.is_window_focused()
+        if by_keys and lesson.step != self._step >= 0:
+            imgui.set_keyboard_focus_here()  # the button that led here is gone
         if step.heading:
             ui.heading(step.heading)
         for n, part in enumerate(parts):
             ui.gap(0.3)
             if n == self._parts > 0 and not isinstance(parts[n - 1], Run):
                 imgui.set_scroll_here_y(0.1)
+                if by_keys:
+                    imgui.set_keyboard_focus_here()
             self._build_part(ui, window, lesson, part)
             if isinstance(part, Run) and n + 1 == self._parts < len(parts):
                 imgui.set_scroll_here_y(0.7)  # what is said to the predictions stays in sight
@@ -255,7 +260,9 @@ class LessonPanel:
     def _build_run(self, ui: Ui, window: Window, lesson: OpenLesson, part: Run) -> None:
         own = language(lesson.lesson.language)
         if part.seconds is not None:
-            _title(ui, RUN, Sentence("Run for {time}", time=formula(own, part.seconds.text)))
+            text = part.seconds.text
+            time = formula(own, text if any(map(str.isalpha, text)) else f"{text} s")
+            _title(ui, RUN, Sentence("Run for {time}", time=time))
         elif part.until is not None:
             _title(ui, RUN, Sentence("Run until {condition}", condition=formula(own, part.until.text)))
         trial, is_open = lesson.trial, lesson.open_to(part)

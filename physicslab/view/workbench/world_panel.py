@@ -182,7 +182,7 @@ def _write_names(ui: Ui, parts: Sequence[Part]) -> None:
     imgui.push_font(None, _LABEL * ui.size)
     radius = _SPOT * ui.size
     for n, part in enumerate(parts):
-        words = ui.said(part.name) if part.energy >= 0.0 else f"-{ui.said(part.name)}"
+        words = ui.said(part.name) if part.energy >= 0.0 else f"{ui.said(part.name)} < 0"
         needed = ui.width(words) + 3.5 * radius
         if n:
             imgui.same_line(spacing=0.7 * ui.size)
