@@ -18,6 +18,7 @@ from physicslab.components import Mass, Medium, Shape, Transform, Velocity
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.files.checks import SceneError
 from physicslab.integrators import INTEGRATORS
 from physicslab.kernels import Numbers, kernel
@@ -56,11 +57,11 @@ def float_in(world: World, shape: Shape, y: float, mass: float, **how: Any) -> i
 
 
 @kernel
-def _immersed(numbers: Numbers, psi: float, gx: float, gy: float, size: float) -> None:
+def _immersed(numbers: Numbers, psi: float, gx: float, gy: float, size: float, whole: bool) -> None:
     """Immerse the first outline of ``numbers`` in the second; the sums are behind the room."""
     immersion.immerse(
         numbers, 0, immersion.OUTLINE, 2 * immersion.OUTLINE, 2 * immersion.OUTLINE + immersion.CUTS,
-        psi, gx, gy, size,
+        psi, gx, gy, size, whole,
     )  # fmt: skip
 
 
@@ -79,9 +80,11 @@ def outline(shape: Shape, at: tuple[float, float], angle: float) -> NDArray[np.f
     return made
 
 
-def sums_of(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+def sums_of(
+    one: NDArray[np.float64], other: NDArray[np.float64], *, whole: bool = False
+) -> NDArray[np.float64]:
     numbers = np.concatenate((one, other, np.zeros(immersion.CUTS + immersion.SUMS)))
-    immersed(numbers, 0.0, 0.0, 0.0, 1.0)
+    immersed(numbers, 0.0, 0.0, 0.0, 1.0, whole)
     sums: NDArray[np.float64] = numbers[-immersion.SUMS :]
     return sums
 
@@ -309,6 +312,28 @@ def test_sizes_are_followed_where_there_is_a_medium_and_a_polygon_can_hold_one()
     assert world.bodies.shapes.reach[world.entity_index.row_of[ball]] == 0.4
     assert world.bodies.shapes.vertices.tolist() == [0, 0, 1]
     assert not len(world.contacts.impacts) and world.component(ball, Velocity).linear.y > 0.0
+
+
+@pytest.mark.parametrize(
+    "shape", [Shape.circle(0.3), Shape.box(0.6, 0.2), Shape("capsule", radius=0.1, length=0.4)], ids=str
+)
+def test_what_is_wholly_within_has_the_sums_of_what_is_cut(shape: Shape) -> None:
+    one, sea = outline(shape, (0.4, -0.2), 0.7), outline(Shape.box(4.0, 3.0), (0.0, 0.0), 0.2)
+    assert sums_of(one, sea, whole=True) == pytest.approx(sums_of(one, sea), rel=1e-13, abs=1e-15)
+
+
+def test_a_crowd_floats_by_a_method_of_fixed_steps_as_exact_as_its_contacts() -> None:
+    world = pool(viscosity=1.0, size=(60.0, 20.0))
+    box(world, (0.0, -20.5), width=60.0, height=1.0, static=True)
+    for n in range(120):
+        made = box(world, (1.6 * (n % 30) - 24.0, 1.2 * (n // 30) - 3.0), width=1.0, height=0.6, mass=300.0)
+        world.component(made, Velocity).linear = Vector2(0.1 * (n % 3), 0.0)
+    world.step()
+    before = measure_energy(world).total
+    world.run(seconds=2.0)
+    assert world.plan.split_forces is INTEGRATORS["rk4"] and "many bodies" in world.plan.reason
+    numerical = measure_account(world).energy["numerical"]
+    assert abs(numerical) < 1e-4 * abs(measure_energy(world).total - before)
 
 
 def test_a_medium_that_reaches_no_body_of_a_flow_is_packed_all_the_same() -> None:

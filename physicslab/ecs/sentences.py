@@ -91,6 +91,7 @@ SENTENCES = {
     "magnetic": "the magnetic field turns velocities exactly; steps of omega h = {phase}",
     "many_molecules": "many molecules; {steps} steps of omega h = {phase}",
     "follows_motion": "the step follows the motion",
+    "many_followed": "many bodies; steps of omega h = {phase}",
     "resolved": "steps of omega h = {phase}",
     "contradiction": "joints contradict each other, or a limit: not all of them can be closed",
     "no_forces": "no contact forces keep all laws (Painleve's paradox, or bodies that are jammed)",

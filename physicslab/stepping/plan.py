@@ -44,6 +44,9 @@ _DAMPED_BESIDE_CONTACTS = 1.0
 _CROWD, _RESOLVED_IN_CROWDS = 32, 0.2
 """Number of molecules from which on ``auto`` keeps their energy by leapfrog, and omega h of its steps: the
 energy of 1,000 that collide at once swings by 1e-4 of what is exchanged."""
+_MANY, _FEW_STEPS = 100, 2
+"""Number of bodies from which on ``rk4`` follows forces by velocities beside contacts, if in so few steps:
+300 that float exchange 4e5 J with an error of 0.2 J, in a third of the time of ``dop853``."""
 MAX_STEPS = 1000
 """Largest number of steps of a method that ``auto`` makes of a step of the world."""
 _STIFF = 1.0
@@ -335,7 +338,8 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
     kicks = StepPlan(LEAPFROG, obstacle, substeps, smooth=False, obstacle=obstacle)
     forces = schedule.forces
     moved = schedule.find(IntegrateSystem) is not None
-    if not moved or not sub_integrated_rows(state, forces).any():
+    followed_rows = np.count_nonzero(sub_integrated_rows(state, forces))
+    if not moved or not followed_rows:
         return kicks
     python = schedule.interpreted
     followed = any(sees_velocity_in_python(state, force) for force in forces)
@@ -361,7 +365,12 @@ def _beside_contacts(state: State, schedule: Schedule, obstacle: str) -> StepPla
         method, needed = LEAPFROG, _steps(rate, half, _RESOLVED_IN_CROWDS)
         how = sentence("many_molecules", steps=needed, phase=f"{rate * half / needed:.2g}")
     elif attractors > 1 or _sees_velocity(state, forces) or _why_singular(state, forces):
-        method, needed, how = DOP853, 1, sentence("follows_motion")
+        method, how = DOP853, sentence("follows_motion")
+        bends = all(force.bends or force.why_singular(state) is None for force in forces)
+        if attractors < 2 and bends and followed_rows >= _MANY and needed <= _FEW_STEPS:
+            method, how = RK4, sentence("many_followed", phase=f"{rate * half / needed:.2g}")
+        else:
+            needed = 1
     else:
         method, how = BLANES_MOAN, sentence("resolved", phase=f"{rate * half / needed:.2g}")
     moved_by = sentence("all_bodies") if followed else sentence("sprung_bodies")

@@ -30,6 +30,7 @@ class MediumSystem(ForceSystem):
     potential = "medium"
     rounding = 1e-13
     turns = True
+    bends = True
 
     def attach(self, state: State) -> None:
         """Check that each medium has a Shape and stays where it is.

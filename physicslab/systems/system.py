@@ -186,6 +186,8 @@ class ForceSystem(System):
     """The name under which the energy is reported; ``None`` for a force that stores none."""
     rounding: ClassVar[float] = 0.0
     """The finest tolerance of steps that ``auto`` takes: below it, the force's own rounding shows."""
+    bends: ClassVar[bool] = False
+    """Whether it is continuous where it is not smooth (:meth:`why_singular`): fixed steps miss little."""
     turns: ClassVar[bool] = False
     """Whether a compiled force adds torques, at ``layout.turn``; one in Python may add them in any case."""
 

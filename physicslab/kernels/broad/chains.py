@@ -35,12 +35,14 @@ def add_chains(
     """
     shapes = named_shapes(plain_shapes)
     for n in range(len(chains)):
-        c, first, room = chains[n], shapes.first[chains[n]], fat[4, chains[n]]
+        c, first = chains[n], shapes.first[chains[n]]
         half_x, half_y = shapes.half_x[c], shapes.half_y[c]
         cosine, sine = math.cos(angle[c]), math.sin(angle[c])
         for i in range(len(inverse_mass)):
             if not (inverse_mass[i] > 0.0 and shapes.vertices[i] > 0):
                 continue
+            # A margin is a share of the reach, and that of a chain is long; points go by the smaller body.
+            room = min(fat[4, c], fat[4, i])
             left, low = boxes[i, 0] - position[c, 0] - room, boxes[i, 1] - position[c, 1] - room
             right, high = boxes[i, 2] - position[c, 0] + room, boxes[i, 3] - position[c, 1] + room
             px, py = half_x * shapes.pool[first, 0], half_y * shapes.pool[first, 1]

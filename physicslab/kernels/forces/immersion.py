@@ -180,9 +180,9 @@ def _add_arc(
 @inlined
 def _walk(
     one: Any, a: int, other: Any, b: int, cuts: Any, at: int, sums: Any, to: int, psi: float, gx: float,
-    gy: float, same: float, own: bool,
+    gy: float, same: float, own: bool, whole: bool,
 ) -> None:  # fmt: skip
-    """Add those parts of the outline at ``a`` that are within the one at ``b``."""
+    """Add those parts of the outline at ``a`` that are within the one at ``b``: all, if it is whole."""
     n, r = int(one[a]), one[a + 1]
     for piece in range(2 * n):
         k = piece // 2
@@ -196,13 +196,13 @@ def _walk(
             span = math.atan2(abs(lx * dy - ly * dx), lx * dx + ly * dy) if n > 1 else 2.0 * math.pi
             if span <= 0.0:
                 continue
-            count = _cut_piece(other, b, cuts, at, x, y, 0.0, 0.0, r, start, span)
+            count = 0 if whole else _cut_piece(other, b, cuts, at, x, y, 0.0, 0.0, r, start, span)
         else:
             length = math.sqrt(dx * dx + dy * dy)
             if length == 0.0:
                 continue
             x, y = x + r * dy / length, y - r * dx / length
-            count = _cut_piece(other, b, cuts, at, x, y, dx, dy, 0.0, 0.0, 1.0)
+            count = 0 if whole else _cut_piece(other, b, cuts, at, x, y, dx, dy, 0.0, 0.0, 1.0)
         low = 0.0
         for cut in range(count + 1):
             high = cuts[at + cut] if cut < count else 1.0
@@ -210,23 +210,28 @@ def _walk(
             if piece % 2 == 0:
                 angle = start + middle * span
                 nx, ny = math.cos(angle), math.sin(angle)
-                if share > 0.0 and _is_within(other, b, x + r * nx, y + r * ny, nx, ny, same, own):
+                if whole or (share > 0.0 and _is_within(other, b, x + r * nx, y + r * ny, nx, ny, same, own)):
                     _add_arc(sums, to, x, y, r, start + low * span, share * span, psi, gx, gy, own)
-            elif share > 0.0 and _is_within(other, b, x + middle * dx, y + middle * dy, dy, -dx, same, own):
+            elif whole or (
+                share > 0.0 and _is_within(other, b, x + middle * dx, y + middle * dy, dy, -dx, same, own)
+            ):
                 _add_line(sums, to, x + low * dx, y + low * dy, share * dx, share * dy, psi, gx, gy, own)
             low = high
 
 
 @inlined
 def immerse(
-    outlines: Any, a: int, b: int, cuts: int, to: int, psi: float, gx: float, gy: float, size: float
-) -> None:
+    outlines: Any, a: int, b: int, cuts: int, to: int, psi: float, gx: float, gy: float, size: float,
+    whole: bool,
+) -> None:  # fmt: skip
     """Set the :data:`SUMS` at ``to`` for the outline at ``a`` within the one at ``b``, of about one ``size``.
 
+    Where the ``whole`` of it is known to be within, nothing is cut, and the other outline has no part of it.
     ``cuts`` is room for :data:`CUTS` numbers. The linear function is psi + gx x + gy y.
     """
     for k in range(SUMS):
         outlines[to + k] = 0.0
     same = _SAME * size
-    _walk(outlines, a, outlines, b, outlines, cuts, outlines, to, psi, gx, gy, same, True)
-    _walk(outlines, b, outlines, a, outlines, cuts, outlines, to, psi, gx, gy, same, False)
+    _walk(outlines, a, outlines, b, outlines, cuts, outlines, to, psi, gx, gy, same, True, whole)
+    if not whole:
+        _walk(outlines, b, outlines, a, outlines, cuts, outlines, to, psi, gx, gy, same, False, False)

@@ -69,7 +69,7 @@ def medium(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-d
                 place_outline(parameters, own + 1, 0.0, 0.0, q[turn], parameters, near)
                 placed = True
             psi = gx * x + gy * y - parameters[at + LEVEL]
-            immerse(parameters, near, region, cuts, sums, psi, gx, gy, reach)
+            immerse(parameters, near, region, cuts, sums, psi, gx, gy, reach, away <= -reach)
             area, mx, my = parameters[sums + AREA], parameters[sums + MX], parameters[sums + MY]
             rho, length = parameters[at + DENSITY], parameters[sums + LENGTH]
             fx, fy = -rho * area * gx, -rho * area * gy
