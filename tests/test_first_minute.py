@@ -12,6 +12,8 @@ from physicslab.components import Mass, Shape, Spring, Transform, Velocity
 from physicslab.desktop.preferences import load_preferences, save_preferences
 from physicslab.languages.language import language
 from physicslab.view.controls import commands
+from physicslab.view.controls.file_actions import open_from_list
+from physicslab.view.controls.saving import scene_words
 from physicslab.view.controls.tour import STEPS
 from physicslab.view.window.tour import Tour
 from physicslab.view.window.window import Window
@@ -189,6 +191,9 @@ def test_another_language_is_found_by_its_own_name() -> None:
     tap(desk, "return")
     desk.frames(SETTLED)
     assert desk.window.language == "de" and "Datei" in desk.ui.words
+    desk.window.do_next(open_from_list, source="drop")
+    desk.frames(SETTLED)
+    assert scene_words(desk.world, desk.window) == "Ein Ball auf dem Boden"
 
 
 @pytest.mark.parametrize(

@@ -51,6 +51,7 @@ def test_ticks_have_the_decimal_mark_of_the_language(desk: Desk) -> None:
     assert any("," in one for one in german) and not any("." in one for one in german)
     assert len(set(german)) > 5
     assert "Zeit [s]" in desk.ui.words
+    assert any(one.startswith("Diagramm 1: ") for one in desk.ui.words)
 
 
 def ticks(desk: Desk) -> list[str]:

@@ -8,6 +8,7 @@ from physicslab.ecs.text import printable
 from physicslab.files.listing import is_scene
 from physicslab.files.replace import create_file, reason_of, replace_file
 from physicslab.files.scene import SceneError, file_stem, is_step, scene_bytes
+from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
 from physicslab.prefabs import box
 from physicslab.scenes import SCENES
@@ -50,6 +51,7 @@ def scene_words(world: World, window: Window) -> str:
         return window.lesson.lesson.title
     file = window.scenes.source.name if isinstance(window.scenes.source, Path) else ""
     title = world.title or ("" if file else world.name or "Untitled scene")
+    title = language(window.language).reword(title) if title else ""
     named = f"{title} ({file})" if title and file else title or file
     return f"{_UNSAVED} {named}" if window.has_unsaved else named
 

@@ -10,6 +10,7 @@ from physicslab.diagnostics.fits import Fit
 from physicslab.diagnostics.quantities import Reading
 from physicslab.ecs.component import Component
 from physicslab.history import History
+from physicslab.languages.sentence import Sentence
 from physicslab.view.window.fitting import Fitting
 from physicslab.view.window.record import Key, PastSamples, Record
 from physicslab.world import World
@@ -226,7 +227,7 @@ class Dashboard:
 
     def label(self, body: int | None) -> str:
         """Return what is written for a body, or for the world."""
-        return "World" if body is None else self.labels.get(body, f"entity {body}")
+        return Sentence("World") if body is None else self.labels.get(body, f"entity {body}")
 
     def step_at(self, time: float) -> int | None:
         """Return the step of the history after which it was a recorded moment, the nearest to a time."""

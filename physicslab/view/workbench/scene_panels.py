@@ -11,7 +11,6 @@ from physicslab.diagnostics.fits import FITS
 from physicslab.ecs.sentences import listed
 from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.canvas import Rect
-from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
@@ -63,14 +62,14 @@ class GraphPanels:
 
     def _build(self, ui: Ui, world: World, window: Window, graph: GraphShown) -> float | None:
         """Build one; return the time under the cursor, if the cursor is in its plot."""
-        entity, title = graph.entity, _title(graph, window)
+        entity, title = graph.entity, ui.said(_title(graph, window))
         is_sent, self._sides[entity] = self._sides[entity] != graph.side, graph.side
         ui.stand_beside(owner_of(entity), graph.side, _SHARE, _LEAST[graph.side == "right"], again=is_sent)
         room = imgui.get_io().display_size
         imgui.set_next_window_size(ImVec2(_SIZE[0] * ui.size, _SIZE[1] * ui.size), ui.once)
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
         shown, stays = imgui.begin(widget_label(f"{title} ", f"graph {entity}"), True, _FLAGS)
-        ui.words.append(drawable(title))
+        ui.words.append(title)
         ui.raise_tab()
         hovered: float | None = None
         place, size = imgui.get_window_pos(), imgui.get_window_size()
@@ -198,7 +197,7 @@ def _title(graph: GraphShown, window: Window) -> str:
     bodies = list(dict.fromkeys(key[0] for key in graph.keys))
     names = [window.dashboard.label(body) for body in bodies]
     if not names:
-        return f"Graph {graph.number}"
+        return Sentence("Graph {n}", n=graph.number)
     subject: str = Sentence("{body} and {n} others", body=names[0], n=len(names) - 1)
     if len(names) <= 2:
         subject = listed("and", names)
