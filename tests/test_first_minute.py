@@ -181,6 +181,16 @@ def test_a_few_letters_find_a_command(text: str, best: str) -> None:
         assert commands.find(text, list(commands.commands()), language(code))[0].words == best
 
 
+def test_another_language_is_found_by_its_own_name() -> None:
+    desk = sized((1280, 720))
+    tap(desk, "k", pygame.KMOD_CTRL)
+    write(desk, "deutsch")
+    desk.frames(SETTLED)
+    tap(desk, "return")
+    desk.frames(SETTLED)
+    assert desk.window.language == "de" and "Datei" in desk.ui.words
+
+
 @pytest.mark.parametrize(
     ("text", "best"),
     [("rückgängig", "Undo"), ("ruckgangig", "Undo"), ("RUECKGAENGIG", "Undo"), ("kasten", "Box"),

@@ -8,6 +8,7 @@ from pathlib import Path
 import pygame
 import pytest
 from desk import SETTLED, Desk, click, empty_world, sized, tap, write
+from imgui_bundle import imgui
 
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.lessons.catalogue import LESSONS, titles
@@ -126,3 +127,14 @@ def test_files_that_change_are_read_again(desk: Desk, tmp_path: Path) -> None:
     tap(desk, "l")
     desk.frames(SETTLED + 3)
     assert "Another" in cards(desk) and "My clock" not in cards(desk)
+
+
+def test_beside_a_docked_graph_cards_fill_the_gallery() -> None:
+    """A hint beside the search was wider than the cards: a third of the window was empty."""
+    desk = sized((1280, 720), load_scene("pendulum"))
+    tap(desk, "l")
+    desk.frames(SETTLED)
+    desk.sandbox.interface.toolkit.enter()
+    wide = {window.name: window.size.x for window in imgui.get_current_context().windows}
+    (cards,) = (wide[name] for name in wide if name.startswith("Scenes/cards"))
+    assert cards > 0.9 * wide["Scenes"]

@@ -9,6 +9,7 @@ from pathlib import Path
 from physicslab.components.quantities import QUANTITIES
 from physicslab.ecs.text import printable
 from physicslab.files.listing import scene_files
+from physicslab.languages.catalogue import languages
 from physicslab.languages.language import Language
 from physicslab.lessons.catalogue import titles
 from physicslab.scenes import SCENES
@@ -16,7 +17,7 @@ from physicslab.view.controls import actions, dashboard_actions
 from physicslab.view.controls.choosing_keys import label_of
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.file_actions import open_from_list
-from physicslab.view.controls.lesson_actions import opener
+from physicslab.view.controls.lesson_actions import LANGUAGES, choose_language, opener
 from physicslab.view.controls.tools import TOOLS, key_of
 from physicslab.view.window.desk import LEVELS
 from physicslab.view.window.window import Action, Window
@@ -69,6 +70,9 @@ def commands(window: Window | None = None) -> Iterator[Command]:
             )
     for level, words in LEVELS.items():
         yield Command(f"Level: {level}", "level", words, partial(_choose_level, level=level))
+    for code in languages():
+        name, tip = LANGUAGES.get(code, code), "The language of the window and of lessons"
+        yield Command(name, "language", tip, partial(choose_language, code=code))
     for name, scene in SCENES.items():
         yield Command(scene.title, "scene", scene.description, partial(open_from_list, source=name))
     for name, title in titles().items():

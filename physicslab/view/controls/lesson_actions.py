@@ -51,6 +51,10 @@ def open_lesson(world: World, window: Window, name: str) -> str:
     return ""
 
 
+LANGUAGES = {"en": "English", "de": "Deutsch"}
+"""Names of languages in themselves, by their codes."""
+
+
 def choose_language(world: World, window: Window, code: str) -> None:
     """Take another language; a lesson that is open is opened in it, at the step where it is."""
     window.language, lesson = code, window.lesson

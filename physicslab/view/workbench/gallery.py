@@ -24,7 +24,7 @@ _PICTURE = (14.0, 8.0)
 """Width and height of its picture."""
 _SHARE = 0.94
 """How much of the room of the world the gallery takes at most."""
-_HEAD = 7.0
+_HEAD = 8.2
 """Height of what stands above the cards, at most, in heights of the text."""
 _OWN = "my own"
 """The tag of files."""
@@ -84,14 +84,15 @@ class Gallery:
             imgui.set_keyboard_focus_here()
         self._words, _ = ui.field("Search scenes", self._words, min(columns, 2) * _CARD[0] * ui.size)
         entered = imgui.is_item_focused() and imgui.is_key_pressed(imgui.Key.enter)
-        imgui.same_line()
-        ui.faint("words of a title or a text; Enter opens the first", wrapped=False)
+        end = columns * (_CARD[0] + 0.6) * ui.size
+        hint = "words of a title or a text; Enter opens the first"
+        ui.same_line_if_room(hint, end)
+        ui.faint(hint, wrapped=False)
         every = [(source, known) for source in self._sources if (known := self._known(source)) is not None]
         tags = dict.fromkeys(tag for _, known in every for tag in known.tags)
-        end = imgui.get_window_pos().x + columns * (_CARD[0] + 0.6) * ui.size
         for n, tag in enumerate(("", *sorted(tags, key=lambda tag: (tag != _OWN, tag)))):
             if n:
-                ui.same_line_if_room(tag, end - imgui.get_window_pos().x)
+                ui.same_line_if_room(tag, end)
             if ui.button(f"Tag: {tag or 'all'}", shown=tag or "all", on=tag == self._tag):
                 self._tag = tag
         wanted = _plain(self._words).split()

@@ -16,7 +16,7 @@ from physicslab.view.controls import actions, file_actions
 from physicslab.view.controls.choosing_keys import bring_usual, is_open, label_of
 from physicslab.view.controls.controls import CONTROLS, Control
 from physicslab.view.controls.joining import JOINTS
-from physicslab.view.controls.lesson_actions import choose_language, open_lesson
+from physicslab.view.controls.lesson_actions import LANGUAGES, choose_language, open_lesson
 from physicslab.view.controls.saving import scene_words
 from physicslab.view.controls.spawning import BODIES, GROUPS
 from physicslab.view.controls.tool import ICONS, Tool
@@ -33,8 +33,6 @@ _MENUS = {"File": ("file", "quit"), "Edit": ("edit",), "World": ("laws",), "Inst
           "View": ("show", "view", "window"),
           "Help": ("help",)}  # fmt: skip
 """Which groups of controls each menu shows."""
-_LANGUAGES = {"en": "English", "de": "Deutsch"}
-"""Names of languages in themselves, by their codes."""
 _MAX_TITLE = 60
 
 
@@ -97,7 +95,7 @@ def _build_controls(ui: Ui, groups: tuple[str, ...], world: World, window: Windo
         if group == "view":
             with ui.menu("Language") as shown:
                 for code in languages() if shown else ():
-                    ui.item(_LANGUAGES.get(code, code), choose_language, code, on=window.language == code)
+                    ui.item(LANGUAGES.get(code, code), choose_language, code, on=window.language == code)
 
 
 def _build_recent(ui: Ui, window: Window) -> None:
