@@ -101,6 +101,20 @@ def test_a_thrust_on_what_cannot_move_is_told() -> None:
     assert str(advice).startswith("wall: has a Thrust that moves nothing")
 
 
+def test_a_charge_on_which_no_field_acts_is_told_with_the_constant_of_nature() -> None:
+    world = world_of()
+    for x in (0.0, 1.0):
+        world.spawn(Transform((x, 0.0)), Velocity(), Mass(1.0), Charge(1e-5), name=f"charge {x}")
+    world.step()
+    (advice,) = find_warnings(world)
+    assert str(advice).startswith("charge 0.0: has a Charge on which no field acts")
+    assert advice.setting == "physics.coulomb_constant = 8.9876e+09"
+    for law in ({"coulomb_constant": 1.0}, {"magnetic_field": 1.0}, {"electric_field": (0.0, 1.0)}):
+        world.physics = PhysicsConfig(**law)
+        world.step()
+        assert not any("no field acts" in str(one) for one in find_warnings(world))
+
+
 def test_steps_that_take_very_many_evaluations_are_told() -> None:
     world = world_of(WEIGHTLESS, dt=1.0, integrator="dop853")
     body = (Transform((1.0, 0.0)), Velocity((1.0, 0.0)), Mass(1.0), Drag(linear=2e4, quadratic=1.0))

@@ -1,4 +1,4 @@
-"""Warnings of fields: bodies in one place, where a force has no direction, and thrust that is lost."""
+"""Warnings of fields: bodies in one place, where a force has no direction, lost thrust and idle charges."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -16,12 +16,14 @@ from physicslab.world import World
 
 _RESOLVED, _SQUARED = 1e-15, 1e-150
 """Share of their largest coordinate, and distance [m], below which two places are one: its square is 0."""
+_COULOMB = 8.9875517862e9
+"""The constant of Coulomb's law in vacuum [N m^2/C^2] (CODATA 2022)."""
 _SLOPE = 0.7548776662466927
 """Places are sorted along a direction in which no grid or line of bodies lies."""
 
 
 def field_warnings(world: World) -> Iterator[ModelWarning]:
-    """Yield two bodies in one place that act on each other, and a push on what cannot move."""
+    """Yield two bodies in one place that act on each other, a push on what cannot move, an idle charge."""
     yield from _coincident(world)
     thrust = world.batch(Thrust, Transform)
     lost = thrust.entities[world.bodies.inverse_mass[thrust.rows] == 0.0]
@@ -29,6 +31,11 @@ def field_warnings(world: World) -> Iterator[ModelWarning]:
     if lost:
         what = sentence("idle_thrust")
         yield ModelWarning.about(world, lost[0], what, None, "", None, sentence("velocity_and_mass"))
+    charges, laws = world.batch(Charge, Transform), world.physics
+    charged = charges.entities[world.table(Charge)["charge"][charges.rows] != 0.0]
+    if len(charged) and not (laws.coulomb_constant or laws.magnetic_field or laws.electric_field.magnitude):
+        what, setting = sentence("idle_charge"), f"physics.coulomb_constant = {_COULOMB:.5g}"
+        yield ModelWarning.about(world, int(charged[0]), what, None, "", None, setting)
 
 
 def _coincident(world: World) -> Iterator[ModelWarning]:

@@ -246,6 +246,7 @@ SENTENCES = {
     "order_one": "{force}: {method} has order 1 where a force depends on velocities",
     "flies_apart": "is too stiff for the step (omega h): it flies apart",
     "coarse": "is resolved coarsely (omega h): its energy swings",
+    "idle_charge": "has a Charge on which no field acts, as all constants and fields of charges are 0",
     "idle_thrust": "has a Thrust that moves nothing: a body with Mass and Velocity would be pushed",
     "one_place": "is in the place of another body: {law} has no direction there, and leaves the two out",
     "law_of_gravity": "gravity",

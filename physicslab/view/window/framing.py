@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from physicslab.components import Slider
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera, Extent
 from physicslab.view.canvas.canvas import Canvas, Rect
@@ -88,7 +89,7 @@ class Framing:
         else:
             scale = min(self._camera.fitting_scale(extent, room, _AROUND), largest_scale)
             self._camera.look_at(extent, scale, room)
-            if falls_down(world):
+            if falls_down(world) and not len(world.batch(Slider)):  # sliders stand below the bodies
                 spare = (1.0 - 2.0 * _AROUND) * room[3] - (extent[3] - extent[1]) * self._camera.scale
                 self._camera.pan(0.0, _SKY * max(spare, 0.0))
         self._shown = (self._camera.centre, self._camera.scale, largest_scale, view)
