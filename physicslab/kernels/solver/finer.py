@@ -32,6 +32,9 @@ _SUNK = 0.1
 _LIGHT_LOAD, _HARDLY_SUNK = 12.0, 1e-3
 """Multiple of its own load that a body carries where few contacts are swept most often, and the share of its
 size by which the load may press it in whatever that multiple is, as where its own load is next to nothing."""
+_THROUGH_ONE = 1.0 / 3.0
+"""Share of a heavy body's weight that is taken to press on each light one that joints hold at it: not all of
+it goes through a hand that lies on the floor."""
 _LEFT = 5e-4
 """Share of its arm by which an anchor may leave its way in a substep, in blocks of unequal masses. A heap of
 six ragdolls, started six times 1e-6 apart, comes apart by 16 mm each time; with 1e-3 by 16 to 25 mm."""
@@ -111,6 +114,41 @@ def _heaviest_load(near: Near, inverse_mass: Numbers, force: Vectors, sunk: floa
 
 
 @inlined
+def _carried_load(near: Near, joints: Joints, inverse_mass: Numbers, force: Vectors, sunk: float) -> float:
+    """Return the same for a far heavier body that joints hold at a light one which touches something.
+
+    A share of the weight of the heaviest body of a block is taken to press on each of its light ones.
+    """
+    largest, heaviest = 0.0, near.angular_before  # nothing is noted in it at the end of a step
+    for i in range(len(heaviest)):
+        heaviest[i] = -1.0
+    for block in range(len(joints.groups) - 1):
+        first, end = joints.groups[block, FIRST], joints.groups[block + 1, FIRST]
+        body, least = -1, math.inf
+        for e in range(joints.nodes[first, ENDS], joints.nodes[end, ENDS]):
+            inverse = inverse_mass[joints.body[e]]
+            if 0.0 < inverse < least:
+                body, least = joints.body[e], inverse
+        for e in range(joints.nodes[first, ENDS], joints.nodes[end, ENDS]):
+            if inverse_mass[joints.body[e]] > HEAVY_RATIO * least:
+                heaviest[joints.body[e]] = body
+    for p in range(near.counts[RECORDED]):
+        manifold = near.manifolds[p]
+        if manifold.count <= 0:
+            continue
+        for light, sign in ((manifold.a, 1.0), (manifold.b, -1.0)):
+            heavy = int(heaviest[light])
+            if heavy >= 0:
+                press = sign * (force[heavy, 0] * manifold.normal_x + force[heavy, 1] * manifold.normal_y)
+                if press * inverse_mass[light] * sunk > _HARDLY_SUNK * manifold.size:
+                    own = math.hypot(force[light, 0], force[light, 1])
+                    all_of = math.hypot(force[heavy, 0], force[heavy, 1])
+                    own = max(own, all_of * inverse_mass[heavy] / inverse_mass[light])
+                    largest = max(largest, _THROUGH_ONE * press / own)
+    return largest
+
+
+@inlined
 def _fastest_whip(joints: Joints, angular: Numbers, inverse_mass: Numbers) -> float:
     """Return the largest r w^2 / R [1/s^2] of bodies that turn by w about an anchor at r.
 
@@ -153,8 +191,10 @@ def factor_for(
         over = _hardest_press(near, inverse.mass) / impulse_dt * sunk / _SUNK
     if sweeps > 1:
         settled = sweeps / MAX_SWEEPS
-        load = _heaviest_load(near, inverse.mass, force, sunk) * settled * settled
-        over = max(over, load / _LIGHT_LOAD)
+        load = _heaviest_load(near, inverse.mass, force, sunk)
+        if rows > 0:
+            load = max(load, _carried_load(near, joints, inverse.mass, force, sunk))
+        over = max(over, load * settled * settled / _LIGHT_LOAD)
     if rows > 0:
         over = max(over, 0.5 * _fastest_whip(joints, angular, inverse.mass) * h * h / _LEFT)
     factor, last = 1, 1

@@ -13,7 +13,7 @@ from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.stability.case import StabilityCase
 from physicslab.lab.worlds import energy_change, floor, largest, open_space
-from physicslab.prefabs import circle
+from physicslab.prefabs import box, circle
 from physicslab.world import World
 
 _LINK = 0.5
@@ -150,6 +150,17 @@ def _wheel() -> float:
     return largest(world, 240, lambda: (measure_energy(world).total - before) / lifted)
 
 
+def _carried(ratio: float) -> float:
+    """Return the largest gain of energy of a light box with a heavy one welded on, of its lift by 1 m."""
+    world = open_space(contacts="soft")
+    floor(world, Vector2())
+    light = box(world, (0.0, 0.5), width=1.0, height=1.0, mass=1.0)
+    heavy = box(world, (0.0, 1.5), width=1.0, height=1.0, mass=ratio)
+    world.spawn(Weld(a=light, b=heavy, anchor_a=(0.0, 0.5), anchor_b=(0.0, -0.5)))
+    before = measure_energy(world).total
+    return largest(world, 240, lambda: (measure_energy(world).total - before) / (ratio * 9.81))
+
+
 def _unequal() -> float:
     """Return the change of energy of a double pendulum of 1 kg and 10^9 kg, of what its fall exchanges."""
     world, _ = _bars(open_space(), 2, 1e9)
@@ -216,6 +227,11 @@ JOINTS = (
              partial(_sheet, Rod, 24, 0.25, {0, 23})),
             ("wheel_of_rods", "hub with 150 rods to discs of 1 kg falls by 6 m on a floor", _wheel),
         )
+    ),
+    _case(
+        name="welded_on_light", title="1,000 kg welded on a box of 1 kg that stands on a floor, soft, 4 s",
+        right="no energy comes from it", figure="largest gain of energy, of what lifts it by 1 m",
+        limit=5e-3, measure=partial(_carried, 1000.0),
     ),
     _case(
         name="pins_unequal", title="double pendulum of bars of 1 and 1e9 kg let go level, 5 s",
