@@ -42,6 +42,14 @@ def test_a_derivative_by_gravity_is_half_the_square_of_the_time(speed: float, se
     assert found[G].value == pytest.approx(0.5 * seconds**2, rel=1e-9) and found[VX].value == 0.0
 
 
+def test_runs_until_a_condition_give_the_derivative_of_when_it_begins_to_hold() -> None:
+    found = sensitivity("drop", [G], measure="time", seconds=2.0, until="ball.y <= 3")["time"][G]
+    fall = math.sqrt(2.0 * 1.0 / 9.81)  # from 4 m to 3 m
+    assert found.value == pytest.approx(fall / (2.0 * 9.81), rel=1e-8)
+    with pytest.raises(SceneError, match="does not begin to hold"):
+        sensitivity("drop", [G], measure="time", seconds=0.2, until="ball.y <= 3")
+
+
 def test_where_an_impact_comes_or_goes_the_error_says_that_there_is_no_derivative() -> None:
     touched = math.sqrt(2.0 * 3.75 / 9.81)
     found = sensitivity("drop", {G: 0.5}, measure="collisions", seconds=touched)["collisions"][G]

@@ -59,7 +59,8 @@ class SobolIndices:
 
 def sensitivity(
     scene: Any, fields: Sequence[str] | Mapping[str, float], *, measure: Measure | Mapping[str, Measure],
-    seconds: float | None = None, steps: int | None = None, executor: Any = "serial",
+    seconds: float | None = None, steps: int | None = None, until: str | None = None,
+    executor: Any = "serial",
 ) -> dict[str, dict[str, Derivative]]:  # fmt: skip
     """Return the derivative of each measure by each field, of the scene as it is.
 
@@ -71,7 +72,7 @@ def sensitivity(
         The scene to run.
     fields : sequence of str, or mapping of str to float
         The fields, or the step of each [SI]; else it is a thousandth of the field, or 1e-3 where that is 0.
-    measure, seconds, steps, executor
+    measure, seconds, steps, until, executor
         As for :func:`~physicslab.ensemble`.
 
     Raises
@@ -103,7 +104,7 @@ def sensitivity(
         rows[path][4 * k : 4 * k + 4] += moves * widths[path]
     result = ensemble(
         world, {path: ("rows", values) for path, values in rows.items()}, measure=measure, seconds=seconds,
-        steps=steps, executor=executor,
+        steps=steps, until=until, executor=executor,
     )  # fmt: skip
     _whole(result)
     found: dict[str, dict[str, Derivative]] = {}
