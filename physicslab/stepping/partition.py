@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Drag, Mass, Shape, Transform, Velocity
 from physicslab.ecs.sentences import sentence
+from physicslab.kernels.broad.clusters import label_clusters
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP
 from physicslab.systems.accelerate import AccelerateSystem
@@ -124,24 +125,15 @@ def _labels(state: State, schedule: Schedule, rows: Rows) -> Rows:
     speed = np.hypot(*state.table(Velocity)["linear"][rows].T)
     soon = max(FAR_S, 2.5 * NEAR_STEPS * state.simulation.dt)
     reach = reach + np.maximum(FAR_RADII * reach, speed * soon + 0.25 * _gravity(state) * soon * soon)
-    position, labels = state.table(Transform)["position"][rows], np.full(len(rows), -1)
+    position, labels = state.table(Transform)["position"][rows], np.arange(len(rows))
     shaped = state.table(Shape).present[rows]
-    if shaped.all() and np.hypot(*np.ptp(position, axis=0)) <= 2.0 * reach.min():
+    spread = np.ptp(position, axis=0)
+    if shaped.all() and np.hypot(*spread) <= 2.0 * reach.min():
         return np.zeros(len(rows), np.int64)
-    left, number = np.flatnonzero(shaped), 0
-    while len(left):
-        waiting, left = [int(left[0])], left[1:]
-        labels[waiting] = number
-        while waiting and len(left):
-            one = waiting.pop()
-            x, y = (position[left] - position[one]).T
-            near = x * x + y * y <= (reach[left] + reach[one]) ** 2
-            labels[left[near]] = number
-            waiting += left[near].tolist()
-            left = left[~near]
-        number += 1
-    shapeless = np.flatnonzero(labels < 0)
-    labels[shapeless] = number + np.arange(len(shapeless))
+    state.compile((label_clusters,))
+    axis = int(np.argmax(spread))
+    order = np.argsort(position[:, axis], kind="stable")
+    label_clusters(order[shaped[order]], axis, position, reach, labels)
     return join(labels, labels[_couples(state, schedule, rows)].tolist())
 
 

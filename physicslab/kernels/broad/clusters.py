@@ -1,0 +1,44 @@
+"""Clusters of circles: those that overlap, and those that overlap these, are one."""
+
+from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
+
+
+@inlined
+def _root(labels: Rows, i: int) -> int:
+    """Return the label of a cluster, by which it is known at last; ways to it are halved."""
+    while labels[i] != i:
+        labels[i] = labels[labels[i]]
+        i = labels[i]
+    return i
+
+
+@kernel
+def label_clusters(order: Rows, axis: int, position: Vectors, radius: Numbers, labels: Rows) -> None:
+    """Set the labels of circles in one cluster to the smallest of them, which are their own numbers at first.
+
+    Parameters
+    ----------
+    order, axis : int64 array (m,), int
+        The circles that count, sorted along an axis (0 or 1): best along which they are spread most.
+    position, radius : float64 arrays (n, 2), (n,)
+        Centres and radii [m].
+    labels : int64 array (n,)
+        Numbers from 0 on; those of circles that do not count stay.
+    """
+    farthest = 0.0
+    for k in range(len(order)):
+        farthest = max(farthest, radius[order[k]])
+    for k in range(len(order)):
+        i = order[k]
+        most = (radius[i] + farthest) * (radius[i] + farthest)
+        for m in range(k + 1, len(order)):
+            j = order[m]
+            dx, dy = position[j, 0] - position[i, 0], position[j, 1] - position[i, 1]
+            along = position[j, axis] - position[i, axis]
+            if along * along > most:
+                break
+            if dx * dx + dy * dy <= (radius[i] + radius[j]) * (radius[i] + radius[j]):
+                one, other = _root(labels, i), _root(labels, j)
+                labels[max(one, other)] = min(one, other)
+    for k in range(len(order)):
+        labels[order[k]] = _root(labels, order[k])
