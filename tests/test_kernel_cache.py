@@ -392,3 +392,19 @@ def test_what_is_used_is_noted(root: Path) -> None:
     os.utime(folder, (time.time() - 20 * 86400.0,) * 2)
     cache.note_use.__wrapped__(function)
     assert time.time() - folder.stat().st_mtime < 3600.0
+
+
+def test_a_build_without_sources_is_known_by_its_code_in_every_process() -> None:
+    """Two frozen programs of one version had the same kernels, though one was older."""
+    source = "def f(x):\n    return x in {'one', 'two', 'three'} and (x, 2.5)\n"
+    there = keys._digest(compile(source, "/here/f.py", "exec"))
+    assert keys._digest(compile(source.replace("2.5", "2.6"), "/here/f.py", "exec")) != there
+    program = (
+        "from physicslab.kernels import keys\n"
+        f"print(keys._digest(compile({source!r}, '/elsewhere/f.py', 'exec')))"
+    )
+    for seed in ("1", "2"):
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        run = [sys.executable, "-c", program]
+        done = subprocess.run(run, env=environment, capture_output=True, text=True, check=True)
+        assert done.stdout.strip() == there

@@ -3,7 +3,8 @@
 numba's own cache does not notice an edit of a callee in another module and would return the old code. So the
 key of a module's kernels depends on its source, on the sources of all that it imports within this package,
 and on what else determines machine code: numba, Python, the processor. In a build without sources (compiled
-modules alone, a frozen program) the version of the package stands for each of them.
+modules alone, a frozen program) what all modules are compiled to stands for each of them: two builds of one
+version need not be of the same sources.
 """
 
 import hashlib
@@ -14,8 +15,8 @@ import re
 import sys
 from collections.abc import Iterable, Iterator
 from functools import cache
-from importlib.metadata import version
 from pathlib import Path
+from types import CodeType
 from typing import Any
 
 import llvmlite
@@ -39,12 +40,26 @@ _IMPORT = re.compile(
 
 @cache
 def _sources() -> dict[str, str]:
-    """Return the source of every module of this package, or the version, by the module's name."""
+    """Return the source of every module of this package, or what stands for it, by the module's name."""
     package = importlib.util.find_spec(_PACKAGE)
     assert package is not None and package.submodule_search_locations is not None
     loaders = {_PACKAGE: package.loader, **dict(_loaders(package.submodule_search_locations, f"{_PACKAGE}."))}
     sources = {name: loader.get_source(name) for name, loader in sorted(loaders.items())}
-    return {name: source or f"version {version('physicslab')}" for name, source in sources.items()}
+    if None in sources.values():
+        build = hash_of(*(_digest(loader.get_code(name)) for name, loader in sorted(loaders.items())))
+        return {name: source or f"build {build}" for name, source in sources.items()}
+    return sources
+
+
+def _digest(code: CodeType) -> str:
+    """Return a hash of a compiled module or function: the same in each process that loads it."""
+    parts = [code.co_code.hex(), *code.co_names, *code.co_varnames, *code.co_freevars]
+    for value in code.co_consts:
+        if isinstance(value, CodeType):
+            parts.append(_digest(value))
+        else:
+            parts.append(repr(sorted(map(repr, value)) if isinstance(value, frozenset) else value))
+    return hash_of(*parts)
 
 
 def _loaders(folders: Iterable[str], prefix: str) -> Iterator[tuple[str, Any]]:
