@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from physicslab import World, load_scene, save_scene
 from physicslab.components import Drag, Mass, Material, Pin, Shape, Spring, Transform, Velocity
+from physicslab.contacts.report import contacts_of
 from physicslab.diagnostics.energy import Audit
 from physicslab.diagnostics.precision import find_imprecise
 from physicslab.diagnostics.step_warnings import lost_phase
@@ -527,3 +528,18 @@ def test_random_scenes_have_the_bits_that_they_have_alone(far: Callable[[World],
         alone.run(steps=150)
         beside.run(steps=150)
         assert np.array_equal(motion(alone, own), motion(beside, same)), seed
+
+
+def test_contacts_that_are_read_first_after_a_run_are_all_there_however_many() -> None:
+    """They are brought from the islands as they are read, into larger arrays than those of before."""
+    world = World(simulation=SimulationConfig(sleeping=False))
+    floor(world)
+    piled = [
+        box(world, (0.9 * (n % 12) + 0.05 * (n // 12), 0.5 + n // 12), width=0.8, height=1.0)
+        for n in range(72)
+    ]
+    disc(world, FAR, 0.3)
+    world.run(steps=30)
+    assert len(world.islands.members) == 2 and world.contacts.source is not None
+    assert [contact.b for contact in contacts_of(world, piled[-1])] == [piled[-1]]
+    assert len(world.contacts.manifolds) > 64

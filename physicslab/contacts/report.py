@@ -84,11 +84,10 @@ def list_contacts(state: State) -> tuple[Contact, ...]:
 
 def contacts_of(state: State, entity: int) -> tuple[Contact, ...]:
     """Return every contact of one entity, in the order of entities."""
-    contacts = state.contacts
-    near = contacts.manifolds
+    reported, near = _reported(state.contacts), state.contacts.manifolds
     return tuple(
         _describe(state, p)
-        for p in _reported(contacts)
+        for p in reported
         if entity in (int(near[p]["entity_a"]), int(near[p]["entity_b"]))
     )
 
@@ -171,6 +170,7 @@ def _neighbours(low: NDArray[np.float64], high: NDArray[np.float64]) -> Iterator
 
 def ordered_records(contacts: Contacts) -> list[int]:
     """Return the numbers of all records in the order of entities."""
+    contacts.fetch()
     near = contacts.manifolds[: contacts.recorded]
     pairs: list[int] = np.lexsort((near["wall"], near["entity_b"], near["entity_a"])).tolist()
     return pairs
