@@ -93,8 +93,8 @@ class ContactGraph:
 def contact_graph(world: World) -> ContactGraph:
     """Return the near pairs of the last step."""
     contacts = world.contacts
-    manifolds = contacts.manifolds[: contacts.recorded]
     contacts.sync()
+    manifolds = contacts.manifolds[: contacts.recorded]
     touching = np.flatnonzero(contacts.manifolds["count"][: contacts.recorded] > 0)
     held = manifolds[touching]
     separation = contacts.points["separation"]
