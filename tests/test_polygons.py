@@ -84,6 +84,23 @@ def test_extreme_sizes_are_taken_or_refused_by_the_field_that_is_at_fault(size: 
         assert Shape("polygon", vertices=square, radius=radius).radius == radius
 
 
+@given(
+    corners=st.integers(3, 8), size=st.floats(1e-90, 1e140), turn=st.floats(0, 6), x=st.floats(-3, 3),
+    radius=st.floats(0, 2),
+)  # fmt: skip
+def test_the_vertices_that_a_message_proposes_are_taken(
+    corners: int, size: float, turn: float, x: float, radius: float
+) -> None:
+    at = Vector2(x * size, 0.3 * size)
+    vertices = [at + corner.rotated(turn) for corner in regular(corners, size)]
+    try:
+        Shape("polygon", vertices=vertices, radius=radius * size)
+    except InvalidValue as refused:
+        shown = str(refused)
+        assert "e-16" not in shown or not 1e-3 < size < 1e3
+        Shape("polygon", vertices=json.loads(shown.rpartition(", to ")[2]), radius=radius * size)
+
+
 @pytest.mark.parametrize("line", [[0.0, 1.0, 2.0], [0.0, 2.0, 1.0], [2.0, 1.0, 0.0], [0.0, 3.0, 1.0, 2.0]])
 def test_vertices_in_one_line_are_told_so(line: list[float]) -> None:
     for vertices in ([(x, 0.0) for x in line], [(0.0, x) for x in line], [(x, x) for x in line]):

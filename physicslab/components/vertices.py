@@ -11,6 +11,8 @@ _ZERO_LENGTH_SHARE = 1e-9
 """Share of the largest distance of two vertices below which a length is zero, and the sine of a turn is."""
 
 
+_DIGITS = 12
+"""Decimal digits of the size of a polygon that messages have of its vertices: enough to be centred."""
 _LEAST = 1e-100
 """The least extent of a polygon or a chain [m]: squares of it are not zero."""
 
@@ -69,10 +71,18 @@ def why_off_centre(vertices: Sequence[Vector2], radius: float) -> str | None:
     centre = centre_of_mass(vertices, radius)
     if centre.magnitude <= _ZERO_LENGTH_SHARE * max(radius, *(vertex.magnitude for vertex in vertices)):
         return None
+    size = max(vertex.magnitude for vertex in vertices)
+    at, by = _to_read([centre], size)[0], _to_read([-centre], size)[0]
     return (
-        f"about the centre of mass; that of these is at [{centre.x!r}, {centre.y!r}] m: shift them by "
-        f"[{-centre.x!r}, {-centre.y!r}] m, to {plain(centred(vertices, radius))}"
+        f"about the centre of mass; that of these is at {at} m: shift them by {by} m, "
+        f"to {_to_read(centred(vertices, radius), size)}"
     )
+
+
+def _to_read(points: Sequence[Vector2], size: float) -> list[list[float]]:
+    """Return points [m] as people read them: without the rounding of about one ``size`` [m]."""
+    places = _DIGITS - math.frexp(size)[1] * 3 // 10  # 2 to the power of 10 has three zeros
+    return [[round(part, places) + 0.0 for part in point] for point in points]
 
 
 def centred(vertices: Sequence[Vector2 | tuple[float, float]], radius: float = 0.0) -> tuple[Vector2, ...]:
