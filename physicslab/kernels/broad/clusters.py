@@ -1,15 +1,7 @@
 """Clusters of circles: those that overlap, and those that overlap these, are one."""
 
-from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
-
-
-@inlined
-def _root(labels: Rows, i: int) -> int:
-    """Return the label of a cluster, by which it is known at last; ways to it are halved."""
-    while labels[i] != i:
-        labels[i] = labels[labels[i]]
-        i = labels[i]
-    return i
+from physicslab.kernels import Numbers, Rows, Vectors, kernel
+from physicslab.kernels.disjoint_sets import join_sets, root_of
 
 
 @kernel
@@ -38,7 +30,6 @@ def label_clusters(order: Rows, axis: int, position: Vectors, radius: Numbers, l
             if along * along > most:
                 break
             if dx * dx + dy * dy <= (radius[i] + radius[j]) * (radius[i] + radius[j]):
-                one, other = _root(labels, i), _root(labels, j)
-                labels[max(one, other)] = min(one, other)
+                join_sets(labels, i, j)
     for k in range(len(order)):
-        labels[order[k]] = _root(labels, order[k])
+        labels[order[k]] = root_of(labels, order[k])

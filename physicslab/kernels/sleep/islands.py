@@ -6,6 +6,7 @@ import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels.constraint.pair import frame_of, point_velocity, velocity_of
+from physicslab.kernels.disjoint_sets import join_sets, root_of
 from physicslab.kernels.records import Manifold, Manifolds, Points
 
 REST = 0.5
@@ -65,23 +66,6 @@ def count_rest(
         longest = max(longest, rest[i])
     now, before = (longest + _TIME_ROUNDING) / _PERIOD, (longest - h + _TIME_ROUNDING) / _PERIOD
     return bool(longest >= READY and np.floor(now) > np.floor(before))
-
-
-@inlined
-def _root(parent: Rows, i: int) -> int:
-    """Return the root of the island of body i."""
-    while parent[i] != i:
-        parent[i] = parent[parent[i]]
-        i = parent[i]
-    return i
-
-
-@inlined
-def _join(parent: Rows, i: int, j: int) -> None:
-    """Make one island of those of i and j."""
-    i, j = _root(parent, i), _root(parent, j)
-    if i != j:
-        parent[max(i, j)] = min(i, j)
 
 
 @inlined
@@ -203,17 +187,17 @@ def find_held(
     for p in range(pairs):
         manifold = manifolds[p]
         if manifold.count > 0 and inverse_mass[manifold.a] > 0.0 and inverse_mass[manifold.b] > 0.0:
-            _join(parent, manifold.a, manifold.b)
+            join_sets(parent, manifold.a, manifold.b)
     for k in range(0, len(edges), 2):
         if inverse_mass[edges[k]] > 0.0 and inverse_mass[edges[k + 1]] > 0.0:
-            _join(parent, edges[k], edges[k + 1])
+            join_sets(parent, edges[k], edges[k + 1])
     restless = np.zeros(len(inverse_mass), np.bool_)
     supported = np.zeros(len(inverse_mass), np.bool_)
     moving = ~ready
     _mark_moving(manifolds, points, pairs, impulse_dt, vertices, inverse_mass, force, linear, angular, moving)
     for i in range(len(inverse_mass)):
         if inverse_mass[i] > 0.0 and moving[i]:
-            restless[_root(parent, i)] = True
+            restless[root_of(parent, i)] = True
     for p in range(pairs):
         manifold = manifolds[p]
         if manifold.count <= 0:
@@ -223,7 +207,7 @@ def find_held(
             body, other = other, body
         if inverse_mass[body] == 0.0:
             continue
-        island = _root(parent, body)
+        island = root_of(parent, body)
         if manifold.impact_count > 0:
             restless[island] = True
         if inverse_mass[other] > 0.0:
@@ -240,11 +224,11 @@ def find_held(
             body, other = other, body
         if inverse_mass[body] > 0.0 and inverse_mass[other] == 0.0:
             still = linear[other, 0] == 0.0 and linear[other, 1] == 0.0 and angular[other] == 0.0
-            supported[_root(parent, body)] |= still
-            restless[_root(parent, body)] |= not still
+            supported[root_of(parent, body)] |= still
+            restless[root_of(parent, body)] |= not still
     found = 0
     for i in range(len(inverse_mass)):
-        island = _root(parent, i)
+        island = root_of(parent, i)
         held[i] = inverse_mass[i] > 0.0 and supported[island] and not restless[island]
         found += 1 if held[i] else 0
     return found
@@ -289,13 +273,13 @@ def join_marked(a: Rows, b: Rows, count: Rows, asleep: Flags, marked: Flags) -> 
     parent = np.arange(len(asleep))
     for p in range(len(a)):
         if count[p] > 0 and a[p] >= 0 and b[p] >= 0 and asleep[a[p]] and asleep[b[p]]:
-            _join(parent, a[p], b[p])
+            join_sets(parent, a[p], b[p])
     wakes = np.zeros(len(asleep), np.bool_)
     for i in range(len(asleep)):
         if asleep[i] and marked[i]:
-            wakes[_root(parent, i)] = True
+            wakes[root_of(parent, i)] = True
     for i in range(len(asleep)):
-        if asleep[i] and wakes[_root(parent, i)]:
+        if asleep[i] and wakes[root_of(parent, i)]:
             marked[i] = True
 
 
