@@ -16,7 +16,7 @@ from physicslab.lessons.lesson import Compare, Explain, Lesson, Part, Prose, Que
 from physicslab.lessons.live_run import LiveRun
 from physicslab.lessons.setup import AS_IT_IS, Case
 from physicslab.state.attached import INSTRUMENTS
-from physicslab.state.state import Desk
+from physicslab.state.contents import Desk
 from physicslab.view.window.naming import free_name, new_paths
 from physicslab.view.window.scenes import Left
 from physicslab.world import World
