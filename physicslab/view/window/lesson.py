@@ -234,7 +234,7 @@ class OpenLesson:
         """
         self.trial = Trial(self.lesson, run, case)
         self.number += 1
-        if case is AS_IT_IS:
+        if not case.values:
             self._reset(run)
         self.world = self.trial.live.world
         return self.world
