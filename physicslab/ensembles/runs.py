@@ -148,12 +148,17 @@ def task_of(
     return Task(document, rows, dict(measures), seconds, steps, until)
 
 
-def _check_until(world: World, until: str, measures: Measures) -> None:
-    """Refuse a condition that a world has not, and measures that runs until one have not."""
+def check_condition(world: World, until: str) -> None:
+    """Refuse a condition that a world has not."""
     try:
         world.record(0.0, until=until)
     except InvalidValue as error:
         raise SceneError(f"until {shown(until)}: must be {error.allowed}") from error
+
+
+def _check_until(world: World, until: str, measures: Measures) -> None:
+    """Refuse a condition that a world has not, and measures that runs until one have not."""
+    check_condition(world, until)
     if measures.needs_path and not measures.path_is_motion:
         words = ", ".join(BODY_COLUMNS)
         raise SceneError(f"measure: with until, what looks at the whole run must be of {words} of what moves")
