@@ -23,7 +23,7 @@ from physicslab.lessons.worksheet import worksheet
 from physicslab.world import World
 
 _NO_RUN = {("error", "order"), ("pi", "circle")}
-"""Questions with a wrong answer that no run shows: no method of order 8 has a fixed step, bodies are discs."""
+"""Questions with a wrong answer which no run shows: none of order 8 has a fixed step, bodies are discs."""
 _LOOSE = 30.0
 """How many times its widest gap a tolerance may be."""
 _ROUNDING = 1e-9
