@@ -343,7 +343,7 @@ class _Page:
             own.say("measured"),
             own.say("gap"),
         ]
-        cases = list(dict.fromkeys((AS_IT_IS, *part.cases, *part.fails)))
+        cases = part.rows()
         books = [self.book(self._runs, part.run, [case]) for case in cases]
         rows = [self.books[book]["rows"][0].get(part.name) for book in books]
         self.told["compares"][part.name] = {
