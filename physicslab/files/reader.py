@@ -32,7 +32,7 @@ from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import LEVELS, SCENE_TEXTS, SHOWN, Desk, View
 from physicslab.stepping.island import KeptIsland
-from physicslab.stepping.plan import MAX_STEPS
+from physicslab.stepping.method import MAX_STEPS
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 

@@ -29,7 +29,7 @@ from physicslab.state.contacts import Contacts
 from physicslab.state.joint_rows import kinds_of
 from physicslab.state.state import SCENE_TEXTS, State
 from physicslab.stepping.island import KeptIsland
-from physicslab.stepping.plan import outlived
+from physicslab.stepping.planning import outlived
 from physicslab.world import World
 
 
