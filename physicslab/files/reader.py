@@ -29,8 +29,8 @@ from physicslab.files.numbers import (
 from physicslab.files.remainders import check_remainders
 from physicslab.integrators import SPLIT_METHODS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
+from physicslab.state.contents import LEVELS, SCENE_TEXTS, SHOWN, Desk, View
 from physicslab.state.remainders import Remainders
-from physicslab.state.state import LEVELS, SCENE_TEXTS, SHOWN, Desk, View
 from physicslab.stepping.island import KeptIsland
 from physicslab.stepping.method import MAX_STEPS
 from physicslab.systems.standard import standard_systems

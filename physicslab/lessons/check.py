@@ -15,7 +15,7 @@ from physicslab.ecs.quantity_text import (
     in_words,
     same_dimension,
 )  # fmt: skip
-from physicslab.files.checks import SceneError
+from physicslab.files.checks import SceneError, shown
 from physicslab.languages.language import language
 from physicslab.lessons.blocks import LessonError
 from physicslab.lessons.lesson import Compare, Lesson, Question, Reply, Run, place_of
@@ -123,17 +123,33 @@ def check_lesson(lesson: Lesson) -> Iterator[Row]:
                         yield from _compared(runs, part)
                     case Question():
                         yield from _answered(runs, part)
+            except LessonError:
+                raise
             except (InvalidText, SceneError, Diverged) as error:
                 raise LessonError(f"{lesson.path}: {place_of(part)}: {error}") from error
 
 
 def _compared(runs: LessonRuns, compare: Compare) -> Iterator[Row]:
-    for case in (*compare.cases, *compare.fails):
-        row = row_of(runs.lesson, compare, case, runs.figures(compare.run, case))
-        if row.holds == (case in compare.fails):
-            what = "must not hold" if row.holds else "must hold"
-            raise InvalidText(f"'{compare.holds.text}' {what} in the case '{case.text}'")
-        yield row
+    for key, cases in (("case", compare.cases), ("fails", compare.fails)):
+        for case in cases:
+            try:
+                row = row_of(runs.lesson, compare, case, runs.figures(compare.run, case))
+            except (InvalidText, SceneError, Diverged) as error:
+                if key == "case":  # the measure itself may be wrong
+                    raise
+                allowed = f"must be a case in which {compare.measured.text} can be measured"
+                raise _refusal(runs.lesson, compare, key, case, f"{error}; {allowed}") from error
+            if row.holds != (key == "case"):
+                told = f"'{compare.holds.text}' {'holds' if row.holds else 'does not hold'}"
+                allowed = f"must be a case in which it {'does not' if row.holds else 'does'}"
+                raise _refusal(runs.lesson, compare, key, case, f"{told}; {allowed}")
+            yield row
+
+
+def _refusal(lesson: Lesson, part: Compare | Question, key: str, case: Case, why: str) -> LessonError:
+    """Return the error that a case of a part cannot be so."""
+    place = place_of(replace(part, line=case.line or part.line))
+    return LessonError(f"{lesson.path}: {place}: {key} = {shown(case.text)}: {why}")
 
 
 def row_of(lesson: Lesson, compare: Compare, case: Case, figures: Figures) -> Row:
@@ -212,7 +228,12 @@ def _answered(runs: LessonRuns, question: Question) -> Iterator[Row]:
         if reply.when is not None:
             yield _told(runs, question, reply.text, reply.when.holds(figures), reply.right)
         if reply.shown_by is not None:
-            runs.lesson.setup.world(reply.shown_by)
+            try:
+                runs.figures(question.run, reply.shown_by)
+            except (InvalidText, SceneError, Diverged) as error:
+                allowed = "must be a case in which the run comes to its end"
+                why = f"{error}; {allowed}"
+                raise _refusal(runs.lesson, question, "show", reply.shown_by, why) from error
     if question.form == "number":
         right = runs.number(question)
         yield _told(runs, question, f"{right:.6g} {question.unit}", math.isfinite(right), True)

@@ -326,7 +326,7 @@ class _Page:
 
     def _compare(self, part: Compare) -> Iterator[str]:
         theory, holds, heads = compare_words(self.own, part)
-        cases = list(dict.fromkeys((AS_IT_IS, *part.cases, *part.fails)))
+        cases = part.rows()
         books = [self.book(self._runs, part.run, [case]) for case in cases]
         rows = [self.books[book]["rows"][0].get(part.name) for book in books]
         self.told["compares"][part.name] = {
