@@ -33,7 +33,7 @@ from physicslab.state.contents import LEVELS, SCENE_TEXTS, SHOWN, Desk, View
 from physicslab.state.joint_rows import KINDS
 from physicslab.state.remainders import Remainders
 from physicslab.stepping.island import KeptIsland
-from physicslab.stepping.plan import MAX_STEPS
+from physicslab.stepping.method import MAX_STEPS
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
