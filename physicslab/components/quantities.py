@@ -115,7 +115,7 @@ QUANTITIES: dict[str, Quantity] = {
 KIND_OF_UNIT = {
     "m": "position", "rad": "angle", "m/s": "velocity", "rad/s": "angular velocity", "m/s^2": "acceleration",
     "N": "force", "kg m/s": "momentum", "kg m^2/s": "angular momentum", "J": "energy", "N m": "torque",
-    "N s": "impulse", "N m s": "angular impulse",
+    "N s": "momentum given", "N m s": "angular momentum given",
 }  # fmt: skip
 """The kind of all quantities in a unit, in words."""
 BODY_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.of_body)
