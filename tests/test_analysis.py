@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -90,6 +91,11 @@ def test_indices_of_a_sum_are_shares_of_its_variance() -> None:
     # both are moved by v t, so that variances are as the squares of the widths
     assert found.first[VX] == pytest.approx(0.8, abs=0.05) and found.total[VY] == pytest.approx(0.2, abs=0.05)
     assert found.first[E] == found.total[E] == 0.0
+    flight = sobol_indices(
+        "drop", {VX: ("uniform", 0.5, 2.0), E: ("uniform", 0.2, 0.9)}, measure="time", until="ball.x >= -2",
+        seconds=9.0, samples=64, executor="serial",
+    )["time"]  # fmt: skip
+    assert flight.total[VX] == pytest.approx(1.0, abs=0.1) and abs(flight.total[E]) < 1e-12
     with pytest.raises(SceneError, match="a power of two"):
         sobol_indices("drop", space, measure=measure, seconds=0.5, samples=100)
     with pytest.raises(SceneError, match='must be \\("uniform"'):
@@ -122,6 +128,39 @@ def test_a_fit_finds_the_fields_of_which_data_come_and_how_sure_they_are(tmp_pat
     rows = "\n".join(f"{t},{x}" for t, x in zip(times, places, strict=True))
     path.write_text(f"time,ball.x\n{rows}\n", encoding="utf-8")
     assert fit(oscillator(), start, path).values == exact.values
+
+
+@pytest.mark.peers
+def test_a_fit_takes_moments_at_which_a_condition_begins_to_hold() -> None:
+    fall = math.sqrt(2.0 * 3.75 / 9.81)  # to the floor, and then 2 e times as long from bounce to bounce
+    bounces = fall * np.cumsum([1.0, 2 * 0.7, 2 * 0.7**2])
+    found = fit(
+        "drop", {G: -9.0, E: 0.8}, {"time": bounces, "ball.x": [math.nan] * 3}, until="ball.vy > 0", seconds=5
+    )
+    assert found.values == pytest.approx({G: -9.81, E: 0.7}, rel=1e-9) and found.rest < 1e-12
+    assert found.model["time"] == pytest.approx(bounces, rel=1e-12)
+    rises = {"time": math.pi * (np.arange(7) + 0.75)}  # x = cos(2 t), above 0 at the start too
+    swing = fit(oscillator(), {STIFFNESS: 7.5}, rises, until="ball.x > 0", seconds=30)
+    assert swing.values[STIFFNESS] == pytest.approx(8.0, rel=1e-9)
+
+
+@pytest.mark.peers
+@pytest.mark.parametrize(
+    ("data", "more", "message"),
+    [
+        ({"time": [0.1, 9.0]}, {"until": "ball.vy > 0", "seconds": 1.0}, "begins to hold 1 times within 1 s"),
+        ({"time": [0.1]}, {"until": "ball.vy > 0", "seconds": 0.1}, "does not begin to hold within 0.1 s"),
+        ({"time": [0.1]}, {"until": "ball.vy"}, "until, seconds: must be given together"),
+        ({"time": [0.1], "ball.x": [1.0]}, {"seconds": 1.0}, "until, seconds: must be given together"),
+        ({"time": [0.1]}, {"until": "ball.q > 1", "seconds": 1.0}, "'ball.q' is no quantity"),
+        ({}, {"until": "ball.vy > 0", "seconds": 1.0}, "must have a column of a quantity"),
+    ],
+)
+def test_moments_that_cannot_be_fitted_are_refused(
+    data: dict[str, list[float]], more: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(SceneError, match=message):
+        fit("drop", {G: -9.0}, data, **more)
 
 
 @pytest.mark.peers

@@ -59,6 +59,9 @@ def test_a_summary_is_the_first_line_of_the_help() -> None:
         assert summary_of(name) == (command(name).__doc__ or "").splitlines()[0]
 
 
-def test_help_does_not_wait_for_numba() -> None:
-    code = "import sys; from physicslab.cli import main; main(['--help']); sys.exit('numba' in sys.modules)"
+@pytest.mark.parametrize("argument", ["--help", "--version", "scenes"])
+def test_little_is_said_without_waiting_for_numba(argument: str) -> None:
+    code = (
+        f"import sys; from physicslab.cli import main; main(['{argument}']); sys.exit('numba' in sys.modules)"
+    )
     assert subprocess.run([sys.executable, "-c", code], stdout=subprocess.DEVNULL).returncode == 0

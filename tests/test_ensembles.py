@@ -240,6 +240,30 @@ def test_rows_that_were_made_before_a_crash_are_not_made_again(
         assert [float(row["y"]) for row in rows] == whole.columns["y"].tolist()
 
 
+@pytest.mark.parametrize("ending", ["npz", "csv", pytest.param("parquet", marks=pytest.mark.cluster)])
+def test_a_finished_file_is_read_in_place_of_another_run(
+    ending: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out = tmp_path / f"sweep.{ending}"
+    space = {M: ("normal", 1.0, 1.0), "simulation.integrator": ["auto", "exact"]}
+    arguments: dict[str, Any] = dict(samples=9, seed=1, steps=2, executor="serial", out=out)
+    made = ensemble("drop", space, measure={"y": "ball.y", "when": "first_impact.time"}, **arguments)
+    content = out.read_bytes()
+    assert made.found == 0 and made.failures and np.isnan(made.columns["when"]).all()
+    with monkeypatch.context() as forbid:
+        forbid.setattr(sink.Sink, "put", None)
+        again = ensemble("drop", space, measure={"y": "ball.y", "when": "first_impact.time"}, **arguments)
+    assert again.found == len(again) == 18 and again.failures == made.failures
+    assert {*again.columns} == {*made.columns} and out.read_bytes() == content
+    for name, column in made.columns.items():
+        assert [*map(repr, again.columns[name].tolist())] == [*map(repr, column.tolist())]
+    other = ensemble("drop", space, measure={"y": "ball.x", "when": "first_impact.time"}, **arguments)
+    assert other.found == 0 and np.nanmax(other.columns["y"]) < 0.0, "another measure of the same name"
+    out.write_bytes(out.read_bytes() + b"\n")
+    edited = ensemble("drop", space, measure={"y": "ball.x", "when": "first_impact.time"}, **arguments)
+    assert edited.found == 0, "the file is not as it was written"
+
+
 def test_parts_of_another_sweep_are_not_taken(tmp_path: Path) -> None:
     arguments: dict[str, Any] = dict(samples=50, steps=2, executor="serial", out=tmp_path / "a.npz")
 

@@ -248,7 +248,28 @@ def test_a_goal_is_reached_with_what_is_open(case: str, words: str) -> None:
             "line 41: compare compare_1: 'cm': m and s cannot be compared",
         ),
         ("measure: time", "measure: period(ball.y)", "the mean is to be taken away: period(ball.x - mean("),
-        ("holds: always", "holds: height > 2 m", "compare_1: 'height > 2 m' must hold in the case"),
+        (
+            "holds: always",
+            "holds: height > 2 m",
+            "line 47: compare compare_1: case = \"height = 1 m\": 'height > 2 m' does not hold; must be",
+        ),
+        (
+            "case: height = 1 m | a small one",
+            "case: height = 1 m\nfails: height = 20 m",
+            "line 48: compare compare_1: fails = \"height = 20 m\": 'always' holds; must be a case in which",
+        ),
+        (
+            "case: height = 1 m | a small one",
+            "fails: gravity = 1e-3 m/s^2",
+            'line 47: compare compare_1: fails = "gravity = 1e-3 m/s^2": the run did not come to '
+            "'ball.y < 0' within 10 s; must be a case in which time can be measured",
+        ),
+        (
+            "show: height = 20 m",
+            "show: gravity = 1e-3 m/s^2",
+            "line 29: predict time: show = \"gravity = 1e-3 m/s^2\": the run did not come to 'ball.y < 0' "
+            "within 10 s; must be a case in which the run comes to its end",
+        ),
         ("answer: ball.speed", "answer: ball.x", "line 55: check speed: 'ball.x' is in m; this is in m/s"),
         ("number: m/s", "curve: m", "line 55: check speed: 'ball.speed' is in m s^-1; this is in m"),
     ],

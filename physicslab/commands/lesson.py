@@ -5,6 +5,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Iterator
 from dataclasses import asdict
 from functools import partial
+from math import isfinite
 
 from physicslab.commands import FAILED, CommandError
 from physicslab.commands.output import Output
@@ -97,8 +98,9 @@ def _check(lessons: list[Lesson], output: Output | None) -> int:
 
 
 def _object(row: Row) -> dict[str, object]:
-    """Return a row for JSON, which has null where there is no number."""
-    return {key: None if value != value else value for key, value in asdict(row).items()}
+    """Return a row for JSON, which has null where there is no number, or none that is finite."""
+    infinite = (key for key, value in asdict(row).items() if isinstance(value, float) and not isfinite(value))
+    return asdict(row) | dict.fromkeys(infinite)
 
 
 def _heads(own: Language) -> Iterator[str]:

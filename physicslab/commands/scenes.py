@@ -2,12 +2,10 @@
 
 from argparse import ArgumentParser, Namespace
 
-import esper
-
 from physicslab.commands.output import Output
 from physicslab.components import Transform
 from physicslab.files.json_text import json_bytes
-from physicslab.scenes import SCENES, Scene
+from physicslab.scenes import SCENES
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -19,7 +17,12 @@ def execute(arguments: Namespace) -> int:
     """Print a line for each scene, or write them as JSON."""
     output = None if arguments.json is None else Output("--json", arguments.json)
     rows = [
-        {"name": scene.name, "title": scene.title, "bodies": _bodies(scene), "description": scene.description}
+        {
+            "name": scene.name,
+            "title": scene.title,
+            "bodies": len(scene.contents().batch(Transform)),
+            "description": scene.description,
+        }
         for scene in SCENES.values()
     ]
     if output is not None:
@@ -29,9 +32,3 @@ def execute(arguments: Namespace) -> int:
         for row in rows:
             print(f"{row['name']:<{width}}  {row['bodies']:>5}  {row['description']}")
     return 0
-
-
-def _bodies(scene: Scene) -> int:
-    # Counted by esper, because a batch of the world would first compile the scene's kernels.
-    with scene.build().active():
-        return len(esper.get_component(Transform))

@@ -183,7 +183,8 @@ def _tell(result: EnsembleResult, label: str, output: Output | None) -> None:
     """Say what came of it."""
     failed = f", {len(result.failures):,} of them with a failure" if result.failures else ""
     where = label if output is None else printable(output.path)
-    print(f"{where}: {len(result):,} runs{failed}")
+    found = f"; {result.found:,} were there already" if result.found else ""
+    print(f"{where}: {len(result):,} runs{failed}{found}")
     for row, why in [*result.failures.items()][:_SHOWN_FAILURES]:
         print(f"  row {row}: {why}")
     if output is None:

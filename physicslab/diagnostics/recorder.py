@@ -42,8 +42,13 @@ _MOMENT_TOLERANCE = 1e-15
 _SUMS = ("kinetic", "potential", "energy")
 
 
-def record(world: World, seconds: float, every: float | None, until: str | None) -> Run:
-    """Advance a world and return what it did, as :meth:`World.record` says."""
+def record(
+    world: World, seconds: float, every: float | None, until: str | None, *, again: bool = False
+) -> Run:
+    """Advance a world and return what it did, as :meth:`World.record` says.
+
+    Where the condition has to begin ``again``, it is taken to hold already.
+    """
     length = run_length(world, seconds, None)
     stride = 1
     if every is not None:
@@ -59,7 +64,7 @@ def record(world: World, seconds: float, every: float | None, until: str | None)
         if until is None:
             samples = _recorded(world, length, stride, reader, records)
         else:
-            samples, found = _Watch(world, until, reader, records).go(length, stride)
+            samples, found = _Watch(world, until, reader, records, again).go(length, stride)
     finally:
         world.samples, world.contacts.read = None, reads
     table = impact_table(world, np.concatenate(records) if records else world.contacts.log[:0])
@@ -112,9 +117,13 @@ class _Watch:
         The condition, of what graphs show: ``"ball.x >= 8 m"``, ``"time > 2 s and world.kinetic < 1 mJ"``.
     reader, records : ImpactReader, list
         The reader of impacts, and their records.
+    again : bool
+        Whether the condition is taken to hold at the start, and has to begin once more.
     """
 
-    def __init__(self, world: World, until: str, reader: ImpactReader, records: list[NDArray[Any]]) -> None:
+    def __init__(
+        self, world: World, until: str, reader: ImpactReader, records: list[NDArray[Any]], again: bool
+    ) -> None:
         self._world, self._reader, self._records, self._text = world, reader, records, until
         if not isinstance(until, str):
             raise InvalidValue("record", "until", until, "a condition, as 'ball.x >= 8 m' is one")
@@ -123,7 +132,8 @@ class _Watch:
             self._names = [name for name in dict.fromkeys(self._condition.names()) if name != "time"]
             self._record = Record(world, self._names)
             self._record.add()
-            self._holds = self._check()
+            self._held = again
+            self._begun = self._begins()
             self._condition.margin(self._now())
         except InvalidText as error:
             allowed = f"a condition, as 'ball.x >= 8 m' is one: {error}"
@@ -134,7 +144,7 @@ class _Watch:
         world = self._world
         every = Samples(world, world.time, length.dt, 1, length.steps)
         ahead, most = _AHEAD if self._of_motion else (1, 1)
-        done, start, found = 0, world.time, world.time if self._holds else None
+        done, start, found = 0, world.time, world.time if self._begun else None
         while found is None and done < length.steps:
             count, before, kept = min(ahead, length.steps - done), every.count, Keyframe(world)
             end = start + length.elapsed(done + count)
@@ -166,11 +176,11 @@ class _Watch:
         return all(name.rpartition(".")[2] in BODY_COLUMNS for name in self._names)
 
     def _first(self, samples: Samples, before: int) -> int | None:
-        """Return the first sample from number ``before`` on at which the condition holds."""
+        """Return the first sample from number ``before`` on at which the condition has begun to hold."""
         world, record = self._world, self._record
         if not self._of_motion:
             record.add()
-            return before if self._check() else None
+            return before if self._begins() else None
         place = {row: k for k, row in enumerate(samples.rows.tolist())}
         fields, columns = list(BODY_COLUMNS), []
         for name in self._names:
@@ -181,7 +191,7 @@ class _Watch:
             record.times.append(float(samples.times[number]))
             for column, row, k in columns:
                 column.append(column[0] if row is None else float(samples.motion[number, row, k]))
-            if self._check():
+            if self._begins():
                 return number
         return None
 
@@ -215,9 +225,10 @@ class _Watch:
         self._record.add()
         return self._condition.margin(self._now())
 
-    def _check(self) -> bool:
-        """Whether the condition holds at the last moment that was read."""
-        return self._condition.holds(self._now())
+    def _begins(self) -> bool:
+        """Whether the condition holds at the last moment that was read, and did not at the one before."""
+        held, self._held = self._held, self._condition.holds(self._now())
+        return self._held and not held
 
     def _now(self) -> Figures:
         return Figures(self._record, None, len(self._record.times) - 1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,9 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from physicslab.diagnostics.figures import Record
 from physicslab.diagnostics.fits import covariance_of
+from physicslab.diagnostics.recorder import record
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ensembles.result import package
+from physicslab.ensembles.runs import check_condition
 from physicslab.ensembles.space import number_of
 from physicslab.files.assignments import put
 from physicslab.files.checks import SceneError, shown
@@ -64,8 +66,9 @@ class FieldFit:
 
 
 def fit(
-    scene: Any, start: Mapping[str, float | str], data: str | os.PathLike[str] | Mapping[str, ArrayLike]
-) -> FieldFit:
+    scene: Any, start: Mapping[str, float | str], data: str | os.PathLike[str] | Mapping[str, ArrayLike], *,
+    seconds: float | None = None, until: str | None = None,
+) -> FieldFit:  # fmt: skip
     """Find the values of fields with which a scene moves as was measured (SciPy; extra ``analysis``).
 
     Parameters
@@ -78,6 +81,10 @@ def fit(
     data : path or mapping of str to array
         A CSV file with a head, or its columns: ``time`` [s] after the start, ascending, and quantities in SI
         as ``ball.x``. A value that is NaN or empty was not measured.
+    until, seconds : str, float, optional
+        A condition, as of :meth:`World.record`: the rows of the data are then the moments at which it begins
+        to hold after the start, one after the other, all within so many seconds; and ``time`` is measured as
+        all else is, by a stopwatch or a light gate.
 
     Raises
     ------
@@ -92,12 +99,20 @@ def fit(
     >>> found = fit("drop", {"physics.gravity.y": -9.0}, seen)  # doctest: +SKIP
     >>> round(found.values["physics.gravity.y"], 3)  # doctest: +SKIP
     -9.81
+    >>> gate, start = {"time": [0.4515]}, {"physics.gravity.y": -9.0}  # when it has fallen by a metre
+    >>> found = fit("drop", start, gate, until="ball.y <= 3", seconds=2)  # doctest: +SKIP
+    >>> round(found.values["physics.gravity.y"], 2)  # doctest: +SKIP
+    -9.81
     """
     package("scipy", "fit")
     from scipy.optimize import least_squares
 
     world = scene if isinstance(scene, World) else load_scene(scene)
-    model = _Model(world, start, _columns(data))
+    if (until is None) != (seconds is None):
+        raise SceneError("until, seconds: must be given together: without them the times of the data hold")
+    if until is not None:
+        check_condition(load_scene(write_scene(world)), until)
+    model = _Model(world, start, _columns(data, until), until, seconds)
     first = model.start / model.scale
     low, high = model.bounds
     found = least_squares(
@@ -116,21 +131,30 @@ def fit(
 class _Model:
     """Runs of a scene beside data, by values of fields in units of their own size."""
 
-    def __init__(self, world: World, start: Mapping[str, float | str], data: dict[str, Numbers]) -> None:
+    def __init__(
+        self,
+        world: World,
+        start: Mapping[str, float | str],
+        data: dict[str, Numbers],
+        until: str | None,
+        seconds: float | None,
+    ) -> None:
         self._scene, names = write_scene(world), entity_names(world)
         if not start:
             raise SceneError("start: must name at least one field")
         self.places = {path: find_place(world, "start", path, str(start[path]), names) for path in start}
         self.start = np.array([_number(self.places[path], start[path]) for path in start])
         self.scale = np.array([abs(value) or 1.0 for value in self.start.tolist()])
-        self.times = data.pop("time")
-        self._data = data
+        self._until, self._seconds = until, seconds
+        self._times = data["time"].tolist() if until is None else []
+        self._rows = len(next(iter(data.values())))
+        self._data = {name: column for name, column in data.items() if until or name != "time"}
         self.runs = 0
         try:
             self.run(self.start)
         except InvalidText as error:
             raise SceneError(f"data: column {error}") from error
-        self._there = {name: np.isfinite(column) for name, column in data.items()}
+        self._there = {name: np.isfinite(column) for name, column in self._data.items()}
         count = sum(int(there.sum()) for there in self._there.values())
         if count < len(self.places):
             raise SceneError(f"data: has {count} numbers for {len(self.places)} fields; must have as many")
@@ -152,15 +176,29 @@ class _Model:
         words = ", ".join(f"{path} = {value:g}" for path, value in zip(self.places, values, strict=True))
         try:
             put(world, dict(zip(self.places.values(), values.tolist(), strict=True)))
-            record = Record(world, self._data)
-            for moment in self.times.tolist():
-                if moment > world.time:
-                    world.run(seconds=moment - world.time)
-                record.add()
+            seen = Record(world, (name for name in self._data if name != "time"))
+            for _ in self._moments(world):
+                seen.add()
         except (Diverged, InvalidValue) as error:
             raise SceneError(f"the run of {words}: {error}") from error
         self.runs += 1
-        return {name: np.array(column) for name, column in record.columns.items()}
+        columns = {"time": seen.times, **seen.columns}
+        return {name: np.array(columns[name]) for name in self._data}
+
+    def _moments(self, world: World) -> Iterator[None]:
+        """Advance a world from one moment of the data to the next."""
+        for moment in self._times:
+            if moment > world.time:
+                world.run(seconds=moment - world.time)
+            yield
+        if self._until is None or self._seconds is None:
+            return
+        for row in range(self._rows):
+            found = record(world, self._seconds - world.time, None, self._until, again=True).found
+            if found is None:
+                begun = f"begins to hold {row} times" if row else "does not begin to hold"
+                raise SceneError(f"until {shown(self._until)}: {begun} within {self._seconds:g} s")
+            yield
 
     def columns_of(self, values: Numbers) -> dict[str, Numbers]:
         return self.run(values * self.scale)
@@ -179,14 +217,18 @@ def _number(place: Place, value: float | str) -> float:
     return number_of(place, value)
 
 
-def _columns(data: str | os.PathLike[str] | Mapping[str, ArrayLike]) -> dict[str, Numbers]:
+def _columns(data: str | os.PathLike[str] | Mapping[str, ArrayLike], until: str | None) -> dict[str, Numbers]:
     """Return the columns of data, all as long, with times that ascend."""
     named = data if isinstance(data, Mapping) else _read(Path(data))
     columns = {name: np.asarray(column, np.float64) for name, column in named.items()}
-    if "time" not in columns or len(columns) < 2:
+    if until is not None and not columns:
+        raise SceneError("data: must have a column of a quantity, as time or ball.x")
+    if until is None and ("time" not in columns or len(columns) < 2):
         raise SceneError("data: must have a column time [s], and at least one of a quantity, as ball.x")
-    if len({column.shape for column in columns.values()}) > 1 or columns["time"].ndim != 1:
+    if len({column.shape for column in columns.values()}) > 1 or next(iter(columns.values())).ndim != 1:
         raise SceneError("data: all columns must have as many numbers")
+    if until is not None:
+        return columns
     times = columns["time"]
     if not (len(times) and np.isfinite(times).all() and times[0] >= 0.0 and (np.diff(times) > 0.0).all()):
         raise SceneError("data: time must begin at 0 s or later and ascend")

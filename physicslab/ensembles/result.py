@@ -8,13 +8,15 @@ import importlib.util
 import io
 import json
 import math
-from collections.abc import Mapping
+from array import array
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.ecs.text import table_cell
 from physicslab.ensembles.map_picture import map_picture
@@ -42,11 +44,14 @@ class EnsembleResult:
         The rows that have none, or not all of it, and why.
     task : Task
         The task that was run.
+    found : int
+        How many rows were there already, in the file or in parts of it.
     """
 
     columns: dict[str, Values] = field(repr=False)
     failures: dict[int, str]
     task: Task = field(repr=False)
+    found: int = 0
 
     def __len__(self) -> int:
         return len(self.task.space)
@@ -165,6 +170,30 @@ def write_result(path: Path, columns: Mapping[str, Values], failures: Mapping[in
         else:
             arrow, parquet = (package(name, ".parquet") for name in ("pyarrow", "pyarrow.parquet"))
             parquet.write_table(arrow.table(dict(columns)), file)
+
+
+def read_result(path: Path, names: Sequence[str]) -> tuple[list[NDArray[np.float64]], dict[int, str]]:
+    """Return columns of numbers (rows,) of a file that :func:`write_result` wrote, and the failures."""
+    if path.suffix == ".npz":
+        with np.load(path, allow_pickle=False) as kept:
+            codes, reasons = kept["failure"], kept["failures"].tolist()
+            failures = {row: reasons[codes[row]] for row in np.flatnonzero(codes).tolist()}
+            return [kept[name] for name in names], failures
+    if path.suffix == ".csv":
+        numbers = array("d")
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = csv.reader(file)
+            head = next(rows)
+            wanted, last = [head.index(name) for name in names], head.index("failure")
+            failures = {}
+            for number, row in enumerate(rows):
+                numbers.extend(float(row[place]) for place in wanted)
+                if row[last]:
+                    failures[number] = row[last]
+        return list(np.array(numbers).reshape(-1, len(names)).T), failures
+    table = package("pyarrow.parquet", ".parquet").read_table(path)
+    failures = {row: why for row, why in enumerate(table["failure"].to_pylist()) if why}
+    return [table[name].to_numpy() for name in names], failures
 
 
 def check_format(path: Path) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ensembles.measures import Measure, Measures
-from physicslab.ensembles.result import EnsembleResult, check_format, package, write_result
+from physicslab.ensembles.result import EnsembleResult, check_format, package
 from physicslab.ensembles.sink import Sink
 from physicslab.ensembles.space import Given, space_of
 from physicslab.ensembles.task import Task
@@ -28,8 +28,6 @@ from physicslab.stepping.run import run_length
 from physicslab.world import World
 
 _TAKEN = ("wall_s", "failure", "replica")
-PARTS = ".parts"
-"""Suffix of the folder of partial results, beside the file that they become."""
 
 
 def ensemble(
@@ -79,7 +77,7 @@ def ensemble(
         How many; by default one for each processor.
     out : path, optional
         A file (``.npz``, ``.csv``, ``.parquet``) for the columns. Until it is whole, its rows are in a folder
-        beside it, and what is run again goes on there.
+        beside it, and what is run again goes on there; once it is, a key beside it tells that no run is left.
     progress : callable or bool
         Called with the share that is done, from 0 to 1; ``True`` shows a bar with the time that is left, in a
         terminal or a notebook (needs tqdm, which comes with the extra ``notebook``).
@@ -150,12 +148,17 @@ def task_of(
     return Task(document, rows, dict(measures), seconds, steps, until)
 
 
-def _check_until(world: World, until: str, measures: Measures) -> None:
-    """Refuse a condition that a world has not, and measures that runs until one have not."""
+def check_condition(world: World, until: str) -> None:
+    """Refuse a condition that a world has not."""
     try:
         world.record(0.0, until=until)
     except InvalidValue as error:
         raise SceneError(f"until {shown(until)}: must be {error.allowed}") from error
+
+
+def _check_until(world: World, until: str, measures: Measures) -> None:
+    """Refuse a condition that a world has not, and measures that runs until one have not."""
+    check_condition(world, until)
     if measures.needs_path and not measures.path_is_motion:
         words = ", ".join(BODY_COLUMNS)
         raise SceneError(f"measure: with until, what looks at the whole run must be of {words} of what moves")
@@ -177,7 +180,7 @@ def run_task(
             check_writable(out)
         except (OSError, ValueError) as error:
             raise SceneError(f"out {out}: cannot be written: {reason_of(error)}") from error
-    sink = Sink(task, None if out is None else out.with_name(out.name + PARTS))
+    sink = Sink(task, out)
     done, rows = 0, len(task.space)
     try:
         with workers:
@@ -188,11 +191,11 @@ def run_task(
                     progress((done + sink.found) / rows)
     finally:
         sink.flush()
+    if progress is not None and not done:
+        progress(1.0)
     columns, failures = _joined(task, sink)
-    if out is not None:
-        write_result(out, columns, failures)
-        sink.remove()
-    return EnsembleResult(columns, failures, task)
+    sink.write(columns, failures)
+    return EnsembleResult(columns, failures, task, sink.found)
 
 
 def _joined(task: Task, sink: Sink) -> tuple[dict[str, Any], dict[int, str]]:

@@ -122,8 +122,8 @@ def sensitivity(
 
 def sobol_indices(
     scene: Any, space: Mapping[str, tuple[str, float, float]], *, measure: Measure | Mapping[str, Measure],
-    seconds: float | None = None, steps: int | None = None, samples: int = 256, seed: int = 0,
-    executor: Any = "processes", workers: int | None = None,
+    seconds: float | None = None, steps: int | None = None, until: str | None = None, samples: int = 256,
+    seed: int = 0, executor: Any = "processes", workers: int | None = None,
 ) -> dict[str, SobolIndices]:  # fmt: skip
     """Return which fields explain how much of the variance of each measure (SALib; extra ``analysis``).
 
@@ -133,7 +133,7 @@ def sobol_indices(
         Fields, each ``("uniform", a, b)`` or ``("normal", mean, deviation)``.
     samples : int
         A power of two; ``samples`` times the number of fields plus 2 runs are made.
-    scene, measure, seconds, steps, executor, workers
+    scene, measure, seconds, steps, until, executor, workers
         As for :func:`~physicslab.ensemble`.
 
     Raises
@@ -154,7 +154,9 @@ def sobol_indices(
         if law not in ("uniform", "normal"):
             words = 'must be ("uniform", a, b) or ("normal", mean, deviation)'
             raise SceneError(f"space: {path} = {shown(space[path])}: {words}")
-    task = task_of(scene, space, measure=measure, seconds=seconds, steps=steps, samples=1)  # is checked
+    task = task_of(  # is checked
+        scene, space, measure=measure, seconds=seconds, steps=steps, until=until, samples=1
+    )
     problem = {
         "num_vars": len(space),
         "names": [*space],
@@ -164,7 +166,7 @@ def sobol_indices(
     drawn: NDArray[np.float64] = sample.sample(problem, samples, calc_second_order=False, seed=seed)
     result = ensemble(
         scene, {path: ("rows", drawn[:, k]) for k, path in enumerate(space)}, measure=measure,
-        seconds=seconds, steps=steps, executor=executor, workers=workers,
+        seconds=seconds, steps=steps, until=until, executor=executor, workers=workers,
     )  # fmt: skip
     _whole(result)
     return {name: _indices(analyse, problem, result.columns[name], seed) for name in result.task.measures}

@@ -1,23 +1,28 @@
-"""Where results go: memory, or parts of a thousand rows that a killed program finds again."""
+"""Where results go: memory, or parts of a thousand rows, found again after a crash, and then a file."""
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import shutil
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.ensembles.result import read_result, write_result
+from physicslab.ensembles.space import Values
 from physicslab.ensembles.task import Block, Task
 from physicslab.files.replace import replace_file
 
 PART = 1000
 """Rows of a part."""
+_PARTS, _KEY = ".parts", ".key"
+"""Suffixes beside the file of results: the folder of its parts, and the key by which it is known."""
 _WRITE_S = 10.0
 """So long [s] results of a part that is not whole yet may be in memory alone."""
 
@@ -48,26 +53,30 @@ class Part:
 
 
 class Sink:
-    """The results of a task: in memory, or in a folder of parts beside the file that they become.
+    """The results of a task: in memory, or in a folder of parts, and then in the file that they become.
 
     Parameters
     ----------
     task : Task
         Whose results.
-    folder : Path, optional
-        Where parts are kept; in memory where absent.
+    out : Path, optional
+        The file; results are in memory alone where absent.
 
     Attributes
     ----------
+    is_whole : bool
+        Whether the file held all results of this task already.
     found : int
         How many rows were there already.
     strange : int
         How many parts held rows of another scene, other measures or another version.
     """
 
-    def __init__(self, task: Task, folder: Path | None) -> None:
-        self._task, self._folder = task, folder
+    def __init__(self, task: Task, out: Path | None) -> None:
+        self._task, self._out = task, out
+        self._folder = None if out is None else out.with_name(out.name + _PARTS)
         self._rows = len(task.space)
+        self.is_whole = self._holds_all()
         self._open: dict[int, Part] = {}
         self.found = self.strange = 0
 
@@ -78,6 +87,9 @@ class Sink:
 
     def missing(self) -> Iterator[tuple[int, int]]:
         """Yield the rows to be made, from and up to, none beyond the end of a part."""
+        if self.is_whole:
+            self.found = self._rows
+            return
         for number in range(self.parts):
             part = self._read(number)
             self.found += int(part.done.sum())
@@ -108,14 +120,56 @@ class Sink:
                     self._write(number, part)
 
     def results(self) -> Iterator[Part]:
-        """Yield all parts, in order."""
+        """Yield all parts, in order; as one where the file held them."""
+        if self.is_whole:
+            yield self._read_file()
+            return
         for number in range(self.parts):
             yield self._open[number] if number in self._open else self._read(number)
 
-    def remove(self) -> None:
-        """Remove the parts, which have become a file."""
-        if self._folder is not None:
-            shutil.rmtree(self._folder, ignore_errors=True)
+    def write(self, columns: Mapping[str, Values], failures: Mapping[int, str]) -> None:
+        """Write all results to the file, with the key by which it is known; the parts are removed then.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written.
+        """
+        if self._out is None or self._folder is None or self.is_whole:
+            return
+        write_result(self._out, columns, failures)
+        replace_file(self._key_path(self._out), self._file_key(self._out))
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _holds_all(self) -> bool:
+        """Whether the file holds the results of this task, as they were written."""
+        if self._out is None:
+            return False
+        try:
+            return self._key_path(self._out).read_bytes() == self._file_key(self._out)
+        except OSError:
+            return False
+
+    @staticmethod
+    def _key_path(out: Path) -> Path:
+        return out.with_name(out.name + _KEY)
+
+    def _file_key(self, out: Path) -> bytes:
+        """Return the digest (64 hex digits) of the rows of this task and of the bytes of a file."""
+        with open(out, "rb") as file:
+            digest = hashlib.file_digest(file, "sha256")
+        for number in range(self.parts):
+            digest.update(self._keys(number).tobytes())
+        return digest.hexdigest().encode()
+
+    def _read_file(self) -> Part:
+        assert self._out is not None
+        part = Part(0, self._rows, len(self._task.measures))
+        columns, part.failures = read_result(self._out, [*self._task.measures, "wall_s"])
+        part.done[:] = True
+        *values, part.wall_s = columns
+        part.values = np.array(values).T
+        return part
 
     def _path(self, number: int) -> Path:
         assert self._folder is not None

@@ -12,7 +12,7 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import REQUIRED, Field
 from physicslab.files.entities import UNSAVED
 from physicslab.files.reader import FORMAT, KEYS
-from physicslab.state.state import LEVELS, SCENE_TEXTS, SHOWN
+from physicslab.state.contents import LEVELS, SCENE_TEXTS, SHOWN
 
 type _Schema = dict[str, Any]
 

@@ -26,10 +26,11 @@ from physicslab.files.numbers import export_numbers
 from physicslab.files.reader import FORMAT
 from physicslab.files.remainders import export_remainders
 from physicslab.state.contacts import Contacts
+from physicslab.state.contents import SCENE_TEXTS
 from physicslab.state.joint_rows import kinds_of
-from physicslab.state.state import SCENE_TEXTS, State
+from physicslab.state.state import State
 from physicslab.stepping.island import KeptIsland
-from physicslab.stepping.plan import outlived
+from physicslab.stepping.planning import outlived
 from physicslab.world import World
 
 

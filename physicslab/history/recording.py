@@ -27,7 +27,7 @@ from physicslab.files.scene import parse_json, read_text
 from physicslab.files.writer import write_scene
 from physicslab.history import commands
 from physicslab.history.line import Edit, Line, Run, Steps
-from physicslab.state.state import SCENE_TEXTS
+from physicslab.state.contents import SCENE_TEXTS
 from physicslab.world import World
 
 _GROUP_DEPTH = 20

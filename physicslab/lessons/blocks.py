@@ -5,7 +5,7 @@ A line that begins with spaces goes on with the value of the line before it.
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.text import suggestion
@@ -13,19 +13,15 @@ from physicslab.files.checks import SceneError, shown
 from physicslab.lessons.lesson import Prose
 from physicslab.lessons.setup import AS_IT_IS, Case
 
+_ASKED = ("question", "choice", "number", "curve")
+_ANSWERED = ("answer", "tolerance", "mistake", "right", "wrong", "idea", "show", "when")
 KEYS: dict[str, tuple[str, ...]] = {
     "scene": ("let", "open", "set", "tools", "show"),
-    "predict": (
-        "question", "choice", "number", "curve", "answer", "tolerance", "mistake", "right", "wrong", "idea",
-        "show", "when",
-    ),
+    "predict": (*_ASKED, *_ANSWERED),
     "run": ("seconds", "until", "limit", "graph", "case"),
     "compare": ("quantity", "unit", "measure", "along", "theory", "holds", "tolerance", "case", "fails"),
     "explain": ("question", "answer"),
-    "check": (
-        "question", "choice", "number", "curve", "goal", "solution", "answer", "tolerance", "mistake",
-        "right", "wrong", "idea", "show", "when",
-    ),
+    "check": (*_ASKED, "goal", "solution", *_ANSWERED),
     "recall": ("ask",),
 }  # fmt: skip
 """The kinds of blocks, and the keys of each."""
@@ -131,14 +127,14 @@ class Block:
 
     def case(self, entry: Entry) -> Case:
         """Return the case that an entry holds."""
-        return self.read(entry, read_case)
+        return replace(self.read(entry, read_case), line=entry.line)
 
 
 def read_case(text: str) -> Case:
     """Return the case of a text like ``th = 90 deg; ball.Drag.quadratic = 0.1 kg/m | with air``."""
     assigned, _, note = text.partition("|")
     if assigned.strip() == AS_IT_IS.text:
-        return AS_IT_IS
+        return replace(AS_IT_IS, note=note.strip())
     values = []
     for part in filter(None, (part.strip() for part in assigned.split(";"))):
         name, sign, value = (piece.strip() for piece in part.partition("="))

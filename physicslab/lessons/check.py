@@ -15,7 +15,7 @@ from physicslab.ecs.quantity_text import (
     in_words,
     same_dimension,
 )  # fmt: skip
-from physicslab.files.checks import SceneError
+from physicslab.files.checks import SceneError, shown
 from physicslab.languages.language import language
 from physicslab.lessons.blocks import LessonError
 from physicslab.lessons.lesson import Compare, Lesson, Question, Reply, Run, place_of
@@ -83,27 +83,24 @@ class LessonRuns:
     def _no_run(self) -> Run:
         return Run("", 0, Expression("0 s"), None, Expression("0 s"), (), AS_IT_IS)
 
-    def right_answer(self, question: Question) -> float:
-        """Return the number that is right, in the unit of the question."""
-        assert question.answer is not None
-        return self._number(question, question.answer)
-
-    def number(self, question: Question, reply: Reply) -> float:
-        """Return the number of a foreseen mistake, in the unit of the question."""
-        assert reply.value is not None
-        return self._number(question, reply.value)
+    def number(self, question: Question, reply: Reply | None = None) -> float:
+        """Return the number that is right, or a foreseen mistake, in the unit of the question."""
+        expression = _expected(question, reply)
+        value = expression.value(self.figures(question.run))
+        if value.dimension == Quantity(0.0).dimension:  # the angle of an arctangent is in radians
+            value = replace(value, has_unit=True)
+        return in_unit(value, question.unit, expression.text)
 
     def curve(self, question: Question, reply: Reply | None = None) -> list[float]:
         """Return the curve that is right, or a foreseen mistake, at each sample [SI]."""
-        expression = question.answer if reply is None else reply.value
-        assert expression is not None
-        return self.figures(question.run).series(expression)
+        return self.figures(question.run).series(_expected(question, reply))
 
-    def _number(self, question: Question, expression: Expression) -> float:
-        value, unit = expression.value(self.figures(question.run)), question.unit
-        if value.dimension == Quantity(0.0).dimension:  # the angle of an arctangent is in radians
-            value = replace(value, has_unit=True)
-        return in_unit(value, unit, expression.text)
+
+def _expected(question: Question, reply: Reply | None) -> Expression:
+    """Return what a question asks for, or what a foreseen mistake has instead."""
+    expression = question.answer if reply is None else reply.value
+    assert expression is not None
+    return expression
 
 
 def check_lesson(lesson: Lesson) -> Iterator[Row]:
@@ -126,17 +123,33 @@ def check_lesson(lesson: Lesson) -> Iterator[Row]:
                         yield from _compared(runs, part)
                     case Question():
                         yield from _answered(runs, part)
+            except LessonError:
+                raise
             except (InvalidText, SceneError, Diverged) as error:
                 raise LessonError(f"{lesson.path}: {place_of(part)}: {error}") from error
 
 
 def _compared(runs: LessonRuns, compare: Compare) -> Iterator[Row]:
-    for case in (*compare.cases, *compare.fails):
-        row = row_of(runs.lesson, compare, case, runs.figures(compare.run, case))
-        if row.holds == (case in compare.fails):
-            what = "must not hold" if row.holds else "must hold"
-            raise InvalidText(f"'{compare.holds.text}' {what} in the case '{case.text}'")
-        yield row
+    for key, cases in (("case", compare.cases), ("fails", compare.fails)):
+        for case in cases:
+            try:
+                row = row_of(runs.lesson, compare, case, runs.figures(compare.run, case))
+            except (InvalidText, SceneError, Diverged) as error:
+                if key == "case":  # the measure itself may be wrong
+                    raise
+                allowed = f"must be a case in which {compare.measured.text} can be measured"
+                raise _refusal(runs.lesson, compare, key, case, f"{error}; {allowed}") from error
+            if row.holds != (key == "case"):
+                told = f"'{compare.holds.text}' {'holds' if row.holds else 'does not hold'}"
+                allowed = f"must be a case in which it {'does not' if row.holds else 'does'}"
+                raise _refusal(runs.lesson, compare, key, case, f"{told}; {allowed}")
+            yield row
+
+
+def _refusal(lesson: Lesson, part: Compare | Question, key: str, case: Case, why: str) -> LessonError:
+    """Return the error that a case of a part cannot be so."""
+    place = place_of(replace(part, line=case.line or part.line))
+    return LessonError(f"{lesson.path}: {place}: {key} = {shown(case.text)}: {why}")
 
 
 def row_of(lesson: Lesson, compare: Compare, case: Case, figures: Figures) -> Row:
@@ -173,7 +186,7 @@ def gap_of(compare: Compare, figures: Figures) -> tuple[Quantity, Quantity, floa
         measured, theory = compare.measured.value(figures), compare.theory.value(figures)
         same_dimension(measured, theory, compare.theory.text)
         return measured, theory, abs(measured.value - theory.value)
-    measured, theory, _ = gap_of(_at_once(compare), figures.at(0))
+    measured, theory, _ = gap_of(replace(compare, along=False), figures.at(0))
     first, second = (figures.series(expression) for expression in (compare.measured, compare.theory))
     gap = max(abs(a - b) for a, b in zip(first, second, strict=True))
     worst = max(range(len(first)), key=lambda i: abs(second[i]))
@@ -182,10 +195,6 @@ def gap_of(compare: Compare, figures: Figures) -> tuple[Quantity, Quantity, floa
         Quantity(second[worst], theory.dimension, True),
         gap,
     )
-
-
-def _at_once(compare: Compare) -> Compare:
-    return replace(compare, along=False)
 
 
 def _is_absolute(tolerance: Quantity, theory: Quantity) -> bool:
@@ -219,9 +228,14 @@ def _answered(runs: LessonRuns, question: Question) -> Iterator[Row]:
         if reply.when is not None:
             yield _told(runs, question, reply.text, reply.when.holds(figures), reply.right)
         if reply.shown_by is not None:
-            runs.lesson.setup.world(reply.shown_by)
+            try:
+                runs.figures(question.run, reply.shown_by)
+            except (InvalidText, SceneError, Diverged) as error:
+                allowed = "must be a case in which the run comes to its end"
+                why = f"{error}; {allowed}"
+                raise _refusal(runs.lesson, question, "show", reply.shown_by, why) from error
     if question.form == "number":
-        right = runs.right_answer(question)
+        right = runs.number(question)
         yield _told(runs, question, f"{right:.6g} {question.unit}", math.isfinite(right), True)
         for reply in question.replies:
             wrong = runs.number(question, reply)
@@ -239,6 +253,11 @@ def _answered(runs: LessonRuns, question: Question) -> Iterator[Row]:
         solved = question.goal.holds(runs.figures(question.run, question.solution))
         yield _told(runs, question, f"{question.goal.text}: {question.solution.text}", solved, True)
         yield _told(runs, question, f"{question.goal.text}: as it is", question.goal.holds(figures), False)
+
+
+def is_near(number: float, right: float, tolerance: float) -> bool:
+    """Whether a number is right, within a tolerance that is a share of it."""
+    return abs(number - right) <= tolerance * abs(right)
 
 
 def curve_gap(drawn: Sequence[float], measured: Sequence[float]) -> float:

@@ -1,13 +1,13 @@
 """A lesson as records, which a panel, a page or a grader renders without knowing the format of its file."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from physicslab.ecs.conditions import Condition
 from physicslab.ecs.quantity_text import Expression
-from physicslab.lessons.setup import Case, Setup
+from physicslab.lessons.setup import AS_IT_IS, Case, Setup
 
 SURENESS = ("guess", "unsure", "sure", "certain")
 """How sure a learner may be of a prediction."""
@@ -157,6 +157,12 @@ class Compare:
     cases: tuple[Case, ...]
     fails: tuple[Case, ...]
     run: Run
+
+    def rows(self, tried: Iterable[Case] = ()) -> list[Case]:
+        """Return its cases, each once: first the run as it is, at the end those that a learner tried."""
+        cases = list(dict.fromkeys((*self.cases, *self.fails, *tried)))
+        as_run = next((case for case in cases if not case.values), AS_IT_IS)
+        return [as_run, *(case for case in cases if case.values)]
 
 
 @dataclass(frozen=True, slots=True)

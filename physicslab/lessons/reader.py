@@ -20,7 +20,7 @@ from physicslab.lessons.setup import Parameters, Setup
 from physicslab.lessons.translation import FORMAT as WORDS_FORMAT
 from physicslab.lessons.translation import translate
 from physicslab.state.attached import INSTRUMENTS
-from physicslab.state.state import SHOWN
+from physicslab.state.contents import SHOWN
 
 FORMAT = "physicslab-lesson/1"
 FILE_LIMIT = 2**20

@@ -6,7 +6,7 @@ import ast
 import copy
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from physicslab.ecs.component import COMPONENTS
@@ -24,11 +24,15 @@ _WORDS: dict[str, Any] = {"true": True, "false": False, "null": None}
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """Changes to a scene: values of parameters, or of fields, by ``ID.Component.field``."""
+    """Changes to a scene: values of parameters, or of fields, by ``ID.Component.field``.
+
+    Cases are equal whatever their note, and the line of the file where they stand.
+    """
 
     text: str
     values: tuple[tuple[str, str], ...] = ()
-    note: str = ""
+    note: str = field(default="", compare=False)
+    line: int = field(default=0, compare=False)
 
 
 AS_IT_IS = Case("as it is")

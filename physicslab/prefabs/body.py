@@ -7,7 +7,7 @@ from physicslab.components import Colour, MadeOf, Mass, Material, Shape, Transfo
 from physicslab.components.made_of import SUBSTANCES
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 type Pair = Vector2 | tuple[float, float]
 """A vector, or its two components."""
@@ -51,7 +51,7 @@ class BodyOptions(TypedDict, total=False):
     name: str | None
 
 
-def body(world: World, shape: Shape, position: Pair, **options: Unpack[BodyOptions]) -> int:
+def body(world: Contents, shape: Shape, position: Pair, **options: Unpack[BodyOptions]) -> int:
     """Spawn a body with its centre at ``position`` [m], with :class:`BodyOptions`; return its entity.
 
     Raises
@@ -84,12 +84,14 @@ def body(world: World, shape: Shape, position: Pair, **options: Unpack[BodyOptio
 
 
 def box(
-    world: World, position: Pair, *, width: float = 0.5, height: float = 0.5, **options: Unpack[BodyOptions]
-) -> int:
+    world: Contents, position: Pair, *, width: float = 0.5, height: float = 0.5,
+    **options: Unpack[BodyOptions],
+) -> int:  # fmt: skip
     """Spawn a rectangle of given extents [m] with its centre at ``position`` [m]; return its entity.
 
     Examples
     --------
+    >>> from physicslab import World
     >>> world = World()
     >>> floor = box(world, (0, -0.5), width=20, height=1, static=True, name="floor")
     >>> world.component(floor, Shape).width
@@ -99,8 +101,9 @@ def box(
 
 
 def capsule(
-    world: World, position: Pair, *, length: float = 0.5, radius: float = 0.2, **options: Unpack[BodyOptions]
-) -> int:
+    world: Contents, position: Pair, *, length: float = 0.5, radius: float = 0.2,
+    **options: Unpack[BodyOptions],
+) -> int:  # fmt: skip
     """Spawn a capsule, whose round ends have centres ``length`` [m] apart, at ``position`` [m].
 
     Returns
@@ -110,6 +113,7 @@ def capsule(
 
     Examples
     --------
+    >>> from physicslab import World
     >>> world = World()
     >>> pill = capsule(world, (0, 2), length=1, radius=0.25)
     >>> world.component(pill, Shape).length
@@ -118,11 +122,12 @@ def capsule(
     return body(world, Shape.capsule(length, radius), position, **options)
 
 
-def circle(world: World, position: Pair, *, radius: float = 0.25, **options: Unpack[BodyOptions]) -> int:
+def circle(world: Contents, position: Pair, *, radius: float = 0.25, **options: Unpack[BodyOptions]) -> int:
     """Spawn a disc of a given radius [m] with its centre at ``position`` [m]; return its entity.
 
     Examples
     --------
+    >>> from physicslab import World
     >>> world = World()
     >>> ball = circle(world, (0, 5), radius=0.1, mass=0.5, restitution=0.8, name="ball")
     >>> world.component(ball, Shape).radius
@@ -132,7 +137,7 @@ def circle(world: World, position: Pair, *, radius: float = 0.25, **options: Unp
 
 
 def polygon(
-    world: World,
+    world: Contents,
     position: Pair,
     vertices: Sequence[Pair],
     *,
@@ -145,6 +150,7 @@ def polygon(
 
     Examples
     --------
+    >>> from physicslab import World
     >>> world = World()
     >>> wedge = polygon(world, (0, 0.5), [(0, 0), (3, 0), (0, 1.5)], name="wedge")
     >>> world.component(wedge, Shape).vertices[0]

@@ -3,11 +3,11 @@
 from physicslab.components import Rod, Spring
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import Pair, circle
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
 def chain(
-    world: World,
+    world: Contents,
     count: int,
     start: Pair,
     end: Pair,
@@ -53,7 +53,7 @@ def chain(
 
 
 def pendulum(
-    world: World,
+    world: Contents,
     anchor: Pair,
     *,
     length: float = 2.0,

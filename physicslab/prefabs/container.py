@@ -4,11 +4,11 @@ from typing import Unpack
 
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import BodyOptions, Pair, box
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
 def container(
-    world: World,
+    world: Contents,
     position: Pair = (0.0, 0.0),
     *,
     width: float,

@@ -6,11 +6,11 @@ import numpy as np
 
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import circle
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
 def gas(
-    world: World,
+    world: Contents,
     count: int,
     region: tuple[float, float, float, float],
     *,

@@ -6,11 +6,11 @@ from typing import Unpack
 from physicslab.components import Gear, Pin
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import BodyOptions, Pair, circle
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
 def gears(
-    world: World, position: Pair, teeth: Sequence[int], *, module: float = 0.05, onwards: float = 0.0,
+    world: Contents, position: Pair, teeth: Sequence[int], *, module: float = 0.05, onwards: float = 0.0,
     **options: Unpack[BodyOptions],
 ) -> list[int]:  # fmt: skip
     """Spawn wheels in a row, each on a pin and coupled to the next one; return their entities.
@@ -39,6 +39,7 @@ def gears(
     Examples
     --------
     >>> from physicslab.components import Mass
+    >>> from physicslab import World
     >>> world = World()
     >>> wheels = gears(world, (0, 2), [12, 36], angular_velocity=3.0)
     >>> world.component(wheels[1], Mass).mass

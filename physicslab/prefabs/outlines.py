@@ -11,7 +11,7 @@ from physicslab.components.shape import KINDS
 from physicslab.components.vertices import centre_of_mass
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import BodyOptions, Pair, body
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _MOST_POINTS = 1000
 _LEAST, _MOST = KINDS["polygon"].own
@@ -21,7 +21,7 @@ _UNCERTAIN = 4e-16
 """Share of two products below which the sign of their difference may be that of rounding."""
 
 
-def outline(world: World, points: Sequence[Pair], **options: Unpack[BodyOptions]) -> list[int]:
+def outline(world: Contents, points: Sequence[Pair], **options: Unpack[BodyOptions]) -> list[int]:
     """Spawn what has an outline [m], in its place: its convex parts, welded along their common sides.
 
     Parameters
@@ -44,6 +44,7 @@ def outline(world: World, points: Sequence[Pair], **options: Unpack[BodyOptions]
 
     Examples
     --------
+    >>> from physicslab import World
     >>> len(outline(World(), [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)], mass=3))
     3
     """

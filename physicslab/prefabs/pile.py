@@ -6,11 +6,11 @@ import numpy as np
 
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import BodyOptions, Pair, box, circle
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
 def pile(
-    world: World,
+    world: Contents,
     count: int,
     foot: Pair = (0.0, 0.0),
     *,
@@ -52,7 +52,7 @@ def pile(
 
 
 def pyramid(
-    world: World,
+    world: Contents,
     base: int,
     foot: Pair = (0.0, 0.0),
     *,
@@ -86,7 +86,7 @@ def pyramid(
 
 
 def stack(
-    world: World,
+    world: Contents,
     count: int,
     base: Pair = (0.0, 0.0),
     *,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from physicslab.components import Mass, Trail, Transform, Velocity
 from physicslab.ecs.vector import Vector2
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Planet:
 
 
 def binary(
-    world: World,
+    world: Contents,
     masses: tuple[float, float] = (1.0, 1.0),
     *,
     separation: float = 2.0,
@@ -77,7 +77,7 @@ def binary(
     return made
 
 
-def planets(world: World, star: float, orbiting: Sequence[Planet], *, trail: float = 5.0) -> list[int]:
+def planets(world: Contents, star: float, orbiting: Sequence[Planet], *, trail: float = 5.0) -> list[int]:
     """Spawn a star and planets around it, as point masses with no momentum in total; return the star first.
 
     Each planet has the speed of a circular orbit about the star alone; the others' pull makes it less of a

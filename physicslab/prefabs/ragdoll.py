@@ -6,7 +6,7 @@ from typing import NamedTuple
 from physicslab.components import Mass, Material, Pin, Shape, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import Pair
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
 class _Limb(NamedTuple):
@@ -40,7 +40,7 @@ _LIMBS = (
 """Upper arms and forearms, thighs and shins, right and left; a parent is a place in the list of all parts."""
 
 
-def ragdoll(world: World, position: Pair, *, size: float = 1.0, angle: float = 0.0) -> list[int]:
+def ragdoll(world: Contents, position: Pair, *, size: float = 1.0, angle: float = 0.0) -> list[int]:
     """Spawn a ragdoll with its arms held out, the middle of its torso at ``position`` [m].
 
     Parameters
@@ -57,6 +57,7 @@ def ragdoll(world: World, position: Pair, *, size: float = 1.0, angle: float = 0
 
     Examples
     --------
+    >>> from physicslab import World
     >>> world = World()
     >>> len(ragdoll(world, (0, 2)))
     10

@@ -8,16 +8,18 @@ from physicslab.components import Shape
 from physicslab.components.vertices import regular
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import BodyOptions, Pair, body, polygon
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
 def wedge(
-    world: World, position: Pair, *, width: float = 1.0, height: float = 0.5, **options: Unpack[BodyOptions]
-) -> int:
+    world: Contents, position: Pair, *, width: float = 1.0, height: float = 0.5,
+    **options: Unpack[BodyOptions],
+) -> int:  # fmt: skip
     """Spawn a triangle with a right angle, its left lower corner, at ``position`` [m]; return its entity.
 
     Examples
     --------
+    >>> from physicslab import World
     >>> world = World()
     >>> slope = wedge(world, (0, 0), width=3, height=1.5, static=True)
     >>> world.component(slope, Shape).vertices[0]
@@ -29,14 +31,15 @@ def wedge(
 
 
 def regular_polygon(
-    world: World, position: Pair, *, corners: int = 6, radius: float = 0.25, **options: Unpack[BodyOptions]
-) -> int:
+    world: Contents, position: Pair, *, corners: int = 6, radius: float = 0.25,
+    **options: Unpack[BodyOptions],
+) -> int:  # fmt: skip
     """Spawn a polygon of 3 to 8 equal sides in a circle of a radius [m]; one side is below."""
     return polygon(world, position, regular(corners, radius), **options)
 
 
 def ground(
-    world: World, vertices: Sequence[Pair], position: Pair = (0.0, 0.0), **options: Unpack[BodyOptions]
+    world: Contents, vertices: Sequence[Pair], position: Pair = (0.0, 0.0), **options: Unpack[BodyOptions]
 ) -> int:
     """Spawn fixed ground along 2 to 1,000 vertices [m] from ``position``; return its entity.
 
@@ -44,6 +47,7 @@ def ground(
 
     Examples
     --------
+    >>> from physicslab import World
     >>> world = World()
     >>> hill = ground(world, [(5, 0), (1, 0), (0, 1), (-1, 0), (-5, 0)], friction=0.8)
     """
@@ -52,8 +56,9 @@ def ground(
 
 
 def ramp(
-    world: World, position: Pair, *, length: float = 4.0, slope: float = 0.5, **options: Unpack[BodyOptions]
-) -> int:
+    world: Contents, position: Pair, *, length: float = 4.0, slope: float = 0.5,
+    **options: Unpack[BodyOptions],
+) -> int:  # fmt: skip
     """Spawn a fixed slope that goes down to the right from ``position`` [m], by ``slope`` [rad].
 
     Returns
@@ -66,7 +71,7 @@ def ramp(
 
 
 def loop(
-    world: World, position: Pair, *, radius: float = 1.0, run: float = 3.0, opening: float = 0.8,
+    world: Contents, position: Pair, *, radius: float = 1.0, run: float = 3.0, opening: float = 0.8,
     segments: int = 400, **options: Unpack[BodyOptions],
 ) -> int:  # fmt: skip
     """Spawn a fixed loop-the-loop with its lowest point at ``position`` [m]; return its entity.

@@ -5,13 +5,13 @@ import math
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import BodyOptions, circle
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _RADIUS = 0.15
 _BALL: BodyOptions = {"mass": 0.17, "restitution": 0.95, "friction": 0.05}
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     circle(world, (-3.0, 0.05), radius=_RADIUS, **(_BALL | {"velocity": (8.0, 0.0), "name": "cue ball"}))
     pitch = 2.0 * _RADIUS + 0.002
     for row in range(5):

@@ -2,10 +2,10 @@
 
 from physicslab.prefabs import box, circle
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     box(world, (0, -0.5), width=14, height=1, static=True, restitution=1, name="floor")
     for i, restitution in enumerate((0.0, 0.25, 0.5, 0.75, 1.0)):
         circle(world, (2 * i - 4, 4), radius=0.3, restitution=restitution, name=f"e = {restitution:g}")

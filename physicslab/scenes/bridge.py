@@ -6,13 +6,13 @@ from physicslab.components import Pin
 from physicslab.ecs.config import SimulationConfig
 from physicslab.prefabs import box, circle
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _PLANKS, _LENGTH, _THICKNESS, _RADIUS = 20, 0.4, 0.12, 12.0
 """How many planks; the length and the thickness of each, and the radius of the arc in which they hang [m]."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     one = 2.0 * math.asin(0.5 * _LENGTH / _RADIUS)  # the angle that one plank takes of the arc
     half, top = _RADIUS * math.sin(0.5 * _PLANKS * one), _RADIUS * math.cos(0.5 * _PLANKS * one)
     left, right = (

@@ -5,7 +5,7 @@ import math
 from physicslab.components import Pin
 from physicslab.prefabs import circle, ground, polygon
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _RADIUS, _TORQUE, _SPEED = 0.3, 18.0, -12.0
 """Radius of each wheel [m]; the most torque [N m] and the speed [rad/s] of its motor."""
@@ -19,7 +19,7 @@ def _height(x: float) -> float:
     return hills + 0.08 * max(0.0, x - 4.2) ** 2 + 0.3 * max(0.0, -8.2 - x) ** 2
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     along = [_RIGHT - k * _STEP for k in range(round((_RIGHT - _LEFT) / _STEP) + 1)]
     ground(world, [(x, _height(x)) for x in along], friction=1.0, name="hills")
     outline = [(-0.95, -0.12), (0.95, -0.12), (1.0, 0.08), (0.4, 0.42), (-0.4, 0.42), (-0.95, 0.14)]

@@ -4,13 +4,13 @@ from physicslab.components import Meter, Slider
 from physicslab.components.vertices import centred
 from physicslab.prefabs import BodyOptions, box, polygon
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _TRACK = 4.5
 """Half the length of the track [m]."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     wall: BodyOptions = {"static": True, "friction": 0.0, "restitution": 1.0}
     box(world, (0.0, -0.1), width=2.0 * _TRACK + 0.4, height=0.2, **(wall | {"name": "track"}))
     for side, name in ((-1.0, "left end"), (1.0, "right end")):

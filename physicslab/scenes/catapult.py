@@ -5,7 +5,7 @@ import math
 from physicslab.components import Layer, Pin, Trail, Weld
 from physicslab.prefabs import BodyOptions, box, circle, polygon
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _AXLE, _ARM, _STONE, _WEIGHT = (-5.0, 1.8), (-0.8, 2.4), 2.1, -0.7
 """The axle; from it along the arm: its ends, where the stone lies, where the weight is held [m]."""
@@ -14,7 +14,7 @@ _FROM, _TO, _TARGET = math.radians(-145.0), math.radians(-240.0), 6.6
 _WOOD: BodyOptions = {"material": "wood", "restitution": 0.0}
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     (x, y), along = _AXLE, (math.cos(_FROM), math.sin(_FROM))
     middle = 0.5 * sum(_ARM)
 

@@ -4,13 +4,13 @@ from physicslab.components import Rope, Slot
 from physicslab.ecs.config import SimulationConfig
 from physicslab.prefabs import box, circle
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _SPEED, _HEIGHT, _LENGTH, _STOP = 1.6, 5.0, 3.6, 0.6
 """Speed [m/s] and height [m] of the trolley; length of the rope [m], and where the trolley stops [m]."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     yellow, start = "#e8b33a", -3.0
     box(world, (0.0, -0.2), width=11.0, height=0.4, static=True, friction=0.8, name="ground")
     box(world, (-4.4, 2.7), width=0.4, height=5.4, static=True, colour=yellow, name="tower")

@@ -4,10 +4,10 @@ from physicslab.components import Charge, Mass, Trail, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     # All drift at E / B = 0.6 m/s to the right; the second, which is as fast from the start, goes straight.
     for n, (speed, charge) in enumerate(((0.0, 1.0), (0.6, 1.0), (0.0, 2.0), (2.0, 1.0), (0.0, -1.0))):
         world.spawn(

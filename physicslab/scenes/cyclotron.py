@@ -5,13 +5,13 @@ import math
 from physicslab.components import Charge, Mass, Thrust, Trail, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _FIELD = 4.0
 """The magnetic field [T]: 1 C with 1 kg goes round with as many radians a second, at any speed."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     for name, share in (("in step", 1.0), ("out of step", 1.15)):
         world.spawn(
             Transform((-1.7 if share == 1.0 else 2.3, 0.0)), Velocity(), Mass(1.0), Charge(),

@@ -2,10 +2,10 @@
 
 from physicslab.prefabs import box
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     box(world, (0, -0.5), width=20, height=1, static=True, friction=0.6, name="floor")
     for i in range(20):
         angular_velocity = -2.0 if i == 0 else 0.0

@@ -5,13 +5,13 @@ import math
 from physicslab.components import Pin, Trail
 from physicslab.prefabs import capsule
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _LENGTH, _START, _APART = 1.0, math.radians(120.0), 1e-3
 """The length of a bar [m], the angle at first [rad], and how much farther the second lower bar is."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     for name, middle, further in (("left", -2.2, 0.0), ("right", 2.2, _APART)):
         x, y, above = middle, 0.0, 0
         for part, angle in (("upper", _START), ("lower", _START + further)):

@@ -2,10 +2,10 @@
 
 from physicslab.prefabs import box, circle
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     box(world, (0, -0.5), width=20, height=1, static=True, restitution=0.8, friction=0.6, name="floor")
     circle(world, (-3, 4), radius=0.25, velocity=(1, 0), restitution=0.8, friction=0.6, name="ball")
 

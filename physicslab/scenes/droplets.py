@@ -5,13 +5,13 @@ import math
 from physicslab.components import Mass, Molecule, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _DISTANCE, _RINGS = 0.2, 6
 """Distance of neighbours [m]; rings of molecules around the one in the middle of each crystal."""
 
 
-def _crystal(world: World, x: float, y: float, speed: float, turn: float) -> None:
+def _crystal(world: Contents, x: float, y: float, speed: float, turn: float) -> None:
     """Spawn a hexagon of molecules, closely packed, about a point."""
     for i in range(-_RINGS, _RINGS + 1):
         for j in range(-_RINGS, _RINGS + 1):
@@ -22,7 +22,7 @@ def _crystal(world: World, x: float, y: float, speed: float, turn: float) -> Non
             world.spawn(Transform(where), Velocity((speed, 0.0)), Mass(1.0), Molecule(1.0, _DISTANCE))
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     _crystal(world, -1.8, 0.35, 1.4, 0.2)
     _crystal(world, 1.8, -0.35, -1.4, 0.6)
 

@@ -3,13 +3,13 @@
 from physicslab.components import Medium, Shape, Transform
 from physicslab.prefabs import box, capsule, circle
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _WATER = 1000.0
 """kg/m^2: as if everything were a metre thick."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     world.spawn(Transform((0.0, -1.5)), Shape.box(8.0, 3.0), Medium(_WATER, viscosity=60.0), name="water")
     for name, x, width, y, height in (
         ("bottom", 0.0, 8.8, -3.2, 0.4), ("left", -4.2, 0.4, -1.3, 4.2), ("right", 4.2, 0.4, -1.3, 4.2)

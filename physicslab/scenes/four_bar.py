@@ -5,7 +5,7 @@ import math
 from physicslab.components import Layer, Pin, Trail
 from physicslab.prefabs import BodyOptions, capsule, circle
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _UNIT, _SPEED, _START = 0.4, -0.5 * math.pi, math.radians(240.0)
 """The length of the crank [m], the speed of the motor [rad/s], the angle of the crank at first [rad].
@@ -15,7 +15,7 @@ pen is also nearly even in its speed.
 """
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     tip = _UNIT * math.cos(_START), _UNIT * math.sin(_START)
     foot = (2.0 * _UNIT, 0.0)
     between = foot[0] - tip[0], foot[1] - tip[1]

@@ -3,12 +3,12 @@
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import gas
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _WALLS = (-12.0, -7.5, 12.0, 7.5)
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     gas(world, 2_000, _WALLS)
 
 

@@ -3,13 +3,13 @@
 from physicslab.components import Layer, Meter, Pin
 from physicslab.prefabs import gears
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _SPEED, _MODULE = 1.0, 0.05
 """The speed of the motors [rad/s], and the diameter for a tooth [m]."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     for n, (y, teeth) in enumerate(((1.35, (48, 12, 16)), (-1.35, (48, 20, 32, 16))), 1):
         wheels = gears(
             world, (-2.6, y), teeth, module=_MODULE, angular_velocity=_SPEED, mass=10.0, name=f"motor {n}"

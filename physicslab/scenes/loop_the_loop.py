@@ -4,13 +4,13 @@ import math
 
 from physicslab.prefabs import box, circle, loop
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _RADIUS, _BALL, _RUN = 1.0, 0.1, 2.5
 """Radii of the loops and of the balls, and length of the runs [m]."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     least = math.sqrt(5.0 * 9.81 * (_RADIUS - _BALL))
     for name, x, share in (("too slow", -2.4, 0.9), ("fast enough", 2.4, 1.02)):
         loop(world, (x, 0.0), radius=_RADIUS, run=_RUN, segments=72, friction=0.0, name=f"loop, {name}")

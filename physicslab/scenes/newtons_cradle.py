@@ -3,13 +3,13 @@
 from physicslab.ecs.config import SimulationConfig
 from physicslab.prefabs import pendulum
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _RADIUS = 0.25
 _GAP = 1e-4
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     for i in range(5):
         pendulum(
             world, ((i - 2) * (2.0 * _RADIUS + _GAP), 4.0), length=3.0, angle=-0.6 if i == 0 else 0.0,

@@ -3,10 +3,10 @@
 from physicslab.components import Graph, GraphLine
 from physicslab.prefabs import pendulum
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     pendulum(world, (0.0, 3.0), length=2.0, angle=0.5, name="bob")
     graph = world.spawn(Graph())
     for quantity in ("kinetic energy", "potential energy", "total energy"):

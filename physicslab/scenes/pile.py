@@ -2,10 +2,10 @@
 
 from physicslab.prefabs import container, pile
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     container(world, width=11, height=8)
     pile(world, 1_000, (0.0, 0.5))
 

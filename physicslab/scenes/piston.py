@@ -5,13 +5,13 @@ import math
 from physicslab.components import Graph, GraphLine, Pin, Slot
 from physicslab.prefabs import box, capsule
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _CRANK, _ROD, _SPEED, _START = 0.5, 1.4, math.pi, math.radians(60.0)
 """The lengths of crank and connecting rod [m], the speed of the motor [rad/s], its angle at first [rad]."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     x, y = _CRANK * math.cos(_START), _CRANK * math.sin(_START)
     across, leaning = math.sqrt(_ROD**2 - y**2), -math.asin(y / _ROD)
     crank = capsule(

@@ -3,13 +3,13 @@
 from physicslab.components import Meter, Pulley
 from physicslab.prefabs import box
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _HEIGHT = 2.5
 """Height of the wheels [m]."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     box(world, (0.0, -0.1), width=8.0, height=0.2, static=True, friction=0.8, name="floor")
     # The second rope goes twice to B: 2 kg are in balance with 1 kg.
     for n, (x, second, ratio, y) in enumerate(((-2.0, 1.2, 1.0, 1.4), (1.8, 2.4, 2.0, 0.8)), 1):

@@ -4,10 +4,10 @@ from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box, pyramid
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     box(world, (0, -0.5), width=100, height=1, static=True, friction=0.6, name="floor")
     pyramid(world, 30)
 

@@ -4,13 +4,13 @@ from physicslab.components import Colour, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.prefabs import box, ragdoll
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _STEPS, _WIDE, _HIGH = 6, 0.6, 0.35
 """How many stairs; how wide and how high each is [m]."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     for n in range(_STEPS):
         top = (_STEPS - n) * _HIGH
         wide, right = _WIDE if n else 2.0, (n + 0.5) * _WIDE

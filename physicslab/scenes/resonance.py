@@ -4,13 +4,13 @@ import math
 
 from physicslab.components import Drag, Mass, Shape, Spring, Thrust, Trail, Transform, Velocity
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _DRIVE = 1.0
 """Frequency of the force [Hz]."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     for n, frequency in enumerate((0.6, 0.75, 0.9, 1.0, 1.1, 1.25, 1.4)):
         x = 1.2 * n - 3.6
         world.spawn(

@@ -4,13 +4,13 @@ from physicslab.components import Thrust, Trail
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import box
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _RADIUS, _RATE = 2.0, 1.0
 """Radius of the circle [m], and rate of going round it [rad/s]."""
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     # A push at a right angle to its path keeps it on a circle, as gravity keeps a planet: F = m w^2 r.
     circling = box(
         world, (_RADIUS, 0.0), width=0.3, height=0.8, velocity=(0.0, _RADIUS * _RATE),

@@ -3,10 +3,10 @@
 from physicslab.components import Charge, Mass, Trail, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     world.spawn(Transform(), Charge(20.0), Mass(1.0), name="nucleus")
     for n in range(-5, 6):
         world.spawn(

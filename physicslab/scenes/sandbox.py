@@ -5,10 +5,10 @@ import math
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.prefabs import box, circle, pendulum
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     box(world, (0.0, -0.2), width=11.6, height=0.4, static=True, friction=0.6, name="floor")
     box(world, (-4.0, 0.9), width=3.2, height=0.16, angle=-0.42, static=True, friction=0.6, name="ramp")
     for n, radius in enumerate((0.22, 0.3, 0.18)):

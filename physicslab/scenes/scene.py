@@ -1,12 +1,16 @@
 """The record of a built-in scene."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
-from physicslab.state.state import View
-from physicslab.systems.standard import standard_systems
-from physicslab.world import World
+from physicslab.state.contents import Contents, View
+
+if TYPE_CHECKING:
+    from physicslab.world import World
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +22,7 @@ class Scene:
     name, title, description : str
         For the command line, for a heading, and one line on what there is to see.
     fill : callable
-        Spawns everything in the world that it is given.
+        Spawns everything in the contents that it is given, those of a world or alone.
     view : tuple of four floats, optional
         The part that a window shows: xmin, ymin, xmax, ymax [m], with room for 10 s of motion; by default
         all that there is at the start.
@@ -35,7 +39,7 @@ class Scene:
     name: str
     title: str
     description: str
-    fill: Callable[[World], None]
+    fill: Callable[[Contents], None]
     view: View | None = None
     moment: float = 0.6
     teaches: tuple[str, ...] = ()
@@ -43,10 +47,21 @@ class Scene:
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     simulation: SimulationConfig = field(default_factory=SimulationConfig)
 
+    def contents(self) -> Contents:
+        """Return what a new world of this scene holds, without all that steps it."""
+        contents = Contents(self.physics, self.simulation)
+        self._put_into(contents)
+        return contents
+
     def build(self) -> World:
         """Return a new world of this scene, the same each time."""
-        world = World(*standard_systems(), physics=self.physics, simulation=self.simulation)
-        world.name, world.title, world.description = self.name, self.title, self.description
-        world.view = self.view
-        self.fill(world)
+        from physicslab.world import World  # with all of the compiled steppers
+
+        world = World(physics=self.physics, simulation=self.simulation)
+        self._put_into(world)
         return world
+
+    def _put_into(self, contents: Contents) -> None:
+        contents.name, contents.title, contents.description = self.name, self.title, self.description
+        contents.view = self.view
+        self.fill(contents)

@@ -4,14 +4,14 @@ from physicslab.components import Layer, Pin
 from physicslab.ecs.config import SimulationConfig
 from physicslab.prefabs import BodyOptions, box, polygon
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _LONG, _HEIGHT, _ARM = 3.6, 0.55, 1.5
 """The length of a plank, the height of its middle, and how far out the light box is [m]."""
 _WOOD: BodyOptions = {"material": "wood", "restitution": 0.0, "friction": 0.8}
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     box(world, (0.0, -0.15), width=13.0, height=0.3, static=True, friction=0.8, name="ground")
     for name, x, arm in (("too near", -4.2, 0.4), ("in balance", 0.0, 0.5), ("too far", 4.2, 0.6)):
         corners = [(-0.4, 0.0), (0.4, 0.0), (0.0, _HEIGHT)]

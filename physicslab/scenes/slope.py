@@ -5,12 +5,12 @@ import math
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs import box
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 _ANGLE = math.radians(20.0)
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     along = Vector2.from_angle(_ANGLE)
     box(world, (0, 0), width=16, height=0.5, angle=_ANGLE, static=True, friction=1, name="slope")
     for i, friction in enumerate((0.1, 0.2, 0.5, 0.8)):

@@ -3,7 +3,7 @@
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import Planet, planets
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 # Light enough that no planet deflects another: Kepler's law holds to 1e-4 for a hundred turns.
 _PLANETS = (
@@ -15,7 +15,7 @@ _PLANETS = (
 )
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     planets(world, 4.0, _PLANETS)
 
 

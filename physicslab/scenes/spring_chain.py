@@ -2,10 +2,10 @@
 
 from physicslab.prefabs import chain
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     chain(world, 20, (-4.0, 3.0), (4.0, 3.0), hold_end=True)
 
 

@@ -3,10 +3,10 @@
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.prefabs import binary
 from physicslab.scenes.scene import Scene
-from physicslab.world import World
+from physicslab.state.contents import Contents
 
 
-def _fill(world: World) -> None:
+def _fill(world: Contents) -> None:
     # Point masses: without Shapes, nothing has to be searched for contacts.
     binary(world, (6.0, 3.0), separation=5.0, eccentricity=0.5, names=("heavy", "light"))
 

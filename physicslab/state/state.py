@@ -1,55 +1,26 @@
 """The state of a world: entities, columns, laws, clock and arrays. It depends on no system and no stepper."""
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable
 from typing import Any
 
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
-from physicslab.ecs.text import printable, shortened
 from physicslab.kernels import compile_kernels, seconds_waited
 from physicslab.state.account import Account
 from physicslab.state.bodies import Bodies
 from physicslab.state.checkpoint import Checkpoint
 from physicslab.state.contacts import Contacts
-from physicslab.state.entities import Entities
+from physicslab.state.contents import Contents
 from physicslab.state.joints import Joints
 from physicslab.state.remainders import NO_REMAINDERS, Remainders
 from physicslab.state.samples import Samples
 from physicslab.state.sleep import Sleep
 
-SCENE_TEXTS: Mapping[str, int | None] = {"name": 1_000, "title": 200, "description": None}
-"""The texts of a scene, and the characters that those on one line may have."""
-type View = tuple[float, float, float, float]
-LEVELS = ("Explore", "Measure", "Engineer")
-"""How much a window may show beside the world, the least first."""
-SHOWN = (
-    "arrows", "centres", "grid", "impacts", "impulses", "momenta", "panel", "parts", "stopwatch",
-)  # fmt: skip
-"""Things that a window may show beside that."""
 
-
-@dataclass(frozen=True, slots=True)
-class Desk:
-    """The view of a scene beside the world: one of ``LEVELS``, and some of ``SHOWN``."""
-
-    level: str
-    shown: frozenset[str]
-
-
-"""The part of a world that a window shows at first: xmin, ymin, xmax, ymax [m]."""
-
-
-class State(Entities):
+class State(Contents):
     """Entities, the laws, the clock, and the arrays that systems and steppers share.
 
     Attributes
     ----------
-    name, title, description : str
-        Name, title and description of the scene.
-    view : View, optional
-        The part that a window shows at first; all of it by default.
-    desk : Desk, optional
-        The view beside that; by default as the user has it.
     time : float
         The clock [s]. Within a step it is that of the state which a force or a stage sees.
     steps : int
@@ -81,8 +52,6 @@ class State(Entities):
     motion_edits : int
         How often that concerned the motion, as a new trail does not: measurements over time from before do
         not apply any more.
-    stale : bool
-        Whether systems and steppers are to be chosen again before the next step.
     bodies : Bodies
         Masses and forces, a row an entity.
     contacts : Contacts
@@ -106,16 +75,12 @@ class State(Entities):
     # An attribute that is misspelt, or belongs elsewhere, would be kept and do nothing.
     __slots__ = (
         "_forces_at",
-        "_physics",
-        "_simulation",
         "_waited_before",
         "account",
         "bodies",
         "checkpoint",
         "collisions",
         "contacts",
-        "description",
-        "desk",
         "event_driven",
         "fastest_rates",
         "force_evaluations",
@@ -125,39 +90,27 @@ class State(Entities):
         "kick_before_contacts",
         "moment",
         "motion_edits",
-        "name",
         "remainders",
         "returned_inside",
         "revision",
         "rigid_contacts",
         "samples",
         "sleep",
-        "stale",
         "step_divisions",
         "steps",
         "substeps",
         "time",
-        "title",
         "uniform_forces",
-        "view",
         "window",
     )  # fmt: skip
 
     def __init__(
         self, physics: PhysicsConfig | None = None, simulation: SimulationConfig | None = None
     ) -> None:
-        self._physics = PhysicsConfig() if physics is None else _checked(physics, PhysicsConfig)
-        self._simulation = (
-            SimulationConfig() if simulation is None else _checked(simulation, SimulationConfig)
-        )
-        self.name: str = ""
-        self.title: str = ""
-        self.description: str = ""
-        self.view: View | None = None
-        self.desk: Desk | None = None
+        super().__init__(physics, simulation)
         self.time, self.steps, self.revision, self.motion_edits = 0.0, 0, 0, 0
         self._forces_at = -1, -1  # after how many steps and edits forces were solved for
-        self.substeps, self.step_divisions = self._simulation.substeps, 1
+        self.substeps, self.step_divisions = self.simulation.substeps, 1
         self.force_evaluations = self.collisions = self.returned_inside = 0
         self._waited_before = seconds_waited()
         self.generation = 0
@@ -170,30 +123,6 @@ class State(Entities):
         self.checkpoint = Checkpoint()
         self.account = Account()
         self.samples: Samples | None = None
-        self.stale = True
-        super().__init__()
-
-    # ---- configuration -------------------------------------------------------------------------------------
-
-    @property
-    def physics(self) -> PhysicsConfig:
-        """The laws of this world."""
-        return self._physics
-
-    @physics.setter
-    def physics(self, physics: PhysicsConfig) -> None:
-        self._physics = _checked(physics, PhysicsConfig)
-        self.stale = self.entity_index.motion_edited = True
-
-    @property
-    def simulation(self) -> SimulationConfig:
-        """How this world is stepped."""
-        return self._simulation
-
-    @simulation.setter
-    def simulation(self, simulation: SimulationConfig) -> None:
-        self._simulation = _checked(simulation, SimulationConfig)
-        self.stale = self.entity_index.motion_edited = True
 
     @property
     def counts(self) -> tuple[int, int, int]:
@@ -213,14 +142,6 @@ class State(Entities):
     def compile_s(self) -> float:
         """Seconds that this process has spent on compiling or loading kernels since this world was made."""
         return seconds_waited() - self._waited_before
-
-
-def _checked[C: PhysicsConfig | SimulationConfig](value: C, kind: type[C]) -> C:
-    """Return laws or settings; refuse what is none, as a dict of them."""
-    if isinstance(value, kind):
-        return value
-    words = shortened(printable(repr(value)))
-    raise TypeError(f"world.{kind.section} is a {kind.__name__}, not {words}: write {kind.__name__}(...)")
 
 
 class _Elsewhere:

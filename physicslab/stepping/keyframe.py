@@ -23,8 +23,9 @@ from physicslab.ecs.component import Component
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.context import create_numbered
 from physicslab.state.account import KeptAccount
+from physicslab.state.contents import SCENE_TEXTS
 from physicslab.state.remainders import Remainders
-from physicslab.state.state import SCENE_TEXTS, State
+from physicslab.state.state import State
 from physicslab.stepping.island import Island, Part
 from physicslab.stepping.islands import Islands
 from physicslab.stepping.plan import StepPlan

@@ -11,7 +11,7 @@ from physicslab.files.replace import reason_of
 from physicslab.files.scene import SceneError, file_stem
 from physicslab.history import Branch, Command, Remove, SetField, SetPhysics, SetText
 from physicslab.languages.sentence import Sentence
-from physicslab.state.state import SCENE_TEXTS
+from physicslab.state.contents import SCENE_TEXTS
 from physicslab.systems.gravity import GravitySystem
 from physicslab.theme import THEMES
 from physicslab.view.controls.lesson_actions import begin_run, leave_lesson

@@ -10,8 +10,8 @@ from physicslab.lessons.answers import asked
 from physicslab.lessons.catalogue import find_lesson
 from physicslab.lessons.lesson import Run
 from physicslab.lessons.setup import AS_IT_IS, Case
+from physicslab.state.contents import LEVELS, Desk
 from physicslab.state.masses import Diverged
-from physicslab.state.state import LEVELS, Desk
 from physicslab.view.window.desk import desk_of, restore_desk
 from physicslab.view.window.lesson import OpenLesson
 from physicslab.view.window.window import Window

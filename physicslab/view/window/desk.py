@@ -2,13 +2,13 @@
 
 from operator import attrgetter
 
-from physicslab.state import state
+from physicslab.state import contents
 from physicslab.view.window.window import Window
 
 _MEANINGS = (
     "The world first, few figures", "Energies, momenta and their changes", "Methods, systems and their cost",
 )  # fmt: skip
-LEVELS = dict(zip(state.LEVELS, _MEANINGS, strict=True))
+LEVELS = dict(zip(contents.LEVELS, _MEANINGS, strict=True))
 """How much the panel at the right shows, with what each level is for."""
 SHOWN_BY = {
     "arrows": "overlays.arrows", "centres": "overlays.centres", "grid": "grid", "impacts": "impacts.shown",
@@ -18,13 +18,13 @@ SHOWN_BY = {
 """Switches of the window that show a thing, by its word in scene files."""
 
 
-def desk_of(window: Window) -> state.Desk:
+def desk_of(window: Window) -> contents.Desk:
     """Return what a window shows."""
     shown = frozenset(word for word, path in SHOWN_BY.items() if attrgetter(path)(window))
-    return state.Desk(window.level, shown)
+    return contents.Desk(window.level, shown)
 
 
-def restore_desk(window: Window, desk: state.Desk) -> None:
+def restore_desk(window: Window, desk: contents.Desk) -> None:
     """Show what a scene says."""
     window.level = desk.level
     for word, path in SHOWN_BY.items():

@@ -16,7 +16,7 @@ from physicslab.lessons.lesson import Compare, Explain, Lesson, Part, Prose, Que
 from physicslab.lessons.live_run import LiveRun
 from physicslab.lessons.setup import AS_IT_IS, Case
 from physicslab.state.attached import INSTRUMENTS
-from physicslab.state.state import Desk
+from physicslab.state.contents import Desk
 from physicslab.view.window.naming import free_name, new_paths
 from physicslab.view.window.scenes import Left
 from physicslab.world import World
@@ -234,7 +234,7 @@ class OpenLesson:
         """
         self.trial = Trial(self.lesson, run, case)
         self.number += 1
-        if case is AS_IT_IS:
+        if not case.values:
             self._reset(run)
         self.world = self.trial.live.world
         return self.world

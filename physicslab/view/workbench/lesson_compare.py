@@ -10,7 +10,7 @@ from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
 from physicslab.lessons.check import Row, row_of
 from physicslab.lessons.lesson import Compare
-from physicslab.lessons.setup import AS_IT_IS, Case
+from physicslab.lessons.setup import Case
 from physicslab.lessons.words import condition, formula
 from physicslab.state.masses import Diverged
 from physicslab.view.canvas.quantities import percentage, quantity, round_quantity, written_unit
@@ -36,8 +36,7 @@ def build_compare(ui: Ui, lesson: OpenLesson, part: Compare, rows_of: Rows) -> N
     domain = condition(own, part.holds.text)
     holds = Sentence("It holds for {domain}", domain=domain)
     ui.faint(Sentence("It holds always") if part.holds.text == "always" else holds)
-    tried = lesson.own_cases(part.run)
-    cases = list(dict.fromkeys((AS_IT_IS, *part.cases, *part.fails, *tried)))
+    cases = part.rows(lesson.own_cases(part.run))
     rows = [_row(rows_of, lesson, part, case) for case in cases]
     predicted = _predicted(lesson, part)
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
@@ -79,12 +78,12 @@ def _build_row(
     values = ", ".join(f"{name} = {formula(own, text)}" for name, text in case.values)
     imgui.table_next_row()
     imgui.table_next_column()
-    what = Sentence("as run") if case is AS_IT_IS else values
+    what = values if case.values else Sentence("as run")
     words = Sentence("{n}. {case}", n=number, case=what)
     ui.text(Sentence("{case}: {note}", case=words, note=case.note) if case.note else words, wrapped=True)
     imgui.table_next_column()
     if predicted is not None:
-        if case is AS_IT_IS and isinstance(row, Row):
+        if not case.values and isinstance(row, Row):
             ui.text(_figure(predicted, row.unit), wrapped=True)
         imgui.table_next_column()
     if row is None:
