@@ -250,6 +250,7 @@ def _placed(joined: Joined, row: Row) -> Row:
             table[row.placed][joined.row] = spec.check(value)
         except InvalidValue as error:
             owner = label_in_context(int(joined.entity_index.entities[joined.row]))
-            raise InvalidValue(f"{owner}: {kind.__name__}", row.placed, value, error.allowed) from None
+            allowed = f"{error.allowed}{': its anchors are in one place' if value == 0.0 else ''}"
+            raise InvalidValue(f"{owner}: {kind.__name__}", row.placed, value, allowed) from None
         table[f"{row.placed}_given"][joined.row] = True
     return row._replace(offset=scale * joined.number(row.placed))
