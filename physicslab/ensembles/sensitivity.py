@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ensembles.measures import Measure
-from physicslab.ensembles.result import EnsembleResult, package
+from physicslab.ensembles.result import EnsembleResult
 from physicslab.ensembles.runs import ensemble, task_of
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import entity_names, find_place
 from physicslab.files.scene import load_scene
+from physicslab.state.run import library
 from physicslab.world import World
 
 _STEP = 1e-3
@@ -143,7 +144,7 @@ def sobol_indices(
     SceneError
         If a field is drawn otherwise, or a run fails: indices need all of them.
     """
-    package("SALib", "sobol_indices")
+    library("SALib", "sobol_indices")
     from SALib.analyze import sobol as analyse
     from SALib.sample import sobol as sample
 
