@@ -299,6 +299,10 @@ def _reason(error: Exception) -> str:
     return str(error) if known else f"{type(error).__name__}: {error}"
 
 
+def ready() -> None:
+    """Do nothing, in a process that has imported this module by then."""
+
+
 _kept = threading.local()
 
 
