@@ -1,9 +1,7 @@
 """A world: a state, the systems that act on it, and the stepper that advances it."""
 
-import logging
 import math
 import sys
-import time
 from collections.abc import Iterable, Iterator
 from importlib import import_module
 from typing import Any, Never
@@ -24,8 +22,9 @@ from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.forces import add_up_forces
 from physicslab.stepping.islands import Islands
 from physicslab.stepping.keyframe import Keyframe
-from physicslab.stepping.plan import StepPlan, default_plan, plan_for_jumps
-from physicslab.stepping.run import run_length, strides
+from physicslab.stepping.plan import StepPlan, default_plan
+from physicslab.stepping.planning import plan_for_jumps
+from physicslab.stepping.run import refuse_unnamed, run_through, strides
 from physicslab.stepping.select import Steppers, choose, remake, restart, resume
 from physicslab.stepping.small import is_small
 from physicslab.stepping.soft import Soft
@@ -33,17 +32,11 @@ from physicslab.stepping.stepper import Advance, Advancer
 from physicslab.stepping.undo import StepTransaction, go_back
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.breaking import BreakSystem, load_of
-from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.integrate import warn_of_what_stands_still
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage, System
 
-_log = logging.getLogger(__name__)
-_told: set[str] = set()
-"""Warnings given already: a notebook may make a thousand worlds of one kind."""
-_AT_MOST = Field("at_most", "number", above=0.0, unit="s", owner="run")
-_LOOK_S, _STRIDE = 0.1, 1000
-"""So long [s], and so many steps of smooth motion, a run goes on before the clock is looked at."""
 _STEP = Field("dt", "number", minimum=MIN_TIME, maximum=MAX_TIME, unit="s", owner="step")
 
 
@@ -135,7 +128,7 @@ class World(Facade):
         if not self.steps:
             begin_run(lambda: is_small(self))
         with self.active():
-            self._synchronise()
+            self._follow(numbers=True)
             self.advance(h, 1)
         self.time += h
 
@@ -158,14 +151,14 @@ class World(Facade):
         self.steps -= 1
         self.time = start + at
         try:
-            self._synchronise()
+            self._follow(numbers=True)
             return self.advance(h - at, 1)
         finally:
             self.time = start
 
     def _load_after(self, h: float) -> float:
         """Return the load of joints after ``h`` seconds, and go back."""
-        self._synchronise()
+        self._follow(numbers=True)
         try:
             self._attempt(h, 1, -math.inf)
         except Overloaded as found:
@@ -260,19 +253,8 @@ class World(Facade):
             If it is not at its end after ``at_most`` seconds of wall clock, compiling left out. The world
             stands where it has come to. Smooth motion is divided for it, which changes last digits.
         """
-        _refuse_unnamed("run", wrong)
-        if at_most is None:
-            for _ in self.stepping(seconds=seconds, steps=steps, stride=sys.maxsize):
-                pass
-            return
-        longest, length = _AT_MOST.check(at_most), run_length(self, seconds, steps)
-        began = time.perf_counter() - self.compile_s
-        for done in self.stepping(seconds=seconds, steps=steps, stride=_STRIDE, patience=_LOOK_S):
-            if done < length.steps and time.perf_counter() - self.compile_s - began >= longest:
-                raise TimeoutError(
-                    f"run: stopped after {longest:g} s of wall clock (at_most) at t = {self.time:.9g} s, "
-                    f"after {done} of {length.steps} steps"
-                )
+        refuse_unnamed("run", wrong)
+        run_through(self, seconds, steps, at_most)
 
     def stepping(
         self,
@@ -287,7 +269,7 @@ class World(Facade):
         The steps in between are one compiled loop where possible. With ``patience`` it yields also where
         about so many seconds of wall clock have passed since the last yield; smooth motion is not divided.
         """
-        _refuse_unnamed("stepping", wrong)
+        refuse_unnamed("stepping", wrong)
         return strides(self, seconds, steps, stride, patience)
 
     # ---- moments -------------------------------------------------------------------------------------------
@@ -329,11 +311,7 @@ class World(Facade):
     def synchronise(self) -> None:
         """Follow the present entities and components, and compute their masses, as each step does first."""
         with self.active():
-            self._synchronise()
-
-    def _synchronise(self) -> None:
-        """Do so where this world's context is active and numpy gives no warnings."""
-        self._follow(numbers=True)
+            self._follow(numbers=True)
 
     def _follow(self, *, numbers: bool = False) -> None:
         """Follow what changed in the structure of the world since the last call; in the numbers as well."""
@@ -379,7 +357,7 @@ class World(Facade):
                 self.fastest_rates.clear()
             self.stale = self.entity_index.motion_edited = False
             if not self.entity_index.synchronise():
-                self._tell_what_stands_still()
+                warn_of_what_stands_still(self.schedule)
                 return
 
     def _follow_islands(self) -> None:
@@ -387,18 +365,6 @@ class World(Facade):
         if self.islands.joined:
             self.islands.joined = False
             self.plan, self.steppers = remake(self, self.schedule, None)
-
-    def _tell_what_stands_still(self) -> None:
-        """Say once where bodies have velocities, and no system changes positions by them."""
-        _, *chosen = self.schedule.systems
-        names = ", ".join(f"{system.name}()" for system in chosen)
-        moves = not chosen or any(isinstance(system, IntegrateSystem) for system in chosen)
-        if not moves and names not in _told and self.schedule.find(AccelerateSystem) is not None:
-            _told.add(names)
-            _log.warning(
-                "World(%s): velocities move nothing without an IntegrateSystem(); World() has all systems",
-                names,
-            )
 
     def _choose(self, plan: StepPlan | None = None) -> None:
         """Choose steppers again for the same systems, and the method, unless there is a ``plan`` already."""
@@ -415,7 +381,6 @@ class World(Facade):
         """
         with self.active():
             if self.schedule.remade == remade and self.plan == plan:
-                self.plan = plan
                 self.steppers = restart(self, self.schedule, plan, self.steppers)
             else:
                 self.plan, self.steppers = remake(self, self.schedule, plan)
@@ -434,7 +399,7 @@ class World(Facade):
         done between the same two steps.
         """
         with self.active():
-            self._synchronise()
+            self._follow(numbers=True)
             book_account(self, self.schedule.forces)
 
     def install(self, *systems: System) -> None:
@@ -447,11 +412,6 @@ class World(Facade):
         self.entity_index.motion_edited |= any(system.acts_within_step() for system in systems)
 
     # ---- looking -------------------------------------------------------------------------------------------
-
-    @property
-    def interpreted(self) -> tuple[str, ...]:
-        """The forces that Python computes, call by call, where a compiled loop could run."""
-        return self.schedule.interpreted
 
     @property
     def parts(self) -> "tuple[World, ...]":
@@ -488,9 +448,3 @@ def _island_world(systems: Iterable[System], physics: PhysicsConfig, simulation:
     world = World(systems=systems, physics=physics, simulation=simulation)
     world.islands = Islands(world.schedule, None)
     return world
-
-
-def _refuse_unnamed(method: str, values: tuple[object, ...]) -> None:
-    if values:
-        given = ", ".join(map(repr, values))
-        raise TypeError(f"{method}({given}): say {method}(seconds={values[0]!r}) or {method}(steps=...)")

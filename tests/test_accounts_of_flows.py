@@ -16,10 +16,10 @@ from physicslab.diagnostics.energy import Accounts, measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators import INTEGRATORS
-from physicslab.kernels.forces.bookings import ACCOUNTS, CLOCK, DAMPED, END
+from physicslab.kernels.forces.budget import ACCOUNTS, CLOCK, DAMPED, END
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.ode import system as ode_system
-from physicslab.ode.bookings import BookKeeper
+from physicslab.ode.budget import BudgetLayout
 from physicslab.ode.closed_form_account import _shares
 from physicslab.state.masses import Diverged
 from physicslab.state.packed import PackedForce, StateLayout
@@ -478,7 +478,7 @@ def test_the_accounts_add_up_in_any_scene(world: World) -> None:
 # ---- beside the motion -------------------------------------------------------------------------------------
 
 
-class NoAccounts(BookKeeper):
+class NoAccounts(BudgetLayout):
     """Books nothing."""
 
     def __init__(self, state: State, layout: StateLayout, packed: Any, *rest: Any, **more: Any) -> None:
@@ -498,13 +498,13 @@ def test_accounts_leave_the_bits_of_the_motion_alone(
     integrator: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     ends = []
-    for keeper in (BookKeeper, NoAccounts):
-        monkeypatch.setattr(ode_system, "BookKeeper", keeper)
+    for keeper in (BudgetLayout, NoAccounts):
+        monkeypatch.setattr(ode_system, "BudgetLayout", keeper)
         world = smooth(integrator, 0.01, damped=True)
         world.physics = PhysicsConfig(gravity=Vector2(0.2, -G), angular_damping=0.1)
         world.run(steps=40)
         booked = measure_account(world).energy["damping"]
-        assert (booked != 0.0) == (keeper is BookKeeper)
+        assert (booked != 0.0) == (keeper is BudgetLayout)
         ends.append(
             (world.table(Transform)["position"].tobytes(), world.table(Velocity)["angular"].tobytes())
         )

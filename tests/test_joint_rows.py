@@ -4,6 +4,7 @@ import json
 import math
 from pathlib import Path
 
+import esper
 import numpy as np
 import pytest
 
@@ -165,5 +166,14 @@ def test_a_rod_between_two_points_in_one_place_has_no_length() -> None:
     world = World()
     body = world.spawn(Transform((1.0, 0.0)), Velocity(), Mass())
     world.spawn(Rod(b=body, anchor_a=(1.0, 0.0)), name="rod")
-    with pytest.raises(InvalidValue, match=r"Rod.length = 0.0: must be a finite number > 0 m"):
+    with pytest.raises(InvalidValue, match=r"Rod.length = 0.0: must be .* > 0 m.* in one place$"):
         world.step()
+
+
+def test_a_file_with_such_a_rod_is_refused_when_it_is_read() -> None:
+    rod = {"id": "rod", "Rod": {"a": "a", "b": "b"}}
+    one, other = ({**body, "Transform": {}} for body in BODIES[:2])
+    active = esper.current_world
+    with pytest.raises(SceneError, match=r"^knot.json: rod: Rod.length = 0.0: must be .* in one place$"):
+        read_scene({"format": FORMAT, "entities": [one, other, rod]}, "knot.json")
+    assert esper.current_world == active

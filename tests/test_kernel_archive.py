@@ -15,7 +15,7 @@ import pytest
 from physicslab import cli
 from physicslab.commands import kernels as command
 from physicslab.kernels import __main__ as kernels_main
-from physicslab.kernels import archive, budget, cache, keys
+from physicslab.kernels import archive, cache, compile_budget, keys
 from physicslab.kernels.archive import ArchiveError, pack, unpack
 
 MODULES = ("motion", "energy")
@@ -306,10 +306,12 @@ def test_alone_it_says_where_kernels_are(
 
 def test_the_budget_names_what_exceeds_it() -> None:
     costs = [(6.0, "physicslab.kernels.a.big"), (0.5, "physicslab.kernels.b.small")]
-    assert budget.check(costs, each=7.0, total=7.0) == []
-    assert budget.check(costs, each=5.0, total=7.0) == ["physicslab.kernels.a.big: 6.0 s, more than 5 s"]
-    assert budget.check(costs, each=7.0, total=6.0) == ["all kernels: 6.5 s, more than 6 s"]
-    first, second, last = budget.table(costs).splitlines()
+    assert compile_budget.check(costs, each=7.0, total=7.0) == []
+    assert compile_budget.check(costs, each=5.0, total=7.0) == [
+        "physicslab.kernels.a.big: 6.0 s, more than 5 s"
+    ]
+    assert compile_budget.check(costs, each=7.0, total=6.0) == ["all kernels: 6.5 s, more than 6 s"]
+    first, second, last = compile_budget.table(costs).splitlines()
     assert "a.big" in first and "b.small" in second and "6.50" in last
     assert keys.platform_key()["processor"] in last
 
@@ -319,7 +321,7 @@ def test_what_the_budget_compiled_is_kept(root: Path, tmp_path: Path) -> None:
     for place, text in ((fresh, "new"), (root, "old")):
         (place / FOLDER).mkdir(parents=True)
         (place / FOLDER / "f.nbi").write_text(text)
-    budget._keep(fresh, root)
+    compile_budget._keep(fresh, root)
     assert kept(root) == {f"{FOLDER}/f.nbi": "new"}
 
 
@@ -327,8 +329,8 @@ def test_what_the_budget_compiled_is_kept(root: Path, tmp_path: Path) -> None:
 def test_the_budget_is_that_of_an_idle_machine_and_is_told(
     slowness: float, over: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    took = 1.4 * budget.LIMIT_EACH_S
-    monkeypatch.setattr(budget, "measure", lambda: ([(took, "physicslab.kernels.a.slow")], slowness))
+    took = 1.4 * compile_budget.LIMIT_EACH_S
+    monkeypatch.setattr(compile_budget, "measure", lambda: ([(took, "physicslab.kernels.a.slow")], slowness))
     assert kernels_main._budget() == 0, "a limit of cost fails nothing"
-    said = f"physicslab.kernels.a.slow: {took:.1f} s, more than {budget.LIMIT_EACH_S:g} s"
+    said = f"physicslab.kernels.a.slow: {took:.1f} s, more than {compile_budget.LIMIT_EACH_S:g} s"
     assert (said in capsys.readouterr().out) is over

@@ -26,9 +26,9 @@ from physicslab import (
     load_scene,
     save_scene,
 )
-from physicslab import world as world_module
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
 from physicslab.ecs.component import COMPONENTS
+from physicslab.systems import integrate
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.integrate import IntegrateSystem
 
@@ -143,7 +143,7 @@ def test_an_id_is_taken_wherever_an_entity_is(world: World, tmp_path: Path) -> N
 def test_a_world_without_a_list_has_what_it_needs_and_one_with_a_list_just_that(
     world: World, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(world_module, "_told", set())
+    monkeypatch.setattr(integrate, "_warned", set())
     world.run(seconds=1.0)
     assert world.component("ball", Transform).position.y == pytest.approx(5 - 0.5 * 9.81, rel=1e-9)
     assert {one.name for one in world.schedule.left_out} >= {"SpringSystem", "DragSystem"}

@@ -141,7 +141,7 @@ def test_a_force_written_in_python_works_with_every_method_and_is_named(name: st
     body = world.spawn(Transform(), Velocity((0, 2)), Mass(2))
     world.run(seconds=2.0)
     assert tuple(world.component(body, Transform).position) == pytest.approx((3.0, 4.0), abs=1e-9)
-    assert world.interpreted == ("Wind",)
+    assert world.schedule.interpreted == ("Wind",)
     report = run_report(world, RunRecord("wind", Audit(world)))
     assert report["interpreted"] == ["Wind"]
     assert "Wind: computed by Python" in run_summary(report, "")
@@ -154,7 +154,7 @@ def test_a_force_written_in_python_is_named_beside_contacts_too(contacts: str, s
     box(world, (0, 0.5), width=1, height=1)
     world.step()
     assert world.stepper is not None and world.stepper.name == stepper
-    assert world.interpreted == ("Wind",)
+    assert world.schedule.interpreted == ("Wind",)
     assert run_report(world, RunRecord("wind", Audit(world)))["interpreted"] == ["Wind"]
     assert "Wind is computed by Python: slower" in [line.label for line in method_lines(world)]
 

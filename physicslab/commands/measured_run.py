@@ -54,7 +54,7 @@ class MeasuredRun:
     every : float, optional
         The time [s] between what is kept: the first step that ends at or after each multiple of it, counted
         from the start; every step if it is 0.
-    ledger : ImpactTableWriter, optional
+    impact_table : ImpactTableWriter, optional
         The writer of impacts, after each call of a stepper.
 
     Attributes
@@ -73,12 +73,12 @@ class MeasuredRun:
         at_most: float | None = None,
         keep: Keep | None = None,
         every: float = 0.0,
-        ledger: ImpactTableWriter | None = None,
+        impact_table: ImpactTableWriter | None = None,
     ) -> None:
         self.record, self.stopped = RunRecord(name, Audit(world)), ""
         self._world, self._tiers, self._at_most = world, tiers, at_most
         self._keeper, self._every, self._kept_at = keep, every, -math.inf
-        self._ledger = ledger
+        self._impact_table = impact_table
         self._watch = StepWatch(world)
         self._label = shortened(printable(name))
         self._start = world.time
@@ -141,8 +141,8 @@ class MeasuredRun:
         if done is None:
             return False
         made = done - record.steps
-        if self._ledger is not None:
-            self._ledger.write()
+        if self._impact_table is not None:
+            self._impact_table.write()
         if self._tiers.interpreted_s > interpreted:
             record.interpreted_steps += made
             record.interpreted_s += self._tiers.interpreted_s - interpreted

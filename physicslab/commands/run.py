@@ -94,14 +94,14 @@ def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], 
     for_excel = arguments.csv_for is not None
     with _stream(outputs, "csv") as stream, _stream(outputs, "ledger") as impacts:
         keep = None if stream is None else TrajectoryWriter(stream, world, for_excel=for_excel).write
-        ledger = None if impacts is None else ImpactTableWriter(impacts, world, for_excel=for_excel)
+        table = None if impacts is None else ImpactTableWriter(impacts, world, for_excel=for_excel)
         try:
-            run = MeasuredRun(world, name, tiers, arguments.at_most, keep, arguments.every or 0.0, ledger)
+            run = MeasuredRun(world, name, tiers, arguments.at_most, keep, arguments.every or 0.0, table)
             run.go(seconds, arguments.steps)
         except Diverged as error:
             raise CommandError(f"{label}: {error}; {_rescue(world, name, outputs)}", FAILED) from error
-    if ledger is not None and ledger.lost and sys.stderr is not None:
-        lines = f"--ledger: {ledger.lost} of {ledger.lost + ledger.rows} impacts are not in it"
+    if table is not None and table.lost and sys.stderr is not None:
+        lines = f"--ledger: {table.lost} of {table.lost + table.rows} impacts are not in it"
         print(f"physicslab: {label}: {lines}: too many between two readings", file=sys.stderr)
     report, stopped = run_report(world, run.record), run.stopped
     place = find_not_finite(report)

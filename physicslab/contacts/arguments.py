@@ -53,7 +53,7 @@ def joints_in(state: State) -> JointsTuple:
     return (
         joints.measure, joints.a, joints.b, joints.anchor_a, joints.anchor_b, joints.axis, joints.scale,
         joints.role, joints.offset, joints.target, joints.strongest, joints.impulse, joints.largest,
-        *joints.blocks, *joints.rooms,
+        *joints.blocks, *joints.buffers,
     )  # fmt: skip
 
 

@@ -1,6 +1,6 @@
 """One impact taken apart: two bodies, where they touched, and the result of the law of impact.
 
-A record of the ledger holds the poses and the velocities of both bodies at the moment, masses, restitution,
+A record of the table holds the poses and the velocities of both bodies at the moment, masses, restitution,
 friction, and the impulses of the solver. :func:`resolve` finds impulses and motions after it from the first
 of these again, by the functions of :mod:`physicslab.kernels.constraint.impact_law` run as plain Python: it
 takes no impulse and no velocity after the impact from the record.
@@ -89,7 +89,7 @@ class Result(NamedTuple):
 
 @dataclass(frozen=True)
 class Collision:
-    """An impact of two bodies, as the ledger has it.
+    """An impact of two bodies, as the table of impacts has it.
 
     Attributes
     ----------

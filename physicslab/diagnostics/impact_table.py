@@ -1,4 +1,4 @@
-"""The ledger of impacts: what each did, derived from the records that the steppers write.
+"""The table of impacts: what each did, derived from the records that the steppers write.
 
 Normal n from A to B, tangent t = n turned counter-clockwise, u = velocity of B's point against A's. With the
 arms r from the centres to the point and v, w the velocities at the moment of the impact,

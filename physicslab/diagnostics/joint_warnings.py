@@ -147,7 +147,7 @@ def _dependent(world: World) -> NDArray[np.bool_]:
     joints = world.joints
     if not isinstance(world.stepper, Soft):
         return joints.dependent
-    owner, (_, state, _) = joints_of_rows(world), joints.rooms
+    owner, (_, state, _) = joints_of_rows(world), joints.buffers
     gives, acts = np.zeros((2, len(joints) + 1))
     for place in (1, 0):  # nodes of one row have none in the second place, which is that of another
         gives[joints.blocks.nodes[:-1, ROW] + place] = np.where(

@@ -10,7 +10,7 @@ from physicslab.components import Mass, Transform, Velocity
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.ode.closed_form import NoClosedForm, closed_form
 from physicslab.ode.kepler import propagate_kepler
-from physicslab.stepping.plan import why_not_smooth
+from physicslab.stepping.planning import why_not_smooth
 from physicslab.world import World
 
 

@@ -97,7 +97,7 @@ def run_report(world: World, record: RunRecord) -> dict[str, Any]:
         "contact_model": _contact_model(most),
         "contact_reason": most.plan.contact_reason,
         "summation": summation(world),
-        "interpreted": list(world.interpreted),
+        "interpreted": list(world.schedule.interpreted),
         "force_evaluations": world.force_evaluations,
         "wall_s": record.wall_s,
         "compile_s": world.compile_s,

@@ -98,7 +98,7 @@ SENTENCES = {
     "unresolved": "an impact has no solution",
     "many_points": "more than {limit} points touch",
     "stalled": "events follow each other almost without time between them",
-    "piece_not_finite": "a piece of motion is not finite",
+    "segment_not_finite": "a segment of motion is not finite",
     "too_fast_for_short_steps": "bodies are too fast for short steps",
     "squares_not_finite": "squares of speeds or accelerations are not finite",
     "three_bodies": "a limit or a motor acts on more than two bodies",

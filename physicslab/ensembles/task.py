@@ -30,7 +30,7 @@ from physicslab.files.reader import read_scene
 from physicslab.kernels.keys import sources_key
 from physicslab.kernels.tiers import compile_first
 from physicslab.stepping.partition import is_one
-from physicslab.stepping.plan import choose_plan
+from physicslab.stepping.planning import choose_plan
 from physicslab.stepping.run import run_length
 from physicslab.world import World
 

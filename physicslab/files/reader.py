@@ -30,9 +30,10 @@ from physicslab.files.remainders import check_remainders
 from physicslab.integrators import SPLIT_METHODS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.state.contents import LEVELS, SCENE_TEXTS, SHOWN, Desk, View
+from physicslab.state.joint_rows import KINDS
 from physicslab.state.remainders import Remainders
 from physicslab.stepping.island import KeptIsland
-from physicslab.stepping.plan import MAX_STEPS
+from physicslab.stepping.method import MAX_STEPS
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 
@@ -136,6 +137,8 @@ def read_scene(document: object, source: str = "scene") -> World:
         world.spawn(*components, name=id_, entity=number)  # by which springs name bodies that are yet to come
     world.islands.paused = True
     world.contacts.impulse_dt, world.contacts.substep_factor, chosen = draft.solver
+    if any(type(part) in KINDS for _, parts in draft.entities for part in parts):
+        _place_joints(world, source, before)
     if draft.contacts or draft.joints or draft.rests or chosen:
         world.synchronise()
         try:
@@ -154,6 +157,15 @@ def read_scene(document: object, source: str = "scene") -> World:
         world.islands.restore(world, draft.islands)
     world.islands.paused = False
     return world
+
+
+def _place_joints(world: World, source: str, before: str) -> None:
+    """Measure what joints leave as placed; raise a SceneError, in the world ``before``, if that cannot be."""
+    try:
+        world.synchronise()
+    except InvalidValue as error:
+        esper.switch_world(before)
+        raise checks.SceneError(f"{source}: {error}") from error
 
 
 def check_scene(document: object, source: str = "scene") -> SceneDraft:

@@ -30,7 +30,7 @@ from physicslab.state.contents import SCENE_TEXTS
 from physicslab.state.joint_rows import kinds_of
 from physicslab.state.state import State
 from physicslab.stepping.island import KeptIsland
-from physicslab.stepping.plan import outlived
+from physicslab.stepping.planning import outlived
 from physicslab.world import World
 
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from physicslab.kernels.forces.bookings import END, KEPT
+from physicslab.kernels.forces.budget import END, KEPT
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.joints import layout
 from physicslab.kernels.joints.soft import HOLD

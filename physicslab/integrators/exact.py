@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.integrators.integrator import Integrator
-from physicslab.kernels.forces.bookings import ACCOUNTS
+from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.ode.closed_form import closed_form
 from physicslab.ode.closed_form_account import given_in_closed_form

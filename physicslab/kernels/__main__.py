@@ -22,12 +22,12 @@ def _fill() -> int:
 
 
 def _budget() -> int:
-    from physicslab.kernels import budget
+    from physicslab.kernels import compile_budget
 
-    costs, slowness = budget.measure()
-    print(budget.table(costs))
+    costs, slowness = compile_budget.measure()
+    print(compile_budget.table(costs))
     print(f"a loop of Python took {slowness:.2f} times as long as on an idle processor; divided by that,")
-    over = budget.check([(cost / slowness, name) for cost, name in costs])
+    over = compile_budget.check([(cost / slowness, name) for cost, name in costs])
     print("\n".join(over) or "all are within the budget")
     return 0
 

@@ -18,7 +18,7 @@ from physicslab.files.replace import replace_file
 from physicslab.files.scene import parse_json, read_text
 from physicslab.languages.language import language
 from physicslab.lessons.blocks import LessonError
-from physicslab.lessons.check import LessonRuns, curve_gap
+from physicslab.lessons.check import LessonRuns, curve_gap, is_near
 from physicslab.lessons.lesson import SURENESS, Explain, Lesson, Question, Recall, Reply, place_of
 from physicslab.lessons.setup import Case
 from physicslab.lessons.words import formula, measure
@@ -224,7 +224,7 @@ def _expected(runs: LessonRuns, question: Question) -> str:
         case "choice":
             return next(reply.text for reply in question.replies if reply.right)
         case "number":
-            return measure(own, runs.right_answer(question), question.unit)
+            return measure(own, runs.number(question), question.unit)
         case "goal":
             solution = formula(own, question.solution.text) if question.solution else ""
             return own.say("for example {values}", values=solution)
@@ -243,20 +243,16 @@ def _grade_choice(runs: LessonRuns, question: Question, value: int, blank: Grade
 
 
 def _grade_number(runs: LessonRuns, question: Question, value: object, blank: Graded) -> Graded:
-    number, right = _number(value, question.unit, question.name), runs.right_answer(question)
+    number, right = _number(value, question.unit, question.name), runs.number(question)
     given = measure(language(runs.lesson.language), number, question.unit)
-    if _is_near(number, right, question.tolerance):
+    if is_near(number, right, question.tolerance):
         return replace(blank, given=given, right=True, feedback=question.right)
     reply: Reply | None = None
     for one in question.replies:
-        if reply is None and _is_near(number, runs.number(question, one), question.tolerance):
+        if reply is None and is_near(number, runs.number(question, one), question.tolerance):
             reply = one
     feedback, idea = (reply.feedback, reply.idea) if reply else ("", "")
     return replace(blank, given=given, right=False, feedback=feedback, idea=idea)
-
-
-def _is_near(number: float, right: float, tolerance: float) -> bool:
-    return abs(number - right) <= tolerance * abs(right)
 
 
 def _grade_goal(runs: LessonRuns, question: Question, value: Mapping[str, str], blank: Graded) -> Graded:

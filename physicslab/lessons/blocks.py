@@ -13,19 +13,15 @@ from physicslab.files.checks import SceneError, shown
 from physicslab.lessons.lesson import Prose
 from physicslab.lessons.setup import AS_IT_IS, Case
 
+_ASKED = ("question", "choice", "number", "curve")
+_ANSWERED = ("answer", "tolerance", "mistake", "right", "wrong", "idea", "show", "when")
 KEYS: dict[str, tuple[str, ...]] = {
     "scene": ("let", "open", "set", "tools", "show"),
-    "predict": (
-        "question", "choice", "number", "curve", "answer", "tolerance", "mistake", "right", "wrong", "idea",
-        "show", "when",
-    ),
+    "predict": (*_ASKED, *_ANSWERED),
     "run": ("seconds", "until", "limit", "graph", "case"),
     "compare": ("quantity", "unit", "measure", "along", "theory", "holds", "tolerance", "case", "fails"),
     "explain": ("question", "answer"),
-    "check": (
-        "question", "choice", "number", "curve", "goal", "solution", "answer", "tolerance", "mistake",
-        "right", "wrong", "idea", "show", "when",
-    ),
+    "check": (*_ASKED, "goal", "solution", *_ANSWERED),
     "recall": ("ask",),
 }  # fmt: skip
 """The kinds of blocks, and the keys of each."""

@@ -83,27 +83,24 @@ class LessonRuns:
     def _no_run(self) -> Run:
         return Run("", 0, Expression("0 s"), None, Expression("0 s"), (), AS_IT_IS)
 
-    def right_answer(self, question: Question) -> float:
-        """Return the number that is right, in the unit of the question."""
-        assert question.answer is not None
-        return self._number(question, question.answer)
-
-    def number(self, question: Question, reply: Reply) -> float:
-        """Return the number of a foreseen mistake, in the unit of the question."""
-        assert reply.value is not None
-        return self._number(question, reply.value)
+    def number(self, question: Question, reply: Reply | None = None) -> float:
+        """Return the number that is right, or a foreseen mistake, in the unit of the question."""
+        expression = _expected(question, reply)
+        value = expression.value(self.figures(question.run))
+        if value.dimension == Quantity(0.0).dimension:  # the angle of an arctangent is in radians
+            value = replace(value, has_unit=True)
+        return in_unit(value, question.unit, expression.text)
 
     def curve(self, question: Question, reply: Reply | None = None) -> list[float]:
         """Return the curve that is right, or a foreseen mistake, at each sample [SI]."""
-        expression = question.answer if reply is None else reply.value
-        assert expression is not None
-        return self.figures(question.run).series(expression)
+        return self.figures(question.run).series(_expected(question, reply))
 
-    def _number(self, question: Question, expression: Expression) -> float:
-        value, unit = expression.value(self.figures(question.run)), question.unit
-        if value.dimension == Quantity(0.0).dimension:  # the angle of an arctangent is in radians
-            value = replace(value, has_unit=True)
-        return in_unit(value, unit, expression.text)
+
+def _expected(question: Question, reply: Reply | None) -> Expression:
+    """Return what a question asks for, or what a foreseen mistake has instead."""
+    expression = question.answer if reply is None else reply.value
+    assert expression is not None
+    return expression
 
 
 def check_lesson(lesson: Lesson) -> Iterator[Row]:
@@ -189,7 +186,7 @@ def gap_of(compare: Compare, figures: Figures) -> tuple[Quantity, Quantity, floa
         measured, theory = compare.measured.value(figures), compare.theory.value(figures)
         same_dimension(measured, theory, compare.theory.text)
         return measured, theory, abs(measured.value - theory.value)
-    measured, theory, _ = gap_of(_at_once(compare), figures.at(0))
+    measured, theory, _ = gap_of(replace(compare, along=False), figures.at(0))
     first, second = (figures.series(expression) for expression in (compare.measured, compare.theory))
     gap = max(abs(a - b) for a, b in zip(first, second, strict=True))
     worst = max(range(len(first)), key=lambda i: abs(second[i]))
@@ -198,10 +195,6 @@ def gap_of(compare: Compare, figures: Figures) -> tuple[Quantity, Quantity, floa
         Quantity(second[worst], theory.dimension, True),
         gap,
     )
-
-
-def _at_once(compare: Compare) -> Compare:
-    return replace(compare, along=False)
 
 
 def _is_absolute(tolerance: Quantity, theory: Quantity) -> bool:
@@ -242,7 +235,7 @@ def _answered(runs: LessonRuns, question: Question) -> Iterator[Row]:
                 why = f"{error}; {allowed}"
                 raise _refusal(runs.lesson, question, "show", reply.shown_by, why) from error
     if question.form == "number":
-        right = runs.right_answer(question)
+        right = runs.number(question)
         yield _told(runs, question, f"{right:.6g} {question.unit}", math.isfinite(right), True)
         for reply in question.replies:
             wrong = runs.number(question, reply)
@@ -260,6 +253,11 @@ def _answered(runs: LessonRuns, question: Question) -> Iterator[Row]:
         solved = question.goal.holds(runs.figures(question.run, question.solution))
         yield _told(runs, question, f"{question.goal.text}: {question.solution.text}", solved, True)
         yield _told(runs, question, f"{question.goal.text}: as it is", question.goal.holds(figures), False)
+
+
+def is_near(number: float, right: float, tolerance: float) -> bool:
+    """Whether a number is right, within a tolerance that is a share of it."""
+    return abs(number - right) <= tolerance * abs(right)
 
 
 def curve_gap(drawn: Sequence[float], measured: Sequence[float]) -> float:

@@ -10,7 +10,6 @@ answer, and saves ``physicslab-answers/1``, which :mod:`physicslab.lessons.answe
 import itertools
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from html import escape
 from typing import Any
 
@@ -30,12 +29,15 @@ from physicslab.lessons.lesson import Compare, Explain, Lesson, Part, Prose, Que
 from physicslab.lessons.live_run import record_run
 from physicslab.lessons.setup import AS_IT_IS, Case
 from physicslab.lessons.words import (
+    about_words,
     case_words,
-    condition,
+    compare_words,
     formula,
     kind_words,
     measure,
+    run_words,
     sureness_words,
+    unit_words,
     with_run,
 )
 from physicslab.state.masses import Diverged
@@ -61,7 +63,7 @@ def lesson_page(
     made = _Page(lesson, find, tell)
     article = "\n".join(made.article())
     document = {"lesson": made.told, "runs": made.pictures, "books": made.books, "words": made.words}
-    return fill_page(lesson.title, made.about, document, article, lesson.language)
+    return fill_page(lesson.title, about_words(made.own, lesson), document, article, lesson.language)
 
 
 class _Page:
@@ -85,15 +87,6 @@ class _Page:
         }  # fmt: skip
         self._runs = LessonRuns(lesson)
         self._made: dict[object, tuple[int, Figures | None]] = {}
-
-    @property
-    def about(self) -> str:
-        """The line below the title."""
-        lesson, own = self.lesson, self.own
-        said = [own.say("level {level}", level=lesson.level)]
-        said.append(own.say_count("{n} minute", "{n} minutes", lesson.minutes))
-        said += [own.say("needs {what}", what=", ".join(lesson.needs))] if lesson.needs else []
-        return " · ".join(said)
 
     # ---- runs ----------------------------------------------------------------------------------------------
 
@@ -288,7 +281,7 @@ class _Page:
         self._tell(name, kind, part, runs)
         yield self._begun("form", kind, name)
         yield f"<fieldset><legend>{escape(part.prompt)}</legend>"
-        unit = "" if part.unit == "1" else formula(own, part.unit).strip()
+        unit = unit_words(own, part.unit)
         if part.form == "choice":
             for n, reply in enumerate(part.replies, 1):
                 button = f'<input type="radio" name="choice" value="{n}">'
@@ -325,36 +318,24 @@ class _Page:
         yield '<div class="said" role="status"></div></form>'
 
     def _run(self, run: Run) -> Iterator[str]:
-        own, said = self.own, self.own.say("Make the run.")
-        if values := case_words(own, replace(run.case, note="")) if run.case.values else "":
-            said = own.say("Make the run with {values}.", values=values)
+        own, said = self.own, run_words(self.own, run)
         self.told["runs"][run.name] = {"line": run.line, "book": self._slid(self._runs, run)}
         yield self._begun("section", "run", run.name)
         yield f'<p>{escape(said)}</p><button type="button" class="main">{escape(own.say("Run"))}</button>'
         yield '<div class="here"></div></section>'
 
     def _compare(self, part: Compare) -> Iterator[str]:
-        own, when = self.own, part.holds.text
-        when = condition(own, when)
-        heads = [
-            own.say("case"),
-            own.say("predicted"),
-            own.say("by theory"),
-            own.say("measured"),
-            own.say("gap"),
-        ]
+        theory, holds, heads = compare_words(self.own, part)
         cases = part.rows()
         books = [self.book(self._runs, part.run, [case]) for case in cases]
         rows = [self.books[book]["rows"][0].get(part.name) for book in books]
         self.told["compares"][part.name] = {
             "run": part.run.line, "along": part.along, "quantity": part.quantity, "rows": rows,
-            "cases": [case_words(own, case) for case in cases], "books": books,
+            "cases": [case_words(self.own, case) for case in cases], "books": books,
             "prediction": self._prediction(part),
         }  # fmt: skip
         yield self._begun("section", "compare", part.name)
-        theory = formula(own, f"{part.quantity}: {part.theory.text}")
-        holds = escape(own.say("holds: {when}", when=when))
-        yield f'<p>{escape(theory)} <span class="faint">{holds}</span></p>'
+        yield f'<p>{escape(theory)} <span class="faint">{escape(holds)}</span></p>'
         cells = "".join(f'<th scope="col">{escape(one)}</th>' for one in heads)
         yield f'<div class="wide"><table><thead><tr>{cells}</tr></thead><tbody></tbody></table></div>'
         yield '<div class="plot"></div></section>'
@@ -373,7 +354,7 @@ class _Page:
         return {
             "theory": row.theory, "measured": row.measured, "gap": gap, "near": bool(near),
             "words": [measure(self.own, one, unit) for one in (row.theory, row.measured)],
-            "unit": "" if unit == "1" else formula(self.own, unit),
+            "unit": unit_words(self.own, unit),
         }  # fmt: skip
 
     def _percent(self, share: float) -> str:
@@ -393,11 +374,11 @@ class _Page:
         told: dict[str, Any] = {
             "kind": kind, "form": part.form, "run": part.run.line if part.run else 0,
             "yes": part.right, "expected": grade_one(runs, name, kind, part, None).expected,
-            "unit": "" if part.unit == "1" else formula(self.own, part.unit).strip(),
+            "unit": unit_words(self.own, part.unit),
             "replies": [self._reply(part, reply, runs) for reply in part.replies],
         }  # fmt: skip
         if part.form == "number":
-            told |= {"answer": runs.right_answer(part), "tolerance": part.tolerance}
+            told |= {"answer": runs.number(part), "tolerance": part.tolerance}
         elif part.form == "curve":
             figures, curve = runs.figures(part.run), self._curve(part, runs)
             top = max(1e-12, *(abs(value) for value in curve)) * 1.2
@@ -432,7 +413,8 @@ class _Page:
         if reply.shown_by is not None and part.run is not None:
             try:
                 told["show"] = self.book(runs, part.run, [reply.shown_by])
-                told["case"] = case_words(self.own, reply.shown_by)
+                told["case"] = case_words(self.own, reply.shown_by, noted=False)
+                told["note"] = reply.shown_by.note
             except SceneError:
                 pass  # the run does not come to its end so: the words have to do
         return told

@@ -3,7 +3,7 @@
 import re
 
 from physicslab.languages.language import Language
-from physicslab.lessons.lesson import Run
+from physicslab.lessons.lesson import Compare, Lesson, Run
 from physicslab.lessons.setup import AS_IT_IS, Case
 
 _SIGNS = tuple(
@@ -33,6 +33,33 @@ def sureness_words(language: Language) -> dict[str, str]:
     }  # fmt: skip
 
 
+def about_words(language: Language, lesson: Lesson) -> str:
+    """Return the line below the title of a lesson: its level, how long it takes, what it needs."""
+    said = [language.say("level {level}", level=lesson.level)]
+    said.append(language.say_count("{n} minute", "{n} minutes", lesson.minutes))
+    said += [language.say("needs {what}", what=", ".join(lesson.needs))] if lesson.needs else []
+    return " · ".join(said)
+
+
+def run_words(language: Language, run: Run) -> str:
+    """Return the request to make a run, with the values of its own case."""
+    if not run.case.values:
+        return language.say("Make the run.")
+    return language.say("Make the run with {values}.", values=case_words(language, run.case, noted=False))
+
+
+def compare_words(language: Language, compare: Compare) -> tuple[str, str, list[str]]:
+    """Return the theory of a comparison, where it holds, and the heads of its table."""
+    return (
+        formula(language, f"{compare.quantity}: {compare.theory.text}"),
+        language.say("holds: {when}", when=condition(language, compare.holds.text)),
+        [
+            language.say("case"), language.say("predicted"), language.say("by theory"),
+            language.say("measured"), language.say("gap"),
+        ],
+    )  # fmt: skip
+
+
 def formula(language: Language, text: str) -> str:
     """Return an expression as it is shown, with the signs of print.
 
@@ -55,15 +82,20 @@ def condition(language: Language, text: str) -> str:
     return f" {language.say('and')} ".join(formula(language, part) for part in text.split(" and "))
 
 
+def unit_words(language: Language, unit: str) -> str:
+    """Return a unit as it is shown, empty for a pure number."""
+    return "" if unit == "1" else formula(language, unit).strip()
+
+
 def measure(language: Language, number: float, unit: str, figures: int = 4) -> str:
     """Return a number and its unit."""
     return formula(language, f"{number:.{figures}g} {'' if unit == '1' else unit}".rstrip())
 
 
-def case_words(language: Language, case: Case) -> str:
-    """Return what differs in a case, and its note."""
+def case_words(language: Language, case: Case, *, noted: bool = True) -> str:
+    """Return what differs in a case, and its note unless that is to be left out."""
     text = language.say("as it is") if case.text == AS_IT_IS.text else formula(language, case.text)
-    return f"{text} ({case.note})" if case.note else text
+    return f"{text} ({case.note})" if noted and case.note else text
 
 
 def with_run(run: Run, case: Case) -> Case:

@@ -1,13 +1,21 @@
 """A lesson as a page to print and to write on: questions, runs and room for answers, and no solutions."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import replace
 from html import escape
 
 from physicslab.languages.language import Language, language
 from physicslab.lessons.answers import asked
 from physicslab.lessons.lesson import Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
-from physicslab.lessons.words import case_words, condition, formula, kind_words, sureness_words
+from physicslab.lessons.words import (
+    about_words,
+    case_words,
+    compare_words,
+    formula,
+    kind_words,
+    run_words,
+    sureness_words,
+    unit_words,
+)
 
 _STYLE = """
 body { font: 11pt/1.45 sans-serif; max-width: 44em; margin: 1em auto; padding: 0 1em; }
@@ -33,10 +41,7 @@ def worksheet(lesson: Lesson, find: Callable[[str], Lesson]) -> str:
 def _body(lesson: Lesson, recalled: Mapping[str, Question]) -> Iterator[str]:
     own, setup = language(lesson.language), lesson.setup
     yield f"<h1>{escape(lesson.title)}</h1>"
-    about = [own.say("level {level}", level=lesson.level)]
-    about.append(own.say_count("{n} minute", "{n} minutes", lesson.minutes))
-    about += [own.say("needs {what}", what=", ".join(lesson.needs))] if lesson.needs else []
-    yield f'<p class="kind">{escape(" · ".join(about))}</p>'
+    yield f'<p class="kind">{escape(about_words(own, lesson))}</p>'
     yield f"<p>{own.say('Name')}: ______________________________ &nbsp; {own.say('Date')}: ______________</p>"
     yield _row("th", ["", own.say("value"), own.say("may be")], "<table>")
     for name, expression in setup.parameters.items():
@@ -72,20 +77,13 @@ def _part(part: Part, recalled: Mapping[str, Question], own: Language) -> Iterat
                 marks = " · ".join(f"□ {word}" for word in sureness_words(own).values())
                 inner.append(f'<p class="kind">{escape(own.say("How sure?"))} {escape(marks)}</p>')
         case Run():
-            kind, said = "run", own.say("Make the run.")
-            if values := case_words(own, replace(part.case, note="")) if part.case.values else "":
-                said = own.say("Make the run with {values}.", values=values)
+            kind, said = "run", run_words(own, part)
             inner = [f"<p>{escape(said)} {escape(own.say('What do you see?'))}</p>", *_lines(2)]
         case Compare():
-            kind, theory = "compare", formula(own, f"{part.quantity}: {part.theory.text}")
-            when = part.holds.text
-            when = condition(own, when)
-            holds = escape(own.say("holds: {when}", when=when))
-            heads = [own.say("case"), own.say("predicted"), own.say("by theory")]
-            heads += [own.say("measured"), own.say("gap")]
-            cases = [(case_words(own, replace(case, note="")), *"    ") for case in part.cases + part.fails]
+            kind, (theory, holds, heads) = "compare", compare_words(own, part)
+            cases = [(case_words(own, case, noted=False), *"    ") for case in part.cases + part.fails]
             inner = [
-                f"<p>{escape(theory)} &nbsp; <span class='kind'>{holds}</span></p>",
+                f"<p>{escape(theory)} &nbsp; <span class='kind'>{escape(holds)}</span></p>",
                 _row("th", heads, "<table>"), *(_row("td", cells) for cells in cases), "</table>",
             ]  # fmt: skip
         case Explain():
@@ -102,7 +100,7 @@ def _part(part: Part, recalled: Mapping[str, Question], own: Language) -> Iterat
 
 def _room(question: Question, own: Language) -> Iterator[str]:
     """Yield what an answer is marked in or written on."""
-    unit = "" if question.unit == "1" else formula(own, question.unit)
+    unit = unit_words(own, question.unit)
     if question.form == "choice":
         yield "<ul>"
         yield from (f"<li>□ {escape(reply.text)}</li>" for reply in question.replies)

@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, DAMPING, ENERGY, FIELDS
-from physicslab.kernels.forces.bookings import ACCOUNTS, END
+from physicslab.kernels.forces.budget import ACCOUNTS, END
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT
 from physicslab.kernels.joints.layout import FIRST
 from physicslab.kernels.joints.rows import constrain, forces_of, project, set_going
-from physicslab.ode.bookings import BookKeeper, book_in_python
+from physicslab.ode.budget import BudgetLayout, book_in_python
 from physicslab.state.packed import StateLayout, share_steepness
 from physicslab.state.remainders import NO_REMAINDERS, Remainders, coordinate_keys
 from physicslab.state.state import State
@@ -62,7 +62,7 @@ class OdeSystem:
     slots : dict of int to int
         Where the account of each cause that is booked begins.
     places : int64 array
-        Places of bookings for kernels (:mod:`physicslab.kernels.forces.bookings`).
+        Places of the budget for kernels (:mod:`physicslab.kernels.forces.budget`).
     near : int64 array and int, optional
         An order of the coordinates in which those that forces couple are near, and how near; found
         once by the method that needs it, as it depends on the layout alone.
@@ -334,7 +334,7 @@ class OdeSystem:
             if not (drifts and system.gyration(state) is not None)
         )
         also = (*self._also, FIELDS) if drifts else self._also
-        book = BookKeeper(state, self.layout, packed, self.damping, also, kicked=self._kicked)
+        book = BudgetLayout(state, self.layout, packed, self.damping, also, kicked=self._kicked)
         self.slots, self.places, self._causes = book.slots, book.places, np.array([*book.slots], np.int64)
         self._behind = self._clock, np.zeros(book.count)
         self._still = np.zeros(2 * len(self.layout.fixed) + 1 + book.count)
@@ -369,7 +369,7 @@ class OdeSystem:
         self.calls = np.array(rows, np.int64).reshape(-1, 3)
         self.damped_calls = np.array([*rows, *(force.call for force in damping)], np.int64).reshape(-1, 3)
 
-    def _caller(self, state: State, systems: Iterable[ForceSystem], book: BookKeeper, size: int) -> Any:
+    def _caller(self, state: State, systems: Iterable[ForceSystem], book: BudgetLayout, size: int) -> Any:
         """Return a C function that lets force systems written in Python act on the world's tables.
 
         It gets ``size`` numbers of each array.

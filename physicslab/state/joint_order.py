@@ -251,7 +251,7 @@ def _table(lines: Sequence[Sequence[int]], width: int) -> _Table:
     return np.array(lines, np.int64).reshape(-1, width)
 
 
-def rooms_of(blocks: Blocks) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def buffers_of(blocks: Blocks) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Return arrays for the gradients of ends (e, 6), the states of nodes (k, NODE_STATE), entries (l, 8)."""
     return (
         np.zeros((len(blocks.body), 6)),

@@ -13,7 +13,7 @@ from physicslab.ecs.entity_index import EntityIndex
 from physicslab.ecs.sentences import sentence
 from physicslab.languages.sentence import Sentence
 from physicslab.state.entities import label_in_context
-from physicslab.state.joint_order import NO_BLOCKS, order_rows, rooms_of
+from physicslab.state.joint_order import NO_BLOCKS, buffers_of, order_rows
 from physicslab.state.joint_rows import KINDS, Joined, Measure, Role, Row, Term, ends_of, measured
 
 
@@ -67,7 +67,7 @@ class Joints:
         At the end of the last step, or as its mean [N or N m].
     largest : float64 array (n,)
         The largest error so far, as far as soft constraints solved it [m or rad].
-    rooms : tuple of float64 arrays
+    buffers : tuple of float64 arrays
         Room for what is computed of the ends, nodes and entries of blocks
         (:mod:`physicslab.kernels.joints.blocks`).
     beside_contacts : bool
@@ -106,7 +106,7 @@ class Joints:
             np.array([row[n] for row in rows], np.float64) for n in range(2, 5)
         )
         self.impulse, self.force, self.largest = np.zeros((3, len(rows)))
-        self.blocks, self.rooms = NO_BLOCKS, rooms_of(NO_BLOCKS)
+        self.blocks, self.buffers = NO_BLOCKS, buffers_of(NO_BLOCKS)
         self.edges, self.apart = np.zeros((2, 0, 2), np.int64)
         self.dependent = np.zeros(len(rows), np.bool_)
 
@@ -156,7 +156,7 @@ class Joints:
         moves = index.table(Velocity).present
         own_rows = [range(joint.first, joint.first + joint.size) for joint in joints]
         self.blocks = order_rows(rows, own_rows, moves.tolist())
-        self.rooms = rooms_of(self.blocks)
+        self.buffers = buffers_of(self.blocks)
         self.edges = np.array(sorted(edges), np.int64).reshape(-1, 2)
         self.apart = np.array(sorted(apart), np.int64).reshape(-1, 2)
         for joint in joints:
@@ -250,6 +250,7 @@ def _placed(joined: Joined, row: Row) -> Row:
             table[row.placed][joined.row] = spec.check(value)
         except InvalidValue as error:
             owner = label_in_context(int(joined.entity_index.entities[joined.row]))
-            raise InvalidValue(f"{owner}: {kind.__name__}", row.placed, value, error.allowed) from None
+            allowed = f"{error.allowed}{': its anchors are in one place' if value == 0.0 else ''}"
+            raise InvalidValue(f"{owner}: {kind.__name__}", row.placed, value, allowed) from None
         table[f"{row.placed}_given"][joined.row] = True
     return row._replace(offset=scale * joined.number(row.placed))

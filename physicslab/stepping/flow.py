@@ -16,7 +16,8 @@ from physicslab.state.samples import Samples
 from physicslab.state.state import State
 from physicslab.stepping.accounting import put_together
 from physicslab.stepping.fastest_body import fastest_body
-from physicslab.stepping.plan import StepPlan, tolerance_for
+from physicslab.stepping.method import tolerance_for
+from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.stepper import Advance, Stretch, divisions
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.joint import JointSystem

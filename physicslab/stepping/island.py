@@ -17,7 +17,8 @@ from physicslab.kernels import near_counts
 from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.partition import Extent, movable_in
-from physicslab.stepping.plan import StepPlan, outlived
+from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.planning import outlived
 from physicslab.stepping.run import Stepped
 from physicslab.stepping.select import Steppers
 

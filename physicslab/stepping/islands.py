@@ -122,13 +122,10 @@ class Islands:
         opened = state.account.is_open
         try:
             return self._advance(state, h, steps)
-        except Diverged:
+        except BaseException as error:
             self.forget(state)
-            if steps == 1:
+            if steps == 1 or not isinstance(error, Diverged):
                 raise
-        except BaseException:
-            self.forget(state)
-            raise
         go_back(state)
         return self._advance_singly(state, h, steps, opened)
 

@@ -90,7 +90,7 @@ class Rigid:
         self.why_impulses, self.energy_added = "", 0.0
         within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
         self._within = [system.name for system in within if not isinstance(system, IntegrateSystem)]
-        steady = not any(force.sees_time(state) for force in schedule.smooth_forces)
+        steady = not any(force.depends_on_time(state) for force in schedule.smooth_forces)
         self._motion = RigidMotion(self._ode, len(self._pairs), steady, rows)
 
     @classmethod

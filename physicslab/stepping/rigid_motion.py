@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ecs.sentences import sentence
-from physicslab.kernels.accounts import PX
-from physicslab.kernels.forces.bookings import ACCOUNTS
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, OVERLAP, PX, PY
+from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.joints import layout
 from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.rigid.equations import UNKNOWN, VECTORS
@@ -20,8 +20,10 @@ from physicslab.kernels.rigid.smooth_segment import StagesTuple
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 from physicslab.stepping.forces import fastest_rate
-from physicslab.stepping.rigid_bookings import book_overlap
 from physicslab.stepping.rigid_rows import RigidRows
+
+type Numbers = NDArray[np.float64]
+"""An array of coordinates, of speeds, or of sums (n,)."""
 
 MAX_POINTS = 64
 """Largest number of points that touch at one time: their equations are dense."""
@@ -31,7 +33,7 @@ _MAX_EVENTS = 2000
 """Largest number of events in a step."""
 _MAX_WORK = 8_500
 """Largest work of a step by events (:attr:`MadeStep.work`): short steps need the rest of a frame."""
-_WORK_OF_A_PIECE = 8
+_WORK_OF_A_SEGMENT = 8
 """Units of work of a segment of motion, beside its force evaluations and half a unit for each pair near."""
 _RESTING = 2.0
 """In speeds that a short step gives: what is no faster than that comes to rest."""
@@ -177,11 +179,11 @@ class RigidMotion:
                 h - done, _TOLERANCE, rest, foreseen,
             )  # fmt: skip
             made.evaluations += evaluations
-            made.work += _WORK_OF_A_PIECE + self._pairs // 2 + evaluations * (1 + 2 * count) * rows // 4
+            made.work += _WORK_OF_A_SEGMENT + self._pairs // 2 + evaluations * (1 + 2 * count) * rows // 4
             stalled = stalled + 1 if segment <= _NO_TIME * h else 0
             done = h if segment == h - done else done + segment
             if not math.isfinite(segment):
-                made.refused = sentence("piece_not_finite")
+                made.refused = sentence("segment_not_finite")
                 return done
             if stalled > _MAX_STALLED or made.work > _MAX_WORK:
                 break
@@ -299,7 +301,7 @@ class RigidMotion:
                         scene, self._equations, count, self._stages, before, q, v, pay
                     )
                     made.energy_added += added
-                    book_overlap(state, self._ode, before, at_first, change)
+                    _book_overlap(state, self._ode, before, at_first, change)
                 return ""
             before = q.copy() if before is None else before
             if deepest > allowed or not time_stepping.separate(scene, self._equations, count, q, v):
@@ -366,3 +368,20 @@ class RigidMotion:
             if not solved:
                 return motion.UNRESOLVED, count, last
         return motion.DONE, count, last
+
+
+def _book_overlap(state: State, ode: OdeSystem, place: Numbers, speed: Numbers, energy: float) -> None:
+    """Book that bodies were moved apart, from a place (n,) and a speed (n,), which changed the energy [J]."""
+    row = state.account.sums[OVERLAP]
+    row[ENERGY] += energy
+    row[[PX, PY, ANGULAR_MOMENTUM]] += _momenta(ode, ode.q, ode.v) - _momenta(ode, place, speed)
+
+
+def _momenta(ode: OdeSystem, q: Numbers, v: Numbers) -> Numbers:
+    """Return momentum (x, y) and angular momentum about the origin of what forces move (3,)."""
+    clock = ode.layout.clock
+    free = ode.inverse_mass > 0.0
+    p = np.where(free, v[:clock] / np.where(free, ode.inverse_mass, 1.0), 0.0)
+    n = 2 * len(ode.layout.moving)
+    x, y, px, py = q[:n:2], q[1:n:2], p[:n:2], p[1:n:2]
+    return np.array((px.sum(), py.sum(), (x * py - y * px).sum() + p[n:].sum()))

@@ -1,6 +1,7 @@
 """A run: how long it is, in whole steps and a rest, and how it goes on, a call of a stepper at a time."""
 
 import math
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
@@ -21,6 +22,9 @@ from physicslab.systems.schedule import Schedule
 _STEPS = Field("steps", "whole", minimum=0, maximum=2**53, owner="run")
 _SECONDS = Field("seconds", "number", minimum=0.0, unit="s", owner="run")
 _STRIDE = Field("stride", "whole", minimum=1, owner="stepping")
+_AT_MOST = Field("at_most", "number", above=0.0, unit="s", owner="run")
+_LOOK_S, _LOOK_STEPS = 0.1, 1000
+"""So long [s], and so many steps of smooth motion, a run goes on before the clock is looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +68,10 @@ class Stepped(Protocol):
     @property
     def simulation(self) -> SimulationConfig:
         """Return how the world is stepped."""
+
+    @property
+    def compile_s(self) -> float:
+        """Return how long compiling has taken [s]."""
 
     def active(self) -> AbstractContextManager[object]:
         """Make this the world that plain esper calls act on, within a ``with`` block."""
@@ -120,6 +128,29 @@ def _whole_steps(seconds: float, dt: float) -> tuple[int, float]:
     if whole and seconds - whole * dt < 0.001 * dt:
         whole -= 1
     return whole, seconds - whole * dt
+
+
+def run_through(world: Stepped, seconds: float | None, steps: int | None, at_most: float | None) -> None:
+    """Advance by a time or a number of steps, as :meth:`World.run` says."""
+    if at_most is None:
+        for _ in strides(world, seconds, steps, sys.maxsize, math.inf):
+            pass
+        return
+    longest, length = _AT_MOST.check(at_most), run_length(world, seconds, steps)
+    began = time.perf_counter() - world.compile_s
+    for done in strides(world, seconds, steps, _LOOK_STEPS, _LOOK_S):
+        if done < length.steps and time.perf_counter() - world.compile_s - began >= longest:
+            raise TimeoutError(
+                f"run: stopped after {longest:g} s of wall clock (at_most) at t = {world.time:.9g} s, "
+                f"after {done} of {length.steps} steps"
+            )
+
+
+def refuse_unnamed(method: str, values: tuple[object, ...]) -> None:
+    """Refuse arguments of a method that tell by no name whether they are seconds or steps."""
+    if values:
+        given = ", ".join(map(repr, values))
+        raise TypeError(f"{method}({given}): say {method}(seconds={values[0]!r}) or {method}(steps=...)")
 
 
 def strides(

@@ -6,7 +6,8 @@ from physicslab.state.state import State
 from physicslab.stepping.asleep import Asleep
 from physicslab.stepping.event_driven import EventDriven
 from physicslab.stepping.flow import Flow
-from physicslab.stepping.plan import StepPlan, choose_plan, resumed_plan
+from physicslab.stepping.plan import StepPlan
+from physicslab.stepping.planning import choose_plan, resumed_plan
 from physicslab.stepping.rigid import Rigid
 from physicslab.stepping.soft import Soft
 from physicslab.stepping.stepper import Advancer, Stepper

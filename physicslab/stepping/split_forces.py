@@ -25,7 +25,7 @@ _TOLERANCE = 1e-12
 """Smallest tolerance of methods that choose their steps."""
 
 
-def sees_velocity_in_python(state: State, force: ForceSystem) -> bool:
+def depends_on_velocity_in_python(state: State, force: ForceSystem) -> bool:
     """Return whether a force in Python states that it depends on velocities, which kicks make one of order 1.
 
     One that states nothing is kicked, as a wind is: bodies that it acts on may then sleep.
@@ -45,7 +45,7 @@ def sub_integrated_rows(state: State, forces: Sequence[ForceSystem]) -> NDArray[
     rows = np.zeros(len(state.entity_index), np.bool_)
     for force in forces:
         rates, pairs = force.rates(state), force.couples(state)
-        if sees_velocity_in_python(state, force):
+        if depends_on_velocity_in_python(state, force):
             rows[state.batch(Velocity, *force.needs).rows] = True
         if rates is not None:
             rows |= rates > 0.0

@@ -1,9 +1,17 @@
 """Velocities change positions."""
 
+import logging
+
 from physicslab.components import Transform, Velocity
 from physicslab.kernels import motion
 from physicslab.state.state import State
+from physicslab.systems.accelerate import AccelerateSystem
+from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import Stage, System, at
+
+_log = logging.getLogger(__name__)
+_warned: set[str] = set()
+"""Warnings given already: a notebook may make a thousand worlds of one kind."""
 
 
 class IntegrateSystem(System):
@@ -21,3 +29,15 @@ class IntegrateSystem(System):
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
             state.bodies.sub_integrated, h,
         )  # fmt: skip
+
+
+def warn_of_what_stands_still(schedule: Schedule) -> None:
+    """Warn once where bodies have velocities, and no system changes positions by them."""
+    _, *chosen = schedule.systems
+    names = ", ".join(f"{system.name}()" for system in chosen)
+    moves = not chosen or any(isinstance(system, IntegrateSystem) for system in chosen)
+    if not moves and names not in _warned and schedule.find(AccelerateSystem) is not None:
+        _warned.add(names)
+        _log.warning(
+            "World(%s): velocities move nothing without an IntegrateSystem(); World() has all systems", names
+        )

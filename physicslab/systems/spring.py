@@ -9,7 +9,7 @@ from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.sentences import sentence
 from physicslab.ecs.vector import rotated
 from physicslab.kernels import accounts, direct_entry
-from physicslab.kernels.forces import bookings, packed_forces, springs
+from physicslab.kernels.forces import budget, packed_forces, springs
 from physicslab.kernels.forces.resistance import damper_resistance
 from physicslab.state.packed import PackedForce, StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
@@ -81,21 +81,21 @@ class SpringSystem(ForceSystem):
         bodies, n, moved = state.bodies, len(places), np.zeros(len(places), np.int64)
         goes, driven = state.table(Velocity).present, False
         for end, turn, moves, turns in (
-            (self._a, places[:, 1], bookings.A_MOVES, bookings.A_TURNS),
-            (self._b, places[:, 3], bookings.B_MOVES, bookings.B_TURNS),
+            (self._a, places[:, 1], budget.A_MOVES, budget.A_TURNS),
+            (self._b, places[:, 3], budget.B_MOVES, budget.B_TURNS),
         ):
             shifted = bodies.inverse_mass[end] > 0.0
             turned = (turn < 0) | (bodies.inverse_inertia[end] > 0.0)
             moved |= np.where(shifted, moves, 0) | np.where(turned, turns, 0)
             driven |= bool((goes[end] & ~(shifted & turned)).any())
         found = []
-        if (moved != bookings.ALL_MOVED).any():
+        if (moved != budget.ALL_MOVED).any():
             found.append((accounts.SPRINGS, 1 + 4 * n))
         if driven:
             found.append((accounts.HAND, 3 + 4 * n))
         if self.depends_on_velocity(state):
             found.append((accounts.DAMPING, 2 + 4 * n))
-        opened = np.flatnonzero(moved != bookings.ALL_MOVED)
+        opened = np.flatnonzero(moved != budget.ALL_MOVED)
         ends = np.stack((opened, moved[opened]), axis=1)
         behind = (-1, -1, -1, -1, len(opened))
         return np.concatenate(([n], places.ravel(), behind, ends.ravel())), tuple(found)

@@ -227,7 +227,7 @@ class ForceSystem(System):
         """
         return not type(self).packs()
 
-    def sees_time(self, state: State) -> bool:
+    def depends_on_time(self, state: State) -> bool:
         """Return whether the force depends on the time; one in Python is taken to, unless it overrides this.
 
         Resting bodies may then begin to move by themselves.

@@ -66,7 +66,7 @@ class ThrustSystem(ForceSystem):
         rates[rows] = swings * (2.0 * np.pi * table["frequency"][rows] + spin)
         return rates * (state.bodies.inverse_mass > 0.0)
 
-    def sees_time(self, state: State) -> bool:
+    def depends_on_time(self, state: State) -> bool:
         """Whether any swings."""
         return bool((state.table(Thrust)["frequency"][state.batch(*self.needs).rows] > 0.0).any())
 

@@ -4,7 +4,7 @@ The smooth motion of a world is q' = v, v' = W f(q, v): ``q`` holds two coordina
 [rad] of those that forces can turn, ``v`` their rates, W the inverse masses. Fixed bodies follow at the
 end of both arrays and have no inverse mass. A force is a C function that adds to f; it reads what it needs
 from two arrays of its own. Behind them is the time [s] of the state (``v`` has nothing there), and behind
-that are the accounts (:mod:`physicslab.kernels.forces.bookings`).
+that are the accounts (:mod:`physicslab.kernels.forces.budget`).
 
 A force is evaluated at an instant, or over a span of time in which the coordinates change linearly from
 q - span/2 v to q + span/2 v. Springs then return a discrete gradient of their energy V, a force f whose work

@@ -1,7 +1,7 @@
 """Gravity, springs and drag over packed coordinates, as :mod:`physicslab.kernels.forces.force_calls` has it.
 
 Each works by the same formulas as the loop over columns in the module of that force. Where one is given the
-place of an account (:mod:`physicslab.kernels.forces.bookings`), it also adds there what it gives in a second;
+place of an account (:mod:`physicslab.kernels.forces.budget`), it also adds there what it gives in a second;
 a place of -1 is none. Where it keeps its force by itself, it books no energy.
 """
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from physicslab.kernels import allocating, always_inlined
 from physicslab.kernels.accounts import book
-from physicslab.kernels.forces.bookings import book_open_spring, keep_pull
+from physicslab.kernels.forces.budget import book_open_spring, keep_pull
 from physicslab.kernels.forces.drag import drag_factor
 from physicslab.kernels.forces.force_calls import force_kernel
 from physicslab.kernels.forces.inverse_square import PLAIN_LIMIT, attract, inverse_cube
@@ -154,7 +154,7 @@ def springs(q, v, span, force, parameters, indices):  # type: ignore[no-untyped-
     Behind the indices of the springs are the accounts of springs, damping and hand, where the forces of
     dampers are kept by themselves, and how many springs have an end that forces do not move in all its
     coordinates; of each of these its number, and which they do move
-    (:func:`physicslab.kernels.forces.bookings.book_open_spring`).
+    (:func:`physicslab.kernels.forces.budget.book_open_spring`).
     """
     n, lost, first = indices[0], 0.0, 0
     behind = 1 + 4 * n

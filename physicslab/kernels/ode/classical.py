@@ -3,7 +3,7 @@
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, allocating_kernel
-from physicslab.kernels.forces.bookings import CLOCK, END
+from physicslab.kernels.forces.budget import CLOCK, END
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add
 
@@ -16,7 +16,7 @@ def rk4(
     """Advance by ``steps`` steps of ``h`` seconds; return the number of force evaluations.
 
     ``q_low`` and ``v_low`` (n,) are the remainders of what moves, and are carried on. Behind the clock, v
-    takes what causes give (:mod:`physicslab.kernels.forces.bookings`).
+    takes what causes give (:mod:`physicslab.kernels.forces.budget`).
     """
     n, clock = len(inverse_mass), places[CLOCK]
     start = q[clock]

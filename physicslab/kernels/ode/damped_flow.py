@@ -5,14 +5,14 @@ velocities while all places stay: it is linear in them, and followed by its Tayl
 symmetric, so that it is of order 4 for these kicks as well. Springs are taken eight at a time, as there.
 
 Dampers take the integral of their power over the same series. Bodies that only drag and gravity act
-on are followed each by itself (:func:`_fall`).
+on are followed each by itself (:mod:`physicslab.kernels.ode.drag_flow`).
 """
 
 import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, inlined_by_numba
-from physicslab.kernels.accounts import DAMPING, GRAVITY, book
+from physicslab.kernels.accounts import DAMPING, book
 from physicslab.kernels.arguments import Motion, Springs
 from physicslab.kernels.float64x8 import (
     Wide,
@@ -28,6 +28,7 @@ from physicslab.kernels.float64x8 import (
     take_numbers,
     take_vectors,
 )
+from physicslab.kernels.ode.drag_flow import fall_in_drag
 from physicslab.kernels.ode.spring_flow import (
     BY_DAMPERS,
     BY_HAND,
@@ -52,9 +53,6 @@ from physicslab.kernels.ode.spring_flow import (
     torque_of_gravity,
 )
 from physicslab.kernels.wide_layout import WIDE
-
-_FOLLOWED = 0.05
-"""Largest rate times step of what drag alone slows: a step is then right to 3e-9."""
 
 
 class Full(NamedTuple):
@@ -369,59 +367,6 @@ def _put_spins(places: Places, full: Full, motion: Motion) -> None:
         motion.angle[row], motion.angular[row] = full.angle[i], full.spin[i]
 
 
-@always_inlined
-def _slowed(x: float, y: float, linear: float, quadratic: float) -> float:
-    """Return the share of its velocity that drag takes from a body in a second."""
-    return linear + quadratic * math.sqrt(x * x + y * y) if quadratic > 0.0 else linear
-
-
-@inlined
-def _fall(
-    motion: Motion, rows: Rows, drag: Numbers, gx: float, gy: float, span: float, account: Vectors
-) -> None:
-    """Move bodies that only drag and gravity act on, by steps of order 4, as many as each needs.
-
-    ``drag`` (3 d,) has of each drag by speed and by its square, of its mass, and the mass. What drag takes is
-    integrated beside the motion, by the same method.
-    """
-    n, sixth = len(rows), 1.0 / 6.0
-    taken, px, py, turned, fallen, weight = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(n):
-        row, linear, quadratic, mass = rows[i], drag[i], drag[n + i], drag[2 * n + i]
-        x, y = motion.position[row, 0], motion.position[row, 1]
-        vx, vy = motion.linear[row, 0], motion.linear[row, 1]
-        steps = 1 + int(_slowed(vx, vy, linear, 2.0 * quadratic) * span / _FOLLOWED)
-        h = span / steps
-        for _ in range(steps):
-            to_x, to_y, to_vx, to_vy = 0.0, 0.0, 0.0, 0.0
-            at_x, at_y, ux, uy = x, y, vx, vy
-            for stage in range(4):
-                share = sixth * h if stage == 0 or stage == 3 else 2.0 * sixth * h
-                slowed = _slowed(ux, uy, linear, quadratic)
-                fx, fy = -slowed * ux, -slowed * uy
-                taken -= share * mass * (fx * ux + fy * uy)
-                px += share * mass * fx
-                py += share * mass * fy
-                turned += share * mass * (at_x * fy - at_y * fx)
-                to_x += share * ux
-                to_y += share * uy
-                to_vx += share * (gx + fx)
-                to_vy += share * (gy + fy)
-                ahead = h if stage == 2 else 0.5 * h
-                at_x, at_y = x + ahead * ux, y + ahead * uy
-                ux, uy = vx + ahead * (gx + fx), vy + ahead * (gy + fy)
-            mean_x = h * (x + 0.5 * to_x) - h * h / 12.0 * to_vx
-            mean_y = h * (y + 0.5 * to_y) - h * h / 12.0 * to_vy
-            fallen += mass * (mean_x * gy - mean_y * gx)
-            x, y, vx, vy = x + to_x, y + to_y, vx + to_vx, vy + to_vy
-        weight += mass
-        motion.position[row, 0], motion.position[row, 1] = x, y
-        motion.linear[row, 0], motion.linear[row, 1] = vx, vy
-        motion.angle[row] += span * motion.angular[row]
-    book(account[DAMPING], 0, -taken, px, py, turned)
-    book(account[GRAVITY], 0, 0.0, weight * gx * span, weight * gy * span, fallen)
-
-
 @inlined
 def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors) -> int:
     """Move bodies on springs and in drag for ``span`` seconds; return the number of force evaluations.
@@ -459,5 +404,7 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
             )  # fmt: skip
     if made >= 0 and alone > 0:
         drag = numbers[len(numbers) - 3 * alone :]
-        _fall(motion, whole[last - alone :], drag, numbers[UNIFORM], numbers[UNIFORM + 1], span, account)
+        fall_in_drag(
+            motion, whole[last - alone :], drag, numbers[UNIFORM], numbers[UNIFORM + 1], span, account
+        )
     return made

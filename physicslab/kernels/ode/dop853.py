@@ -6,7 +6,7 @@ import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating_kernel, always_inlined, inlined
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, PX, PY
-from physicslab.kernels.forces.bookings import ACCOUNTS, CLOCK, END
+from physicslab.kernels.forces.budget import ACCOUNTS, CLOCK, END
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add, add_pair
 from physicslab.kernels.ode.dop853_tableau import (
@@ -239,7 +239,7 @@ def dop853(
     Where no force depends on the origin, ``bodies`` is how many pairs of coordinates the first ones are, and
     else 0: in a close passage the origin is moved there, so that the distance has all its digits.
 
-    Behind the clock, v takes what causes give (:mod:`physicslab.kernels.forces.bookings`).
+    Behind the clock, v takes what causes give (:mod:`physicslab.kernels.forces.budget`).
     """
     n, clock = len(inverse_mass), places[CLOCK]
     start, booked = q[clock], places[END] - places[CLOCK] - 1

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_kernel, inlined
-from physicslab.kernels.forces.bookings import CLOCK, DAMPED
+from physicslab.kernels.forces.budget import CLOCK, DAMPED
 from physicslab.kernels.forces.force_calls import Calls, accelerate_over
 from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.ode.dop853 import largest
@@ -221,7 +221,7 @@ def implicit_midpoint(
     coupled ones are within ``band`` of each other. Sums are compensated: ``q_low`` and ``v_low`` (n,) are the
     remainders of what moves, and are carried on. Forces are those of the time in the middle of the step.
 
-    Behind the clock, v takes what causes give (:mod:`physicslab.kernels.forces.bookings`) at the mean
+    Behind the clock, v takes what causes give (:mod:`physicslab.kernels.forces.budget`) at the mean
     velocity. Where that is not the mean of both ends, dampers and drag have done the work that this makes.
     """
     n, m, clock = len(inverse_mass), len(order), places[CLOCK]

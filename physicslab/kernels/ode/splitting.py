@@ -6,7 +6,7 @@ import numpy as np
 
 from physicslab.kernels import Numbers, Rows, allocating_kernel, inlined
 from physicslab.kernels.accounts import book
-from physicslab.kernels.forces.bookings import CLOCK, END, KEPT, book_kick
+from physicslab.kernels.forces.budget import CLOCK, END, KEPT, book_kick
 from physicslab.kernels.forces.force_calls import Calls, accelerate
 from physicslab.kernels.ode.compensated import add
 
@@ -48,7 +48,7 @@ def split(
     the kicks and is solved exactly: v(h) = v e^(-c h) + a (1 - e^(-c h)) / c. Sums are compensated:
     ``q_low`` and ``v_low`` (n,) are the remainders of what moves, and are carried on. The time goes on with
     the drifts, as the coordinates do. Behind it, v takes what causes give
-    (:mod:`physicslab.kernels.forces.bookings`), with ``places``: in a kick, by the mean velocity.
+    (:mod:`physicslab.kernels.forces.budget`), with ``places``: in a kick, by the mean velocity.
 
     ``gyration`` (bodies,) are the rates [rad/s] at which fields turn velocities, or it is empty: drifts are
     then arcs, which are exact. So the method has the order that it has without the field, as of the forces

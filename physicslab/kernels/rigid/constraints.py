@@ -6,7 +6,7 @@ from physicslab.kernels import Numbers, always_inlined, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.rigid import features as F
-from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
+from physicslab.kernels.rigid.budget import book_contacts, book_speeds
 from physicslab.kernels.rigid.equations import CHANGE, FREE, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import RigidScene, rate_along
 from physicslab.kernels.rigid.joined import book_answer, lessen, measure_joints, pass_on

@@ -49,7 +49,7 @@ GAP, VN, VT, BIAS_N, BIAS_T, MARGIN, PX, PY, MU, RESTITUTION, MEASURES = range(1
 restitution."""
 FRICTION, CONTACTS, DRIVEN, JOINED, MOTORS = range(5)
 """What ``accounts`` of a scene hold: where those of friction, of contacts, of what is driven, of joints and
-of motors begin behind the clock (:mod:`physicslab.kernels.forces.bookings`); -1 where there is none."""
+of motors begin behind the clock (:mod:`physicslab.kernels.forces.budget`); -1 where there is none."""
 
 Points = Annotated[NDArray[np.int64], int64[:, ::1]]
 """An int64 array (n, POINT_FIELDS)."""

@@ -28,7 +28,7 @@ from physicslab.kernels.geometry.shapes import is_chain, wall_of
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid import features as F
-from physicslab.kernels.rigid.bookings import book_row
+from physicslab.kernels.rigid.budget import book_row
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, UNKNOWN, Equations

@@ -8,7 +8,7 @@ Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653). In that limit no body moves, s
 
 from physicslab.kernels import Numbers, always_inlined
 from physicslab.kernels.joints.layout import ROWS
-from physicslab.kernels.rigid.bookings import book_contacts
+from physicslab.kernels.rigid.budget import book_contacts
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, UNKNOWN, Equations

@@ -15,7 +15,7 @@ from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid import features as F
-from physicslab.kernels.rigid.bookings import book_contacts, book_speeds
+from physicslab.kernels.rigid.budget import book_contacts, book_speeds
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED
 from physicslab.kernels.rigid.constraints import apply, find_loads, measure_all, project
 from physicslab.kernels.rigid.equations import (
@@ -32,7 +32,7 @@ from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, na
 from physicslab.kernels.rigid.impacts import approaches, resolve_simultaneous_impacts
 from physicslab.kernels.rigid.jammed import stop_sliding
 from physicslab.kernels.rigid.joined import book_answer
-from physicslab.kernels.rigid.passing import longest_piece, share_of_ways
+from physicslab.kernels.rigid.passing import longest_segment, share_of_ways
 from physicslab.kernels.rigid.segment_end import (
     ALLOWED,
     HOLDS,
@@ -45,7 +45,7 @@ from physicslab.kernels.rigid.smooth_segment import (
     SHORT_LAST,
     Stages,
     StagesTuple,
-    begin_piece,
+    begin_segment,
     make_segment,
     make_stages,
     named_stages,
@@ -230,7 +230,7 @@ def advance_segment(
     scratch = named_equations(room)
     soonest = note_start(of, points, count, scratch, q, v, at.acceleration, start)
     allowed, evaluations, kind, index = start[ALLOWED], 4, -1, -1
-    limit = longest_piece(of, q, v, at.acceleration, allowed)
+    limit = longest_segment(of, q, v, at.acceleration, allowed)
     h = min(limit, left, _BEYOND * soonest if foreseen else left)
     short = h < _SHORT * limit
     for _ in range(2):
@@ -293,5 +293,5 @@ def begin_motion(
         return DONE, closed, rest, True
     if closed > 0:
         project(of, points, closed, q, v)
-    begin_piece(of, points, closed, q, v, at)
+    begin_segment(of, points, closed, q, v, at)
     return DONE, closed, rest, False

@@ -70,7 +70,7 @@ def _longest_before_limits(
 
 
 @inlined
-def longest_piece(
+def longest_segment(
     scene: RigidScene, q: Numbers, v: Numbers, acceleration: Numbers, allowed: Numbers
 ) -> float:
     """Return for how long no pair can pass through each other unseen, and nothing turn far [s].

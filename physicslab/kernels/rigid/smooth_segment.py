@@ -55,7 +55,7 @@ def named_stages(plain: StagesTuple) -> Stages:
 
 
 @always_inlined
-def begin_piece(
+def begin_segment(
     scene: RigidScene, equations: Equations, count: int, q: Numbers, v: Numbers, stages: Stages
 ) -> None:
     """Compute the first stage, from which segments of any length can begin."""

@@ -14,7 +14,7 @@ from physicslab.kernels.accounts import HAND, MOTORS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ENDS, FIRST, PLACES, ROWS
 from physicslab.kernels.rigid import features as F
-from physicslab.kernels.rigid.bookings import book_row
+from physicslab.kernels.rigid.budget import book_row
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.detect import find_points

@@ -7,7 +7,7 @@ from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.geometry.shapes import is_chain
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.rigid import features as F
-from physicslab.kernels.rigid.bookings import book_speeds
+from physicslab.kernels.rigid.budget import book_speeds
 from physicslab.kernels.rigid.chain_points import distance_to_chain, is_closed_on_chain
 from physicslab.kernels.rigid.complementarity import (
     FITTING,

@@ -20,7 +20,7 @@ _PERIOD = 0.1
 _STOPS_WITHIN = 1e-5
 """Way, as a share of the smaller body's size, within which friction must stop what is to sleep."""
 _STILL = 1e-6
-"""Speed along a surface, in shapes of the smaller body a second, below which it counts as none."""
+"""Speed along a surface, in shapes of the smaller body a second, below which it is treated as zero."""
 _ROLLING = 1e-2
 """The same for a disc that rolls: nothing stops it, and without a limit strays would keep piles awake."""
 _LEVEL = 1e-6

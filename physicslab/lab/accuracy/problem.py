@@ -53,18 +53,18 @@ class KnownCase(Case):
         The quantity compared, and when; the measure of the error, with its unit.
     build : callable
         Takes a configuration of steps and returns the world.
-    twin : callable, optional
+    variant : callable, optional
         Returns a second world that is advanced alike, where that is what the first is compared with.
     times : tuple of floats
         When the world is compared [s], in order.
     error : callable
-        Takes the world, the twin where there is one, and i; returns the error at the i-th of these times.
+        Takes the world, the variant where there is one, and i; returns the error at the i-th of these times.
     """
 
     compared: str
     measure: str
     build: Callable[[SimulationConfig], World]
-    twin: Callable[[SimulationConfig], World] | None = None
+    variant: Callable[[SimulationConfig], World] | None = None
     times: tuple[float, ...]
     error: Callable[..., float]
 
@@ -74,8 +74,8 @@ class KnownCase(Case):
         return self.times[-1]
 
     def worlds(self, simulation: SimulationConfig) -> tuple[World, ...]:
-        """Return the world, and the twin if there is one."""
-        builds = (self.build,) if self.twin is None else (self.build, self.twin)
+        """Return the world, and the variant if there is one."""
+        builds = (self.build,) if self.variant is None else (self.build, self.variant)
         return tuple(build(simulation) for build in builds)
 
     def finish(self, worlds: Sequence[World]) -> float:

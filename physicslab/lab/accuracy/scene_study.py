@@ -20,7 +20,7 @@ from physicslab.lab.accuracy.variants import GOLDEN, Document, refined, with_ids
 from physicslab.lab.case import attempt, cpu_time
 from physicslab.lab.jobs import Job, scaled
 from physicslab.lab.worlds import steps_not_rigid
-from physicslab.stepping.plan import tolerance_for
+from physicslab.stepping.method import tolerance_for
 from physicslab.world import World
 
 ESTIMATE = "an estimate: there is no reference, runs are compared with each other"

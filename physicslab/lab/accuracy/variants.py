@@ -20,7 +20,8 @@ from physicslab.ecs.text import unique_name
 from physicslab.files.reader import read_scene
 from physicslab.integrators.dop853 import DOP853
 from physicslab.stepping.island import Part
-from physicslab.stepping.plan import StepPlan, tolerance_for
+from physicslab.stepping.method import tolerance_for
+from physicslab.stepping.plan import StepPlan
 from physicslab.world import World
 
 type Document = dict[str, Any]

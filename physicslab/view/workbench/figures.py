@@ -235,7 +235,7 @@ _ISLANDS = 3
 
 def method_lines(world: World) -> list[Line]:
     """Return how the world is stepped, and why so."""
-    simulation = world.simulation
+    simulation, python = world.simulation, world.schedule.interpreted
     parts = "substep" if simulation.substeps == 1 else "substeps"
     divided = f"the last step was divided into {world.step_divisions}"
     return [
@@ -243,7 +243,7 @@ def method_lines(world: World) -> list[Line]:
         Line("Integrator", f"{simulation.dt * 1e3:.3g} ms in {simulation.substeps} {parts}", "heading"),
         *(_island_lines(world) or _plan_lines(world)),
         *([Line(divided, kind="remark")] if world.step_divisions > 1 else []),
-        *(Line(f"{_plain(name)} is computed by Python: slower", kind="remark") for name in world.interpreted),
+        *(Line(f"{_plain(name)} is computed by Python: slower", kind="remark") for name in python),
         *([] if world.islands.members else _stepper_lines(world)),
     ]
 

@@ -157,20 +157,20 @@ def _boxes(starts: Sequence[Pose], e: float, way: float, order: int, simulation:
     return world
 
 
-def _apart(count: int, way: float, world: World, twin: World, i: int) -> float:
-    """Return how far boxes are from those of the twin, which ``way`` mirrors where it is -1."""
-    rows = {str(n): twin.component(twin.entity(str(n)), Transform) for n in range(count)}
+def _apart(count: int, way: float, world: World, variant: World, i: int) -> float:
+    """Return how far boxes are from those of the variant, which ``way`` mirrors where it is -1."""
+    rows = {str(n): variant.component(variant.entity(str(n)), Transform) for n in range(count)}
     poses = {name: (way * row.position.x, row.position.y, way * row.angle) for name, row in rows.items()}
     return max(state_off(world, name, pose) for name, pose in poses.items())
 
 
-def _twins(
+def _variants(
     name: str, title: str, what: str, starts: Sequence[Pose], e: float, way: float, order: int
 ) -> ContactCase:
     return ContactCase(
         name=name, title=title, group="symmetry", compared=f"two runs after 1.5 s, the second {what}",
         measure="largest difference of x, y [m] and of the angle [rad]", source="the other run", times=(1.5,),
-        build=partial(_boxes, starts, e, 1.0, 1), twin=partial(_boxes, starts, e, way, order),
+        build=partial(_boxes, starts, e, 1.0, 1), variant=partial(_boxes, starts, e, way, order),
         error=partial(_apart, len(starts), way),
     )  # fmt: skip
 
@@ -190,7 +190,7 @@ ALIKE = (
         "seam_disc", "A disc slides over a floor of 1 m tiles, without friction", "where it is after 1 s",
         _disc, (60,), partial(_gone, 0.0, 0.25),
     ),
-    _twins("mirrored", "Two boxes fall on each other, e = 0.5", "mirrored", _PAIR, 0.5, -1.0, 1),
-    _twins("permuted", "Five boxes fall and slide", "with bodies in another order", _HEAP, 0.2, 1.0, -1),
+    _variants("mirrored", "Two boxes fall on each other, e = 0.5", "mirrored", _PAIR, 0.5, -1.0, 1),
+    _variants("permuted", "Five boxes fall and slide", "with bodies in another order", _HEAP, 0.2, 1.0, -1),
 )  # fmt: skip
 """Their cases."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Velocity
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, DAMPING, ENERGY, HAND, PX, PY
-from physicslab.kernels.forces.bookings import ACCOUNTS, gather, resist
+from physicslab.kernels.forces.budget import ACCOUNTS, gather, resist
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem
@@ -17,7 +17,7 @@ type Numbers = NDArray[np.float64]
 type Packed = Sequence[tuple[ForceSystem, PackedForce | None]]
 
 
-class BookKeeper:
+class BudgetLayout:
     """The accounts of a world in which forces act, and their places behind the clock.
 
     Parameters
@@ -41,10 +41,10 @@ class BookKeeper:
         Where the account of each cause begins.
     count : int
         How many places there are behind the clock.
-    rooms : dict of int to int
+    buffers : dict of int to int
         Start of the coordinates of each cause whose forces are kept by themselves.
     places : int64 array
-        The places that integrators take (:data:`physicslab.kernels.forces.bookings.KEPT`).
+        The places that integrators take (:data:`physicslab.kernels.forces.budget.KEPT`).
     layout : StateLayout
         As given.
     """
@@ -69,19 +69,19 @@ class BookKeeper:
         self.slots = {cause: first + ACCOUNTS * number for number, cause in enumerate(sorted(causes))}
         self.count = ACCOUNTS * len(causes)
         kept = {system.account for system in foreign if system.potential is None}
-        # A force that books nothing, as drag on what cannot move, needs no room either.
+        # A force that books nothing, as drag on what cannot move, needs no buffer either.
         kept |= {DAMPING} & causes if any(force.dissipation_slot is not None for force in own) else set()
-        self.rooms = {cause: self._room() for cause in sorted(kept if kicked else ())}
-        pairs = [(self.slots[cause], room) for cause, room in self.rooms.items()]
+        self.buffers = {cause: self._buffer() for cause in sorted(kept if kicked else ())}
+        pairs = [(self.slots[cause], buffer) for cause, buffer in self.buffers.items()]
         head = layout.clock, first + ACCOUNTS * len(causes), len(layout.moving), self.slots.get(DAMPING, -1)
         self.places = np.array((*head, *(place for pair in pairs for place in pair)), np.int64)
         for force in own:
             for cause, place in force.work_slots or ():
                 force.indices[place] = self.slots[cause]
             if force.dissipation_slot is not None:
-                force.indices[force.dissipation_slot] = self.rooms.get(DAMPING, -1)
+                force.indices[force.dissipation_slot] = self.buffers.get(DAMPING, -1)
 
-    def _room(self) -> int:
+    def _buffer(self) -> int:
         """Make room for a number for each coordinate; return where it begins."""
         first = self.layout.clock + 1 + self.count
         self.count += self.layout.clock
@@ -95,7 +95,7 @@ class BookKeeper:
             measures.append((self._indices(force.cause, ends, energy=False, momentum=True), -1.0))
         if force.work_slots is None:
             stored, ends = system.potential is not None, self._ends(self._movable)
-            kept = -1 if stored else self.rooms.get(system.account, -1)
+            kept = -1 if stored else self.buffers.get(system.account, -1)
             found = self._indices(system.account, ends, energy=not stored, momentum=True, kept=kept)
             measures.append((found, 1.0))
             if stored and HAND in self.slots:
@@ -131,7 +131,7 @@ class BookKeeper:
 
 
 def book_in_python(
-    state: State, book: BookKeeper, system: ForceSystem, change: tuple[Numbers, Numbers],
+    state: State, book: BudgetLayout, system: ForceSystem, change: tuple[Numbers, Numbers],
     q: Numbers, v: Numbers, force: Numbers,
 ) -> None:  # fmt: skip
     """Book what a force in Python gives in a second.
@@ -161,8 +161,8 @@ def book_in_python(
     if system.potential is not None:
         if HAND in slots:
             force[slots[HAND] + ENERGY] -= np.where(free, 0.0, every) @ v[:d]
-    elif system.account in book.rooms:
-        room = book.rooms[system.account]
-        force[room : room + d] += given
+    elif system.account in book.buffers:
+        buffer = book.buffers[system.account]
+        force[buffer : buffer + d] += given
     else:
         force[account + ENERGY] += given @ v[:d]
