@@ -112,7 +112,7 @@ def _code_of(function: Any) -> str:
 def places_of(world: World, space: Space) -> dict[str, Place]:
     """Return the fields of a space in a world, by their columns."""
     names = entity_names(world)
-    return {axis.name: find_place(world, "space", axis.path, "...", names) for axis in space.axes}
+    return {axis.name: find_place(world, "space", axis.path, "", names) for axis in space.axes}
 
 
 def _plain(value: Any) -> Any:
