@@ -150,7 +150,7 @@ def test_a_bar_shows_how_many_runs_are_made(capsys: pytest.CaptureFixture[str]) 
 
 def test_a_bar_without_its_package_is_refused_before_anything_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
-    with pytest.raises(ImportError, match=r"progress=True: needs tqdm\.auto, which is not installed"):
+    with pytest.raises(ImportError, match=r"progress=True needs tqdm\.auto, which is not installed"):
         ensemble("drop", {E: [0.5]}, measure="ball.y", seconds=0.1, executor="serial", progress=True)
     shares: list[float] = []
     ensemble("drop", {E: [0.5]}, measure="ball.y", seconds=0.1, executor="serial", progress=shares.append)

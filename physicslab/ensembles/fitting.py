@@ -18,7 +18,6 @@ from physicslab.diagnostics.fits import covariance_of
 from physicslab.diagnostics.recorder import record
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.quantity_text import InvalidText
-from physicslab.ensembles.result import package
 from physicslab.ensembles.runs import check_condition
 from physicslab.ensembles.space import number_of
 from physicslab.files.assignments import put
@@ -28,6 +27,7 @@ from physicslab.files.replace import reason_of
 from physicslab.files.scene import load_scene
 from physicslab.files.writer import write_scene
 from physicslab.state.masses import Diverged
+from physicslab.state.run import library
 from physicslab.world import World
 
 type Numbers = NDArray[np.float64]
@@ -105,7 +105,7 @@ def fit(
     >>> round(found.values["physics.gravity.y"], 2)  # doctest: +SKIP
     -9.81
     """
-    package("scipy", "fit")
+    library("scipy", "fit")
     from scipy.optimize import least_squares
 
     world = scene if isinstance(scene, World) else load_scene(scene)

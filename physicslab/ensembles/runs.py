@@ -13,7 +13,7 @@ import numpy as np
 
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ensembles.measures import Measure, Measures
-from physicslab.ensembles.result import EnsembleResult, check_format, package
+from physicslab.ensembles.result import EnsembleResult, check_format
 from physicslab.ensembles.sink import Sink
 from physicslab.ensembles.space import Given, check_whole, space_of
 from physicslab.ensembles.task import Task
@@ -23,7 +23,7 @@ from physicslab.files.json_text import json_bytes
 from physicslab.files.replace import check_writable, reason_of
 from physicslab.files.scene import load_scene
 from physicslab.files.writer import write_scene
-from physicslab.state.run import BODY_COLUMNS
+from physicslab.state.run import BODY_COLUMNS, library
 from physicslab.stepping.run import run_length
 from physicslab.world import World
 
@@ -121,7 +121,7 @@ def _told(
     elif not progress:
         yield None
     else:
-        with package("tqdm.auto", "progress=True").tqdm(total=rows, unit=" runs") as bar:
+        with library("tqdm.auto", "progress=True").tqdm(total=rows, unit=" runs") as bar:
             yield lambda share: bar.update(round(share * rows) - bar.n)
 
 

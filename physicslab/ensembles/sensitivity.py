@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ensembles.measures import Measure
-from physicslab.ensembles.result import EnsembleResult, package
+from physicslab.ensembles.result import EnsembleResult
 from physicslab.ensembles.runs import ensemble, task_of
 from physicslab.ensembles.space import number_of
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import Place, entity_names, find_place
 from physicslab.files.scene import load_scene
+from physicslab.state.run import library
 from physicslab.world import World
 
 _STEP = 1e-3
@@ -155,7 +156,7 @@ def sobol_indices(
     SceneError
         If a field is drawn otherwise, or a run fails: indices need all of them.
     """
-    package("SALib", "sobol_indices")
+    library("SALib", "sobol_indices")
     from SALib.analyze import sobol as analyse
     from SALib.sample import sobol as sample
 
