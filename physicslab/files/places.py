@@ -157,7 +157,8 @@ def read_path(
         _, name, field, value = section
         return name, SECTIONS[name], _spec(f"{option}: {name}", SECTIONS[name].FIELDS, field, value), value
     if not splits:
-        raise SceneError(f"{option} {shown(text.removesuffix('='))}: must be {_FORM}{form and '='}{form}")
+        given, wanted = (text, f"{_FORM}={form}") if form else (text.removesuffix("="), _FORM)
+        raise SceneError(f"{option} {shown(given)}: must be {wanted}")
     name, component, field, value = known_entity or splits[0]
     where = f"{option}: entity {shown(name)}: {_shown(component)}"
     if name not in names:
