@@ -15,7 +15,7 @@ from physicslab.ecs.fields import InvalidValue
 from physicslab.ensembles.measures import Measure, Measures
 from physicslab.ensembles.result import EnsembleResult, check_format
 from physicslab.ensembles.sink import Sink
-from physicslab.ensembles.space import Given, space_of
+from physicslab.ensembles.space import Given, check_whole, space_of
 from physicslab.ensembles.task import Task
 from physicslab.ensembles.workers import KINDS, Workers
 from physicslab.files.checks import SceneError, shown
@@ -103,6 +103,8 @@ def ensemble(
         scene, space, measure=measure, seconds=seconds, steps=steps, until=until, samples=samples, seed=seed,
         replicas=replicas, jitter=jitter,
     )  # fmt: skip
+    if workers is not None:
+        check_whole("workers", workers, 1)
     if isinstance(executor, str) and executor not in KINDS:
         raise SceneError(f"executor {shown(executor)}: must be one of {', '.join(KINDS)}, or an Executor")
     with _told(progress, len(task.space)) as tell:
@@ -133,8 +135,9 @@ def task_of(
     world = scene if isinstance(scene, World) else load_scene(scene)
     document = json_bytes(write_scene(world))
     measures = measure if isinstance(measure, Mapping) else {_name_of(measure): measure}
-    if not measures:
-        raise SceneError("measure: must name at least one")
+    if not measures or not all(isinstance(one, str) or callable(one) for one in measures.values()):
+        words = "must be an expression, a function of the world, or a dict of them by their names"
+        raise SceneError(f"measure {shown(measure)}: {words}")
     trial = load_scene(write_scene(world))
     rows = space_of(trial, space, samples, seed, replicas, jitter)
     taken = {*_TAKEN, *(axis.name for axis in rows.axes)}
@@ -216,4 +219,4 @@ def _joined(task: Task, sink: Sink) -> tuple[dict[str, Any], dict[int, str]]:
 
 
 def _name_of(measure: Measure) -> str:
-    return measure if isinstance(measure, str) else measure.__name__
+    return measure if isinstance(measure, str) else getattr(measure, "__name__", "")
