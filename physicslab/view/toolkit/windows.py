@@ -178,8 +178,9 @@ class Windows:
         return round(node.pos.x), round(node.pos.y), round(node.size.x), round(node.size.y)
 
     def stand_beside(
-        self, name: str, side: str, share: float, least: float, *, stacks: bool = True, again: bool = False
-    ) -> None:
+        self, name: str, side: str, share: float, least: float, *, stacks: bool = True, again: bool = False,
+        keeps_side: bool = False,
+    ) -> None:  # fmt: skip
         """Have the window that is begun next docked at a side of the world, if it never was elsewhere.
 
         Parameters
@@ -197,6 +198,8 @@ class Windows:
             Whether it shares its side with others that stand there, above and below each other.
         again : bool
             Whether it is docked there though it was elsewhere.
+        keeps_side : bool
+            Whether it stands at its side in a narrow world too, where both have the least that they need.
         """
         when = imgui.Cond_.always if again else self._when_put(name)
         internal = imgui.internal
@@ -206,7 +209,9 @@ class Windows:
         )
         if known is not None and when != imgui.Cond_.always:
             return
-        side = "below" if self._is_narrow else side
+        world = internal.dock_builder_get_central_node(self._sides)
+        fits = keeps_side and world is not None and world.size.x >= (least + LEAST_WORLD) * self.size
+        side = "below" if self._is_narrow and not fits else side
         imgui.set_next_window_dock_id(self._node(side, share, least * self.size, stacks=stacks), when)
         self._put.add(name)
 
