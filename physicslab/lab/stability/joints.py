@@ -223,8 +223,8 @@ JOINTS = (
         for name, title, measure in (
             ("sheet_welded", "144 boxes welded to those beside them, hung from the upper row",
              partial(_sheet, Weld, 12, 1.0, set(range(12)))),
-            ("sheet_of_rods", "576 boxes, rods between those beside each other, hung from two corners",
-             partial(_sheet, Rod, 24, 0.25, {0, 23})),
+            ("sheet_of_rods", "1,024 boxes, rods between those beside each other, hung from two corners",
+             partial(_sheet, Rod, 32, 0.25, {0, 31})),
             ("wheel_of_rods", "hub with 150 rods to discs of 1 kg falls by 6 m on a floor", _wheel),
         )
     ),
