@@ -12,6 +12,7 @@ from imgui_bundle import imgui
 from physicslab.components import Transform
 from physicslab.desktop.preferences import load_preferences, save_preferences
 from physicslab.view.canvas.canvas import Rect
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
 
 SIZE = (1280, 720)
 GRAPH = "###graph"
@@ -110,6 +111,26 @@ def test_larger_text_docks_windows_again_where_they_would_leave_the_world_no_wid
     assert desk.sandbox.interface.room()[2] > 0.3 * 1280
 
 
+def test_a_graph_that_had_no_room_stands_at_its_side_once_there_is_room_again() -> None:
+    desk = sized(SIZE)
+    tap(desk, "m")
+    before, canvas = rect_of(desk, GRAPH), desk.window.canvas
+    assert isinstance(canvas, PygameCanvas)
+    for size, text in (((640, 480), 1.0), ((640, 480), 1.6), ((800, 600), 2.0), (SIZE, 1.0)):
+        canvas.surface = pygame.Surface(size, 0, 32)
+        desk.window.text_scale = text
+        desk.frames(2 * SETTLED)
+    assert window_of(desk, GRAPH).dock_id and rect_of(desk, GRAPH) == before
+
+
+def test_a_window_that_was_not_shown_while_the_layout_was_reset_is_docked_when_it_opens(desk: Desk) -> None:
+    tap(desk, "u")
+    tap(desk, "f7")
+    desk.frames(SETTLED)
+    tap(desk, "u")
+    assert window_of(desk, "History").dock_id
+
+
 def test_what_is_in_the_middle_stays_there_while_the_world_makes_room() -> None:
     desk = sized(SIZE)
     desk.window.camera.zoom(2.0, desk.window.framing.middle)
@@ -199,7 +220,7 @@ def test_a_window_that_was_docked_in_a_large_window_is_within_a_small_one(desk: 
     room = desk.sandbox.interface.room()
     drag(desk, (rect_of(desk, "History").left + 40, rect_of(desk, "History").top + 10), (900, 640))
     small = sized((640, 480))
-    small.window.arrangement = desk.window.arrangement
+    small.window.arrangements["narrow"] = desk.window.arrangements["wide"]
     tap(small, "u")
     assert pygame.Rect(0, 0, 640, 480).contains(rect_of(small, "History"))
     assert desk.sandbox.interface.room() == room
@@ -217,7 +238,7 @@ BROKEN = (
 @pytest.mark.parametrize("text", BROKEN)
 def test_a_broken_arrangement_does_no_harm(text: str) -> None:
     desk = sized(SIZE)
-    desk.window.arrangement = text
+    desk.window.arrangements["wide"] = text
     tap(desk, "u")
     _, _, width, height = desk.sandbox.interface.room()
     assert width > 0 and height > 0

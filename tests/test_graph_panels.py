@@ -10,6 +10,8 @@ import pytest
 from desk import SETTLED, Desk, click, empty_world, sized, tap
 from plotting import ball_of, drawn_lines, graph_of, pause
 
+from physicslab.components import Graph, GraphLine
+from physicslab.history import Spawn
 from physicslab.view.controls import dashboard_actions, saving
 from physicslab.view.controls.lesson_actions import choose_language
 from physicslab.view.window.record import line_to_show
@@ -52,6 +54,24 @@ def test_ticks_have_the_decimal_mark_of_the_language(desk: Desk) -> None:
     assert len(set(german)) > 5
     assert "Zeit [s]" in desk.ui.words
     assert any(one.startswith("Diagramm 1: ") for one in desk.ui.words)
+
+
+@pytest.mark.parametrize(
+    ("names", "heading"),
+    [
+        (["kinetic energy", "potential energy", "total energy"], "energy [J]"), (["x", "y"], "x, y [m]"),
+        (["velocity x", "velocity y"], "velocity [m/s]"), (["speed"], "speed [m/s]"),
+    ],
+)  # fmt: skip
+def test_an_axis_of_several_quantities_of_a_kind_has_the_name_of_the_kind(
+    desk: Desk, names: list[str], heading: str
+) -> None:
+    ball = ball_of(desk)
+    (graph,) = desk.window.edits.do(Spawn([Graph()], None))
+    for name in names:
+        desk.window.edits.do(Spawn([GraphLine(graph=graph, quantity=name, body=ball)], None))
+    desk.frames(SETTLED)
+    assert heading in desk.ui.words
 
 
 def ticks(desk: Desk) -> list[str]:

@@ -199,6 +199,17 @@ def test_what_is_no_number_has_another_unit_or_is_out_of_range_is_refused_at_the
     assert "a number is needed" in desk.ui.words and state(desk) == before
 
 
+def test_esc_after_a_refused_number_gives_up_the_number_and_then_the_body() -> None:
+    desk, body = bench("Mass.mass")
+    shown = field_text(desk, "Mass.mass")
+    fill(desk, "Mass.mass", "-3")
+    assert field_text(desk, "Mass.mass") == "-3"
+    for selected in ((body,), ()):
+        tap(desk, "escape")
+        assert field_text(desk, "Mass.mass") == shown if selected else "Mass.mass" not in desk.ui.places
+        assert desk.window.selection.entities == selected
+
+
 @pytest.mark.parametrize("end", ["return", "tab", "escape"])
 def test_a_field_that_is_left_as_it_is_keeps_every_figure(end: str) -> None:
     desk, body = bench("Transform.position.x")

@@ -303,6 +303,28 @@ def test_a_note_keeps_its_paragraphs_which_the_window_breaks_into_lines(file: Pa
     assert world.component(world.entity("Note5"), Note).text.splitlines() == [words, "- it cools"]
 
 
+def test_beside_bodies_a_long_note_is_its_first_line_and_stands_whole_in_the_description(file: Path) -> None:
+    lines = ["Try it", "- Turn the box", *("- Press it down until it is still" for _ in range(3))]
+    page = "".join(f"&lt;p&gt;{line}&lt;/p&gt;" for line in lines)
+    world, _ = opened(file, DISK, item(5, "Note", text=page, position="(-8,2)"))
+    assert world.component(world.entity("Note5"), Note).text == "Try it ..."
+    assert "\n".join(lines) in world.description
+
+
+def test_notes_that_would_cover_bodies_or_each_other_stand_beside_them(file: Path) -> None:
+    where = {5: "(-0.1,5.1)", 6: "(-0.05,5)", 7: "(9,9)"}
+    notes = [item(n, "Note", text="two words", position=place) for n, place in where.items()]
+    world, _ = opened(file, DISK, *notes)
+    disk = world.entity("Disk3")
+    middle, radius = world.component(disk, Transform).position, world.component(disk, Shape).radius
+    first, second, far = (world.component(world.entity(f"Note{n}"), Note).place for n in where)
+    assert tuple(far) == (9.0, 9.0), "it covers nothing"
+    left, right, low, high = middle.x - radius, middle.x + radius, middle.y - radius, middle.y + radius
+    for place in (first, second):
+        assert place.x >= right or place.y <= low or place.y > high or place.x < left - 0.5
+    assert abs(first.y - second.y) > 0.2 or abs(first.x - second.x) > 1.0
+
+
 def test_losses_are_named_in_the_description_too(file: Path) -> None:
     world, losses = opened(file, item(2, "Warp", speed=9), timeScale=100)
     assert losses == [

@@ -289,6 +289,16 @@ def test_keys_alone_answer_a_prediction(desk: Desk) -> None:
     assert lesson.running or lesson.trial is not None
 
 
+def test_f6_onto_a_field_begins_to_write_in_it(desk: Desk) -> None:
+    opened(desk)
+    for _ in range(12):
+        tap(desk, "f6")
+        if "Lesson" in desk.sandbox.interface._walk._panel:
+            break
+    desk.frames(SETTLED)
+    assert desk.ui.focused == "Your name" and desk.sandbox.interface.toolkit.typing
+
+
 def tab_to(desk: Desk, *labels: str) -> None:
     """Go on by Tab to some widgets in turn, and press Enter on each."""
     for label in labels:

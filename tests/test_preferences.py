@@ -61,7 +61,7 @@ def test_what_cannot_be_read_is_put_aside_and_told(how: str, tmp_path: Path) -> 
         save_preferences(path, opened)
         again = window()
         load_preferences(path, again)
-    assert not again.notice and again.arrangement == opened.arrangement
+    assert not again.notice and again.arrangements == opened.arrangements
 
 
 def test_one_that_cannot_be_put_aside_stops_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

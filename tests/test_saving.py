@@ -8,7 +8,7 @@ from desk import SETTLED, Desk, bits, click, empty_world, tap, write
 from test_hud import frame, recorded
 
 from physicslab import World
-from physicslab.components import Graph, Held, Velocity
+from physicslab.components import Graph, Held, Transform, Velocity
 from physicslab.desktop import session_window
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import circle
@@ -226,6 +226,28 @@ def test_a_dot_says_that_there_is_unsaved_work(folder: Path) -> None:
     assert not desk.window.has_unsaved
 
 
+def test_a_click_on_a_body_while_time_stands_still_is_no_edit(folder: Path) -> None:
+    world = empty_world()
+    circle(world, (0, 0))
+    desk = opened(folder / "mine.json", world)
+    desk.window.camera.look_at((0.0, 0.0, 0.0, 0.0), 100.0)
+    (ball,) = desk.world.entities()
+    desk.window.pace.paused = True
+    desk.press(0, 0)
+    desk.frames(3)
+    desk.release(0, 0)
+    desk.frames(3)
+    assert desk.window.selection.entities == (ball,) and not desk.window.has_unsaved
+    desk.press(0, 0)
+    desk.frames(3)
+    desk.move(0.5, 0)
+    desk.frames(3)
+    desk.release(0.5, 0)
+    desk.frames(3)
+    assert desk.world.component(ball, Transform).position.x == pytest.approx(0.5, abs=0.02)
+    assert desk.window.has_unsaved
+
+
 # ---- new ---------------------------------------------------------------------------------------------------
 
 
@@ -368,6 +390,8 @@ def test_what_is_held_is_let_go_when_another_world_comes(folder: Path) -> None:
     before = desk.world
     (ball,) = before.entities()
     desk.press(0, 0)
+    desk.frames()
+    desk.move(0.1, 0)
     desk.frames()
     assert before.has(ball, Held)
     desk.window.do_next(file_actions.open_from_list, folder / "mine.json")

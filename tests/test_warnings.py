@@ -518,10 +518,15 @@ def test_at_most_three_are_said_and_the_rest_counted() -> None:
     assert math.isinf(ModelWarning(None, "x", None, "", None, "").excess[0])
 
 
-def test_an_error_smaller_than_half_a_pixel_is_no_warning_to_a_pupil() -> None:
+def test_an_error_smaller_than_two_rims_is_no_warning_to_a_pupil() -> None:
     canvas = RecordingCanvas((800, 600))
     on = Drawing(canvas, Camera(canvas.size, scale=100.0), THEMES[0], 12)
-    for off, plainly, drawn in ((1.7e-4, True, False), (1.7e-4, False, True), (6e-3, True, True)):
+    for off, plainly, drawn in (
+        (1.7e-4, True, False),
+        (1.7e-4, False, True),
+        (6e-3, True, False),
+        (4e-2, True, True),
+    ):
         advice = [ModelWarning(None, "contacts are soft", off, "m", 0.0, "")]
         rect = draw_advice(advice, (100, 50, 600, 500), on, plainly=plainly)
         assert (rect is not None) is drawn

@@ -12,7 +12,7 @@ from gettext import NullTranslations
 from pathlib import Path
 
 import physicslab
-from physicslab.components.quantities import QUANTITIES
+from physicslab.components.quantities import KIND_OF_UNIT, QUANTITIES
 from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
@@ -87,7 +87,8 @@ def tables() -> dict[str, list[str]]:
         "controls": [text for one in CONTROLS for text in (one.title, one.tip, one.label) if text],
         "tools": [text for texts in tools for text in texts],
         "scenes": [text for one in SCENES.values() for text in (one.title, one.description)],
-        "player": player_texts(), "quantities": list(QUANTITIES), "levels": [*LEVELS, *LEVELS.values()],
+        "player": player_texts(), "quantities": [*QUANTITIES, *KIND_OF_UNIT.values()],
+        "levels": [*LEVELS, *LEVELS.values()],
         "methods": [one.title for one in (*INTEGRATORS.values(), *SPLIT_METHODS.values())],
         "reasons": list(SENTENCES.values()),
         "themes": [theme.name for theme in THEMES],

@@ -112,6 +112,12 @@ QUANTITIES: dict[str, Quantity] = {
     )
 }
 """All of them by name. Scene files hold the names."""
+KIND_OF_UNIT = {
+    "m": "position", "rad": "angle", "m/s": "velocity", "rad/s": "angular velocity", "m/s^2": "acceleration",
+    "N": "force", "kg m/s": "momentum", "kg m^2/s": "angular momentum", "J": "energy", "N m": "torque",
+    "N s": "momentum given", "N m s": "angular momentum given",
+}  # fmt: skip
+"""The kind of all quantities in a unit, in words."""
 BODY_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.of_body)
 """The names of those that a body has."""
 JOINT_QUANTITIES = tuple(name for name, quantity in QUANTITIES.items() if quantity.carrier == JOINT)

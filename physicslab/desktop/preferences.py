@@ -43,7 +43,7 @@ def load_preferences(path: Path, window: Window) -> None:
         _put_aside(path, window, error)
         return
     window.theme = next((theme for theme in THEMES if theme.name == found.get("colours")), window.theme)
-    scale, level, arrangement = found.get("text"), found.get("level"), found.get("panels")
+    scale, level, panels = found.get("text"), found.get("level"), found.get("panels")
     if isinstance(scale, int | float) and _MIN_SCALE <= scale <= _MAX_SCALE:
         window.text_scale = float(scale)
     if isinstance(level, str) and level in LEVELS:
@@ -58,8 +58,10 @@ def load_preferences(path: Path, window: Window) -> None:
     recent = found.get("recent")
     if isinstance(recent, list):
         window.scenes.recent = RecentFiles(Path(path) for path in recent if isinstance(path, str) and path)
-    if isinstance(arrangement, str) and len(arrangement) <= _MAX_ARRANGEMENT:
-        window.arrangement = encodable(arrangement)
+    for width in window.arrangements:
+        arrangement = panels.get(width) if isinstance(panels, dict) else None
+        if isinstance(arrangement, str) and len(arrangement) <= _MAX_ARRANGEMENT:
+            window.arrangements[width] = encodable(arrangement)
 
 
 def _put_aside(path: Path, window: Window, error: Exception) -> None:
@@ -87,7 +89,7 @@ def save_preferences(path: Path, window: Window) -> None:
         "reduced motion": window.reduced_motion, "sound": window.sounds.on,
         "recent": [os.fspath(path) for path in window.scenes.recent.paths],
         "language": window.language, "keys": window.keys.chosen,
-        "panels": window.arrangement, "welcomed": window.welcomed,
+        "panels": window.arrangements, "welcomed": window.welcomed,
     }  # fmt: skip
     path.parent.mkdir(parents=True, exist_ok=True)
     if os.path.exists(path) and not path.is_file():  # a pipe without a reader would wait for ever

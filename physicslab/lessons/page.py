@@ -413,7 +413,8 @@ class _Page:
         if reply.shown_by is not None and part.run is not None:
             try:
                 told["show"] = self.book(runs, part.run, [reply.shown_by])
-                told["case"] = case_words(self.own, reply.shown_by)
+                told["case"] = case_words(self.own, reply.shown_by, noted=False)
+                told["note"] = reply.shown_by.note
             except SceneError:
                 pass  # the run does not come to its end so: the words have to do
         return told

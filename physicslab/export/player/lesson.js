@@ -78,7 +78,7 @@ function tell(form, name) {
       const button = make("button", `${say("See it in a run:")} ${reply.case}`, { type: "button" });
       const place = make("div", "", { className: "here" });
       button.onclick = () => showBook(reply.show, place, true);
-      said.push(button, place);
+      said.push(button, ...(reply.note ? [make("p", reply.note)] : []), place);
     }
   }
   if (holder.contains(player)) { player.hidden = true; document.body.append(player); }

@@ -11,6 +11,8 @@ from physicslab.files.kde_step.item import Item, Pair
 _LABEL_LIMIT = 100
 """Characters of a name that become an id."""
 
+type Box = tuple[float, float, float, float]
+"""Left, low, right and high [m]."""
 type Entity = dict[str, Any]
 """An entity as a scene file has it."""
 
@@ -48,6 +50,17 @@ class Body:
     def moves(self) -> bool:
         """Whether it is not held by an anchor or by an infinite mass."""
         return "Velocity" in self.entity
+
+    @property
+    def box(self) -> Box:
+        """The part of the world that it covers [m]."""
+        shape, transform = self.entity.get("Shape", {}), self.entity["Transform"]
+        half_width, half_height = 0.5 * shape.get("width", 0.0), 0.5 * shape.get("height", 0.0)
+        corners = [(half_width, half_height), (half_width, -half_height)]
+        vertices = shape.get("vertices") or [*corners, *((-x, -y) for x, y in corners)]
+        x, y = zip(*(turned(vertex, transform.get("angle", 0.0)) for vertex in vertices), strict=True)
+        (across, up), reach = transform["position"], shape.get("radius", 0.0)
+        return across + min(x) - reach, up + min(y) - reach, across + max(x) + reach, up + max(y) + reach
 
     def anchor(self, point: Pair) -> list[float]:
         """Return a point of Step's body in the frame of the entity [m]."""
@@ -97,6 +110,15 @@ class Draft:
     losses: list[str] = field(default_factory=list)
     texts: list[str] = field(default_factory=list)
     points: list[Pair] = field(default_factory=list)
+
+    @property
+    def extent(self) -> Box | None:
+        """The part of the world that should be seen at first [m]; ``None`` if nothing is there."""
+        boxes = [body.box for body in self.bodies.values()] + [(*point, *point) for point in self.points]
+        if not boxes:
+            return None
+        left, low, right, high = zip(*boxes, strict=True)
+        return min(left), min(low), max(right), max(high)
 
     def lose(self, item: Item, why: str) -> None:
         """Name something that is not taken."""

@@ -80,6 +80,8 @@ def plain_text(html: str) -> str:
 def take_note(item: Item, draft: Draft) -> None:
     """Take a note; one that is too long is cut, and stands whole in the description of the scene."""
     text = plain_text(item.text("text"))
+    if not text:
+        return
     lines = text.splitlines()
     shown = "\n".join(lines[: _NOTE.lines])
     if len(lines) > _NOTE.lines or len(shown) > _NOTE.longest:

@@ -1,6 +1,5 @@
 """A Step file as a world, with what of it a scene has no place for."""
 
-import math
 from collections.abc import Iterator
 
 from physicslab.files.checks import SceneError, refusal, shown
@@ -9,6 +8,7 @@ from physicslab.files.kde_step.couplings import COUPLINGS, HOLDS, LENNARD_JONES,
 from physicslab.files.kde_step.draft import Draft
 from physicslab.files.kde_step.instruments import INSTRUMENTS
 from physicslab.files.kde_step.item import Item
+from physicslab.files.kde_step.notes import make_room_for_notes
 from physicslab.files.kde_step.xml import parse_xml
 from physicslab.files.reader import FORMAT, read_scene
 from physicslab.world import World
@@ -79,6 +79,7 @@ def _draft(content: bytes, source: str) -> Draft:
     for group in (world, *(item for item in items if item.kind in _GROUPS)):
         take_molecules(group, draft)
     give_points_extent(draft)
+    make_room_for_notes(draft)
     _lose_settings(world, draft)
     draft.time = max(world.number_of("time", 0.0), 0.0)
     return draft
@@ -117,18 +118,8 @@ def _description(draft: Draft) -> str:
 
 def _view(draft: Draft) -> list[float] | None:
     """Return the part of the world to be seen at first [m]; ``None`` if nothing is in it."""
-    corners = list(draft.points)
-    for body in draft.bodies.values():
-        shape = body.entity.get("Shape", {})
-        vertices = [math.hypot(*vertex) for vertex in shape.get("vertices", ())]
-        half = 0.5 * math.hypot(shape.get("width", 0.0), shape.get("height", 0.0))
-        reach = max(shape.get("radius", 0.0), half, *vertices)
-        x, y = body.place
-        corners += [(x - reach, y - reach), (x + reach, y + reach)]
-    if not corners:
+    if draft.extent is None:
         return None
-    (left, right), (low, high) = (
-        (min(corner[axis] for corner in corners), max(corner[axis] for corner in corners)) for axis in (0, 1)
-    )
+    left, low, right, high = draft.extent
     margin = _MARGIN * max(right - left, high - low) or 1.0
     return [left - margin, low - margin, right + margin, high + margin]

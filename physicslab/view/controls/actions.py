@@ -156,7 +156,7 @@ def toggle_snapping(world: World, window: Window) -> None:
 
 def reset_layout(world: World, window: Window) -> None:
     """Put every window back in its first place, and undock it."""
-    window.arrangement = ""
+    window.arrangements = dict.fromkeys(window.arrangements, "")
     window.notify("Layout reset")
 
 

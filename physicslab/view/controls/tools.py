@@ -59,7 +59,8 @@ def take_hold(world: World, window: Window) -> bool:
     if lesson is not None and not lesson.opens_hand:
         return True
     window.edits.history.divide()  # one undo takes back what the hand does from now on
-    if not window.hand.take(world, entity, window.place, window.now) and not window.pace.paused:
+    paused = window.pace.paused
+    if not window.hand.take(world, entity, window.place, window.now, paused=paused) and not paused:
         window.notify(Sentence("{body} stays where it is: it is fixed", body=world.label(entity)))
     return True
 

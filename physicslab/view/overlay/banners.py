@@ -167,8 +167,8 @@ _MAX_SHOWN = 3
 _MAX_WIDTH, _MAX_HEIGHT = 60, 0.4
 """How wide a line may be, in heights of the text, and how much of the room all of them may take: the first
 stands alone where they would take more."""
-_SEEN = 0.5
-"""An error of a place that is smaller in the picture cannot be seen [px]."""
+_SEEN = 3.0
+"""An error of a place that is smaller in the picture is not seen: rims are half as wide [px]."""
 
 
 def draw_advice(

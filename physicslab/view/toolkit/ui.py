@@ -393,6 +393,9 @@ class Ui(Windows):
             several = flags.auto_select_all | flags.ctrl_enter_for_new_line
             _, text = imgui.input_text_multiline(known, text, room, several)
         self.note(label, "text", text)
+        if self.writes_at_once and imgui.is_item_focused():
+            imgui.set_keyboard_focus_here(-1)
+            self.writes_at_once = False
         if wrong:
             imgui.pop_style_var()
             imgui.pop_style_color()

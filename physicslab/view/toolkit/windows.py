@@ -28,10 +28,10 @@ _ONLY_SIDES = (
 _BESIDE = _FLAGS.no_focus_on_appearing
 _APART = _FLAGS.no_saved_settings | _FLAGS.no_docking
 _DIRECTIONS = {"right": imgui.Dir.right, "left": imgui.Dir.left, "below": imgui.Dir.down}
-_WIDE = 44.0
-"""Width of the world's room from which on windows stand at its sides, not below, in heights of the text."""
 LEAST_WORLD = 17.0
 """Width, and height, that windows leave to the world if they can lie over each other instead."""
+_MAX_SHARE = 0.5
+"""Share of the world's room that a window takes at most because it needs so much."""
 NARROW = 6.0
 """Padding of panels that hold buttons alone [px]."""
 _TITLE = 6.0
@@ -77,10 +77,10 @@ class Windows:
         All that is written, in its order.
     rows : dict of str to str
         The value beside each label.
-    once : Cond_
-        When windows that come back where they were are put where they are at first.
     keys_go_to : str
         The receiver of keys in this frame: ``"menu"`` or ``"fields"``.
+    writes_at_once : bool
+        Whether keys have just come to a panel: where a field has them it is written in without Enter.
     scenes : int
         How many scenes were shown: what is half written or dragged in a widget is for one of them.
     focused : str
@@ -102,22 +102,34 @@ class Windows:
         self.words: list[str] = []
         self.rows: dict[str, str] = {}
         self.pictures: list[tuple[pygame.Surface, tuple[int, int], pygame.Rect]] = []
-        self.once = imgui.Cond_.first_use_ever
         self.keys_go_to = self.focused = ""
+        self.writes_at_once = False
         self.scenes = 0
-        self._sides, self._whole = 0, 0.0  # the dock space, and its width [px]
+        self._sides = 0  # the dock space
+        self._is_narrow = False
         self._raised: dict[str, object] = {}  # what each window showed when it was put in front
         self._put: set[str] = set()  # windows that were docked, as they stood nowhere before
+        self._moved: set[str] | None = None  # those that are where they are at first, since all were to be
         self.room: Rect = (0, 0, 1 << 20, 1 << 20)
         self.language = language()
         self.do_next: Callable[..., object] = lambda action, *arguments: None
 
-    def begin(self, theme: Theme, room: Rect = (0, 0, 1 << 20, 1 << 20), *, rearranged: bool = False) -> None:
-        """Forget the frame before; ``rearranged`` puts windows back where they are at first."""
-        self.theme, self.room = theme, room
-        self.once = imgui.Cond_.always if rearranged else imgui.Cond_.first_use_ever
+    def begin(self, theme: Theme, room: Rect = (0, 0, 1 << 20, 1 << 20), *, is_narrow: bool = False) -> None:
+        """Forget the frame before; where the world ``is_narrow`` windows stand below it, not at its sides."""
+        self.theme, self.room, self._is_narrow = theme, room, is_narrow
         self.places, self.words, self.rows, self.pictures, self.focused = {}, [], {}, [], ""
         self.spoken = {}
+
+    def rearrange(self, *, as_at_first: bool) -> None:
+        """Note that windows lie elsewhere: each where it is at first, even one that opens later, or not."""
+        self._moved = set() if as_at_first else None
+
+    def _when_put(self, name: str) -> imgui.Cond_:
+        """Return when a window is put where it is at first."""
+        if self._moved is None or name in self._moved:
+            return imgui.Cond_.first_use_ever
+        self._moved.add(name)
+        return imgui.Cond_.always
 
     def said(self, words: str) -> str:
         """Return words in the language of the window, as they can be drawn."""
@@ -159,7 +171,7 @@ class Windows:
         unseen = _FLAGS.no_background | _FLAGS.no_mouse_inputs | _FLAGS.no_docking | _FLAGS.no_nav
         imgui.begin("sides", None, _FIXED | unseen)
         imgui.pop_style_var(2)
-        self._sides, self._whole = imgui.get_id("sides"), float(rect[2])
+        self._sides = imgui.get_id("sides")
         imgui.dock_space(self._sides, ImVec2(0.0, 0.0), _ONLY_SIDES)
         imgui.end()
         node = imgui.internal.dock_builder_get_central_node(self._sides)
@@ -177,7 +189,7 @@ class Windows:
         side : str
             ``"right"``, ``"left"`` or ``"below"``; where the world is narrow it is below all the same.
         share : float
-            How much of the world's room it takes.
+            How much of the world's room it takes; up to half of it where ``least`` is more.
         least : float
             The least height of a window above or below it, or width of one beside it, in heights of the text:
             where there is less, both are in the same place, as tabs.
@@ -186,7 +198,7 @@ class Windows:
         again : bool
             Whether it is docked there though it was elsewhere.
         """
-        when = imgui.Cond_.always if again else self.once
+        when = imgui.Cond_.always if again else self._when_put(name)
         internal = imgui.internal
         titled = self._titled(name)
         known = internal.find_window_by_name(titled) or internal.find_window_settings_by_id(
@@ -194,8 +206,7 @@ class Windows:
         )
         if known is not None and when != imgui.Cond_.always:
             return
-        if side != "below" and self._whole < _WIDE * self.size:
-            side = "below"
+        side = "below" if self._is_narrow else side
         imgui.set_next_window_dock_id(self._node(side, share, least * self.size, stacks=stacks), when)
         self._put.add(name)
 
@@ -217,7 +228,9 @@ class Windows:
                 return last.id_
             across = imgui.Dir.right if is_below else imgui.Dir.down
             return int(internal.dock_builder_split_node_py(last.id_, across, 0.5)[0])
-        left_over = (1.0 - share) * (world.size.y if is_below else world.size.x)
+        room = world.size.y if is_below else world.size.x
+        share = max(share, min(least / max(room, 1.0), _MAX_SHARE))
+        left_over = (1.0 - share) * room
         if last is not None and left_over < LEAST_WORLD * self.size:
             return last.id_
         return int(internal.dock_builder_split_node_py(world.id_, _DIRECTIONS[side], share)[0])
@@ -241,7 +254,7 @@ class Windows:
         free = imgui.get_main_viewport()  # without the menu bar
         low, room = free.work_pos, free.work_size
         if title not in self._put:  # a place would take it out of where it is docked
-            when = self.once if docks else imgui.Cond_.appearing
+            when = self._when_put(title) if docks else imgui.Cond_.appearing
             imgui.set_next_window_pos(ImVec2(*middle), when, ImVec2(0.5, 0.5))
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
         name = self._titled(title)

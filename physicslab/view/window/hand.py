@@ -194,18 +194,22 @@ class Hand:
         self._loose_at: Vector2 | None = None
         self._path: deque[_Sample] = deque()
 
-    def take(self, world: World, entity: int, place: Vector2, now: float) -> bool:
+    def take(
+        self, world: World, entity: int, place: Vector2, now: float, *, paused: bool = False
+    ) -> bool:  # fmt: skip
         """Take hold of a body at a point of the world [m]; return whether it can be held: walls cannot.
 
-        ``now`` is any clock [s] that runs with the hand, not with the simulation.
+        ``now`` is any clock [s] that runs with the hand, not with the simulation. While time stands still
+        the body is held once the hand moves: a click is no edit.
         """
         self.drop(world)
         if not (world.has(entity, Transform) and world.has(entity, Velocity)):
             return False
         self._was_moved_by_time = False
-        self._grip(world, entity, place)
-        self.entity = entity
+        self.entity, self._loose_at = entity, place
         self._path = deque([_Sample(now, place)])
+        if not paused:
+            self._grip(world, entity, place)
         return True
 
     def _grip(self, world: World, entity: int, place: Vector2) -> None:
@@ -231,7 +235,7 @@ class Hand:
             world.edited()
 
     def _take_again(self, world: World, paused: bool) -> None:
-        """Take what was let go for an edit, by the point where the hand was then."""
+        """Take what was clicked, or let go for an edit, by the point where the hand was then."""
         entity, place = self.entity, self._loose_at
         if entity is None or place is None:
             return

@@ -129,8 +129,9 @@ class Window:
         How much is shown: one of :data:`physicslab.view.window.desk.LEVELS`.
     text_scale : float
         How much larger than usual text is.
-    arrangement : str
-        Where windows lie and are docked, in words of the toolkit; empty for the layout of the start.
+    arrangements : dict of str to str
+        Where windows lie and are docked, in words of the toolkit, where the room is ``"wide"`` and where it
+        is ``"narrow"``; empty for the layout of the start.
     keys_go_to : str
         Where keys are to go from the next frame on: ``"menu"``, ``"fields"``, ``"panel"`` (the next one) or
         nowhere else.
@@ -223,7 +224,7 @@ class Window:
         self.tool = "circle"
         self.level = "Explore"
         self.text_scale = 1.0
-        self.arrangement = ""
+        self.arrangements = {"wide": "", "narrow": ""}
         self.keys, self.keys_go_to = KeyChoice(), ""
         self.points_by_key = self.presses_by_key = False
         self.adding = False

@@ -7,7 +7,7 @@ import pygame
 from imgui_bundle import ImVec2, imgui, implot
 from numpy.typing import NDArray
 
-from physicslab.components.quantities import QUANTITIES
+from physicslab.components.quantities import KIND_OF_UNIT, QUANTITIES
 from physicslab.diagnostics.scales import scales_of
 from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import ROUNDING, written_unit
@@ -284,11 +284,16 @@ def _draw_letter(ui: Ui, place: tuple[float, float], letter: str, colour: Colour
 
 
 def _heading(ui: Ui, keys: list[Key], room: float = math.inf) -> str:
-    """Return what is written along an axis: quantities with their unit, or units alone where that is long."""
+    """Return what is written along an axis: quantities, or their kinds where that is shorter, with units.
+
+    Where there is no room for that [px], units stand alone.
+    """
     names = list(dict.fromkeys(key[1] for key in keys))
-    units = ", ".join(dict.fromkeys(written_unit(QUANTITIES[name].unit) for name in names))
-    words = f"{', '.join(map(ui.said, names))} [{units}]"
-    return words if names and imgui.calc_text_size(words).x <= room else units
+    units = list(dict.fromkeys(QUANTITIES[name].unit for name in names))
+    ways = [", ".join(map(ui.said, way)) for way in (names, [KIND_OF_UNIT[unit] for unit in units])]
+    written = ", ".join(map(written_unit, units))
+    words = f"{min(ways, key=len) if len(names) > 1 else ways[0]} [{written}]"
+    return words if names and imgui.calc_text_size(words).x <= room else written
 
 
 def _look(colour: Colour, opacity: float, weight: float) -> implot.Spec:

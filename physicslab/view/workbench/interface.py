@@ -45,6 +45,8 @@ from physicslab.world import World
 
 _PALETTE, _SIDE, _TRANSPORT = 6.9, 16.8, 3.0
 """Widths of the palette and the side panel, height of the transport, in heights of the text."""
+_WIDE = 44.0
+"""Width of the world's room from which on windows stand at its sides, not below, in heights of the text."""
 _MIN_WORLD = 0.34
 """Share of the window's width that is always left to the world: the side panel lies over it if it must."""
 
@@ -56,6 +58,8 @@ class Layout:
     ----------
     menu, palette, transport, side, room : Rect
         The menu bar, the tools, the transport, the panel at the right, and what is left for the world.
+    width : str
+        Whether the world is ``"wide"`` beside the panel at the right, be it shown or not, or ``"narrow"``.
     """
 
     def __init__(self, size: tuple[int, int], text: int, *, side: bool, palette: float = 0.0) -> None:
@@ -65,8 +69,10 @@ class Layout:
         """
         width, height = size
         top, foot, left = bar_height(text), round(_TRANSPORT * text), round(max(_PALETTE * text, palette))
-        right = round(_SIDE * text) if side else 0
+        beside = round(_SIDE * text)
+        right = beside if side else 0
         middle, across = max(height - top - foot, 1), width - left - right
+        self.width = "wide" if width - left - beside >= _WIDE * text else "narrow"
         if across < _MIN_WORLD * width:
             across = width - left
         self.menu: Rect = (0, 0, width, top)
@@ -151,7 +157,7 @@ class Interface:
         )
         self._seen: tuple[object, ...] = ()
         self._free: Rect | None = None  # what docked windows leave of the world's room [px]
-        self._arrangement = ""
+        self._arranged = "", ""  # for which width windows were arranged, and how
         self._fitted: tuple[object, ...] = ()  # for which sizes of window and text windows were docked
         self._built: tuple[object, ...] = ()  # for which they were built last
 
@@ -202,11 +208,16 @@ class Interface:
         if self._search.take(self._window, event):
             return True
         self._walk.follow(event)
+        if event.type in (pygame.KEYDOWN, pygame.MOUSEBUTTONDOWN):
+            self.ui.writes_at_once = False
         taken = self.toolkit.take(event)
+        gives_up = event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE
+        if gives_up and not taken and not self._opened:
+            taken = self._numbers.drop_refused()
         self._early.follow(event, on_panel=taken)
         if event.type in (pygame.MOUSEMOTION, *_BUTTONS):
             self._window.pointer_beside_panel = self.toolkit.covers(event.pos, _BESIDE)
-        if event.type == pygame.KEYDOWN and taken and event.key == pygame.K_ESCAPE:
+        if gives_up and taken:
             self._window.closed_at = self._window.now
         saves = event.type == pygame.KEYDOWN and is_for_files(event)
         if (event.type == pygame.MOUSEBUTTONDOWN and not taken) or saves:
@@ -240,12 +251,13 @@ class Interface:
         """
         window = self._window
         self.ui.language = window.canvas.language = language(window.language)
+        width = self.layout.width
         if self._is_cramped():
-            window.arrangement = ""
-        rearranged = window.arrangement != self._arrangement
-        if rearranged:
-            self._arrangement = window.arrangement
-            self.toolkit.arrange(window.arrangement)
+            window.arrangements[width] = ""
+        if (width, window.arrangements[width]) != self._arranged:
+            self._arranged = width, window.arrangements[width]
+            self.toolkit.arrange(window.arrangements[width])
+            self.ui.rearrange(as_at_first=not window.arrangements[width])
         self._follow_keys()
         seen = self._state(world)
         if seen != self._seen or window.now >= self._next:
@@ -256,7 +268,7 @@ class Interface:
             self._seen, self._next = seen, window.now + _PERIOD
 
         def build() -> None:
-            self.ui.begin(window.theme, self.layout.visible, rearranged=rearranged and not window.arrangement)
+            self.ui.begin(window.theme, self.layout.visible, is_narrow=width == "narrow")
             self._walk.mark()
             self._build(world, figures, lines)
             if window.edits.held and not imgui.is_any_item_active():
@@ -265,7 +277,8 @@ class Interface:
         if self.toolkit.frame(window.canvas.size, window.theme, float(self.text), elapsed, build):
             self._walk.end(is_alone=not window.in_front)
             self._built = window.canvas.size, self.text
-            window.arrangement = self._arrangement = self.toolkit.arrangement()
+            window.arrangements[width] = self.toolkit.arrangement()
+            self._arranged = width, window.arrangements[width]
         if self._early.advance(self._opened, typing=self.toolkit.typing):
             self.toolkit.wake()
 
@@ -286,6 +299,7 @@ class Interface:
             return
         self.ui.keys_go_to, window.keys_go_to = window.keys_go_to, ""
         self._walk.begin(self.ui.keys_go_to)
+        self.ui.writes_at_once |= self.ui.keys_go_to == "panel"
 
     def _state(self, world: World) -> tuple[object, ...]:
         """Return what panels show beside figures."""

@@ -7,7 +7,7 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.ecs.quantity_text import InvalidText, evaluate, factor_of
 from physicslab.ecs.text import printable
 from physicslab.languages.language import language
-from physicslab.languages.sentence import Sentence
+from physicslab.languages.sentence import Sentence, proper
 from physicslab.lessons.answers import Graded
 from physicslab.lessons.lesson import SURENESS, Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
 from physicslab.lessons.words import formula, sureness_words
@@ -245,9 +245,12 @@ class LessonPanel:
         shown = next((one.shown_by for one in part.replies if one.feedback == graded.feedback), None)
         if shown is not None and part.run is not None and kind != "recall" and not graded.right:
             own = language(lesson.lesson.language)
-            words = f"{RUN}  Show it: {formula(own, shown.text)}"
+            told = Sentence("{icon}  Show it: {what}", icon=RUN, what=formula(own, shown.text))
+            words = told if shown.values else Sentence("{icon}  Show it again", icon=RUN)
             ui.button(f"Show {name}", "A run that shows it", lesson_actions.begin_run, part.run, shown,
                       shown=words, enabled=not lesson.running)  # fmt: skip
+            if shown.note:
+                ui.text(proper(shown.note), wrapped=True)
 
     def _grade(self, lesson: OpenLesson, part: Question, name: str, kind: str) -> Graded:
         answer, kept = lesson.given[name], self._graded.get(name)

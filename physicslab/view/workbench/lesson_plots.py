@@ -25,6 +25,8 @@ _HEIGHT = 11.0
 """Height of a graph, in heights of the text."""
 _WEIGHT = 0.13
 """Width of a line, in heights of the text."""
+_THIN = 0.6
+"""Width of the line of the run as it is beside another case, as a share of that of the case."""
 _DASHES = 40
 """Dashes of a line that is theory."""
 _BINS = 120
@@ -40,11 +42,12 @@ _FLAGS = (
     | implot.Flags_.no_box_select
 )
 _LOCK = implot.AxisFlags_.lock
-PREDICTED, THEORY, MEASURED = "predicted", "theory", "measured"
+PREDICTED, THEORY, MEASURED, AS_RUN = "predicted", "theory", "measured", "as run"
 
 
 def plot_run(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
     """Build the graphs of a run, with what was predicted of them and what theory says."""
+    usual = lesson.made(trial.run) if trial.case.values else None
     for n, curve in enumerate(trial.curves):
         try:
             units = [si_unit(one.value(trial.live.figures.at(0))) for one in (curve.against, curve.along)]
@@ -52,11 +55,12 @@ def plot_run(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
             continue
         shown = zip((curve.against, curve.along), units, strict=True)
         labels = [_with_unit(_plain(one), unit) for one, unit in shown]
-        flags = _FLAGS if _has_more(lesson, trial, curve) else _FLAGS | implot.Flags_.no_legend
+        has_more = usual is not None or _has_more(lesson, trial, curve)
+        flags = _FLAGS if has_more else _FLAGS | implot.Flags_.no_legend
         if units == ["m", "m"]:  # a path looks as it is in the world: a right angle is one
             flags |= implot.Flags_.equal
         if _begin(ui, f"{trial.run.name} {n}", labels[0], labels[1], flags):
-            _plot_lines(ui, lesson, trial, curve)
+            _plot_lines(ui, lesson, trial, curve, usual.curves[n] if usual is not None else None)
             implot.end_plot()
 
 
@@ -67,8 +71,14 @@ def _has_more(lesson: OpenLesson, trial: Trial, curve: Curve) -> bool:
     return curve.along.text in (*drawn, *theory)
 
 
-def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve) -> None:
+def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve, usual: Curve | None) -> None:
+    """Build the lines of a graph: those of another case beside the run as it is, which is thin."""
     ui.words += finish_axes(ui.language)
+    if usual is not None:
+        look = _look(ui, ui.theme.faint)
+        look.line_weight *= _THIN
+        implot.plot_line(ui.said(AS_RUN), np.array(usual.x), np.array(usual.y), look)
+        ui.words.append(AS_RUN)
     x, y = np.array(curve.x), np.array(curve.y)
     theme = ui.theme
     if curve.against.text == "time":

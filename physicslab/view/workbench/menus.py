@@ -236,7 +236,9 @@ def palette_width(ui: Ui) -> float:
 def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
     """Build a button for each tool, with its icon and its name; the tool in hand is marked."""
     with ui.panel("palette", rect, padded=False):
+        across = imgui.get_style().frame_padding.x
         imgui.push_style_var(imgui.StyleVar_.button_text_align, ImVec2(0.0, 0.5))
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(across, 0.0))  # low ones cut no letter
         room, gap = imgui.get_content_region_avail(), imgui.get_style().item_spacing.y
         least = _LOWEST * ui.size
         shown = [tool for tool in _shown(int((room.y + gap) / (least + gap)) - 1) if _is_open(window, tool)]
@@ -255,7 +257,7 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
         words = f"{ICONS['more']}  {ui.said('More')}" if hidden is None else _words(ui, hidden)
         tip = "More to put into the world"
         if not behind:
-            imgui.pop_style_var()
+            imgui.pop_style_var(2)
             return
         with ui.list("More", tip, shown=words, on=hidden is not None, size=size) as is_open:
             for tool in behind if is_open else ():
@@ -263,7 +265,7 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
                     tool.title, actions.choose_tool, tool, shown=_words(ui, tool), keys=key_of(tool),
                     on=window.tool == tool.name, tip=tool.usage,
                 )  # fmt: skip
-        imgui.pop_style_var()
+        imgui.pop_style_var(2)
 
 
 ICON_COLOURS = {

@@ -211,6 +211,13 @@ class NumberFields:
         self._drafts[edited.key] = draft
         return draft.refusal
 
+    def drop_refused(self) -> bool:
+        """Let fields show their numbers where others were refused; return whether there were any."""
+        refused = [key for key, draft in self._drafts.items() if draft.refusal]
+        for key in refused:
+            del self._drafts[key]
+        return bool(refused)
+
     def label(
         self, ui: Ui, key: str, words: str, spec: Field, value: float | None = None,
         commit: Commit | None = None,

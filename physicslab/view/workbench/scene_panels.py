@@ -66,7 +66,7 @@ class GraphPanels:
         is_sent, self._sides[entity] = self._sides[entity] != graph.side, graph.side
         ui.stand_beside(owner_of(entity), graph.side, _SHARE, _LEAST[graph.side == "right"], again=is_sent)
         room = imgui.get_io().display_size
-        imgui.set_next_window_size(ImVec2(_SIZE[0] * ui.size, _SIZE[1] * ui.size), ui.once)
+        imgui.set_next_window_size(ImVec2(_SIZE[0] * ui.size, _SIZE[1] * ui.size), imgui.Cond_.first_use_ever)
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
         shown, stays = imgui.begin(widget_label(f"{title} ", f"graph {entity}"), True, _FLAGS)
         ui.words.append(title)
