@@ -214,7 +214,7 @@ def _book(
 def dop853(
     q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
     calls: Calls, places: Rows, span: float, tolerance: float, period: float, max_evaluations: int,
-    bodies: int, steepness: Numbers, floor: float,
+    bodies: int, steepness: Numbers, floor: float, step: Numbers,
 ) -> int:  # fmt: skip
     """Advance by ``span`` seconds; return the number of force evaluations, or why it failed (negative).
 
@@ -235,6 +235,8 @@ def dop853(
     ``floor`` [m/s^2] is how far rounding puts off accelerations where large forces cancel. Steps shorter than
     a part of the period need to be no better than that: what comes to rest at the origin leaves neither
     coordinate nor speed to measure errors by.
+
+    ``step`` (1,) is the first that is tried [s], or 0 to guess it; the one to be tried next is left there.
 
     Where no force depends on the origin, ``bodies`` is how many pairs of coordinates the first ones are, and
     else 0: in a close passage the origin is moved there, so that the distance has all its digits.
@@ -267,7 +269,7 @@ def dop853(
     if not _all_finite(acceleration, stage_v, n):
         return NOT_FINITE
     evaluations, done, done_low = 1, 0.0, 0.0
-    h = first_step(pushes, n, q_scale, v_scale, span, tolerance)
+    h = step[0] if step[0] > 0.0 else first_step(pushes, n, q_scale, v_scale, span, tolerance)
     grow, last_error, last_taken, noise = _MAX_GROWTH, math.inf, 1.0, _NOISE / tolerance
     last_fall2 = steepness[0]
     spent, mark = 0, 0.0
@@ -346,7 +348,7 @@ def dop853(
         if last:
             break
         q_scale, v_scale = q_end, v_end
-    steepness[0] = steepest
+    steepness[0], step[0] = steepest, h
     if moved_origin:
         _restore_origin(q, q_low, bodies, origin)
     return evaluations
@@ -360,12 +362,14 @@ def dop853_samples(
 ) -> int:  # fmt: skip
     """Advance by ``spans`` seconds (n,), one after the other, and keep q and v (n, coordinates) after each.
 
-    The rest is as :func:`dop853` has it. Returns how many spans were made.
+    Each begins with the step with which the one before ended. The rest is as :func:`dop853` has it. Returns
+    how many spans were made.
     """
+    step = np.zeros(1)
     for k in range(len(spans)):
         made = dop853(
             q, v, q_low, v_low, inverse_mass, damping, calls, places, spans[k], tolerance, period,
-            max_evaluations, bodies, steepness, floor,
+            max_evaluations, bodies, steepness, floor, step,
         )  # fmt: skip
         if made < 0:
             return k
