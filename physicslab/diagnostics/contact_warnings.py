@@ -92,7 +92,7 @@ class ContactGraph:
     def carrying(self, world: World) -> Iterator[tuple[int, float]]:
         """Yield bodies that stand on others, each with the mass welded on it as a multiple of its own.
 
-        Of a whole only those count whose heaviest body stands on nothing itself.
+        A whole whose heaviest body stands on something itself is left out.
         """
         wholes, masses = world.joints.wholes, world.table(Mass)["mass"]
         if not wholes or world.physics.gravity_mode != "linear" or not world.physics.gravity:
