@@ -12,6 +12,7 @@ from physicslab.kernels.ode.compensated import add, add_pair
 from physicslab.kernels.ode.dop853_tableau import (
     ESTIMATE_3,
     ESTIMATE_5,
+    FIRST,
     LAST,
     NODES,
     NODES_LOW,
@@ -70,8 +71,9 @@ def make_stages(
     for stage in range(first, end):
         stage_q[clock] = q[clock] + NODES[stage] * h
         for i in range(n):
-            moved, pushed, pushed_low = NODES_LOW[stage] * v[i], 0.0, 0.0
-            for other in range(stage):
+            moved = NODES_LOW[stage] * v[i] + WEIGHTS[stage, 0] * rates[i, 0]
+            pushed, pushed_low = WEIGHTS[stage, 0] * pushes[i, 0], WEIGHTS_LOW[stage, 0] * pushes[i, 0]
+            for other in range(FIRST[stage], stage):
                 moved += WEIGHTS[stage, other] * rates[i, other]
                 pushed += WEIGHTS[stage, other] * pushes[i, other]
                 pushed_low += WEIGHTS_LOW[stage, other] * pushes[i, other]
@@ -88,8 +90,8 @@ def make_stages(
 @inlined
 def total(values: Numbers) -> tuple[float, float]:
     """Return the weighted sum of the stages, and what rounding leaves out of it."""
-    indices, low = 0.0, 0.0
-    for stage in range(LAST):
+    indices, low = add(0.0, WEIGHTS_LOW[LAST, 0] * values[0], WEIGHTS[LAST, 0] * values[0])
+    for stage in range(FIRST[LAST], LAST):
         indices, low = add(
             indices, low + WEIGHTS_LOW[LAST, stage] * values[stage], WEIGHTS[LAST, stage] * values[stage]
         )
@@ -108,8 +110,8 @@ def step_error(
     n = len(rates)
     for i in range(n):
         for values, scale in ((rates, q_scale), (pushes, v_scale)):
-            high, low = 0.0, 0.0
-            for stage in range(LAST):
+            high, low = ESTIMATE_5[0] * values[i, 0], ESTIMATE_3[0] * values[i, 0]
+            for stage in range(FIRST[LAST], LAST):
                 high += ESTIMATE_5[stage] * values[i, stage]
                 low += ESTIMATE_3[stage] * values[i, stage]
             if scale > 0.0:

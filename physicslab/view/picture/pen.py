@@ -50,9 +50,9 @@ class Pen:
         """Return a colour with a share of the background in it: edges, and what is behind."""
         return _mixed(colour, self.theme.background, share)
 
-    def light(self, colour: Colour, share: float = 0.5) -> Colour:
-        """Return a colour with a share of the brightest one in it."""
-        return _mixed(colour, self.theme.shine, share)
+    def light(self, colour: Colour) -> Colour:
+        """Return a colour half way to the brightest one."""
+        return _mixed(colour, self.theme.shine, 0.5)
 
     def lines(self, start: Points, end: Points, colour: Colour, width: float | Numbers) -> None:
         """Add straight lines (n, 2) [px] of a width, in usual pixels."""

@@ -40,6 +40,15 @@ _UNSEEN = "\u200b"
 """A space without width: it parts two signs ``#`` that Dear ImGui would take for a mark of its own."""
 
 
+def keep_inside(low: ImVec2, room: ImVec2) -> None:
+    """Move the window that is being built into a room [px] from a corner on, unless it is docked."""
+    place, size = imgui.get_window_pos(), imgui.get_window_size()
+    x = max(min(place.x, low.x + room.x - size.x), low.x)
+    y = max(min(place.y, low.y + room.y - size.y), low.y)
+    if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
+        imgui.set_window_pos(ImVec2(x, y))
+
+
 def widget_label(words: str, identity: str) -> str:
     r"""Return a label of Dear ImGui that shows words and is known by an identity, whatever either holds.
 
@@ -264,13 +273,7 @@ class Windows:
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
         name = self._titled(title)
         _, stays = imgui.begin(name, True, (_FLOATING | _BESIDE) if docks else (_FLOATING | _APART))
-        place, size = imgui.get_window_pos(), imgui.get_window_size()
-        x, y = (
-            max(min(place.x, low.x + room.x - size.x), low.x),
-            max(min(place.y, low.y + room.y - size.y), low.y),
-        )
-        if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
-            imgui.set_window_pos(ImVec2(x, y))
+        keep_inside(low, room)
         self.words.append(self.said(title))
         if docks:
             self.raise_tab(self._raised.get(name))
