@@ -65,6 +65,17 @@ def test_what_is_no_number_is_refused(field: str) -> None:
         sensitivity("drop", [field], measure="ball.y", seconds=0.1)
 
 
+def test_steps_are_numbers_or_texts_and_above_zero() -> None:
+    found = [sensitivity("drop", fields, measure="ball.y", seconds=0.5) for fields in (G, {G: "10 cm/s^2"})]
+    assert all(one["ball.y"][G].value == pytest.approx(0.125, rel=1e-9) for one in found)
+    for fields, line in (
+        ([], "fields: must name at least one field"), ({G: 0.0}, "a step must be > 0"),
+        ({G: "1 kg"}, "'1 kg' is in kg"),
+    ):  # fmt: skip
+        with pytest.raises(SceneError, match=line):
+            sensitivity("drop", fields, measure="ball.y", seconds=0.1)
+
+
 # ---- spread ------------------------------------------------------------------------------------------------
 
 
@@ -172,9 +183,12 @@ def test_moments_that_cannot_be_fitted_are_refused(
         ({"time": [1.0, 0.5], "ball.x": [1.0, 1.0]}, "ascend"),
         ({"time": [1.0], "ball.z": [1.0]}, "column 'ball.z' is no quantity"),
         ({"time": [1.0], "ball.x": [math.nan]}, "has 0 numbers for 1 fields"),
+        ({"time": [1.0], "ball.x": ["1 m"]}, 'column "ball.x": must be numbers, in SI'),
+        ([1.0], "must be the path of a CSV file, or a dict of columns"),
+        ("nothing.csv", r"data nothing.csv: cannot be read: No such file or directory$"),
     ],
 )
-def test_data_that_cannot_be_fitted_are_refused(data: dict[str, list[float]], message: str) -> None:
+def test_data_that_cannot_be_fitted_are_refused(data: Any, message: str) -> None:
     with pytest.raises(SceneError, match=message):
         fit(oscillator(), {STIFFNESS: 6.0}, data)
 

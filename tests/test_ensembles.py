@@ -150,7 +150,7 @@ def test_a_bar_shows_how_many_runs_are_made(capsys: pytest.CaptureFixture[str]) 
 
 def test_a_bar_without_its_package_is_refused_before_anything_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "tqdm.auto", None)
-    with pytest.raises(ImportError, match=r"progress=True: needs tqdm\.auto, which is not installed"):
+    with pytest.raises(ImportError, match=r"progress=True needs tqdm\.auto, which is not installed"):
         ensemble("drop", {E: [0.5]}, measure="ball.y", seconds=0.1, executor="serial", progress=True)
     shares: list[float] = []
     ensemble("drop", {E: [0.5]}, measure="ball.y", seconds=0.1, executor="serial", progress=shares.append)
@@ -296,9 +296,16 @@ def test_sobol_points_are_those_of_scipy() -> None:
     assert np.array_equal(points, ours)
 
 
-REFUSED: tuple[tuple[dict[str, Any], dict[str, Any], str], ...] = (
+REFUSED: tuple[tuple[Any, dict[str, Any], str], ...] = (
     ({"bal.Mass.mass": [1]}, {}, 'there is no such entity; must be one of floor, ball; did you mean "ball"?'),
-    ({"ball.Mass.mas": [1]}, {}, "unknown field"),
+    ({"ball.Mass.mas": [1]}, {}, "Mass.mas: unknown field"),
+    ({"mass": [1]}, {}, 'space "mass": must be ID.Component.field'),
+    ([M], {}, "must be a dict of fields and their values"),
+    ({M: ("unifrom", 1, 2)}, {"samples": 3}, "a law must be one of uniform, normal, sobol, rows"),
+    ({M: [1]}, {"workers": 0}, "workers = 0: must be a whole number >= 1"),
+    ({M: [1]}, {"workers": "2"}, 'workers = "2": must be a whole number >= 1'),
+    ({M: [1]}, {"measure": None}, "measure null: must be an expression, a function of the world, or a dict"),
+    ({M: [1]}, {"measure": ["ball.y"]}, "must be an expression, a function of the world, or a dict"),
     ({"ball.Mass.mass": [-1.0]}, {}, "Mass.mass = -1.0: must be a finite number >= 1e-300 kg"),
     ({"ball.Mass.mass": ["2 m"]}, {}, "'2 m' is in m; this is in kg"),
     ({"ball.Mass.mass": []}, {}, "must be at least one value"),
@@ -335,7 +342,7 @@ REFUSED: tuple[tuple[dict[str, Any], dict[str, Any], str], ...] = (
 
 @pytest.mark.parametrize(("space", "more", "line"), REFUSED, ids=[ascii(n) for n in range(len(REFUSED))])
 def test_what_cannot_be_is_refused_by_name_before_anything_begins(
-    space: dict[str, Any], more: dict[str, Any], line: str
+    space: Any, more: dict[str, Any], line: str
 ) -> None:
     arguments = {"measure": "ball.y", "seconds": 1.0, "executor": "serial", **more}
     with pytest.raises(SceneError) as refused:

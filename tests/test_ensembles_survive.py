@@ -1,5 +1,6 @@
 """Ensembles on a cluster, and ensembles of which processes are killed."""
 
+import multiprocessing
 import os
 import random
 import signal
@@ -17,6 +18,8 @@ import pytest
 
 from physicslab import World, ensemble
 from physicslab.components import Mass
+from physicslab.ensembles.runs import task_of
+from physicslab.ensembles.workers import Workers
 
 SWEEP = (
     "drop", "--sample", "ball.Material.restitution=normal:0.7:0.2", "--samples", "4000",
@@ -164,6 +167,13 @@ def test_killed_at_random_moments_it_comes_to_the_same_bytes(tmp_path: Path) -> 
         assert kept(whole) == kept(out)
         assert not (tmp_path / "killed.npz.parts").exists()
         out.unlink()  # or the next sweep would find it finished
+
+
+def test_all_processes_start_with_the_first_row() -> None:
+    task = task_of("drop", {"ball.Mass.mass": [1.0, 2.0, 3.0]}, measure="ball.y", steps=2)
+    with Workers("processes", 2) as workers:
+        block = next(workers.blocks(task, iter([(0, 3)])))
+        assert len(block.values) == 1 and len(multiprocessing.active_children()) == 2
 
 
 def ends_its_process(world: World) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 
+import pytest
 from crowds import crowd
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -49,7 +50,8 @@ def goes_on(seed: int, steps: int, contacts: str) -> None:
 THOROUGH = settings().max_examples > 40
 
 
-@settings(max_examples=1000 if THOROUGH else 20, derandomize=True)  # each with two models of contacts
+@pytest.mark.parametrize("contacts", ["soft", "auto"])  # for a processor each
+@settings(max_examples=1000 if THOROUGH else 20, derandomize=True)
 @given(st.integers(0, 2**31), st.sampled_from((1, 20, 40, 120)))
 @example(3368, 40).via("impulses of a contact that exact collisions had taken apart")
 @example(3552, 40).via("the order of blocks, of which the last were empty when there was no room")
@@ -57,9 +59,8 @@ THOROUGH = settings().max_examples > 40
 @example(705758920, 1).via("a deep overlap without an impulse, which exact collisions leave to contacts")
 @example(226807876, 40).via("an approach noted at a point that had been lost and found since")
 @example(36669189, 1).via("a box that turned fast, whose pair with a wall was not listed")
-def test_a_scene_goes_on_from_a_file_with_the_same_bits(seed: int, steps: int) -> None:
-    for contacts in ("soft", "auto"):
-        goes_on(seed, steps, contacts)
+def test_a_scene_goes_on_from_a_file_with_the_same_bits(contacts: str, seed: int, steps: int) -> None:
+    goes_on(seed, steps, contacts)
 
 
 def test_a_scene_of_about_64_goes_on_from_a_file_after_a_removal() -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from physicslab.languages.language import language
 from physicslab.lessons.answers import asked
 from physicslab.lessons.blocks import KEYS, LessonError
 from physicslab.lessons.catalogue import LIBRARY, find_lesson
@@ -182,6 +183,17 @@ WRONG = [
 ]  # fmt: skip
 
 
+_QUOTED = re.compile(r'"(?:\\.|[^"\\])*"|\'[^\']*\'|(?:JSON|werden): .*')
+_ENGLISH = re.compile(r"(?<![-\w])(?:must|the|is|are|one|with|and|or|of|line|which|lesson)(?![-.\w])")
+
+
+def english_in_german(error: Exception) -> list[str]:
+    """Return the English words that are left of a message in German, beside those of the file."""
+    said = language("de").reword(f"Not opened: {error}")
+    assert said.startswith("Nicht geöffnet: ")
+    return _ENGLISH.findall(_QUOTED.sub("", said))
+
+
 @pytest.mark.parametrize(("part", "instead", "words"), WRONG)
 def test_a_mistake_is_refused_with_its_line(part: str, instead: str, words: str) -> None:
     assert part in LESSON
@@ -189,6 +201,7 @@ def test_a_mistake_is_refused_with_its_line(part: str, instead: str, words: str)
         parse_lesson(LESSON.replace(part, instead, 1), "fall.md")
     message = str(refused.value)
     assert message.startswith("fall.md: ") and words in message and "\n" not in message
+    assert not english_in_german(refused.value)
 
 
 def test_every_kind_of_block_is_among_the_mistakes() -> None:
@@ -201,14 +214,16 @@ def test_what_is_no_lesson_is_refused(tmp_path: Path, content: bytes | None) -> 
     path = tmp_path / "one.md"
     if content is not None:
         path.write_bytes(content)
-    with pytest.raises(LessonError, match=r"one\.md: "):
+    with pytest.raises(LessonError, match=r"one\.md: ") as refused:
         read_lesson(path)
+    assert not english_in_german(refused.value)
 
 
 def test_words_of_a_translation_alone_are_no_lesson() -> None:
     why = r"pendulum\.md: line 2: head: .* must be pendulum\.md of the folder above, with --language de"
-    with pytest.raises(LessonError, match=why):
+    with pytest.raises(LessonError, match=why) as refused:
         read_lesson(LIBRARY / "de" / "pendulum.md")
+    assert not english_in_german(refused.value)
 
 
 GOAL = """
@@ -275,8 +290,9 @@ def test_a_goal_is_reached_with_what_is_open(case: str, words: str) -> None:
     ],
 )
 def test_what_the_engine_cannot_check_is_refused_with_its_block(part: str, instead: str, words: str) -> None:
-    with pytest.raises(LessonError, match=re.escape(words)):
-        list(check_lesson(parse_lesson(LESSON.replace(part, instead, 1), "fall.md")))
+    with pytest.raises(LessonError, match=re.escape(words)) as refused:
+        list(check_lesson(parse_lesson(LESSON.replace(part, instead, 1), "fall.md", Path("fall.md"))))
+    assert not english_in_german(refused.value)
 
 
 IN_MS = "unit: ms\nmeasure: time"
@@ -301,8 +317,9 @@ def test_a_comparison_is_in_its_unit() -> None:
 )
 def test_a_question_that_is_recalled_must_be_there(ask: str, words: str) -> None:
     lesson = parse_lesson(LESSON.replace("ask: projectile/target", f"ask: {ask}"), "fall.md")
-    with pytest.raises(LessonError, match=f": line 65: recall recall_1: {re.escape(words)}"):
+    with pytest.raises(LessonError, match=f": line 65: recall recall_1: {re.escape(words)}") as refused:
         list(asked(lesson, find_lesson))
+    assert not english_in_german(refused.value)
 
 
 def test_a_scene_may_be_a_built_in_one_or_a_file_beside_the_lesson(tmp_path: Path) -> None:
@@ -400,6 +417,7 @@ def test_a_translation_that_does_not_fit_is_refused_with_its_line(
         parse_lesson(LESSON, "fall.md", words=(GERMAN.replace(part, instead, 1), "de/fall.md"))
     message = str(refused.value)
     assert message.startswith("de/fall.md: ") and words in message and "\n" not in message
+    assert not english_in_german(refused.value)
 
 
 def test_words_stand_in_the_folder_of_their_language(tmp_path: Path) -> None:

@@ -42,7 +42,7 @@ question: It falls ...
 choice: steadily
 wrong: It becomes faster.
 idea: A body falls at a speed of its own.
-show: height = 2 m
+show: height = 2 m | Twice as high, and not twice as fast
 choice: faster and faster
 right: Yes.
 ```
@@ -161,6 +161,8 @@ def test_prediction_theory_and_measurement_stand_beside_each_other(desk: Desk) -
     click(desk, "Show faster")
     desk.frames(20)
     assert lesson.trial.case.values == (("height", "2 m"),)
+    at = desk.ui.words.index("Twice as high, and not twice as fast")
+    assert "as run" in desk.ui.words[at:], "its graph is below what it shows, beside the usual run"
 
 
 def test_answers_are_a_file_that_grade_reads_and_that_is_taken_up_again(desk: Desk, tmp_path: Path) -> None:

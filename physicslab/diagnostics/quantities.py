@@ -24,11 +24,11 @@ from physicslab.diagnostics.joints import JointState, joint_states
 from physicslab.diagnostics.period import spring_state
 from physicslab.diagnostics.present_forces import with_present_forces
 from physicslab.ecs.vector import Vector2
-from physicslab.kernels.forces import springs
 from physicslab.state.account import Energy, Momentum
 from physicslab.state.joint_rows import KINDS
 from physicslab.state.masses import quiet
 from physicslab.state.packed import spring_ends
+from physicslab.systems.spring import spring_energy
 from physicslab.world import World
 
 _NAN = math.nan
@@ -155,12 +155,7 @@ class Reading:
         rows, a, b = spring_ends(world)
         own = (a == self._rows[body]) | (b == self._rows[body])
         if own.any():
-            spring, transform = world.table(Spring), world.table(Transform)
-            world.compile((springs.spring_potential,))
-            total += springs.spring_potential(
-                transform["position"], transform["angle"], rows[own], a[own], b[own],
-                spring["anchor_a"], spring["anchor_b"], spring["rest_length"], spring["stiffness"],
-            )  # fmt: skip
+            total += spring_energy(world, rows[own], a[own], b[own])
         return total
 
     # ---- of a joint or a spring ----------------------------------------------------------------------------

@@ -7,14 +7,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from physicslab.components import Spring
 from physicslab.ecs.sentences import sentence
 from physicslab.integrators import Integrator
 from physicslab.languages.sentence import Sentence
 from physicslab.state.joint_rows import Role
-from physicslab.state.packed import spring_ends
+from physicslab.state.packed import spring_rates
 from physicslab.systems.joint_forces import JointForces
 from physicslab.systems.system import ForceSystem
 from physicslab.world import World
@@ -200,7 +199,7 @@ def lost_phase(world: World) -> tuple[int, float, float] | None:
     A method loses a share of omega t that depends on omega h alone; what is damped counts while it lasts.
     ``None`` where no method of fixed steps follows springs, or what it loses is not known.
     """
-    springs, rate, damping = _spring_rates(world)
+    springs, rate, damping = spring_rates(world)
     followed = _fixed_steps(world)
     if followed is None or not (followed[0].phase_share and len(springs) and math.isfinite(world.time)):
         return None
@@ -279,14 +278,5 @@ def _below(value: float) -> float:
 
 def _stiffest(world: World) -> int | None:
     """Return the spring with the fastest oscillation or decay."""
-    springs, rate, damping = _spring_rates(world)
+    springs, rate, damping = spring_rates(world)
     return int(springs[np.argmax(np.maximum(rate, damping))]) if len(springs) else None
-
-
-def _spring_rates(world: World) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return the entities of all springs (n,), and how fast each oscillates [rad/s] and is damped [1/s]."""
-    rows, a, b = spring_ends(world)
-    spring, inverse = world.table(Spring), world.bodies.inverse_mass
-    give = inverse[a] + inverse[b]
-    rates = np.sqrt(spring["stiffness"][rows] * give), spring["damping"][rows] * give
-    return world.entity_index.entities[rows], *rates

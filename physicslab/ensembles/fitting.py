@@ -18,15 +18,16 @@ from physicslab.diagnostics.fits import covariance_of
 from physicslab.diagnostics.recorder import record
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.quantity_text import InvalidText
-from physicslab.ensembles.result import package
 from physicslab.ensembles.runs import check_condition
 from physicslab.ensembles.space import number_of
 from physicslab.files.assignments import put
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import Place, entity_names, find_place
+from physicslab.files.replace import reason_of
 from physicslab.files.scene import load_scene
 from physicslab.files.writer import write_scene
 from physicslab.state.masses import Diverged
+from physicslab.state.run import library
 from physicslab.world import World
 
 type Numbers = NDArray[np.float64]
@@ -104,7 +105,7 @@ def fit(
     >>> round(found.values["physics.gravity.y"], 2)  # doctest: +SKIP
     -9.81
     """
-    package("scipy", "fit")
+    library("scipy", "fit")
     from scipy.optimize import least_squares
 
     world = scene if isinstance(scene, World) else load_scene(scene)
@@ -219,8 +220,10 @@ def _number(place: Place, value: float | str) -> float:
 
 def _columns(data: str | os.PathLike[str] | Mapping[str, ArrayLike], until: str | None) -> dict[str, Numbers]:
     """Return the columns of data, all as long, with times that ascend."""
+    if not isinstance(data, str | os.PathLike | Mapping):
+        raise SceneError(f"data {shown(data)}: must be the path of a CSV file, or a dict of columns")
     named = data if isinstance(data, Mapping) else _read(Path(data))
-    columns = {name: np.asarray(column, np.float64) for name, column in named.items()}
+    columns = {name: _numbers(name, column) for name, column in named.items()}
     if until is not None and not columns:
         raise SceneError("data: must have a column of a quantity, as time or ball.x")
     if until is None and ("time" not in columns or len(columns) < 2):
@@ -235,13 +238,20 @@ def _columns(data: str | os.PathLike[str] | Mapping[str, ArrayLike], until: str 
     return columns
 
 
+def _numbers(name: str, column: ArrayLike) -> Numbers:
+    try:
+        return np.asarray(column, np.float64)
+    except (TypeError, ValueError):
+        raise SceneError(f"data: column {shown(name)}: must be numbers, in SI") from None
+
+
 def _read(path: Path) -> dict[str, list[float]]:
     """Return the columns of a CSV file by its head."""
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
             head, *rows = csv.reader(file)
     except (OSError, ValueError, csv.Error) as error:
-        raise SceneError(f"data {path}: cannot be read: {error}") from error
+        raise SceneError(f"data {path}: cannot be read: {reason_of(error)}") from error
     found: dict[str, list[float]] = {name.strip(): [] for name in head}
     for number, row in enumerate(rows, 2):
         if len(row) != len(head):

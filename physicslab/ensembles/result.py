@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import importlib
 import importlib.util
 import io
 import json
@@ -26,6 +25,7 @@ from physicslab.ensembles.task import Task, places_of
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.replace import replacing
 from physicslab.files.scene import load_scene
+from physicslab.state.run import library
 from physicslab.world import World
 
 FORMATS = (".npz", ".csv", ".parquet")
@@ -98,11 +98,11 @@ class EnsembleResult:
 
     def to_pandas(self) -> Any:
         """Return a ``pandas.DataFrame`` of the columns."""
-        return package("pandas", "to_pandas").DataFrame(self.columns)
+        return library("pandas", "to_pandas").DataFrame(self.columns)
 
     def to_xarray(self) -> Any:
         """Return an ``xarray.Dataset`` with a dimension for each grid, for samples and for replicas."""
-        xarray, space = package("xarray", "to_xarray"), self.task.space
+        xarray, space = library("xarray", "to_xarray"), self.task.space
         grids = {axis.name: axis.values for axis in space.axes if axis.law == "grid" and not axis.jitter}
         names = [axis.name for axis in space.axes if axis.law == "grid"] + ["sample", "replica"]
         shape = space.shape
@@ -127,14 +127,6 @@ def _spread(column: Values) -> dict[str, float]:
         "count": len(there), "mean": float(there.mean()), "deviation": deviation, "least": float(there.min()),
         "low": low, "median": median, "high": high, "greatest": float(there.max()),
     }  # fmt: skip
-
-
-def package(name: str, method: str) -> Any:
-    """Return a package that is optional, or refuse what needs it in one line."""
-    try:
-        return importlib.import_module(name)
-    except ImportError as error:
-        raise ImportError(f"{method}: needs {name}, which is not installed") from error
 
 
 def write_result(path: Path, columns: Mapping[str, Values], failures: Mapping[int, str]) -> None:
@@ -168,7 +160,7 @@ def write_result(path: Path, columns: Mapping[str, Values], failures: Mapping[in
             text.flush()
             text.detach()
         else:
-            arrow, parquet = (package(name, ".parquet") for name in ("pyarrow", "pyarrow.parquet"))
+            arrow, parquet = (library(name, ".parquet") for name in ("pyarrow", "pyarrow.parquet"))
             parquet.write_table(arrow.table(dict(columns)), file)
 
 
@@ -191,7 +183,7 @@ def read_result(path: Path, names: Sequence[str]) -> tuple[list[NDArray[np.float
                 if row[last]:
                     failures[number] = row[last]
         return list(np.array(numbers).reshape(-1, len(names)).T), failures
-    table = package("pyarrow.parquet", ".parquet").read_table(path)
+    table = library("pyarrow.parquet", ".parquet").read_table(path)
     failures = {row: why for row, why in enumerate(table["failure"].to_pylist()) if why}
     return [table[name].to_numpy() for name in names], failures
 

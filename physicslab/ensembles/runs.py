@@ -13,9 +13,9 @@ import numpy as np
 
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ensembles.measures import Measure, Measures
-from physicslab.ensembles.result import EnsembleResult, check_format, package
+from physicslab.ensembles.result import EnsembleResult, check_format
 from physicslab.ensembles.sink import Sink
-from physicslab.ensembles.space import Given, space_of
+from physicslab.ensembles.space import Given, check_whole, space_of
 from physicslab.ensembles.task import Task
 from physicslab.ensembles.workers import KINDS, Workers
 from physicslab.files.checks import SceneError, shown
@@ -23,7 +23,7 @@ from physicslab.files.json_text import json_bytes
 from physicslab.files.replace import check_writable, reason_of
 from physicslab.files.scene import load_scene
 from physicslab.files.writer import write_scene
-from physicslab.state.run import BODY_COLUMNS
+from physicslab.state.run import BODY_COLUMNS, library
 from physicslab.stepping.run import run_length
 from physicslab.world import World
 
@@ -103,6 +103,8 @@ def ensemble(
         scene, space, measure=measure, seconds=seconds, steps=steps, until=until, samples=samples, seed=seed,
         replicas=replicas, jitter=jitter,
     )  # fmt: skip
+    if workers is not None:
+        check_whole("workers", workers, 1)
     if isinstance(executor, str) and executor not in KINDS:
         raise SceneError(f"executor {shown(executor)}: must be one of {', '.join(KINDS)}, or an Executor")
     with _told(progress, len(task.space)) as tell:
@@ -119,7 +121,7 @@ def _told(
     elif not progress:
         yield None
     else:
-        with package("tqdm.auto", "progress=True").tqdm(total=rows, unit=" runs") as bar:
+        with library("tqdm.auto", "progress=True").tqdm(total=rows, unit=" runs") as bar:
             yield lambda share: bar.update(round(share * rows) - bar.n)
 
 
@@ -133,8 +135,9 @@ def task_of(
     world = scene if isinstance(scene, World) else load_scene(scene)
     document = json_bytes(write_scene(world))
     measures = measure if isinstance(measure, Mapping) else {_name_of(measure): measure}
-    if not measures:
-        raise SceneError("measure: must name at least one")
+    if not measures or not all(isinstance(one, str) or callable(one) for one in measures.values()):
+        words = "must be an expression, a function of the world, or a dict of them by their names"
+        raise SceneError(f"measure {shown(measure)}: {words}")
     trial = load_scene(write_scene(world))
     rows = space_of(trial, space, samples, seed, replicas, jitter)
     taken = {*_TAKEN, *(axis.name for axis in rows.axes)}
@@ -216,4 +219,4 @@ def _joined(task: Task, sink: Sink) -> tuple[dict[str, Any], dict[int, str]]:
 
 
 def _name_of(measure: Measure) -> str:
-    return measure if isinstance(measure, str) else measure.__name__
+    return measure if isinstance(measure, str) else getattr(measure, "__name__", "")

@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ensembles.measures import Measure
-from physicslab.ensembles.result import EnsembleResult, package
+from physicslab.ensembles.result import EnsembleResult
 from physicslab.ensembles.runs import ensemble, task_of
+from physicslab.ensembles.space import number_of
 from physicslab.files.checks import SceneError, shown
-from physicslab.files.places import entity_names, find_place
+from physicslab.files.places import Place, entity_names, find_place
 from physicslab.files.scene import load_scene
+from physicslab.state.run import library
 from physicslab.world import World
 
 _STEP = 1e-3
@@ -58,9 +60,9 @@ class SobolIndices:
 
 
 def sensitivity(
-    scene: Any, fields: Sequence[str] | Mapping[str, float], *, measure: Measure | Mapping[str, Measure],
-    seconds: float | None = None, steps: int | None = None, until: str | None = None,
-    executor: Any = "serial",
+    scene: Any, fields: str | Sequence[str] | Mapping[str, float | str], *,
+    measure: Measure | Mapping[str, Measure], seconds: float | None = None, steps: int | None = None,
+    until: str | None = None, executor: Any = "serial",
 ) -> dict[str, dict[str, Derivative]]:  # fmt: skip
     """Return the derivative of each measure by each field, of the scene as it is.
 
@@ -70,8 +72,9 @@ def sensitivity(
     ----------
     scene : str, path, dict or World
         The scene to run.
-    fields : sequence of str, or mapping of str to float
-        The fields, or the step of each [SI]; else it is a thousandth of the field, or 1e-3 where that is 0.
+    fields : str, sequence of str, or mapping of str to float or str
+        The fields, or the step of each, in SI or as a text with its unit; else it is a thousandth of the
+        field, or 1e-3 where that is 0.
     measure, seconds, steps, until, executor
         As for :func:`~physicslab.ensemble`.
 
@@ -87,8 +90,10 @@ def sensitivity(
     0.125
     """
     world = scene if isinstance(scene, World) else load_scene(scene)
-    names = entity_names(world)
-    places = {path: find_place(world, "fields", path, "...", names) for path in fields}
+    names, fields = entity_names(world), [fields] if isinstance(fields, str) else fields
+    if not fields:
+        raise SceneError("fields: must name at least one field")
+    places = {path: find_place(world, "fields", path, "", names) for path in fields}
     middle = {}
     for path, place in places.items():
         held = place.read(world)
@@ -96,8 +101,9 @@ def sensitivity(
         if place.spec.kind not in ("number", "vector") or not isinstance(held, int | float):
             raise SceneError(f"{place.words}: must be a number: derivatives are by numbers")
         middle[path] = float(held)
-    given = fields if isinstance(fields, Mapping) else dict.fromkeys(fields, None)
-    widths = {path: _STEP * (abs(middle[path]) or 1.0) if h is None else h for path, h in given.items()}
+    widths = {path: _STEP * (abs(value) or 1.0) for path, value in middle.items()}
+    if isinstance(fields, Mapping):
+        widths = {path: _width(places[path], width) for path, width in fields.items()}
     moves = np.array([0.5, -0.5, 1.0, -1.0])
     rows = {path: np.full(4 * len(places), value) for path, value in middle.items()}
     for k, path in enumerate(rows):
@@ -118,6 +124,13 @@ def sensitivity(
             for path, value, near in zip(rows, values, half, strict=True)
         }
     return found
+
+
+def _width(place: Place, given: float | str) -> float:
+    width = number_of(place, given)
+    if width <= 0.0:
+        raise SceneError(f"{place.words} = {shown(given)}: a step must be > 0")
+    return width
 
 
 def sobol_indices(
@@ -143,12 +156,14 @@ def sobol_indices(
     SceneError
         If a field is drawn otherwise, or a run fails: indices need all of them.
     """
-    package("SALib", "sobol_indices")
+    library("SALib", "sobol_indices")
     from SALib.analyze import sobol as analyse
     from SALib.sample import sobol as sample
 
     if samples < 2 or samples & (samples - 1):
         raise SceneError(f"samples = {samples}: must be a power of two")
+    if not space:
+        raise SceneError("space: must name at least one field")
     laws = {path: law[0] if isinstance(law, tuple) and law else None for path, law in space.items()}
     for path, law in laws.items():
         if law not in ("uniform", "normal"):

@@ -142,16 +142,18 @@ def space_of(
     SceneError
         If a field is not one of the scene, a value is not one that it can have, or two parts contradict.
     """
+    if not isinstance(space, Mapping):
+        raise SceneError(f"space {shown(space)}: must be a dict of fields and their values")
     names, axes = entity_names(world), []
     for path, given in space.items():
-        place = find_place(world, "space", path, "...", names)
+        place = find_place(world, "space", path, "", names)
         axes.append(_axis(world, place, path.strip(), given))
     paths = [axis.path for axis in axes]
     for path in paths:
         if paths.count(path) > 1:
             raise SceneError(f"space: {path}: is given twice; a field must be given once")
-    _whole("seed", seed, 0)
-    _whole("replicas", replicas, 1)
+    check_whole("seed", seed, 0)
+    check_whole("replicas", replicas, 1)
     axes = _with_jitter(world, names, axes, replicas, jitter)
     if sum(axis.law == "sobol" for axis in axes) > DIMENSIONS:
         raise SceneError(f"space: a sobol sequence must have at most {DIMENSIONS} fields")
@@ -174,6 +176,11 @@ def _axis(world: World, place: Place, name: str, given: Given) -> Axis:
         if len(numbers) != 1 or np.ndim(numbers[0]) != 1:
             raise SceneError(f'{place.words}: ("rows", values) must have one list of values')
         return Axis(name, place.path, kind, law, _values(world, place, list(numbers[0])))
+    numeric = kind in ("number", "vector")
+    if numeric and isinstance(given, tuple) and given and str(given[0]).isidentifier():
+        raise SceneError(
+            f"{place.words} = {shown(given)}: a law must be one of {', '.join((*_LAWS, 'rows'))}"
+        )
     if isinstance(given, str) or np.ndim(given) == 0:
         given = [given]
     if np.ndim(given) != 1:
@@ -268,7 +275,7 @@ def _samples(axes: Sequence[Axis], samples: int | None) -> int:
         raise SceneError(f'space: ("rows", ...) must all have as many values: {words}')
     drawn = any(axis.law in _LAWS for axis in axes)
     if samples is not None:
-        _whole("samples", samples, 1)
+        check_whole("samples", samples, 1)
     if lengths:
         length = next(iter(lengths.values()))
         if samples not in (None, length):
@@ -282,6 +289,7 @@ def _samples(axes: Sequence[Axis], samples: int | None) -> int:
     return samples or 1
 
 
-def _whole(name: str, value: object, least: int) -> None:
+def check_whole(name: str, value: object, least: int) -> None:
+    """Refuse what is no whole number, or one below the least."""
     if not isinstance(value, int) or isinstance(value, bool) or value < least:
         raise SceneError(f"{name} = {shown(value)}: must be a whole number >= {least}")

@@ -112,7 +112,7 @@ def _code_of(function: Any) -> str:
 def places_of(world: World, space: Space) -> dict[str, Place]:
     """Return the fields of a space in a world, by their columns."""
     names = entity_names(world)
-    return {axis.name: find_place(world, "space", axis.path, "...", names) for axis in space.axes}
+    return {axis.name: find_place(world, "space", axis.path, "", names) for axis in space.axes}
 
 
 def _plain(value: Any) -> Any:
@@ -297,6 +297,10 @@ def _is_plain(place: Place) -> bool:
 def _reason(error: Exception) -> str:
     known = isinstance(error, SceneError | InvalidValue | ArithmeticError) and str(error)
     return str(error) if known else f"{type(error).__name__}: {error}"
+
+
+def ready() -> None:
+    """Do nothing, in a process that has imported this module by then."""
 
 
 _kept = threading.local()

@@ -9,12 +9,13 @@ import queue
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from physicslab.ensembles.task import Block, Task, work
+from physicslab.ensembles.task import Block, Task, ready, work
 from physicslab.lab.jobs import end_with_parent
 
 KINDS = ("processes", "threads", "serial")
@@ -180,9 +181,17 @@ class Workers:
             future = Future()
             future.set_exception(error)
         if not self._begun and self._kind == "processes":
-            self._children.update(multiprocessing.active_children())
+            self._start_all(len(task.space))
         self._flying.add(future)
         future.add_done_callback(lambda done: self._done.put((piece, done)))
+
+    def _start_all(self, rows: int) -> None:
+        """Have all processes import what rows need while the first makes the first row."""
+        count = min(self._count or os.cpu_count() or 1, rows)
+        with suppress(BrokenExecutor):  # the first row is about to say so
+            for _ in range(count - 1):
+                self._executor.submit(ready)
+        self._children.update(multiprocessing.active_children())
 
 
 class _Ahead:

@@ -116,7 +116,7 @@ def find_place(
     path : str
         ``ID.Component.field`` or ``physics.field``, with ``.x`` or ``[0]`` behind it for a part of a vector.
     value : str
-        The value to set, for messages.
+        The value to set, for messages; empty where there is no one value.
     names : mapping of str to int, optional
         The entities, where they are known already.
 
@@ -133,7 +133,7 @@ def find_place(
     found = Place(name, names.get(name, 0), kind, spec, letter, option)
     if letter and spec.kind != "vector":
         allowed = f"must be a number, or a part of a vector; it has no .{letter}"
-        raise SceneError(f"{found.words} = {shown(value)}: {allowed}")
+        raise SceneError(f"{found.words}{_given(value)}: {allowed}")
     return found
 
 
@@ -157,12 +157,13 @@ def read_path(
         _, name, field, value = section
         return name, SECTIONS[name], _spec(f"{option}: {name}", SECTIONS[name].FIELDS, field, value), value
     if not splits:
-        raise SceneError(f"{option} {shown(text)}: must be {_FORM}={form}")
+        given, wanted = (text, f"{_FORM}={form}") if form else (text.removesuffix("="), _FORM)
+        raise SceneError(f"{option} {shown(given)}: must be {wanted}")
     name, component, field, value = known_entity or splits[0]
     where = f"{option}: entity {shown(name)}: {_shown(component)}"
     if name not in names:
         raise SceneError(
-            f"{where}.{_shown(field)} = {shown(value)}: there is no such entity{known_words(name, names)}"
+            f"{where}.{_shown(field)}{_given(value)}: there is no such entity{known_words(name, names)}"
         )
     present = {type(part).__name__: type(part) for part in world.components(names[name])}
     kinds = {word: kind for word, kind in present.items() if COMPONENTS.get(word) is kind}
@@ -170,7 +171,7 @@ def read_path(
     if component not in kinds:
         missing = "the entity has no" if component in COMPONENTS else "unknown component"
         raise SceneError(
-            f"{where}.{_shown(field)} = {shown(value)}: {missing} {_shown(component)}"
+            f"{where}.{_shown(field)}{_given(value)}: {missing} {_shown(component)}"
             f"{known_words(component, kinds)}"
         )
     return name, kinds[component], _spec(where, kinds[component].FIELDS, field, value), value
@@ -179,10 +180,12 @@ def read_path(
 def _spec(where: str, fields: tuple[Field, ...], field: str, value: str) -> Field:
     specs = {spec.name: spec for spec in fields}
     if field not in specs:
-        raise SceneError(
-            f"{where}.{_shown(field)} = {shown(value)}: unknown field{known_words(field, specs)}"
-        )
+        raise SceneError(f"{where}.{_shown(field)}{_given(value)}: unknown field{known_words(field, specs)}")
     return specs[field]
+
+
+def _given(value: str) -> str:
+    return f" = {shown(value)}" if value else ""
 
 
 def _splits(text: str) -> Iterator[tuple[str, str, str, str]]:

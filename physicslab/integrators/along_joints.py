@@ -60,7 +60,7 @@ def split_along_joints(
             ode.v[:n] *= sign
             made = dop853(
                 ode.q, ode.v, *low, ode.inverse_mass, ode.damping, joint, ode.places, abs(span), _TOLERANCE,
-                abs(span), _MOST, 0, np.zeros(1), 0.0,
+                abs(span), _MOST, 0, np.zeros(1), 0.0, np.zeros(1),
             )  # fmt: skip
             if made < 0:
                 return made

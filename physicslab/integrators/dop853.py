@@ -32,6 +32,7 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     made = dop853(
         ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.damped_calls, ode.places,
         steps * h, tolerance, state.simulation.dt, most, ode.free_bodies, ode.steepness, _floor(state, ode),
+        np.zeros(1),
     )  # fmt: skip
     if made == NOT_FINITE:
         raise StepTooSmall(sentence("forces_not_finite", time=f"{state.time:.9g}"))

@@ -28,7 +28,7 @@ _PACKAGE = __name__.rpartition(".")[0]
 _WITHOUT_CODE = frozenset(
     f"{_PACKAGE}.{name}"
     for name in (
-        "__main__", "archive", "budget", "cache", "interpreter", "keys", "loading", "program",
+        "__main__", "archive", "cache", "compile_budget", "interpreter", "keys", "loading", "program",
         "python_equivalents", "warm",
     )
 )  # fmt: skip

@@ -134,14 +134,14 @@ def displacements(world: World, bodies: Sequence[int], advance: Callable[[], obj
     return [place(world, body) - start for body, start in zip(bodies, starts, strict=True)]
 
 
-def energy_growth(world: World, steps: int, scale: float | None = None, every: int = 1) -> float:
+def energy_growth(world: World, steps: int, scale: float | None = None) -> float:
     """Return the largest rise of the energy above that at the start; 0 where it only fell.
 
     As a share of ``scale`` [J], or of the energy at the start.
     """
     start = measure_energy(world).total
     share = abs(start) if scale is None else scale
-    return max(0.0, largest(world, steps, lambda: (measure_energy(world).total - start) / share, every))
+    return max(0.0, largest(world, steps, lambda: (measure_energy(world).total - start) / share))
 
 
 def energy_change(world: World, moves: Iterable[object]) -> float:

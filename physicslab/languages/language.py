@@ -19,6 +19,8 @@ _CTRL = re.compile(r"\b(?:Ctrl|Strg)\b")
 """The key that is Cmd on macOS."""
 _KNOWN_BY = 4
 """So many letters around its gaps tell a sentence that begins with one."""
+_AS_WRITTEN = frozenset({"block", "entry", "file", "line", "names", "path", "text"})
+"""Gaps with what stands in a file, which is the same in every language."""
 _KEPT = 4096
 """Texts whose translation is kept: panels write the same ones again and again."""
 
@@ -105,7 +107,10 @@ class Language:
             return "\n".join(map(self.reword, text.split("\n")))
         for pattern, source in (*self._sentences.get(text[:1], ()), *self._sentences.get("", ())):
             if match := pattern.fullmatch(text):
-                gaps = {name: self.reword(value) for name, value in match.groupdict().items()}
+                gaps = {
+                    name: value if name in _AS_WRITTEN else self.reword(value)
+                    for name, value in match.groupdict().items()
+                }
                 number = int(gaps["n"]) if gaps.get("n", "").isdecimal() else 2
                 sentence = self._catalogue.gettext if len(source) == 1 else self._catalogue.ngettext
                 arguments = source if len(source) == 1 else (*source, number)
@@ -164,9 +169,14 @@ def _sentences(code: str) -> dict[str, list[tuple[re.Pattern[str], tuple[str, ..
     found: dict[str, list[tuple[re.Pattern[str], tuple[str, ...]]]] = {}
     texts = [(text, source) for source in sources(code) for text in source if _is_sentence(text)]
     for text, source in sorted(texts, key=lambda one: len(one[0]), reverse=True):
-        pattern = re.compile(_GAP.sub(r"(?P<\1>.+?)", re.escape(text)))
+        pattern = re.compile(_GAP.sub(_gap_pattern, re.escape(text)))
         found.setdefault("" if text[0] == "{" else text[0], []).append((pattern, source))
     return found
+
+
+def _gap_pattern(found: re.Match[str]) -> str:
+    """Return the pattern of a gap; an entry of a file is one word."""
+    return rf"(?P<{found[1]}>{r'\S' if found[1] == 'entry' else '.'}+?)"
 
 
 def _is_sentence(text: str) -> bool:

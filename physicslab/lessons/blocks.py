@@ -113,6 +113,12 @@ class Block:
             raise error
         return entry
 
+    def check_format(self, allowed: str) -> None:
+        """Refuse a head that is not of a format."""
+        entry = self.one("format", allowed)
+        if entry.value != allowed:
+            raise self.refusal(entry, f"must be {allowed}")
+
     def text(self, key: str, allowed: str) -> str:
         """Return the words of a key that a block must have."""
         return self.one(key, allowed).value

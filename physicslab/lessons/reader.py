@@ -77,8 +77,7 @@ def parse_lesson(text: str, file: str, path: Path = Path(), words: tuple[str, st
         line = text.count("\n", 0, found.start()) + 1
         raise LessonError(f"{file}: line {line}: head: these {why}, with --language {path.parent.name}")
     head, body = read_document(text, file, _HEAD, KEYS)
-    if head.text("format", FORMAT) != FORMAT:
-        raise head.refusal(head.one("format", FORMAT), f"must be {FORMAT}")
+    head.check_format(FORMAT)
     if words is not None:
         head, body = translate(head, body, *words)
     scenes = [block for block in body if isinstance(block, Block) and block.kind == "scene"]

@@ -37,8 +37,7 @@ def translate(
         If the translation lacks words of the lesson, or has others; with its file and line.
     """
     own_head, own = read_document(text, file, _HEAD, _KEYS)
-    if own_head.text("format", FORMAT) != FORMAT:
-        raise own_head.refusal(own_head.one("format", FORMAT), f"must be {FORMAT}")
+    own_head.check_format(FORMAT)
     own_head.entries = [entry for entry in own_head.entries if entry.key != "format"]
     left = iter(own)
     made = [_piece(one, left, file) for one in body]

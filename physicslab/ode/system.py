@@ -413,7 +413,7 @@ def steady_turn(
     spin, angle = state.table(Velocity)["angular"][rows], state.table(Transform)["angle"][rows]
     c, time = state.physics.angular_damping, after[:, None]
     if not c:
-        return angle + spin * time, np.broadcast_to(spin, (len(after), len(rows)))
+        return angle + spin * time, np.repeat(spin[None], len(after), axis=0)
     free = state.bodies.inverse_mass[rows] > 0.0
     turned = spin * np.where(free, -np.expm1(-c * time) / c, time)
     return angle + turned, np.where(free, spin * np.exp(-c * time), spin)

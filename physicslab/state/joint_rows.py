@@ -93,14 +93,14 @@ class Joined(NamedTuple):
         """Return a term between its two anchors."""
         return Term(measure, self.a, self.b, self.vector("anchor_a"), self.vector("anchor_b"), axis, scale)
 
-    def bounded(self, term: Term, speed: str = "motor_speed", most: str = "max_force") -> list[Row]:
+    def bounded(self, term: Term, most: str = "max_force") -> list[Row]:
         """Return the limits of a term, and its motor, as far as there are any."""
         rows, (lower, upper) = [], (self.given("lower"), self.given("upper"))
         if lower is not None:
             rows.append(Row((term,), Role.LIMIT, lower))
         if upper is not None:
             rows.append(Row((term._replace(scale=-1.0),), Role.LIMIT, -upper))
-        target = self.given(speed)
+        target = self.given("motor_speed")
         if target is not None:
             limit = self.given(most)
             strongest = math.inf if limit is None else limit

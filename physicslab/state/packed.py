@@ -168,6 +168,31 @@ class StateLayout:
         return 2 * len(self.moving) + len(self.turning)
 
 
+def fixed_ends(
+    state: State, layout: StateLayout, rows: NDArray[np.int64]
+) -> tuple[tuple[()] | None, NDArray[np.int64] | None]:
+    """Return ``work_slots`` and ``anchors`` of a force between pairs of bodies of some rows (n,).
+
+    Where none of them moves that no force moves, the force does no work but on the others; what comes in by
+    fixed ones is known by their places.
+    """
+    fixed = state.bodies.inverse_mass[rows] == 0.0
+    if (fixed & state.table(Velocity).present[rows]).any():
+        return None, None
+    return (), layout.place[rows[fixed]] if fixed.any() else None
+
+
+def spring_rates(
+    state: State,
+) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return the entities of all springs (n,), and how fast each oscillates [rad/s] and is damped [1/s]."""
+    rows, a, b = spring_ends(state)
+    spring, inverse = state.table(Spring), state.bodies.inverse_mass
+    give = inverse[a] + inverse[b]
+    rates = np.sqrt(spring["stiffness"][rows] * give), spring["damping"][rows] * give
+    return state.entity_index.entities[rows], *rates
+
+
 def spring_ends(state: State) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Return the rows of the springs, of the bodies at their ends A, and at B (0 for the world)."""
     batch, spring, rows_of = state.batch(Spring), state.table(Spring), state.entity_index.rows_of

@@ -40,6 +40,8 @@ class Remainders:
         if keys is self.keys:
             return _held(q, self.q, self.q_low), _held(v, self.v, self.v_low)
         q_low, v_low = np.zeros_like(q), np.zeros_like(v)
+        if not len(self.keys):
+            return q_low, v_low
         _, here, kept = np.intersect1d(keys, self.keys, assume_unique=True, return_indices=True)
         q_low[here] = _held(q[here], self.q[kept], self.q_low[kept])
         v_low[here] = _held(v[here], self.v[kept], self.v_low[kept])

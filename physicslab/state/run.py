@@ -100,7 +100,7 @@ class Run:
 
     def to_pandas(self) -> Any:
         """Return a ``DataFrame`` of columns and energies, a row an instant, with ``attrs["units"]``."""
-        table = _library("pandas", "to_pandas").DataFrame(self.table)
+        table = library("pandas", "to_pandas").DataFrame(self.table)
         table.attrs["units"] = self.units
         return table
 
@@ -115,7 +115,7 @@ class Run:
             for name, values in self.energies.items()
         }
         places = {"time": ("time", self.times, {"units": "s"}), "body": list(self.bodies)}
-        return _library("xarray", "to_xarray").Dataset({**arrays, **whole}, places)
+        return library("xarray", "to_xarray").Dataset({**arrays, **whole}, places)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write columns and energies to a file, by the end of its name: ``.npz``, ``.csv`` or ``.parquet``.
@@ -168,12 +168,14 @@ def _notebook() -> Any:
     return importlib.import_module("physicslab.export.notebook")
 
 
-def _library(name: str, needed_by: str) -> Any:
+def library(name: str, needed_by: str) -> Any:
     """Import a library that is no part of the package."""
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        raise ImportError(f"{needed_by} needs {name}, which is not installed: pip install {name}") from error
+        raise ImportError(
+            f"{needed_by} needs {name}, which is not installed: pip install {name.partition('.')[0]}"
+        ) from error
 
 
 def _npz(run: Run) -> bytes:
@@ -193,7 +195,7 @@ def _csv(run: Run) -> bytes:
 
 def _parquet(run: Run) -> bytes:
     """Return a table whose fields have their units as metadata."""
-    arrow, parquet = _library("pyarrow", "save"), _library("pyarrow.parquet", "save")
+    arrow, parquet = library("pyarrow", "save"), library("pyarrow.parquet", "save")
     fields = [arrow.field(name, arrow.float64(), metadata={"unit": unit}) for name, unit in run.units.items()]
     stream = io.BytesIO()
     arrays = [arrow.array(column) for column in run.table.values()]

@@ -12,7 +12,7 @@ from physicslab.state.solid import is_any_apart, may_touch, solid_rows
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
-from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.integrate import IntegrateSystem, why_nowhere
 from physicslab.systems.joint import JointSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
@@ -44,8 +44,8 @@ def why_not_exact(state: State, schedule: Schedule) -> str | None:
         return sentence("damped")
     if len(state.batch(Held)):
         return sentence("held")
-    if (state.table(Velocity).present & ~state.table(Transform).present).any():
-        return sentence("nowhere")
+    if (nowhere := why_nowhere(state)) is not None:
+        return nowhere
     rows = turning_rows(state)
     if len(rows):
         label, kind = state.label_of_row(int(rows[0])), state.table(Shape)["kind"][rows[0]]

@@ -6,7 +6,7 @@ from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP, count_pairs
 from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.rigid_rows import why_not_points
-from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.integrate import IntegrateSystem, why_nowhere
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import AROUND, OF_FRAMES, ForceSystem, Stage
 
@@ -79,8 +79,8 @@ def why_not_rigid(state: State, schedule: Schedule) -> str | None:
             continue
         if not type(system).marked().keys() <= _OBSERVING:
             return sentence("acts_within_step", system=system.name)
-    if (state.table(Velocity).present & ~state.table(Transform).present).any():
-        return sentence("nowhere")
+    if (nowhere := why_nowhere(state)) is not None:
+        return nowhere
     if count_pairs(state) > _MAX_PAIRS:
         return sentence("many_pairs", limit=_MAX_PAIRS)
     return why_not_points(state)

@@ -215,9 +215,8 @@ class EventDriven:
         )  # fmt: skip
         contacts.logged += impacts
         state.collisions += impacts
-        self._schedule.note(IntegrateSystem.__name__, made, time.perf_counter_ns() - began)
-        for name in self._within:
-            self._schedule.note(name, made, 0)  # their time is part of the loop's
+        spent = time.perf_counter_ns() - began
+        self._schedule.note_loop(IntegrateSystem.__name__, made, spent, self._within)
         return made, why, flown
 
     def _take_masses(self, state: State) -> None:

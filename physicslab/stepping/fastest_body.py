@@ -5,8 +5,17 @@ from collections.abc import Iterable
 import numpy as np
 
 from physicslab.components import Velocity
+from physicslab.ecs.sentences import sentence
+from physicslab.integrators import StepTooSmall
+from physicslab.state.masses import Diverged
 from physicslab.state.state import State
 from physicslab.systems.system import ForceSystem, Stage
+
+
+def changes_fast(state: State, forces: Iterable[ForceSystem], error: StepTooSmall) -> Diverged:
+    """Return the error of a world in which a method finds no step, by what it said."""
+    what = sentence("velocity_changes_fast", body=fastest_body(state, forces), why=error.args[0])
+    return Diverged(sentence("after_time", what=what, time=f"{state.time:.9g}"))
 
 
 @np.errstate(all="ignore")

@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from physicslab.ecs.sentences import sentence
 from physicslab.integrators import StepTooSmall
 from physicslab.ode.system import OdeSystem, steady_turn
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.samples import Samples
 from physicslab.state.state import State
 from physicslab.stepping.accounting import put_together
-from physicslab.stepping.fastest_body import fastest_body
+from physicslab.stepping.fastest_body import changes_fast
 from physicslab.stepping.method import tolerance_for
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.stepper import Advance, Stretch, divisions
@@ -131,9 +130,7 @@ class Flow:
         except StepTooSmall as error:
             if (ode.undo(state) or self._joined) and state.simulation.integrator == "auto":
                 raise NotSmooth(str(error)) from error
-            body = fastest_body(state, self._schedule.forces)
-            what = sentence("velocity_changes_fast", body=body, why=error.args[0])
-            raise Diverged(sentence("after_time", what=what, time=f"{state.time:.9g}")) from error
+            raise changes_fast(state, self._schedule.forces, error) from error
         ode.scatter(state, h * steps)
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - start)
         for system in ode.forces:

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from physicslab.components import Spring
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.sentences import sentence
 from physicslab.integrators.blanes_moan import BLANES_MOAN
@@ -17,7 +16,7 @@ from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_WITH_SPLIT_FORCES
 from physicslab.integrators.rk4 import RK4
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.ode.closed_form import NoClosedForm, closed_form
-from physicslab.state.packed import spring_ends
+from physicslab.state.packed import spring_rates
 from physicslab.state.state import State
 from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.plan import StepPlan
@@ -200,10 +199,7 @@ def tolerance_for(state: State, forces: Sequence[ForceSystem]) -> float:
 
 def _is_overdamped(state: State) -> bool:
     """Whether each stiff spring is damped far beyond the rate at which it would stop to oscillate."""
-    rows, a, b = spring_ends(state)
-    spring, inverse = state.table(Spring), state.bodies.inverse_mass
-    give = inverse[a] + inverse[b]
-    rate, decay = np.sqrt(spring["stiffness"][rows] * give), spring["damping"][rows] * give
+    _, rate, decay = spring_rates(state)
     stiff = np.maximum(rate, decay) * state.simulation.dt > _STIFF
     return bool(stiff.any() and (decay[stiff] >= 2.0 * _OVERDAMPED * rate[stiff]).all())
 

@@ -20,6 +20,7 @@ from physicslab.kernels.broad.clusters import label_clusters
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP
 from physicslab.systems.accelerate import AccelerateSystem
+from physicslab.systems.integrate import why_nowhere
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.standard import PHYSICS_SYSTEMS
 
@@ -63,8 +64,8 @@ def why_whole(state: State, schedule: Schedule) -> str | None:
     for system in schedule.running:
         if type(system) not in (AccelerateSystem, *PHYSICS_SYSTEMS) and system.acts_within_step():
             return sentence("acts_within_step", system=system.name)
-    if (state.table(Velocity).present & ~state.table(Transform).present).any():
-        return sentence("nowhere")
+    if (nowhere := why_nowhere(state)) is not None:
+        return nowhere
     found = [schedule.find(needed) is not None for needed in CONTACT_STEP]
     if not found[0]:
         return sentence("nothing_integrates")

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from physicslab.components import Transform, Velocity
 from physicslab.ecs.sentences import sentence
 from physicslab.integrators import INTEGRATORS, SPLIT_METHODS
 from physicslab.integrators.blanes_moan import BLANES_MOAN
@@ -20,7 +19,7 @@ from physicslab.stepping.contact_model import choose_contacts
 from physicslab.stepping.method import best_method, method_beside_contacts
 from physicslab.stepping.plan import ASKED_FOR, WITHOUT_END, StepPlan, default_plan
 from physicslab.systems.accelerate import AccelerateSystem
-from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.integrate import IntegrateSystem, why_nowhere
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.system import ForceSystem, Stage
 
@@ -175,6 +174,4 @@ def why_not_smooth(state: State, schedule: Schedule) -> str | None:
             stages -= {Stage.FORCE}
         if stages and type(system) not in (AccelerateSystem, IntegrateSystem):  # a subclass may do other work
             return sentence("acts_within_step", system=system.name)
-    if (state.table(Velocity).present & ~state.table(Transform).present).any():
-        return sentence("nowhere")
-    return state.joints.why_not_smooth()
+    return why_nowhere(state) or state.joints.why_not_smooth()

@@ -130,7 +130,8 @@ class Rigid:
             self._ode.scatter(state, 0.0)
             self._records.write(state, last, h / parts)
             self._find_joint_forces(scene, state, last)
-            self._note(began, made)
+            spent = time.perf_counter_ns() - began
+            self._schedule.note_loop(IntegrateSystem.__name__, made, spent, self._within)
             check_finite(state, state.time + h * made)
             state.substeps = state.simulation.substeps
             self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
@@ -219,11 +220,6 @@ class Rigid:
                     row, force = self._rows.force_of(number, *made.forces[2 * i : 2 * i + 2])
                     joints.force[row] = force
             joints.impulse[:] = joints.force * state.contacts.impulse_dt  # should soft contacts have to go on
-
-    def _note(self, began: int, steps: int) -> None:
-        self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - began)
-        for name in self._within:
-            self._schedule.note(name, steps, 0)  # their time is part of the loop's
 
 
 def _is_anything_driven(state: State) -> bool:

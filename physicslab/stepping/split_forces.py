@@ -6,16 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
-from physicslab.ecs.sentences import sentence
 from physicslab.integrators import Integrator, StepTooSmall
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.kernels import motion
 from physicslab.kernels.solver import work
 from physicslab.ode.system import OdeSystem
-from physicslab.state.masses import Diverged
 from physicslab.state.state import State
-from physicslab.stepping.fastest_body import fastest_body
+from physicslab.stepping.fastest_body import changes_fast
 from physicslab.stepping.spring_flow import SpringFlow, why_no_spring_flow
 from physicslab.systems.system import ForceSystem, Stage
 
@@ -160,8 +158,6 @@ class SplitForces:
         try:
             made = method.flow(state, ode, h / steps, steps)
         except StepTooSmall as error:
-            body = fastest_body(state, self._ode.forces)
-            what = sentence("velocity_changes_fast", body=body, why=error.args[0])
-            raise Diverged(sentence("after_time", what=what, time=f"{state.time:.9g}")) from error
+            raise changes_fast(state, self._ode.forces, error) from error
         ode.scatter(state, h)
         return made

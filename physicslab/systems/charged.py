@@ -18,14 +18,7 @@ class _ChargeForce(ForceSystem):
     """A force on each charge by itself."""
 
     needs = (Charge, Transform, Velocity, Mass)
-
-    def inputs(self, state: State, layout: StateLayout) -> bytes:
-        """Return every charge."""
-        return self.settings(state)
-
-    def settings(self, state: State) -> bytes:
-        """Return every charge."""
-        return state.table(Charge)["charge"].tobytes()
+    columns = ((Charge, "charge"),)
 
     def needs_origin(self, state: State) -> bool:
         """Return False: the field is the same everywhere."""

@@ -21,6 +21,7 @@ class CoulombSystem(ForceSystem):
     """
 
     needs = (Charge, Transform)
+    columns = ((Charge, "charge"),)
     kernels = (packed_forces.inverse_square,)
     potential = "coulomb"
 
@@ -56,14 +57,6 @@ class CoulombSystem(ForceSystem):
     def needs_origin(self, state: State) -> bool:
         """Only the force of charges that stay where they are depends on it."""
         return bool((state.bodies.inverse_mass[self._acting] == 0.0).any())
-
-    def inputs(self, state: State, layout: StateLayout) -> bytes:
-        """Return every charge."""
-        return self.settings(state)
-
-    def settings(self, state: State) -> bytes:
-        """Return every charge: those of 0 take no part."""
-        return state.table(Charge)["charge"].tobytes()
 
     def strongest_rate(self, state: State) -> float:
         """Return the largest sqrt(k |q_a q_b| (1/m_a + 1/m_b) / d^3) of any pair at present."""

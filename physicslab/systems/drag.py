@@ -19,6 +19,7 @@ class DragSystem(ForceSystem):
     """Slows every body that has Drag. It dissipates energy and stores none."""
 
     needs = (Drag, Velocity, Mass)
+    columns = ((Drag, "linear"), (Drag, "quadratic"))
     account = DAMPING
     kernels = (packed_forces.drag,)
 
@@ -42,10 +43,6 @@ class DragSystem(ForceSystem):
         """Drag depends on velocities alone."""
         return False
 
-    def inputs(self, state: State, layout: StateLayout) -> bytes:
-        """Return both coefficients of every body."""
-        return self.settings(state)
-
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row the rate at which it slows down at its present speed [1/s]."""
         table, rows = state.table(Drag), state.batch(*self.needs).rows
@@ -53,11 +50,6 @@ class DragSystem(ForceSystem):
         rates = np.zeros(len(state.entity_index))
         rates[rows] = table["linear"][rows] + 2.0 * table["quadratic"][rows] * speed
         return rates * state.bodies.inverse_mass
-
-    def settings(self, state: State) -> bytes:
-        """Return both coefficients of every body."""
-        table, rows = state.table(Drag), state.batch(*self.needs).rows
-        return table["linear"][rows].tobytes() + table["quadratic"][rows].tobytes()
 
     def couples(self, state: State) -> NDArray[np.int64]:
         """Drag couples nothing."""

@@ -3,6 +3,7 @@
 import logging
 
 from physicslab.components import Transform, Velocity
+from physicslab.ecs.sentences import sentence
 from physicslab.kernels import motion
 from physicslab.state.state import State
 from physicslab.systems.accelerate import AccelerateSystem
@@ -29,6 +30,12 @@ class IntegrateSystem(System):
             transform["position"], transform["angle"], velocity["linear"], velocity["angular"],
             state.bodies.sub_integrated, h,
         )  # fmt: skip
+
+
+def why_nowhere(state: State) -> str | None:
+    """Return that something has a velocity and no place, which velocities could change; or ``None``."""
+    nowhere = state.table(Velocity).present & ~state.table(Transform).present
+    return sentence("nowhere") if nowhere.any() else None
 
 
 def warn_of_what_stands_still(schedule: Schedule) -> None:

@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Transform, Velocity
+from physicslab.components import Transform
 from physicslab.kernels.forces import inverse_square as law
 from physicslab.kernels.forces import packed_forces
 from physicslab.kernels.forces.tree_pull import MAX_ERROR, RMS_ERROR, THETA
-from physicslab.state.packed import PackedForce, StateLayout
+from physicslab.state.packed import PackedForce, StateLayout, fixed_ends
 from physicslab.state.state import State
 from physicslab.systems.system import ROUNDING
 
@@ -47,13 +47,10 @@ class InverseSquare(NamedTuple):
         indices = np.concatenate(((len(rows), plummer, place), layout.place[rows]))
         numbers = self.weight[rows], self.yields[rows], self.pulls[rows]
         parameters = np.concatenate(((self.constant, physics.softening), *numbers, (0.0,)))
-        fixed = state.bodies.inverse_mass[rows] == 0.0
-        driven = bool((fixed & state.table(Velocity).present[rows]).any())
-        anchors = layout.place[rows[fixed]]
+        work_slots, anchors = fixed_ends(state, layout, rows)
         return PackedForce(
             packed_forces.inverse_square, parameters, indices, max_rate_slot=_STEEPEST,
-            work_slots=None if driven else (), cause=cause,
-            anchors=anchors if len(anchors) and not driven else None,
+            work_slots=work_slots, cause=cause, anchors=anchors,
         )  # fmt: skip
 
     def strongest_rate(self, state: State) -> float:

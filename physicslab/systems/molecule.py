@@ -7,7 +7,7 @@ from physicslab.components import Held, Molecule, Transform, Velocity
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import FIELDS
 from physicslab.kernels.forces.molecules import CUT2, molecules
-from physicslab.state.packed import PackedForce, StateLayout
+from physicslab.state.packed import PackedForce, StateLayout, fixed_ends
 from physicslab.state.state import State
 from physicslab.systems.system import ROUNDING, ForceSystem
 
@@ -19,6 +19,7 @@ class MoleculeSystem(ForceSystem):
     """
 
     needs = (Molecule, Transform)
+    columns = ((Molecule, "depth"), (Molecule, "distance"))
     kernels = (molecules,)
     potential = "molecules"
 
@@ -47,26 +48,14 @@ class MoleculeSystem(ForceSystem):
         own = np.stack((np.sqrt(depth), 0.5 * distance), axis=1)
         parameters = np.concatenate(((0.0, reach), own.ravel()))
         indices = np.concatenate(([len(rows)], layout.place[rows]))
-        fixed = state.bodies.inverse_mass[rows] == 0.0
-        driven = bool((fixed & state.table(Velocity).present[rows]).any())
-        anchors = layout.place[rows[fixed]]
+        work_slots, anchors = fixed_ends(state, layout, rows)
         return PackedForce(
-            molecules, parameters, indices, work_slots=None if driven else (), cause=FIELDS,
-            anchors=anchors if len(anchors) and not driven else None,
+            molecules, parameters, indices, work_slots=work_slots, cause=FIELDS, anchors=anchors
         )  # fmt: skip
 
     def needs_origin(self, state: State) -> bool:
         """Return True: neighbours are found by cells about it."""
         return True
-
-    def inputs(self, state: State, layout: StateLayout) -> bytes:
-        """Return the depths and distances."""
-        return self.settings(state)
-
-    def settings(self, state: State) -> bytes:
-        """Return the depths and distances."""
-        table = state.table(Molecule)
-        return table["depth"].tobytes() + table["distance"].tobytes()
 
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row how fast it bounces where its speed brings it near another like it [rad/s]."""

@@ -176,6 +176,12 @@ class Schedule:
         timing.calls += calls
         timing.nanoseconds += nanoseconds
 
+    def note_loop(self, name: str, calls: int, nanoseconds: int, within: Iterable[str]) -> None:
+        """Note what a compiled loop has cost as that of a system; the time of others is part of it."""
+        self.note(name, calls, nanoseconds)
+        for other in within:
+            self.note(other, calls, 0)
+
     def find[S: System](self, kind: type[S]) -> S | None:
         """Return the running system of a type, if there is one."""
         return next((system for system in self.running if isinstance(system, kind)), None)

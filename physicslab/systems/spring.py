@@ -185,10 +185,15 @@ class SpringSystem(ForceSystem):
 
     def potential_energy(self, state: State) -> float:
         """Return the sum of k (length - rest_length)^2 / 2 [J]."""
-        spring, transform = state.table(Spring), state.table(Transform)
-        state.compile((springs.spring_potential,))
-        stored: float = direct_entry(springs.spring_potential)(
-            transform["position"], transform["angle"], self._rows, self._a, self._b,
-            spring["anchor_a"], spring["anchor_b"], spring["rest_length"], spring["stiffness"],
-        )  # fmt: skip
-        return stored
+        return spring_energy(state, self._rows, self._a, self._b)
+
+
+def spring_energy(state: State, rows: NDArray[np.int64], a: NDArray[np.int64], b: NDArray[np.int64]) -> float:
+    """Return the energy [J] of springs of some rows (n,), whose ends A and B are at bodies of others."""
+    spring, transform = state.table(Spring), state.table(Transform)
+    state.compile((springs.spring_potential,))
+    stored: float = direct_entry(springs.spring_potential)(
+        transform["position"], transform["angle"], rows, a, b,
+        spring["anchor_a"], spring["anchor_b"], spring["rest_length"], spring["stiffness"],
+    )  # fmt: skip
+    return stored

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform
+from physicslab.ecs.component import Component
 from physicslab.ecs.sentences import listed, sentence
 from physicslab.ecs.vector import Vector2
 from physicslab.kernels.accounts import FIELDS
@@ -179,6 +180,9 @@ class ForceSystem(System):
     It must also return the energy that its force stores, so that the total stays right when a force is added.
     """
 
+    columns: ClassVar[tuple[tuple[type[Component], str], ...]] = ()
+    """Fields of what it acts on that it depends on, apart from the state of motion: :meth:`settings`, and
+    :meth:`inputs`, are then made of them."""
     account: ClassVar[int] = FIELDS
     """The account of the momentum that the force gives, and of its work where it stores no energy
     (:mod:`physicslab.kernels.accounts`)."""
@@ -272,7 +276,8 @@ class ForceSystem(System):
 
         If they change, the method that moves the bodies is chosen again.
         """
-        return b""
+        rows = state.batch(*self.needs).rows if self.columns else ()
+        return b"".join(state.table(kind)[name][rows].tobytes() for kind, name in self.columns)
 
     def couples(self, state: State) -> NDArray[np.int64] | None:
         """Return the pairs of rows (n, 2) whose motions the force couples; ``None``: any with any."""
@@ -307,7 +312,7 @@ class ForceSystem(System):
 
         While that stays the same the force is not packed again; ``None`` for one to be packed at every step.
         """
-        return None
+        return self.settings(state) if self.columns else None
 
     @classmethod
     @cache

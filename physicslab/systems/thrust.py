@@ -19,6 +19,7 @@ class ThrustSystem(ForceSystem):
     """Pushes and turns every body that has Thrust. It stores no energy: its work is in the account thrust."""
 
     needs = (Thrust, Transform, Velocity, Mass)
+    columns = tuple((Thrust, spec.name) for spec in Thrust.FIELDS)
     account = THRUST
     kernels = (thrust,)
     turns = True
@@ -47,15 +48,6 @@ class ThrustSystem(ForceSystem):
         where = np.stack((layout.place[rows], layout.turn[rows], follows), axis=1)
         indices = np.concatenate(((len(rows), layout.clock), where.ravel()))
         return PackedForce(thrust, np.column_stack(numbers).ravel(), indices)
-
-    def settings(self, state: State) -> bytes:
-        """Return every number of every thrust."""
-        table, rows = state.table(Thrust), state.batch(*self.needs).rows
-        return b"".join(table[spec.name][rows].tobytes() for spec in Thrust.FIELDS)
-
-    def inputs(self, state: State, layout: StateLayout) -> bytes:
-        """Return every number of every thrust."""
-        return self.settings(state)
 
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row how fast the force swings, and turns at its present spin [rad/s]."""

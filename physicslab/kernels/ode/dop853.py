@@ -12,6 +12,7 @@ from physicslab.kernels.ode.compensated import add, add_pair
 from physicslab.kernels.ode.dop853_tableau import (
     ESTIMATE_3,
     ESTIMATE_5,
+    FIRST,
     LAST,
     NODES,
     NODES_LOW,
@@ -70,8 +71,9 @@ def make_stages(
     for stage in range(first, end):
         stage_q[clock] = q[clock] + NODES[stage] * h
         for i in range(n):
-            moved, pushed, pushed_low = NODES_LOW[stage] * v[i], 0.0, 0.0
-            for other in range(stage):
+            moved = NODES_LOW[stage] * v[i] + WEIGHTS[stage, 0] * rates[i, 0]
+            pushed, pushed_low = WEIGHTS[stage, 0] * pushes[i, 0], WEIGHTS_LOW[stage, 0] * pushes[i, 0]
+            for other in range(FIRST[stage], stage):
                 moved += WEIGHTS[stage, other] * rates[i, other]
                 pushed += WEIGHTS[stage, other] * pushes[i, other]
                 pushed_low += WEIGHTS_LOW[stage, other] * pushes[i, other]
@@ -88,8 +90,8 @@ def make_stages(
 @inlined
 def total(values: Numbers) -> tuple[float, float]:
     """Return the weighted sum of the stages, and what rounding leaves out of it."""
-    indices, low = 0.0, 0.0
-    for stage in range(LAST):
+    indices, low = add(0.0, WEIGHTS_LOW[LAST, 0] * values[0], WEIGHTS[LAST, 0] * values[0])
+    for stage in range(FIRST[LAST], LAST):
         indices, low = add(
             indices, low + WEIGHTS_LOW[LAST, stage] * values[stage], WEIGHTS[LAST, stage] * values[stage]
         )
@@ -108,8 +110,8 @@ def step_error(
     n = len(rates)
     for i in range(n):
         for values, scale in ((rates, q_scale), (pushes, v_scale)):
-            high, low = 0.0, 0.0
-            for stage in range(LAST):
+            high, low = ESTIMATE_5[0] * values[i, 0], ESTIMATE_3[0] * values[i, 0]
+            for stage in range(FIRST[LAST], LAST):
                 high += ESTIMATE_5[stage] * values[i, stage]
                 low += ESTIMATE_3[stage] * values[i, stage]
             if scale > 0.0:
@@ -214,7 +216,7 @@ def _book(
 def dop853(
     q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
     calls: Calls, places: Rows, span: float, tolerance: float, period: float, max_evaluations: int,
-    bodies: int, steepness: Numbers, floor: float,
+    bodies: int, steepness: Numbers, floor: float, step: Numbers,
 ) -> int:  # fmt: skip
     """Advance by ``span`` seconds; return the number of force evaluations, or why it failed (negative).
 
@@ -235,6 +237,8 @@ def dop853(
     ``floor`` [m/s^2] is how far rounding puts off accelerations where large forces cancel. Steps shorter than
     a part of the period need to be no better than that: what comes to rest at the origin leaves neither
     coordinate nor speed to measure errors by.
+
+    ``step`` (1,) is the first that is tried [s], or 0 to guess it; the one to be tried next is left there.
 
     Where no force depends on the origin, ``bodies`` is how many pairs of coordinates the first ones are, and
     else 0: in a close passage the origin is moved there, so that the distance has all its digits.
@@ -267,7 +271,7 @@ def dop853(
     if not _all_finite(acceleration, stage_v, n):
         return NOT_FINITE
     evaluations, done, done_low = 1, 0.0, 0.0
-    h = first_step(pushes, n, q_scale, v_scale, span, tolerance)
+    h = step[0] if step[0] > 0.0 else first_step(pushes, n, q_scale, v_scale, span, tolerance)
     grow, last_error, last_taken, noise = _MAX_GROWTH, math.inf, 1.0, _NOISE / tolerance
     last_fall2 = steepness[0]
     spent, mark = 0, 0.0
@@ -346,7 +350,7 @@ def dop853(
         if last:
             break
         q_scale, v_scale = q_end, v_end
-    steepness[0] = steepest
+    steepness[0], step[0] = steepest, h
     if moved_origin:
         _restore_origin(q, q_low, bodies, origin)
     return evaluations
@@ -360,12 +364,14 @@ def dop853_samples(
 ) -> int:  # fmt: skip
     """Advance by ``spans`` seconds (n,), one after the other, and keep q and v (n, coordinates) after each.
 
-    The rest is as :func:`dop853` has it. Returns how many spans were made.
+    Each begins with the step with which the one before ended. The rest is as :func:`dop853` has it. Returns
+    how many spans were made.
     """
+    step = np.zeros(1)
     for k in range(len(spans)):
         made = dop853(
             q, v, q_low, v_low, inverse_mass, damping, calls, places, spans[k], tolerance, period,
-            max_evaluations, bodies, steepness, floor,
+            max_evaluations, bodies, steepness, floor, step,
         )  # fmt: skip
         if made < 0:
             return k

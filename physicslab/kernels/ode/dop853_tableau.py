@@ -69,6 +69,9 @@ WEIGHTS_LOW = _table(
 )  # fmt: skip
 """Rounding remainders of the weights (13, 13): orbits would show the bias after 100 rounds."""
 
+FIRST = np.array([next((k for k in range(1, s) if row[k]), s) for s, row in enumerate(WEIGHTS)])
+"""The first stage after the start that has a weight in each (13,): those before it are left out."""
+
 NODES = np.array([math.fsum((*row, *low)) for row, low in zip(WEIGHTS, WEIGHTS_LOW, strict=True)])
 """The time of each stage, as a share of the step (13,)."""
 

@@ -40,7 +40,7 @@ def measure_scene(
     ours = make(scene.build())
     result = SceneResult(scene)
     result.engines[ours.title] = EngineResult(ours.title)
-    engines = [prepared(engine, scene) for engine in (ours, *_others(scene, peers, result))]
+    engines = [prepared(engine, scene) for engine in (ours, *build_others(scene, peers, result))]
     load_kernels(ours.world)
     judge = Judge(result)
     settling, begin = round(scene.seconds / ours.dt), math.ceil(_BEGIN_S / ours.dt)
@@ -77,7 +77,7 @@ def load_kernels(world: World) -> None:
         compile_kernels(stepper.kernels)
 
 
-def _others(scene: BenchScene, peers: Sequence[type[Peer]], result: SceneResult) -> list[Engine]:
+def build_others(scene: BenchScene, peers: Sequence[type[Peer]], result: SceneResult) -> list[Engine]:
     """Build the scene in the peers; write a failure into the results of those that cannot hold it."""
     others: list[Engine] = []
     for peer in () if scene.edit is not None else peers:

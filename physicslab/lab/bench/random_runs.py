@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from physicslab.lab.bench.engine import OURS, Engine, OtherEngine
-from physicslab.lab.bench.measure import Judge, load_kernels, spent_by_system
+from physicslab.lab.bench.engine import OURS, Engine
+from physicslab.lab.bench.measure import Judge, build_others, load_kernels, spent_by_system
 from physicslab.lab.bench.random_scenes import random_scene
 from physicslab.lab.bench.result import EngineResult, SceneResult, Spread, Times, take_turns
 from physicslab.lab.document import lab_document, machine_text
 from physicslab.lab.jobs import Job
 from physicslab.lab.peers.mirrors import PymunkMirror
-from physicslab.lab.peers.peer import CannotBuild, Peer
+from physicslab.lab.peers.peer import Peer
 from physicslab.lab.table import cell, table
 from physicslab.state.masses import Diverged
 from physicslab.world import World
@@ -74,13 +74,7 @@ def measure_random(seed: int, number: int, peers: Sequence[type[Peer]]) -> Job[R
     scene, features = random_scene(seed, number)
     ours = Engine(scene.build())
     result = SceneResult(scene, engines={OURS: EngineResult(OURS)})
-    engines = [ours]
-    for peer in peers:
-        result.engines[peer.title] = EngineResult(peer.title)
-        try:
-            engines.append(OtherEngine(scene.build(), peer))
-        except CannotBuild as error:
-            result.engines[peer.title].failure = str(error)
+    engines = [ours, *build_others(scene, peers, result)]
     load_kernels(ours.world)
     judge = Judge(result)
     try:

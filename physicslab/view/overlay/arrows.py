@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from physicslab.theme import Colour, Theme
 from physicslab.view.canvas.camera import Drawing
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
+from physicslab.view.picture.pen import divided
 
 MIN_LENGTH = 3.0
 """Arrows shorter than this are left out [px]."""
@@ -170,8 +171,7 @@ def dashes(start: Points, end: Points) -> tuple[Points, Points, NDArray[np.int64
     span = end - start
     length = np.hypot(span[:, 0], span[:, 1])
     count = np.maximum(np.ceil(length / (_DASH + _GAP)), 1.0).astype(np.int64)
-    line = np.repeat(np.arange(len(count)), count)
-    place = np.arange(len(line)) - np.repeat(np.cumsum(count) - count, count)
+    line, place = divided(count)
     unit = span / np.maximum(length, 1e-9)[:, None]
     high = length[line] - place * (_DASH + _GAP)
     low = np.maximum(high - _DASH, 0.0)

@@ -10,7 +10,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.state.joint_rows import ends_of
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Numbers, Points
-from physicslab.view.picture.pen import Pen, aside
+from physicslab.view.picture.pen import Pen, aside, divided
 from physicslab.view.picture.springs import place_of
 from physicslab.world import World
 
@@ -126,8 +126,7 @@ def _weave(pen: Pen, paths: Points) -> None:
         count = np.where(length < _FAR, length / (_STRAND * pen.unit), 0.0).astype(np.int64)
     if len(paths) > _MAX_WOVEN or not count.any():
         return
-    rope = np.repeat(np.arange(len(paths)), count)
-    nth = np.arange(len(rope)) - np.repeat(np.cumsum(count) - count, count)
+    rope, nth = divided(count)
     share = (nth + 0.5) * pieces / count[rope]
     piece = share.astype(np.int64)
     way = ways[rope, piece]

@@ -3,6 +3,7 @@
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.theme import Colour, Theme, mixed
 from physicslab.view.canvas.camera import Camera
@@ -19,6 +20,16 @@ _PLATE, _REACH = 9.0, 11.0
 
 
 _mixed = lru_cache(maxsize=256)(mixed)
+
+
+def divided(count: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return of which thing each part is, and its number within that; ``count`` (n,) says how many each has.
+
+    >>> [part.tolist() for part in divided(np.array([2, 0, 1]))]
+    [[0, 0, 2], [0, 1, 0]]
+    """
+    thing = np.repeat(np.arange(len(count)), count)
+    return thing, np.arange(len(thing)) - np.repeat(np.cumsum(count) - count, count)
 
 
 class Pen:
@@ -39,9 +50,9 @@ class Pen:
         """Return a colour with a share of the background in it: edges, and what is behind."""
         return _mixed(colour, self.theme.background, share)
 
-    def light(self, colour: Colour, share: float = 0.5) -> Colour:
-        """Return a colour with a share of the brightest one in it."""
-        return _mixed(colour, self.theme.shine, share)
+    def light(self, colour: Colour) -> Colour:
+        """Return a colour half way to the brightest one."""
+        return _mixed(colour, self.theme.shine, 0.5)
 
     def lines(self, start: Points, end: Points, colour: Colour, width: float | Numbers) -> None:
         """Add straight lines (n, 2) [px] of a width, in usual pixels."""

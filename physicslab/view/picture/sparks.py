@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.diagnostics.impact_table import read_impacts
+from physicslab.ecs.vector import rotated
 from physicslab.theme import Theme
 from physicslab.view.canvas.camera import Camera
-from physicslab.view.canvas.canvas import Canvas, Numbers, Points
+from physicslab.view.canvas.canvas import Canvas, Numbers
+from physicslab.view.picture.pen import divided
 
 _MAX_SPARKS = 400
 """The oldest sparks make room for new ones beyond that number."""
@@ -92,7 +94,7 @@ class Sparks:
         pace = (_WEAK_SPEED + (_STRONG_SPEED - _WEAK_SPEED) * strength) * speed / scale
         place = np.stack((impact["x"], impact["y"]), axis=1)
         self.place = np.concatenate((self.place, place))
-        self.velocity = np.concatenate((self.velocity, pace[:, None] * _turned(normal, direction)))
+        self.velocity = np.concatenate((self.velocity, pace[:, None] * rotated(normal, direction)))
         self.age = np.concatenate((self.age, np.zeros(len(impact))))
         self.life = np.concatenate((self.life, _MAX_LIFE * life))
         self.strength = np.concatenate((self.strength, strength))
@@ -161,17 +163,8 @@ def _sources(impacts: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int64], Nu
     impacts, lost = impacts[lost > _LEAST_LOSS], lost[lost > _LEAST_LOSS]
     strength = 1.0 - np.exp(-lost / _TYPICAL_LOSS)
     count = np.rint(_MIN_PER_IMPACT + (_MAX_PER_IMPACT - _MIN_PER_IMPACT) * strength).astype(np.int64)
-    source = np.repeat(np.arange(len(impacts)), count)
-    first = np.repeat(np.cumsum(count) - count, count)
-    return impacts[source], np.arange(len(source)) - first, strength[source]
-
-
-def _turned(normal: Points, angle: Numbers) -> Points:
-    """Return unit vectors (n, 2), turned counter-clockwise by angles [rad]."""
-    c, s = np.cos(angle), np.sin(angle)
-    x, y = normal[:, 0], normal[:, 1]
-    turned: Points = np.stack((c * x - s * y, s * x + c * y), axis=1)
-    return turned
+    source, nth = divided(count)
+    return impacts[source], nth, strength[source]
 
 
 def _chances(impacts: NDArray[Any], of_impact: NDArray[np.int64]) -> tuple[Numbers, Numbers, Numbers]:

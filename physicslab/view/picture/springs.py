@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Spring, Transform
+from physicslab.ecs.vector import rotated
 from physicslab.theme import Theme
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Numbers, Points
@@ -135,8 +136,5 @@ def place_of(world: World, rows: NDArray[np.int64], anchor: Points) -> Points:
     ``rows`` (n,) are those of the bodies; row 0 is the world itself.
     """
     transform = world.table(Transform)
-    angle = transform["angle"][rows]
-    c, s = np.cos(angle), np.sin(angle)
-    x, y = anchor[:, 0], anchor[:, 1]
-    place: Points = transform["position"][rows] + np.stack((c * x - s * y, s * x + c * y), axis=1)
+    place: Points = transform["position"][rows] + rotated(anchor, transform["angle"][rows])
     return place

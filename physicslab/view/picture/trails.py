@@ -13,6 +13,7 @@ from physicslab.theme import POINT_RADIUS, Theme
 from physicslab.view.canvas.camera import Camera
 from physicslab.view.canvas.canvas import Canvas, Look, Points
 from physicslab.view.picture.bodies import on_canvas, own_colours, point_radii
+from physicslab.view.picture.pen import divided
 from physicslab.world import World
 
 _SHADES = 16
@@ -158,8 +159,7 @@ def _curved(
     mean /= np.maximum(np.hypot(mean[:, 0], mean[:, 1]), 1e-9)[:, None]
     leave, arrive = way.copy(), way.copy()
     leave[1:][smooth], arrive[:-1][smooth] = mean[smooth], mean[smooth]
-    piece = np.repeat(np.arange(len(first)), count)
-    nth = np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)
+    piece, nth = divided(count)
 
     def place(share: NDArray[np.float64]) -> Points:
         s, size = share[:, None], length[piece][:, None]

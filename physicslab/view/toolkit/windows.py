@@ -40,6 +40,15 @@ _UNSEEN = "\u200b"
 """A space without width: it parts two signs ``#`` that Dear ImGui would take for a mark of its own."""
 
 
+def keep_inside(low: ImVec2, room: ImVec2) -> None:
+    """Move the window that is being built into a room [px] from a corner on, unless it is docked."""
+    place, size = imgui.get_window_pos(), imgui.get_window_size()
+    x = max(min(place.x, low.x + room.x - size.x), low.x)
+    y = max(min(place.y, low.y + room.y - size.y), low.y)
+    if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
+        imgui.set_window_pos(ImVec2(x, y))
+
+
 def widget_label(words: str, identity: str) -> str:
     r"""Return a label of Dear ImGui that shows words and is known by an identity, whatever either holds.
 
@@ -178,8 +187,9 @@ class Windows:
         return round(node.pos.x), round(node.pos.y), round(node.size.x), round(node.size.y)
 
     def stand_beside(
-        self, name: str, side: str, share: float, least: float, *, stacks: bool = True, again: bool = False
-    ) -> None:
+        self, name: str, side: str, share: float, least: float, *, stacks: bool = True, again: bool = False,
+        keeps_side: bool = False,
+    ) -> None:  # fmt: skip
         """Have the window that is begun next docked at a side of the world, if it never was elsewhere.
 
         Parameters
@@ -197,6 +207,8 @@ class Windows:
             Whether it shares its side with others that stand there, above and below each other.
         again : bool
             Whether it is docked there though it was elsewhere.
+        keeps_side : bool
+            Whether it stands at its side in a narrow world too, where both have the least that they need.
         """
         when = imgui.Cond_.always if again else self._when_put(name)
         internal = imgui.internal
@@ -206,7 +218,9 @@ class Windows:
         )
         if known is not None and when != imgui.Cond_.always:
             return
-        side = "below" if self._is_narrow else side
+        world = internal.dock_builder_get_central_node(self._sides)
+        fits = keeps_side and world is not None and world.size.x >= (least + LEAST_WORLD) * self.size
+        side = "below" if self._is_narrow and not fits else side
         imgui.set_next_window_dock_id(self._node(side, share, least * self.size, stacks=stacks), when)
         self._put.add(name)
 
@@ -259,13 +273,7 @@ class Windows:
         imgui.set_next_window_size_constraints(ImVec2(0.0, 0.0), room)
         name = self._titled(title)
         _, stays = imgui.begin(name, True, (_FLOATING | _BESIDE) if docks else (_FLOATING | _APART))
-        place, size = imgui.get_window_pos(), imgui.get_window_size()
-        x, y = (
-            max(min(place.x, low.x + room.x - size.x), low.x),
-            max(min(place.y, low.y + room.y - size.y), low.y),
-        )
-        if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
-            imgui.set_window_pos(ImVec2(x, y))
+        keep_inside(low, room)
         self.words.append(self.said(title))
         if docks:
             self.raise_tab(self._raised.get(name))

@@ -22,6 +22,8 @@ from physicslab.view.workbench.lesson_plots import plot_compared
 RIGHT, WRONG, RUN = "\uf00c", "\uf00d", "\uf04b"
 """Icons of a right answer, a wrong one, and of a run."""
 
+_FIRST = 1.4
+"""Width of the column of cases beside that of a number."""
 _COUNTS = 1e6
 """Whole numbers below this are written with all their figures."""
 
@@ -40,14 +42,16 @@ def build_compare(ui: Ui, lesson: OpenLesson, part: Compare, rows_of: Rows) -> N
     rows = [_row(rows_of, lesson, part, case) for case in cases]
     predicted = _predicted(lesson, part)
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
-    if imgui.begin_table(f"rows of {part.name}", 5 if predicted else 4, flags):
-        for n in range(5 if predicted else 4):
-            imgui.table_setup_column(f"{n}", imgui.TableColumnFlags_.width_stretch, 1.0 if n else 1.4)
-        heads = ("", *(["predicted"] if predicted else []), "theory", "measured", "gap")
+    heads = ("", *(["predicted"] if predicted else []), "theory", "measured", "gap")
+    if imgui.begin_table(f"rows of {part.name}", len(heads), flags):
+        widths = [imgui.calc_text_size(ui.said(head)).x for head in heads]
+        for head, width in zip(heads, widths, strict=True):
+            share = max(1.0, len(heads) * width / sum(widths)) if head else _FIRST
+            imgui.table_setup_column(head, imgui.TableColumnFlags_.width_stretch, share)
         imgui.table_next_row()
         for head in heads:
             imgui.table_next_column()
-            ui.faint(head, wrapped=False)
+            ui.faint(head)
         for n, (case, row) in enumerate(zip(cases, rows, strict=True), start=1):
             _build_row(ui, lesson, part, n, case, row, predicted)
         imgui.end_table()
@@ -81,16 +85,16 @@ def _build_row(
     what = values if case.values else Sentence("as run")
     words = Sentence("{n}. {case}", n=number, case=what)
     ui.text(Sentence("{case}: {note}", case=words, note=case.note) if case.note else words, wrapped=True)
-    imgui.table_next_column()
-    if predicted is not None:
-        if not case.values and isinstance(row, Row):
-            ui.text(_figure(predicted, row.unit), wrapped=True)
-        imgui.table_next_column()
     if row is None:
         button, tip = f"Run {part.name} {number}", f"Run it with {values}"
         ui.button(button, tip, lesson_actions.begin_run, part.run,
                   case, shown=Sentence("{icon}  Run", icon=RUN), enabled=not lesson.running)  # fmt: skip
         return
+    imgui.table_next_column()
+    if predicted is not None:
+        if not case.values and isinstance(row, Row):
+            ui.text(_figure(predicted, row.unit), wrapped=True)
+        imgui.table_next_column()
     if isinstance(row, str):
         ui.text(row, ui.theme.error, wrapped=True)
         return

@@ -1,6 +1,7 @@
 """The panel of a lesson: predict, run, compare, explain, one below the other as far as they are done."""
 
 from functools import partial
+from typing import TypeGuard
 
 from imgui_bundle import ImVec2, imgui
 
@@ -14,7 +15,7 @@ from physicslab.lessons.words import formula, sureness_words
 from physicslab.view.canvas.quantities import written_unit
 from physicslab.view.controls import lesson_actions
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.window.lesson import OpenLesson
+from physicslab.view.window.lesson import Key, OpenLesson, Trial
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.lesson_compare import RIGHT, RUN, WRONG, Rows, build_compare
 from physicslab.view.workbench.lesson_plots import CurveField, plot_run
@@ -44,6 +45,10 @@ class LessonPanel:
         self._curves: dict[str, CurveField] = {}
         self._graded: dict[str, tuple[object, Graded]] = {}
         self._rows: Rows = {}
+        self._showing: tuple[str, Key | None] = (
+            "",
+            None,
+        )  # a question, and the run that shows its answer wrong
         self._parts, self._step = 0, -1
 
     def build(self, ui: Ui, window: Window, lesson: OpenLesson) -> None:
@@ -51,7 +56,7 @@ class LessonPanel:
         if lesson is not self._lesson:
             self._lesson = lesson
             self._begin()
-        ui.stand_beside("Lesson", "right", _SHARE, _LEAST)
+        ui.stand_beside("Lesson", "right", _SHARE, _LEAST, keeps_side=True)
         close = partial(window.do_next, lesson_actions.leave_lesson)
         with ui.floating("Lesson", window.framing.middle, close, docks=True):
             size = ui.extent(_SIZE[0] * ui.size, _SIZE[1] * ui.size)
@@ -247,10 +252,17 @@ class LessonPanel:
             own = language(lesson.lesson.language)
             told = Sentence("{icon}  Show it: {what}", icon=RUN, what=formula(own, shown.text))
             words = told if shown.values else Sentence("{icon}  Show it again", icon=RUN)
-            ui.button(f"Show {name}", "A run that shows it", lesson_actions.begin_run, part.run, shown,
-                      shown=words, enabled=not lesson.running)  # fmt: skip
+            if ui.button(f"Show {name}", "A run that shows it", lesson_actions.begin_run, part.run, shown,
+                         shown=words, enabled=not lesson.running):  # fmt: skip
+                self._showing = name, (part.run.line, shown.values)
             if shown.note:
                 ui.text(proper(shown.note), wrapped=True)
+            if self._showing[0] == name and self._is_beside(lesson.trial):
+                _build_trial(ui, lesson, lesson.trial)
+
+    def _is_beside(self, trial: Trial | None) -> TypeGuard[Trial]:
+        """Whether a run in another case is shown below the answer that it refutes, not in its own place."""
+        return trial is not None and bool(trial.case.values) and self._showing[1] == trial.key
 
     def _grade(self, lesson: OpenLesson, part: Question, name: str, kind: str) -> Graded:
         answer, kept = lesson.given[name], self._graded.get(name)
@@ -269,7 +281,7 @@ class LessonPanel:
         elif part.until is not None:
             _title(ui, RUN, Sentence("Run until {condition}", condition=formula(own, part.until.text)))
         trial, is_open = lesson.trial, lesson.open_to(part)
-        mine = trial is not None and trial.run.line == part.line
+        mine = trial is not None and trial.run.line == part.line and not self._is_beside(trial)
         made = lesson.made(part)
         case = formula(own, part.case.text)
         if part.case.values:
@@ -283,14 +295,7 @@ class LessonPanel:
         shown = trial if mine else made
         if shown is None:
             return
-        if not shown.ended:
-            imgui.progress_bar(shown.share, ImVec2(-1.0, 0.5 * ui.size), "")
-        if shown.failure:
-            ui.text(shown.failure, ui.theme.error, wrapped=True)
-        if shown.case.values:
-            values = (f"{name} = {formula(own, text)}" for name, text in shown.case.values)
-            ui.faint(f"Shown: {', '.join(values)}")
-        plot_run(ui, lesson, shown)
+        _build_trial(ui, lesson, shown)
         for question in lesson.predictions(part) if made is not None else ():
             if question.name in lesson.given:
                 self._build_verdict(ui, lesson, question, question.name, "predict")
@@ -367,6 +372,19 @@ class LessonPanel:
             self._refused[part.name] = lesson.answer(part.name, part, {"text": text})
         self._say_refused(ui, part.name)
         self._build_pass(ui, lesson, part)
+
+
+def _build_trial(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
+    """Build what is known of a run so far."""
+    if not trial.ended:
+        imgui.progress_bar(trial.share, ImVec2(-1.0, 0.5 * ui.size), "")
+    if trial.failure:
+        ui.text(trial.failure, ui.theme.error, wrapped=True)
+    if trial.case.values:
+        own = language(lesson.lesson.language)
+        values = (f"{name} = {formula(own, text)}" for name, text in trial.case.values)
+        ui.faint(f"Shown: {', '.join(values)}")
+    plot_run(ui, lesson, trial)
 
 
 def _title(ui: Ui, icon: str, words: str) -> None:

@@ -161,12 +161,13 @@ def _with_unit(words: str, unit: str) -> str:
 def _begin(ui: Ui, name: str, across: str, along: str, flags: int = _FLAGS) -> bool:
     """Begin a graph with what it shows written above it."""
     implot.get_style().plot_padding = ImVec2(0.3 * ui.size, 0.3 * ui.size)
+    implot.get_style().legend_padding = ImVec2(0.3 * ui.size, 0.1 * ui.size)
     ui.faint(along, wrapped=False)
     if not implot.begin_plot(f"##{name}", ImVec2(-1.0, _HEIGHT * ui.size), flags):
         return False
     fit = implot.AxisFlags_.auto_fit
     implot.setup_axes(ui.said(across), "", fit, fit)
-    implot.setup_legend(implot.Location_.north_east, implot.LegendFlags_.horizontal)
+    implot.setup_legend(implot.Location_.north, implot.LegendFlags_.horizontal | implot.LegendFlags_.outside)
     ui.words.append(across)
     return True
 

@@ -14,7 +14,7 @@ from physicslab.view.canvas.canvas import Rect
 from physicslab.view.controls import dashboard_actions
 from physicslab.view.toolkit.toolkit import Toolkit
 from physicslab.view.toolkit.ui import Ui
-from physicslab.view.toolkit.windows import widget_label
+from physicslab.view.toolkit.windows import keep_inside, widget_label
 from physicslab.view.window.dashboard import GraphShown
 from physicslab.view.window.fitting import gate_span
 from physicslab.view.window.record import Key
@@ -72,10 +72,7 @@ class GraphPanels:
         ui.words.append(title)
         ui.raise_tab()
         hovered: float | None = None
-        place, size = imgui.get_window_pos(), imgui.get_window_size()
-        x, y = max(min(place.x, room.x - size.x), 0.0), max(min(place.y, room.y - size.y), 0.0)
-        if (x, y) != (place.x, place.y) and not imgui.is_window_docked():
-            imgui.set_window_pos(ImVec2(x, y))
+        keep_inside(ImVec2(0.0, 0.0), room)
         if shown:
             free, wanted = imgui.get_content_region_avail(), _ROOMY[1] + _PER_LINE * len(graph.lines)
             is_roomy = free.x >= _ROOMY[0] * ui.size and free.y >= wanted * ui.size
