@@ -256,3 +256,22 @@ def test_a_number_as_placed_that_cannot_be_is_refused_with_the_joint_that_has_it
     world = world_with((Rod, {"a": 1}))
     with pytest.raises(InvalidValue, match=r"^joint 1: Rod\.length = 0\.0: must be a finite number > 0 m"):
         world.synchronise()
+
+
+@pytest.mark.parametrize(
+    ("ratio", "hung", "warns"), [(1e3, False, False), (1e4, False, True), (1e4, True, False)]
+)
+def test_a_body_that_stands_with_a_far_heavier_one_welded_on_is_named(
+    ratio: float, hung: bool, warns: bool
+) -> None:
+    world = World(*standard_systems(), simulation=SimulationConfig(contacts="soft"))
+    box(world, (0.0, -0.5), width=9.0, height=1.0, static=True)
+    light = box(world, (0.0, 0.5), width=1.0, height=1.0)
+    heavy = box(world, (0.0, 1.5), width=1.0, height=1.0, mass=ratio)
+    world.spawn(Weld(a=light, b=heavy, anchor_a=(0.0, 0.5), anchor_b=(0.0, -0.5)))
+    if hung:
+        world.spawn(Weld(b=heavy, anchor_a=(0.0, 1.5)))
+    world.run(steps=2)
+    advices = [one for one in told(world) if "welded on" in one]
+    assert len(advices) == warns
+    assert all("mass ratio): 1e+04" in one and 'contacts = "rigid"' in one for one in advices)

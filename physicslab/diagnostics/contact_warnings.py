@@ -89,6 +89,26 @@ class ContactGraph:
             ratio[towards_light < _COSINE_ABOVE] = 0.0
         return ratio
 
+    def carrying(self, world: World) -> Iterator[tuple[int, float]]:
+        """Yield bodies that stand on others, each with the mass welded on it as a multiple of its own.
+
+        A whole whose heaviest body stands on something itself is left out.
+        """
+        wholes, masses = world.joints.wholes, world.table(Mass)["mass"]
+        if not wholes or world.physics.gravity_mode != "linear" or not world.physics.gravity:
+            return
+        along = self.normal @ np.array(tuple(world.physics.gravity.normalized))
+        a, b = self.a[self.touching], self.b[self.touching]
+        standing = {*a[along > _COSINE_ABOVE].tolist(), *b[along < -_COSINE_ABOVE].tolist()}
+        members: dict[int, list[int]] = {}
+        for entity, whole in wholes.items():
+            members.setdefault(whole, []).append(world.entity_index.row_of.get(entity, 0))
+        for rows in members.values():
+            heaviest = max(rows, key=lambda row: float(masses[row]))
+            if heaviest not in standing and (world.bodies.inverse_mass[rows] > 0.0).all():
+                for row in sorted(standing.intersection(rows)):
+                    yield int(world.entity_index.entities[row]), float(masses[heaviest] / masses[row])
+
 
 def contact_graph(world: World) -> ContactGraph:
     """Return the near pairs of the last step."""

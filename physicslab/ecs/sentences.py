@@ -177,6 +177,7 @@ SENTENCES = {
     "no_overlap_at_start": "bodies that do not overlap at the start",
     "or_smaller_dt": "{setting}, or a smaller simulation.dt",
     "mass_ratio": "carries a body so much heavier that contacts cannot hold it (mass ratio)",
+    "welded_on": "has a body welded on that is so much heavier that contacts cannot carry it (mass ratio)",
     "passes_sizes": "passes so many sizes of a body in a substep that impacts after the first may be missed",
     "turns_far": "turns so far in a substep that its corners may hit anywhere",
     "falls_far": (

@@ -1,7 +1,7 @@
 """The order in which rows of joints are solved, and which of them at once."""
 
 import heapq
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,9 +11,10 @@ from physicslab.kernels.joints.blocks import ENTRY, FIRST, GIVES_WAY, GROUP, NOD
 from physicslab.kernels.joints.soft import HOLD, LIMIT, MOTOR
 from physicslab.state.joint_rows import Row
 
-_MOST = 100_000
+_MOST, _OF_SINGLE = 100_000, 3
 """How many updates of a factorisation a block may take, each of 16 multiplications: more takes a millisecond
-in each substep. Beyond, its joints are solved one by one, and give way as springs do."""
+in each substep. Beyond, its joints are solved one by one, and give way as springs do. How many times as many
+where each joint is one row, as a rod: an update is then one multiplication."""
 
 type _Table = NDArray[np.int64]
 
@@ -38,7 +39,7 @@ class Blocks(NamedTuple):
     targets : int64 array (u,)
         The entry that changes by each two entries of a column, as that is eliminated.
     groups : int64 array (b + 1, GROUP)
-        Where the nodes of each block begin, and whether its rows give way.
+        Where the nodes of each block begin, whether its rows give way, whether each node is one row.
     bounded : int64 array (p,)
         Nodes of limits and motors, block by block.
     """
@@ -78,7 +79,9 @@ def order_rows(rows: Sequence[Row], joints: Sequence[range], moves: Sequence[boo
     made = _Blocks(rows, np.bincount(holding, minlength=len(moves)))
     for group in _groups(held):
         sizes = [len(own) for own in nodes]
-        order = _eliminated(group, held, sizes, motors) or _eliminated(group, held, sizes, range(0))
+        most = _MOST * (_OF_SINGLE if _is_single(group, nodes) else 1)
+        order = _eliminated(group, held, sizes, motors, most)
+        order = order or _eliminated(group, held, sizes, range(0), most)
         if order is not None:
             made.add(order, nodes)
             continue
@@ -109,6 +112,11 @@ def _nodes_of(
     return holding + motors, range(len(holding), len(holding) + len(motors))
 
 
+def _is_single(group: Iterable[int], nodes: Sequence[Sequence[_Node]]) -> bool:
+    """Whether each node of some joints has one row."""
+    return all(len(node.rows) == 1 for joint in group for node in nodes[joint])
+
+
 def _groups(held: Sequence[Sequence[int]]) -> list[list[int]]:
     """Return the joints that hold on to each other, by the bodies that each holds."""
     of: dict[int, list[int]] = {}
@@ -134,18 +142,18 @@ def _groups(held: Sequence[Sequence[int]]) -> list[list[int]]:
 
 
 def _eliminated(
-    group: Sequence[int], held: Sequence[Sequence[int]], sizes: Sequence[int], motors: range
+    group: Sequence[int], held: Sequence[Sequence[int]], sizes: Sequence[int], motors: range, most: int
 ) -> list[tuple[int, list[int]]] | None:
     """Return the joints of a group as they are eliminated, each with the later ones that it then acts on.
 
     The joint with the fewest neighbours is next (Tinney & Walker, Proc. IEEE 55, 1967, 1801): trees from
-    their tips on; ``motors`` come last. ``None`` where that would take too long.
+    their tips on; ``motors`` come last. ``None`` where that would take more than ``most`` updates.
     """
     of: dict[int, set[int]] = {}
     for joint in group:
         for body in held[joint]:
             of.setdefault(body, set()).add(joint)
-    if any(len(beside) ** 3 > 6 * _MOST for beside in of.values()):  # at a body all act on each other
+    if any(len(beside) ** 3 > 6 * most for beside in of.values()):  # at a body all act on each other
         return None
     beside = {joint: set[int]().union(*(of[body] for body in held[joint])) - {joint} for joint in group}
     waiting = [(joint in motors, len(others), joint) for joint, others in beside.items()]
@@ -160,7 +168,7 @@ def _eliminated(
         later = beside.pop(joint)
         width = sizes[joint] + sum(sizes[other] for other in later)
         cost += sizes[joint] * width * width // 2
-        if cost > _MOST:
+        if cost > most:
             return None
         order.append((joint, sorted(later)))
         for other in order[-1][1]:
@@ -184,7 +192,7 @@ class _Blocks:
         self._entries: list[tuple[int, int]] = []
         self._shared: list[tuple[int, int]] = []
         self._targets: list[int] = []
-        self._groups: list[tuple[int, int, int]] = []
+        self._groups: list[tuple[int, ...]] = []
         self._bounded: list[int] = []
 
     def add(
@@ -196,7 +204,8 @@ class _Blocks:
     ) -> None:
         """Add a block of joints in an order, each with those that are later in it and that it acts on."""
         first, place, ends = len(self._nodes), dict[int, range](), dict[int, dict[int, int]]()
-        self._groups.append((first, len(self._bounded), int(gives_way)))
+        single = _is_single((joint for joint, _ in order), nodes)
+        self._groups.append((first, len(self._bounded), int(gives_way), int(single)))
         for joint, _ in order:
             place[joint] = range(first, first + len(nodes[joint]))
             first = place[joint].stop
@@ -239,7 +248,7 @@ class _Blocks:
         body = np.array(self._body, np.int64)
         self._nodes.append((len(self._rows), 0, *self._counts()))
         self._entries.append((0, len(self._shared)))
-        self._groups.append((len(self._nodes) - 1, len(self._bounded), 0))
+        self._groups.append((len(self._nodes) - 1, len(self._bounded), 0, 0))
         return Blocks(
             _table(self._nodes, NODE), _table(self._terms, OF_NODE), body, self._beside[body],
             _table(self._entries, ENTRY), _table(self._shared, 2), np.array(self._targets, np.int64),

@@ -115,9 +115,10 @@ def _heaviest_load(near: Near, inverse_mass: Numbers, force: Vectors, sunk: floa
 
 @inlined
 def _carried_load(near: Near, joints: Joints, inverse_mass: Numbers, force: Vectors, sunk: float) -> float:
-    """Return the same for a far heavier body that joints hold at a light one which touches something.
+    """Return the same for a far heavier body that joints hold at a light one which is near something.
 
-    A share of the weight of the heaviest body of a block is taken to press on each of its light ones.
+    A share of the weight of the heaviest body of a block is taken to press on each of its light ones, and
+    before they touch too: with substeps that become short only then, what has landed jumps up again.
     """
     largest, heaviest = 0.0, near.angular_before  # nothing is noted in it at the end of a step
     for i in range(len(heaviest)):
@@ -134,12 +135,12 @@ def _carried_load(near: Near, joints: Joints, inverse_mass: Numbers, force: Vect
                 heaviest[joints.body[e]] = body
     for p in range(near.counts[RECORDED]):
         manifold = near.manifolds[p]
-        if manifold.count <= 0:
-            continue
         for light, sign in ((manifold.a, 1.0), (manifold.b, -1.0)):
             heavy = int(heaviest[light])
             if heavy >= 0:
                 press = sign * (force[heavy, 0] * manifold.normal_x + force[heavy, 1] * manifold.normal_y)
+                if manifold.count <= 0:
+                    press = math.hypot(force[heavy, 0], force[heavy, 1])
                 if press * inverse_mass[light] * sunk > _HARDLY_SUNK * manifold.size:
                     own = math.hypot(force[light, 0], force[light, 1])
                     all_of = math.hypot(force[heavy, 0], force[heavy, 1])
