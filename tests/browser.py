@@ -23,6 +23,16 @@ _FLAGS = (
     "--no-proxy-server", "--host-resolver-rules=MAP * ~NOTFOUND", "--remote-debugging-pipe",
 )  # fmt: skip
 _PATIENCE_S = 60.0
+_CROWDED = """(() => {
+  const shown = [...document.querySelectorAll("button, select, label, legend, dt, dd, h1, h2, h3, th, td, p")]
+    .filter(one => one.offsetParent).map(one => [one, one.getBoundingClientRect()]);
+  const cut = shown.filter(([one]) => one.clientWidth && one.scrollWidth > one.clientWidth + 1);
+  const upon = shown.filter(([one, a]) => shown.some(([two, b]) =>
+    !one.contains(two) && !two.contains(one) && a.left < b.right - 1 && b.left < a.right - 1
+    && a.top < b.bottom - 1 && b.top < a.bottom - 1));
+  return [...cut, ...upon].map(([one]) => one.outerHTML);
+})()"""
+"""The texts of a page that are cut, or lie upon others."""
 _CODES = {"Tab": 9, "Enter": 13, " ": 32, "End": 35, "ArrowUp": 38, "ArrowDown": 40}
 """Keys that act only by their codes."""
 
@@ -170,6 +180,11 @@ class Browser:
         """Press the left mouse button at a place of the page [px], and let it go."""
         for kind in ("mousePressed", "mouseReleased"):
             self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+    def crowded(self) -> list[str]:
+        """Return what of the page's texts is cut or lies upon others, as HTML."""
+        found: list[str] = self.value(_CROWDED)
+        return found
 
     def picture(self, *, whole: bool = False) -> bytes:
         """Return what is seen, or the whole page, as PNG."""

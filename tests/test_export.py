@@ -49,12 +49,18 @@ def unpack(text: str, rows: int) -> NDArray[np.float32]:
 
 def document(page: bytes) -> dict[str, Any]:
     """Return what the player of a page with one run is given."""
-    found = re.search(r'<script id="run" type="application/json">(.*?)</script>', page.decode(), re.DOTALL)
-    assert found is not None
-    read: dict[str, Any] = json.loads(found[1])
+    read = all_of(page)
     assert len(read["runs"]) == 1
     run: dict[str, Any] = read["runs"][0]
     return run | {"view": read["view"]}
+
+
+def all_of(page: bytes) -> dict[str, Any]:
+    """Return what the player of a page is given."""
+    found = re.search(r'<script id="run" type="application/json">(.*?)</script>', page.decode(), re.DOTALL)
+    assert found is not None
+    read: dict[str, Any] = json.loads(found[1])
+    return read
 
 
 # ---- what a page holds -------------------------------------------------------------------------------------
@@ -103,6 +109,14 @@ def test_a_page_holds_the_numbers_of_the_run(
 def test_every_spaces_the_instants(tmp_path: Path) -> None:
     read = document(exported(tmp_path / "page.html", "drop", "--seconds", "1", "--every", "0.25"))
     assert unpack(read["data"], read["instants"])[:, 0].tolist() == [0.0, 0.25, 0.5, 0.75, 1.0]
+
+
+def test_many_runs_have_thirty_instants_a_second(tmp_path: Path) -> None:
+    vary = ("--vary", "ball.Mass.mass=1:2:2")
+    read = all_of(exported(tmp_path / "page.html", "drop", "--seconds", "1", *vary))
+    for run in read["runs"]:
+        times = unpack(run["data"], run["instants"])[:, 0]
+        assert np.abs(times - np.arange(31) / 30.0).max() < 1e-6
 
 
 def test_a_page_goes_on_from_the_time_of_its_scene(tmp_path: Path) -> None:
@@ -278,7 +292,7 @@ REFUSED = [
     (
         ["drop", "--html", "x.html", "--seconds", "100",
          "--vary", "ball.Mass.mass=1:2:40", "--vary", "ball.Material.restitution=0:1:40"],
-        "6,000 instants of 1 bodies in 1600 runs; a page must hold at most 2,000,000 poses",
+        "3,000 instants of 1 bodies in 1600 runs; a page must hold at most 2,000,000 poses",
     ),
     (["drop", "--gif", "x.gif", "--vary", "ball.Mass.mass=1:2:3"], "--vary: is for --html"),
     (["drop", "--html", "x.html", "--set", "ball.Mass.mass=0"], 'Mass.mass = "0": must be a finite number'),

@@ -11,6 +11,7 @@ import pygame
 import pytest
 from browser import CHROMIUM, Browser
 from exporting import exported, recorded
+from pseudo import PSEUDO
 
 from physicslab import World, load_scene, save_scene
 from physicslab.components import (
@@ -128,6 +129,19 @@ def test_a_clicked_body_shows_its_values(page: Path, browser: Browser) -> None:
     assert amounts["kinetic energy"] == pytest.approx(kinetic, rel=1e-6)
     assert amounts["potential, 0 at the origin"] == pytest.approx(2.0 * 9.81 * y, rel=1e-6)
     assert shown["kinetic energy"].endswith(" J")
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_texts_twice_as_long_are_neither_cut_nor_upon_each_other(
+    width: int, height: int, tmp_path: Path, browser: Browser, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("physicslab.export.page.language", lambda code: PSEUDO)
+    exported(tmp_path / "page.html", "sandbox", "--seconds", "0.5")
+    browser.open(tmp_path / "page.html", width=width, height=height, still=True)
+    browser.key("b")
+    assert "PPllaayy" in browser.value("document.body.innerHTML")
+    assert browser.value("document.documentElement.scrollWidth") <= width
+    assert browser.crowded() == []
 
 
 @pytest.mark.parametrize("dark", [True, False], ids=["dark", "light"])

@@ -193,6 +193,17 @@ def test_dropped_time_is_announced_and_then_forgotten() -> None:
     assert not any("skipped" in words for words in canvas.words)
 
 
+def test_time_that_was_dropped_while_the_physics_was_prepared_is_no_slow_computer() -> None:
+    desk, canvas = recorded(empty_world())
+    desk.window.preparing = 3.0
+    desk.frames(10, elapsed=0.2)
+    assert any("slow motion until then" in words for words in canvas.words)
+    desk.window.preparing = None
+    canvas.calls.clear()
+    desk.frames(3)
+    assert not any("skipped" in words for words in canvas.words)
+
+
 def test_numbers_are_read_five_times_a_second_and_not_more_often() -> None:
     world = empty_world()
     circle(world, (0, 50))

@@ -3,12 +3,13 @@
 import ast
 import re
 from dataclasses import replace
-from gettext import NullTranslations
 from pathlib import Path
+from typing import Any
 
 import pygame
 import pytest
 from desk import SETTLED, click, sized, tap
+from pseudo import PSEUDO, Doubled
 from window_texts import is_known, tables, without_translation, written
 
 import physicslab
@@ -18,23 +19,16 @@ from physicslab.languages.language import Language, language
 from physicslab.lessons.catalogue import find_lesson
 from physicslab.lessons.lesson import Question
 from physicslab.lessons.worksheet import worksheet
+from physicslab.view.canvas.canvas import Rect
 from physicslab.view.controls.lesson_actions import go_to_step, open_lesson
 from physicslab.view.controls.tools import PALETTE
+from physicslab.view.overlay import banners
+from physicslab.view.overlay.banners import Message
 
 PACKAGE = Path(physicslab.__path__[0])
 SAYING = {"say": 1, "say_count": 2}
 """What translates, and how many texts it takes."""
 GAP = re.compile(r"\{[a-z_]+\}")
-
-
-class Doubled(NullTranslations):
-    """A pseudo-language: each letter of a text stands twice, so that it takes twice the room."""
-
-    def gettext(self, message: str) -> str:
-        return re.sub(r"\{[a-z_]+\}|\w", lambda found: found[0] * (1 if "{" in found[0] else 2), message)
-
-    def ngettext(self, msgid1: str, msgid2: str, n: int) -> str:
-        return self.gettext(msgid1 if n == 1 else msgid2)
 
 
 def said() -> dict[tuple[str, ...], str]:
@@ -88,20 +82,11 @@ def test_hardly_a_text_that_the_view_writes_is_without_translation(code: str) ->
     assert len(without_translation(code, texts)) <= 0.03 * len(texts)
 
 
-class Pseudo(Doubled):
-    """The same, for texts of which some are doubled already: those stay."""
-
-    def gettext(self, message: str) -> str:
-        words = re.findall(r"[^\W\d]+", message)
-        return message if all(word[::2] == word[1::2] for word in words) else super().gettext(message)
-
-
 @pytest.mark.parametrize("keys", [(), ("f1",), ("f3",), ("z",), ("ctrl+k",), ("ctrl+l",)])
 def test_texts_twice_as_long_keep_widgets_apart_and_within_the_window(
     keys: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    pseudo = Language("qps", Pseudo())
-    monkeypatch.setattr("physicslab.view.workbench.interface.language", lambda code: pseudo)
+    monkeypatch.setattr("physicslab.view.workbench.interface.language", lambda code: PSEUDO)
     desk = sized((1280, 720), load_scene("drop"))
     for key in keys:
         tap(desk, key.removeprefix("ctrl+"), pygame.KMOD_CTRL if "ctrl+" in key else 0)
@@ -128,8 +113,7 @@ def test_texts_twice_as_long_stay_within_the_panel_of_a_lesson(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    pseudo = Language("qps", Pseudo())
-    monkeypatch.setattr("physicslab.view.workbench.interface.language", lambda code: pseudo)
+    monkeypatch.setattr("physicslab.view.workbench.interface.language", lambda code: PSEUDO)
     desk = sized((1280, 720))
     desk.window.do_next(open_lesson, name)
     desk.frames(SETTLED)
@@ -149,6 +133,42 @@ def test_texts_twice_as_long_stay_within_the_panel_of_a_lesson(
         outside = [label for label, (x, _, width, _) in desk.ui.places.items() if x < 0 or x + width > 1280]
         assert not outside
     assert seen >= 3
+
+
+NOTICES = (
+    'Not opened: fall.md: line 4: head: level = "4": must be a whole number from 1 to 3',
+    "No run: the run did not come to 'ball.y < 0' within 60 s",
+    "Answers cannot be kept: Permission denied",
+)
+
+
+@pytest.mark.parametrize("size", [(1280, 720), (800, 600)])
+@pytest.mark.parametrize("notice", NOTICES)
+def test_notices_twice_as_long_are_whole_and_apart(
+    notice: str, size: tuple[int, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[tuple[list[Message], list[pygame.Rect]]] = []
+    draw = banners.draw_messages
+
+    def spy(messages: list[Message], *arguments: Any) -> list[Rect]:
+        rects = draw(messages, *arguments)
+        drawn.append((messages, [pygame.Rect(rect) for rect in rects]))
+        return rects
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(banners, "draw_messages", spy)
+    monkeypatch.setattr("physicslab.view.workbench.interface.language", lambda code: PSEUDO)
+    desk = sized(size)
+    desk.window.do_next(open_lesson, "billiards")
+    desk.frames(SETTLED)
+    desk.window.notify(notice, 60.0, failed=True)
+    desk.frames(SETTLED)
+    messages, rects = drawn[-1]
+    whole = PSEUDO.reword(notice).split()
+    assert any("".join(message.lines).replace(" ", "") == "".join(whole) for message in messages)
+    assert len(rects) == len(messages) == 2, "the notice, and that time stands still"
+    room = pygame.Rect(desk.window.framing.room())
+    assert all(room.contains(rect) for rect in rects) and not rects[0].colliderect(rects[1])
 
 
 @pytest.mark.parametrize("code", languages()[1:])

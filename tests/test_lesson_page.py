@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from browser import CHROMIUM, Browser
+from pseudo import PSEUDO
 
 from physicslab.cli import main
 from physicslab.lessons.answers import grade, read_answers
@@ -186,6 +187,21 @@ def answer(browser: Browser, name: str, *keys: str, sure: bool = True) -> None:
         browser.key(" ")
     browser.tab_to("it.className === 'main'")
     browser.key("Enter")
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_texts_twice_as_long_are_neither_cut_nor_upon_each_other(
+    width: int, page: Path, browser: Browser, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in ("lessons.page", "export.page"):
+        monkeypatch.setattr(f"physicslab.{module}.language", lambda code: PSEUDO)
+    long = page.with_name("long.html")
+    assert main(["lesson", str(page.with_suffix(".md")), "--page", str(long)]) == 0
+    browser.open(long, width=width, height=844, still=True)
+    assert "PPrreeddiicctt" in browser.value("document.body.innerHTML")
+    browser.value("document.querySelectorAll('.step > *').forEach(one => { one.hidden = false; })")
+    assert browser.value("document.documentElement.scrollWidth") <= width
+    assert browser.crowded() == []
 
 
 def test_by_keyboard_alone_from_prediction_to_grade(page: Path, browser: Browser, tmp_path: Path) -> None:

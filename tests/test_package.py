@@ -82,6 +82,7 @@ def test_the_base_runs_and_exports_without_the_window(wheel: Path, tmp_path: Pat
         ("--gif", "export", "drop", "--gif", "drop.gif"),
         ("the window",),
         ("circles_10_window", "bench", "circles_10_window"),
+        ("--open", "sweep", "drop", "--vary", "ball.Mass.mass=1:2:2", "--open", "1"),
     ):
         done = installed.run(*arguments)
         wanted = "needs the package pygame, which is not installed: pip install 'physicslab[window]'"

@@ -293,6 +293,21 @@ def test_what_is_waited_for_is_there_before_the_rest(mark: Path, monkeypatch: py
         assert DARK.panel in corner
 
 
+@needs_priorities
+def test_workers_have_usual_priority_until_what_moves_the_scene_is_compiled(
+    mark: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, ASLEEP))
+    given: list[bool] = []
+    monkeypatch.setattr(Warmup, "yield_to_others", lambda self, yields: given.append(yields))
+    with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
+        waiting._start()
+        for pending in ([motion.clear], []):
+            monkeypatch.setattr(waiting.scenes, "pending", lambda pending=pending: pending)
+            waiting.advance(DARK)
+    assert given == [False, True]
+
+
 def test_a_worker_that_ends_before_it_is_given_anything_is_no_error(mark: Path) -> None:
     warmup = Warmup(1, (sys.executable, "-c", "pass"))
     process = subprocess.Popen(

@@ -122,7 +122,8 @@ def _extent(name: str, every: float, arguments: Namespace, tiers: Tiers) -> Box:
 
 
 _DEFAULT_S = 10.0
-_EVERY_S = 1.0 / 60.0
+_EVERY_S, _EVERY_OF_MANY_S = 1.0 / 60.0, 1.0 / 30.0
+"""Time between two instants of a page, and of one that holds many runs [s]."""
 _SIZE = (960, 540)
 """Width and height of a film [px]."""
 _MAX_RATE = 1000.0
@@ -138,7 +139,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     kind("--mp4", metavar="FILE", help="a film in H.264; needs ffmpeg, which the extra video brings")
     seconds = f"how long, in the scene's time ({_DEFAULT_S:g}); the last step may be shorter"
     add("--seconds", metavar="T", type=positive_duration, default=_DEFAULT_S, help=seconds)
-    spacing = "time between two instants (1/60, in a film 1/30; every step where steps are longer)"
+    spacing = (
+        "time between two instants (1/60, in a film or with --vary 1/30; every step where steps are longer)"
+    )
     add("--every", metavar="S", type=positive_duration, help=spacing)
     rate = "pictures of a film a second, where it is not to play as fast as the run (a GIF has 50 at most)"
     add("--fps", metavar="N", type=_rate, help=rate)
@@ -181,7 +184,7 @@ def execute(arguments: Namespace) -> int:
             raise CommandError(
                 f"--{option}: is for --gif and --mp4; a page has a size and a speed of its own"
             )
-    arguments.every = arguments.every or _EVERY_S
+    arguments.every = arguments.every or (_EVERY_OF_MANY_S if arguments.vary else _EVERY_S)
     make_page(arguments)
     return 0
 

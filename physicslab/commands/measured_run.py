@@ -98,7 +98,7 @@ class MeasuredRun:
         length = (steps or 0) * dt if seconds is None else seconds
         end = self._start + length
         whole = round(length / dt)
-        stride = 1 if self._keeper is not None else self._stride(whole)
+        stride = self._stride(whole) if self._keeper is None else self._kept_stride(dt)
         patience = math.inf if self._at_most is None else _PATIENCE_S
         stepping = world.stepping(seconds=seconds, steps=steps, stride=stride, patience=patience)
         self._measure_every, self._look_every = (max(1, whole // (stride * n)) for n in (_SAMPLES, _LOOKS))
@@ -126,6 +126,11 @@ class MeasuredRun:
         """Return how many of so many steps are made between two measurements."""
         each = (len(self._world.entity_index) - 1) * self._world.simulation.substeps
         return max(1, min(whole // _SAMPLES, _WORK // max(each, 1)))
+
+    def _kept_stride(self, dt: float) -> int:
+        """Return how many steps are made between two states that are kept, where that is a whole number."""
+        steps = round(self._every / dt)
+        return steps if steps > 1 and abs(steps * dt - self._every) < _ON_TIME * dt else 1
 
     @property
     def _seconds(self) -> float:

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from physicslab.commands import FAILED, CommandError, require
+from physicslab.commands import FAILED, CommandError, require, require_window
 from physicslab.commands.arguments import (
     add_assignments,
     check_seconds,
@@ -171,6 +171,7 @@ def _open(task: Task, row: int) -> int:
     """Open the window on the scene of a row."""
     if row >= len(task.space):
         raise CommandError(f"--open {row}: must be a row from 0 to {len(task.space) - 1}")
+    require_window("--open")
     from physicslab.desktop.app import NoScreen, open_window  # no command without a window imports pygame
 
     try:

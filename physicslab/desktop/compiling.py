@@ -239,13 +239,13 @@ class Compiling:
         self._frames += 1
         self._theme = theme
         compiles = self._started or self._frames >= _UNDISTURBED
+        pending = self.scenes.pending()
         if self._warmup is not None and compiles and not self._warmup.finished:
             self._progress = self._start().poll()
-            self._warmup.yield_to_others(True)
+            self._warmup.yield_to_others(not pending)  # slow motion ends sooner, on a busy computer too
             draw_corner(self._display.canvas, theme, self._progress.share)
         if interpreter.is_forced():
             return
-        pending = self.scenes.pending()
         if self.scenes.notice(self._display.left):
             self._catch_up(pending[0])
         elif pending:  # a frame that interprets them takes longer than one that loads one

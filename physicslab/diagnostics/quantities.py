@@ -43,6 +43,8 @@ class Reading:
     ----------
     world : World
         It must stay as it is while it is read.
+    account : Accounts, optional
+        Its accounts as they are now, if they were measured already.
 
     Examples
     --------
@@ -56,9 +58,10 @@ class Reading:
     nan
     """
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, account: Accounts | None = None) -> None:
         world.synchronise()
         self._world = world
+        self._account = account
         self._rows = world.entity_index.row_of
         self._nets: dict[int, Vector2] = {}
 
@@ -84,7 +87,7 @@ class Reading:
     @cached_property
     def account(self) -> Accounts:
         """Changes of energy and momentum of the world by cause, and their present values."""
-        return measure_account(self._world)
+        return measure_account(self._world) if self._account is None else self._account
 
     @property
     def energy(self) -> Energy:

@@ -9,7 +9,7 @@ import json
 import math
 from array import array
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -31,7 +31,7 @@ from physicslab.world import World
 FORMATS = (".npz", ".csv", ".parquet")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class EnsembleResult:
     """A row for each run.
 
@@ -48,10 +48,16 @@ class EnsembleResult:
         How many rows were there already, in the file or in parts of it.
     """
 
-    columns: dict[str, Values] = field(repr=False)
+    columns: dict[str, Values]
     failures: dict[int, str]
-    task: Task = field(repr=False)
+    task: Task
     found: int = 0
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.columns)
+        return (
+            f"<EnsembleResult: {len(self):,} runs, {len(self.failures):,} with a failure; columns: {names}>"
+        )
 
     def __len__(self) -> int:
         return len(self.task.space)

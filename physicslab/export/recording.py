@@ -77,7 +77,7 @@ class RunRecorder:
         energy = account.parts
         stored = [energy.potential.get(name, 0.0) for name in self._potentials]
         sums = [world.time - self.start, energy.kinetic, *stored, energy.total]
-        reading = Reading(world)
+        reading = Reading(world, account)
         others = np.array([reading.value(name, body) for body, name in self.quantities])
         others[~(np.abs(others) <= _LARGEST)] = np.nan  # where it is not defined
         bodies = np.column_stack(

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Material, Shape, Velocity
+from physicslab.components.material import friction_of_pair, restitution_of_pair
 from physicslab.components.shape import CHAIN
 from physicslab.contacts.arguments import shapes_of
 from physicslab.ecs.sentences import sentence
@@ -183,10 +184,10 @@ class Rigid:
         walled = wall >= 0
         coefficients = np.empty((len(a), 3))
         friction, restitution = material["friction"], material["restitution"]
-        coefficients[:, 0] = np.sqrt(np.where(walled, physics.bounds_friction, friction[a]) * friction[b])
-        coefficients[:, 1] = np.minimum(
-            np.where(walled, physics.bounds_restitution, restitution[a]), restitution[b]
-        )
+        of_a = np.where(walled, physics.bounds_friction, friction[a])
+        coefficients[:, 0] = friction_of_pair(of_a, friction[b])
+        of_a = np.where(walled, physics.bounds_restitution, restitution[a])
+        coefficients[:, 1] = restitution_of_pair(of_a, restitution[b])
         coefficients[:, 2] = np.where(walled, size[b], np.minimum(size[a], size[b]))
         walls: NDArray[np.float64] = np.array(physics.bounds or (0.0, 0.0, 0.0, 0.0))
         ode = self._ode

@@ -86,6 +86,10 @@ class DroppedTime:
         self._until = 0.0
         self._frames = 0
 
+    def forget(self) -> None:
+        """Begin again at zero: what was dropped had another reason than a slow computer."""
+        self._sum, self._until, self._frames = 0.0, 0.0, 0
+
     def recent(self, dropped: float, now: float) -> float:
         """Return the time dropped of late [s]; 0 where it is too little, or was dropped in a few frames.
 

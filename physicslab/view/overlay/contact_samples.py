@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Material, Transform, Velocity
+from physicslab.components.material import friction_of_pair
 from physicslab.world import World
 
 _STILL = 1e-6
@@ -89,7 +90,7 @@ def samples_of(world: World, impacts: NDArray[Any]) -> ContactSamples:
     samples["direction"] = np.stack((impacts["normal_x"], impacts["normal_y"]), axis=1)
     friction = world.table(Material)["friction"]
     of_a = np.where(impacts["wall"] >= 0, world.physics.bounds_friction, friction[row_a])
-    samples["friction"] = np.sqrt(of_a * friction[row_b])
+    samples["friction"] = friction_of_pair(of_a, friction[row_b])
     samples["normal"], samples["tangent"] = impacts["normal_impulse"], impacts["tangent_impulse"]
     samples["speed"], samples["time"] = impacts["approach_speed"], impacts["time"]
     samples["slip"] = np.inf

@@ -50,6 +50,7 @@ class Hud:
         self._meter = figures.FrameMeter()
         self._watch = figures.EnergyWatch()
         self._dropped = banners.DroppedTime()
+        self._prepared = False  # whether it was being prepared in the last frame
         self._advice: tuple[ModelWarning, ...] = ()
         self._figures: figures.WorldFigures
         self._measures: list[figures.Line] = []
@@ -117,6 +118,10 @@ class Hud:
         if world.physics.gravity_mode == "planet" and has_gravity(world):
             found.append(("PLANET MODE", theme.planet))
         dropped = self._dropped.recent(window.pace.dropped, window.now)
+        if self._prepared and window.preparing is None:
+            self._dropped.forget()
+            dropped = 0.0
+        self._prepared = window.preparing is not None
         if window.preparing is not None:
             slowly = ", slow motion until then" if dropped else ""
             left = _ROUGHLY * math.ceil(window.preparing / _ROUGHLY)

@@ -1,6 +1,5 @@
 """The selection, in numbers that can be changed, and in values derived from them."""
 
-import math
 from collections.abc import Sequence
 from functools import partial
 
@@ -22,6 +21,7 @@ from physicslab.components import (
     Velocity,
 )
 from physicslab.components.made_of import SUBSTANCES
+from physicslab.components.material import friction_of_pair, restitution_of_pair
 from physicslab.components.name import why_no_id
 from physicslab.diagnostics.free_body import LastStep
 from physicslab.diagnostics.joints import JointState, joint_states
@@ -160,7 +160,8 @@ def build_pair(ui: Ui, world: World, one: int, other: int) -> None:
     if not all(world.has(entity, Material) for entity in (one, other)):
         return
     a, b = (world.component(entity, Material) for entity in (one, other))
-    mu, e = math.sqrt(a.friction * b.friction), min(a.restitution, b.restitution)
+    mu = friction_of_pair(a.friction, b.friction)
+    e = restitution_of_pair(a.restitution, b.restitution)
     ui.rule(0.2)
     ui.row("mu of the pair", f"{mu:.4g}", "The root of both frictions multiplied")
     ui.row("e of the pair", f"{e:.4g}", "The smaller restitution")
