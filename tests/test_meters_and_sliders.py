@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pygame
 import pytest
-from desk import SETTLED, Desk, click, empty_world, point, sized, tap
+from desk import SETTLED, Desk, click, empty_world, fill, point, sized, tap
 from plotting import CTRL, SHIFT, ball_of, pause
 
 from physicslab import load_scene
@@ -128,6 +128,23 @@ def test_the_slider_of_a_spring_is_for_its_stiffness_and_can_be_given_other_ends
     desk.window.selection.take(ball)
     tap(desk, "delete")
     assert "The body is gone" in desk.ui.words
+
+
+@pytest.mark.parametrize(("end", "number", "allowed"), [("low", "60", "< 50"), ("high", "5", "> 10")])
+def test_an_end_beyond_the_other_is_refused_by_what_that_end_may_be(
+    desk: Desk, end: str, number: str, allowed: str
+) -> None:
+    ball = ball_of(desk)
+    desk.window.edits.do(AddComponent(ball, Spring(anchor_b=(0, 2), stiffness=40.0)))
+    pause(desk)
+    tap(desk, "m", CTRL | SHIFT)
+    made = Slider("Spring.stiffness", ball, 10.0, 50.0)
+    desk.window.do_next(dashboard_actions.change, desk.window.dashboard.sliders[0].entity, made)
+    desk.frames(SETTLED)
+    click(desk, "Menu of slider 1")
+    fill(desk, f"{end} of slider 1", number)
+    assert f"must be a finite number {allowed} N/m" in desk.ui.words
+    assert (desk.window.dashboard.sliders[0].low, desk.window.dashboard.sliders[0].high) == (10.0, 50.0)
 
 
 def test_meters_and_sliders_cover_no_cart_where_the_window_is_small_and_its_text_large() -> None:

@@ -58,7 +58,7 @@ SENTENCES = {
     "chosen_before": "{method} was chosen before the scene was saved",
     "closed_form_between_impacts": "between impacts bodies move in closed form",
     "beside_contacts": "{obstacle}; between contacts {bodies} move by {method}: {how}",
-    "joint_equations": "joints hold bodies by {count} equations, which are solved with those of the motion",
+    "joint_equations": "joints hold bodies; their equations ({count}) are solved with those of the motion",
     "too_fast": "{rate} rad/s is too fast to be followed: the motion between steps is lost",
     "own_events": "rigid contacts locate their own events",
     "few_bounce": "few bodies, which bounce",

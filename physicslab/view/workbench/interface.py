@@ -179,8 +179,8 @@ class Interface:
         return Layout(window.canvas.size, self.text, side=window.figures, palette=self._palette)
 
     def room(self) -> Rect:
-        """Return what is left for the world [px]."""
-        left, top, width, height = self.layout.room if self._free is None else self._free
+        """Return what is left for the world [px]: no panel lies over it, and what is fitted to it is seen."""
+        left, top, width, height = self.layout.visible if self._free is None else self._free
         bar = min(self._bar_height, height - 1)
         return left, top + bar, width, height - bar
 

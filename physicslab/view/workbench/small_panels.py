@@ -13,6 +13,7 @@ from physicslab.components.meter import CORNERS
 from physicslab.components.slider import GRAVITY, SLIDER_FIELDS
 from physicslab.diagnostics.quantities import Reading, why_undefined
 from physicslab.diagnostics.scales import scales_of
+from physicslab.ecs.fields import InvalidValue
 from physicslab.languages.sentence import Sentence
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import drawable, shortened
@@ -234,7 +235,7 @@ def _build_slider_menu(
         ui.faint(words, wrapped=False)
         imgui.same_line(3.0 * ui.size)
         key, width = f"{name} of slider {slider.number}", 6.0 * ui.size
-        commit = partial(_change_end, change, name)
+        commit = partial(_change_end, change, slider, name)
         refusal = numbers.build(ui, key, given[name], spec, width, commit)
         imgui.same_line()
         ui.faint(written_unit(slider.unit), wrapped=False)
@@ -248,7 +249,10 @@ def _build_slider_menu(
     ui.item("Remove the slider", dashboard_actions.remove, slider.entity)
 
 
-def _change_end(change: Any, name: str, new: float) -> None:
+def _change_end(change: Any, slider: SliderShown, name: str, new: float) -> None:
+    """Change the end of a range; where it is beyond the other end, say so of the end that was written."""
+    if name == "low" and new >= slider.high:
+        raise InvalidValue("Slider", name, new, f"a finite number < {slider.high:g} {slider.unit}")
     change(**{name: new})
 
 

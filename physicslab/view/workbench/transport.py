@@ -6,6 +6,7 @@ from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.drawable_text import shortened
 from physicslab.view.controls import actions, file_actions
 from physicslab.view.controls.actions import branch_words, switch
+from physicslab.view.controls.spawning import CIRCLE
 from physicslab.view.controls.tool import ICONS
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
@@ -15,6 +16,7 @@ from physicslab.world import World
 
 _SPEEDS = {"4x": 4.0, "2x": 2.0, "1x": 1.0, "1/2x": 0.5, "1/4x": 0.25, "1/8x": 0.125, "1/16x": 0.0625}
 _HINT = "Drag: throw  ·  Left: circle  ·  Right: box  ·  Space: pause  ·  F1: keys"
+_HINT_OF_TOOLS = "Drag: throw  ·  Right: box  ·  Space: pause  ·  F1: keys"
 _HINT_OF_LESSONS = "Space: pause  ·  F6: next panel  ·  Esc: leave the lesson"
 _HEIGHT, _NARROW, _WIDE = 1.9, 2.4, 5.2
 """Height of the buttons, and their widths, in heights of the text."""
@@ -94,10 +96,11 @@ def _mark(ui: Ui, window: Window, first: int, last: int) -> None:
 
 def _build_line(ui: Ui, world: World, window: Window) -> None:
     """Build the line of the steps that were made, to be gone through by dragging, and the hint beside it."""
-    words = _HINT if window.lesson is None else _HINT_OF_LESSONS
+    longest = _HINT if window.lesson is None else _HINT_OF_LESSONS
+    words = _HINT_OF_TOOLS if window.lesson is None and window.tool != CIRCLE.name else longest
     if window.keys.chosen:  # the hint names usual keys
-        words = ""
-    room, hint = imgui.get_content_region_avail().x, ui.width(words) + ui.size
+        words = longest = ""
+    room, hint = imgui.get_content_region_avail().x, ui.width(longest) + ui.size
     is_hinted = room - hint > _MIN_LINE * ui.size
     history = window.edits.history
     first, last = history.steps_range
