@@ -205,6 +205,7 @@ def test_texts_twice_as_long_are_neither_cut_nor_upon_each_other(
 
 
 def test_by_keyboard_alone_from_prediction_to_grade(page: Path, browser: Browser, tmp_path: Path) -> None:
+    browser.requests.clear()
     browser.open(page, still=True)
     assert browser.complaints == [] and browser.requests == [page.as_uri()]
     assert shown(browser) == ["way"]
