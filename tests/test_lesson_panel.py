@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
+from operator import attrgetter
 from pathlib import Path
 
 import pygame
@@ -15,6 +17,7 @@ from physicslab.files.scene import load_scene
 from physicslab.lessons.answers import grade, read_answers
 from physicslab.lessons.catalogue import find_lesson
 from physicslab.prefabs import circle
+from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.lesson_actions import choose_language, open_lesson
 from physicslab.view.window.lesson import OpenLesson
 
@@ -145,6 +148,26 @@ def test_a_run_is_shut_until_all_is_predicted(desk: Desk) -> None:
     tap(desk, "space")
     desk.frames(20)
     assert desk.world.time > 0.0 and desk.window.lesson.made(desk.window.lesson.trial.run)  # type: ignore[union-attr]
+
+
+def test_what_helps_to_see_and_hear_is_not_shut(desk: Desk) -> None:
+    opened(desk)
+    for key, state in (("shift+s", "sounds.on"), ("shift+f2", "reduced_motion"), ("f3", "shows_words")):
+        control = next(one for one in CONTROLS if one.key == key)
+        before = attrgetter(state)(desk.window)
+        assert control.is_open(desk.window)
+        control.pressed(desk.world, desk.window)
+        assert attrgetter(state)(desk.window) is not before, key
+
+
+def test_a_decimal_comma_is_no_sign_of_thousands_where_it_is_the_decimal_mark(desk: Desk) -> None:
+    lesson = opened(desk)
+    lesson.lesson = replace(lesson.lesson, language="de")
+    click(desk, "faster: steadily")
+    sure(desk, "faster")
+    fill(desk, "Answer speed", "1,234", "tab")
+    sure(desk, "speed")
+    assert lesson.given["speed"]["value"] == "1.234"
 
 
 def test_prediction_theory_and_measurement_stand_beside_each_other(desk: Desk) -> None:

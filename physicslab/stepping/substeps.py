@@ -27,7 +27,9 @@ from physicslab.kernels.loading import direct_entry, working_ns
 from physicslab.kernels.solver import soft
 from physicslab.kernels.solver.finer import needed_factor
 from physicslab.kernels.wide import slots
+from physicslab.kernels.wide.graph_colour import MIN_WIDE
 from physicslab.state.masses import check_finite
+from physicslab.state.solid import solid_rows
 from physicslab.state.state import State
 from physicslab.stepping.bounds import return_inside
 from physicslab.stepping.plan import StepPlan
@@ -82,7 +84,8 @@ class Substeps:
     hooks : tuple of str
         Why the loop comes back in every substep, if it does; ends of steps are then the caller's.
     kernels : tuple of kernels
-        Kernels called in most steps.
+        Kernels called in most steps; in a crowd those that put contacts into blocks, for loading them would
+        halt a later step.
     split : SplitForces, optional
         The flow of bodies on springs and in drag, if not kicks.
     uniform : bool
@@ -105,7 +108,8 @@ class Substeps:
         self._is_compiled = [*(part != soft.HOOK for part in self._parts), True]
         self._evaluates = state.has_forces and not {soft.UNIFORM, soft.PACKED}.isdisjoint(self._parts)
         compiled = _KERNELS if made.compiled else self._accounts.kernels
-        self.kernels: tuple[Any, ...] = (*compiled, *(schedule.kernels(state) if made.reasons else ()))
+        wide = state.contacts.wide.kernels if len(solid_rows(state)) >= MIN_WIDE else ()
+        self.kernels: tuple[Any, ...] = (*compiled, *wide, *(schedule.kernels(state) if made.reasons else ()))
         self._cost, self._forces = np.zeros(soft.COSTS, np.int64), made.forces
         self._h = 0.0
         self._columns: object = None

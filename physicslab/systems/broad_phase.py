@@ -20,10 +20,14 @@ from physicslab.state.state import State
 from physicslab.systems.system import Stage, System, at
 
 _MAX_LOOKAHEAD = 8.0
-"""Largest factor by which the margin of a moving body is increased."""
+"""Largest factor by which the margin of a moving body is increased, for substeps as configured."""
 _LOOKAHEAD_APART = 4.0
 """Factor where joints or layers keep bodies apart, for all pairs are then listed each time. Pairs of 43 to
 2,000 bodies with chains that swing are listed .2 times a step with it, .6 to 1 times without."""
+_LOOKAHEAD_OF_FEW, _MANY = 2.0, 256
+"""Factor for fewer bodies than that: listing their pairs takes as long as calling the loop once more, surplus
+pairs take little. Of 19 random scenes of 11 to 260 bodies 15 take .79 to .97 of the time with it and with
+margins that do not shrink with substeps, 4 take 1.0 to 1.1; of those of 286 to 843, .90 to 1.5."""
 _FEW = 64
 """Number of bodies up to which all pairs are listed again: that takes no longer than to find the new ones."""
 _SPARSE = 2
@@ -58,11 +62,13 @@ def _may_any_touch(state: State) -> bool:
 def _lookahead(state: State, awake: int) -> float:
     """Return the factor by which the margins of ``awake`` bodies are increased.
 
-    Among many sleeping bodies, and where joints or layers keep some apart, a new list takes longer than the
-    surplus pairs of an old one.
+    Among few or many sleeping bodies, and where joints or layers keep some apart, a new list takes longer
+    than the surplus pairs of an old one.
     """
-    least = _LOOKAHEAD_APART if is_any_apart(state) else 1.0
-    return min(max(least, state.sleep.count / max(1, awake)), _MAX_LOOKAHEAD)
+    few = len(state.entity_index) < _MANY
+    least = _LOOKAHEAD_APART if is_any_apart(state) else _LOOKAHEAD_OF_FEW if few else 1.0
+    ahead = min(max(least, state.sleep.count / max(1, awake)), _MAX_LOOKAHEAD)
+    return ahead * state.substeps / state.simulation.substeps if few else ahead
 
 
 def _sparse(state: State) -> bool:

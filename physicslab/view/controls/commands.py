@@ -75,7 +75,7 @@ def commands(window: Window | None = None) -> Iterator[Command]:
         yield Command(name, "language", tip, partial(choose_language, code=code))
     for name, scene in SCENES.items():
         yield Command(scene.title, "scene", scene.description, partial(open_from_list, source=name))
-    for name, title in titles().items():
+    for name, title in titles("" if window is None else window.language).items():
         yield Command(title, "lesson", "predict, run, compare, explain", opener(name))
     for path in _own_scenes():
         yield Command(printable(path.name), "file", str(path), partial(open_from_list, source=path))

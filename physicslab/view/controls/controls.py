@@ -116,7 +116,7 @@ _LESSON = "lesson"
 """The group of what is done to an open lesson."""
 _OPEN_GROUPS = ("time", "view", "window", "help", "quit", _LESSON)
 """The controls that lessons leave open: they change nothing of what is measured."""
-_OPEN_KEYS = ("return", "n", "delete", "ctrl+z", "ctrl+y", "f8", "f12", "ctrl+o")
+_OPEN_KEYS = ("return", "n", "delete", "ctrl+z", "ctrl+y", "f8", "f12", "ctrl+o", "shift+s")
 """Others: edits of what the lesson has shut are refused where they are made."""
 _OPEN_PANELS = ("scenes.shows_gallery", "search")
 _WORDS = {path: word for word, path in SHOWN_BY.items()}

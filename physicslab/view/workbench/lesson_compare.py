@@ -22,8 +22,8 @@ from physicslab.view.workbench.lesson_plots import plot_compared
 RIGHT, WRONG, RUN = "\uf00c", "\uf00d", "\uf04b"
 """Icons of a right answer, a wrong one, and of a run."""
 
-_FIRST = 1.4
-"""Width of the column of cases beside that of a number."""
+_NUMBER = 4.2
+"""Least width of a column, in heights of the text."""
 _COUNTS = 1e6
 """Whole numbers below this are written with all their figures."""
 
@@ -44,16 +44,16 @@ def build_compare(ui: Ui, lesson: OpenLesson, part: Compare, rows_of: Rows) -> N
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
     heads = ("", *(["predicted"] if predicted else []), "theory", "measured", "gap")
     if imgui.begin_table(f"rows of {part.name}", len(heads), flags):
-        widths = [imgui.calc_text_size(ui.said(head)).x for head in heads]
-        for head, width in zip(heads, widths, strict=True):
-            share = max(1.0, len(heads) * width / sum(widths)) if head else _FIRST
-            imgui.table_setup_column(head, imgui.TableColumnFlags_.width_stretch, share)
+        wide = [max(1.15 * imgui.calc_text_size(ui.said(head)).x, _NUMBER * ui.size) for head in heads[1:]]
+        first = max(imgui.get_content_region_avail().x - sum(wide), _NUMBER * ui.size)
+        for head, width in zip(heads, (first, *wide), strict=True):
+            imgui.table_setup_column(head, imgui.TableColumnFlags_.width_stretch, width)
         imgui.table_next_row()
         for head in heads:
             imgui.table_next_column()
             ui.faint(head)
         for n, (case, row) in enumerate(zip(cases, rows, strict=True), start=1):
-            _build_row(ui, lesson, part, n, case, row, predicted)
+            _build_row(ui, lesson, part, n, case, row, predicted, wide[0])
         imgui.end_table()
     found = [(n, row) for n, row in enumerate(rows, start=1) if isinstance(row, Row)]
     if not part.along and len(found) > 1:
@@ -76,7 +76,7 @@ def _row(rows_of: Rows, lesson: OpenLesson, part: Compare, case: Case) -> Row | 
 
 def _build_row(
     ui: Ui, lesson: OpenLesson, part: Compare, number: int, case: Case,
-    row: Row | str | None, predicted: float | None,
+    row: Row | str | None, predicted: float | None, width: float,
 ) -> None:  # fmt: skip
     own = language(lesson.lesson.language)
     values = ", ".join(f"{name} = {formula(own, text)}" for name, text in case.values)
@@ -87,8 +87,11 @@ def _build_row(
     ui.text(Sentence("{case}: {note}", case=words, note=case.note) if case.note else words, wrapped=True)
     if row is None:
         button, tip = f"Run {part.name} {number}", f"Run it with {values}"
+        words = Sentence("{icon}  Run", icon=RUN)
+        if ui.button_width(words) < width:
+            imgui.table_next_column()
         ui.button(button, tip, lesson_actions.begin_run, part.run,
-                  case, shown=Sentence("{icon}  Run", icon=RUN), enabled=not lesson.running)  # fmt: skip
+                  case, shown=words, enabled=not lesson.running)  # fmt: skip
         return
     imgui.table_next_column()
     if predicted is not None:

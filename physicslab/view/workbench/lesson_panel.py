@@ -1,5 +1,6 @@
 """The panel of a lesson: predict, run, compare, explain, one below the other as far as they are done."""
 
+import re
 from functools import partial
 from typing import TypeGuard
 
@@ -26,6 +27,7 @@ _SIZE = (26.0, 34.0)
 """Width and height where it is not docked, in heights of the text."""
 _PREDICT, _COMPARE, _EXPLAIN, _CHECK, _RECALL = "\uf0eb", "\uf24e", "\uf075", "\uf058", "\uf1da"
 _LOCKED = "\uf023"
+_DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
 _NUMBER = 8.0
 """Width of a field for a number, in heights of the text."""
 
@@ -226,6 +228,8 @@ class LessonPanel:
         ui.text(written_unit(part.unit))
         if not draft.strip():
             return None
+        if language(lesson.lesson.language).say(".") == ",":
+            draft = _DECIMAL_COMMA.sub(".", draft)  # 2,006 are no thousands there
         try:
             evaluate(draft, part.unit)
         except InvalidText as error:
@@ -258,7 +262,9 @@ class LessonPanel:
             if shown.note:
                 ui.text(proper(shown.note), wrapped=True)
             if self._showing[0] == name and self._is_beside(lesson.trial):
+                imgui.push_id(name)  # the usual run has graphs of the same names
                 _build_trial(ui, lesson, lesson.trial)
+                imgui.pop_id()
 
     def _is_beside(self, trial: Trial | None) -> TypeGuard[Trial]:
         """Whether a run in another case is shown below the answer that it refutes, not in its own place."""
