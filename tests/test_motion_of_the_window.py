@@ -1,8 +1,9 @@
 """The motion of the window itself: views glide, notices fade, a throw is seen before it is made."""
 
 import numpy as np
+import pygame
 import pytest
-from desk import FRAME, Desk, empty_world
+from desk import FRAME, Desk, empty_world, tap
 from recording import RecordingCanvas
 
 from physicslab.components import Pin
@@ -101,3 +102,13 @@ def test_the_pivot_under_the_cursor_is_marked() -> None:
     canvas.calls.clear()
     desk.frames(int(0.2 / FRAME))
     assert [c for c in canvas.called("lines") if c["colour"] == DARK.accent and c["width"] == 15.0]
+
+
+@pytest.mark.parametrize(("key", "words"), [("s", "Sound is"), ("f2", "Reduced motion is")])
+def test_a_switch_that_no_picture_shows_is_told(key: str, words: str) -> None:
+    desk = Desk(empty_world(), RecordingCanvas((1280, 720)))
+    told = []
+    for _ in range(2):
+        tap(desk, key, pygame.KMOD_LSHIFT)
+        told.append(desk.window.notice)
+    assert sorted(told) == [f"{words} off", f"{words} on"]

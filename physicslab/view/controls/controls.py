@@ -198,11 +198,22 @@ class Control:
             action(world, window)
 
 
-def _switch(label: str, does: str, key: str, flag: str, group: str, tip: str) -> Control:
-    """Return what turns a flag of the window on and off, such as ``"pace.slow_motion"``."""
+def _switch(
+    label: str, does: str, key: str, flag: str, group: str, tip: str, said: tuple[str, str] = ("", "")
+) -> Control:
+    """Return what turns a flag of the window on and off, such as ``"pace.slow_motion"``.
+
+    Where nothing in the picture shows it, ``said`` has a notice for off and one for on.
+    """
     state = attrgetter(flag)
+
+    def turn(world: World, window: Window) -> None:
+        window.put(flag, not state(window))
+        if words := said[bool(state(window))]:
+            window.notify(words)
+
     return Control(
-        label, does, key, lambda _, window: window.put(flag, not state(window)), group=group, tip=tip,
+        label, does, key, turn, group=group, tip=tip,
         state=lambda _, window: bool(state(window)), panel=flag if flag in OPENED else "",
         shows=_WORDS.get(flag, ""),
     )  # fmt: skip
@@ -326,9 +337,11 @@ CONTROLS: tuple[Control, ...] = (
     _switch("Shift+X", "parts along x and y", "shift+x", "overlays.parts", "show",
             "The parts of velocities and momenta along x and y"),
     _switch("Shift+S", "sound", "shift+s", "sounds.on", "show",
-            "The sound of impacts: deep of what is large, loud by the impulse"),
+            "The sound of impacts: deep of what is large, loud by the impulse",
+            ("Sound is off", "Sound is on")),
     _switch("Shift+F2", "reduced motion", "shift+f2", "reduced_motion", "window",
-            "Nothing moves in the window but what moves in the world"),
+            "Nothing moves in the window but what moves in the world",
+            ("Reduced motion is off", "Reduced motion is on")),
     Control("Middle", "pan", tool=tools.PAN, tip="Move the view by dragging"),
     Control("Wheel", "zoom"),
     Control("+", "zoom in", "=", actions.zoom_by_key(1), also=("+", "[+]"), group="view",
