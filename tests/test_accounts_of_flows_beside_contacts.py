@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from physicslab import World, load_scene
+from physicslab.components import Transform
 from physicslab.diagnostics.energy import Accounts, Audit
 from physicslab.systems.system import Stage, System, at
 
@@ -66,10 +67,10 @@ def test_what_drag_takes_while_a_limit_is_closed_is_dampings(
     drag: str, staged: bool, beyond: float, x: float
 ) -> None:
     pin = {"Pin": {"b": "bar", "anchor_b": [x, 0.4], "anchor_a": [x, 0.4], "lower": -3.0, "upper": -beyond}}
-    _, account = after(
+    world, account = after(
         scene({"id": "bar", **body(0.0, 0.0), **DRAGS[drag]}, pin), 10, *[LooksAtSolving()] * staged
     )
-    assert abs(account.energy["joints"]) > 1e-3
+    assert world.component(1, Transform).angle < -0.1 * beyond  # the work of the limit itself may be zero
     assert share(account) < FLOWN
 
 

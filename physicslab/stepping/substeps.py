@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Mass, Velocity
+from physicslab.components import Mass
 from physicslab.contacts.arguments import (
     acting_in,
     bounds_of,
@@ -174,7 +174,7 @@ class Substeps:
         """Return how many times as many substeps as configured the next step needs."""
         state.compile((needed_factor,))
         factor: int = needed_factor(
-            near_in(state), joints_in(state), state.table(Velocity)["angular"], inverse_in(state),
+            near_in(state), joints_in(state), motion_of(state), shapes_of(state), inverse_in(state),
             state.bodies.force, self._plan(state, span, 0, 0), self._softness(state),
             state.contacts.impulse_dt,
         )  # fmt: skip

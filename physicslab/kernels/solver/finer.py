@@ -14,6 +14,8 @@ from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import (
     Inverse,
     InverseTuple,
+    Motion,
+    MotionTuple,
     Near,
     NearTuple,
     Plan,
@@ -22,6 +24,7 @@ from physicslab.kernels.arguments import (
     SoftnessTuple,
     named_near,
 )
+from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents, named_shapes
 from physicslab.kernels.joints.blocks import ENDS, FIRST, TERM, TERMS, Joints, JointsTuple
 from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, RECORDED
 from physicslab.kernels.records import Manifold
@@ -114,38 +117,63 @@ def _heaviest_load(near: Near, inverse_mass: Numbers, force: Vectors, sunk: floa
 
 
 @inlined
-def _carried_load(near: Near, joints: Joints, inverse_mass: Numbers, force: Vectors, sunk: float) -> float:
+def _is_near_another(body: int, motion: Motion, shapes: Shapes, block: Vectors, dt: float) -> bool:
+    """Whether the box around a body may meet that around one of another block in two steps, as they move.
+
+    By places alone, and not by listed pairs: when these were listed must change nothing.
+    """
+    half_x, half_y = half_extents(shapes, body, motion.angle[body])
+    half_x, half_y = half_x + shapes.thin[body], half_y + shapes.thin[body]
+    for other in range(len(motion.angle)):
+        if shapes.vertices[other] != 0 and block[other, 0] != block[body, 0]:
+            x = abs(motion.position[other, 0] - motion.position[body, 0]) - half_x
+            y = abs(motion.position[other, 1] - motion.position[body, 1]) - half_y
+            x -= 2.0 * dt * abs(motion.linear[other, 0] - motion.linear[body, 0])
+            y -= 2.0 * dt * abs(motion.linear[other, 1] - motion.linear[body, 1])
+            reach = shapes.reach[other]
+            if x <= reach and y <= reach:
+                other_x, other_y = half_extents(shapes, other, motion.angle[other])
+                if x <= other_x and y <= other_y:
+                    return True
+    return False
+
+
+@inlined
+def _carried_load(
+    near: Near, joints: Joints, motion: Motion, shapes: Shapes, inverse_mass: Numbers, force: Vectors,
+    sunk: float, dt: float, borne: float,
+) -> float:  # fmt: skip
     """Return the same for a far heavier body that joints hold at a light one which is near something.
 
     A share of the weight of the heaviest body of a block is taken to press on each of its light ones, and
-    before they touch too: with substeps that become short only then, what has landed jumps up again.
+    before they touch too: with substeps that become short only then, what has landed jumps up again. Loads
+    up to ``borne`` are not looked for.
     """
-    largest, heaviest = 0.0, near.angular_before  # nothing is noted in it at the end of a step
-    for i in range(len(heaviest)):
-        heaviest[i] = -1.0
+    largest, heaviest, label = borne, near.angular_before, near.linear_before
+    for i in range(len(heaviest)):  # nothing is noted in these at the end of a step
+        heaviest[i], label[i, 0] = -1.0, 0.0
     for block in range(len(joints.groups) - 1):
         first, end = joints.groups[block, FIRST], joints.groups[block + 1, FIRST]
         body, least = -1, math.inf
         for e in range(joints.nodes[first, ENDS], joints.nodes[end, ENDS]):
             inverse = inverse_mass[joints.body[e]]
-            if 0.0 < inverse < least:
-                body, least = joints.body[e], inverse
+            if inverse > 0.0:
+                label[joints.body[e], 0] = 1.0 + block
+                if inverse < least:
+                    body, least = joints.body[e], inverse
         for e in range(joints.nodes[first, ENDS], joints.nodes[end, ENDS]):
             if inverse_mass[joints.body[e]] > HEAVY_RATIO * least:
                 heaviest[joints.body[e]] = body
-    for p in range(near.counts[RECORDED]):
-        manifold = near.manifolds[p]
-        for light, sign in ((manifold.a, 1.0), (manifold.b, -1.0)):
-            heavy = int(heaviest[light])
-            if heavy >= 0:
-                press = sign * (force[heavy, 0] * manifold.normal_x + force[heavy, 1] * manifold.normal_y)
-                if manifold.count <= 0:
-                    press = math.hypot(force[heavy, 0], force[heavy, 1])
-                if press * inverse_mass[light] * sunk > _HARDLY_SUNK * manifold.size:
-                    own = math.hypot(force[light, 0], force[light, 1])
-                    all_of = math.hypot(force[heavy, 0], force[heavy, 1])
-                    own = max(own, all_of * inverse_mass[heavy] / inverse_mass[light])
-                    largest = max(largest, _THROUGH_ONE * press / own)
+    for light in range(len(heaviest)):
+        heavy = int(heaviest[light])
+        if heavy >= 0 and shapes.vertices[light] != 0:
+            press = math.hypot(force[heavy, 0], force[heavy, 1])
+            if press * inverse_mass[light] * sunk > _HARDLY_SUNK * 2.0 * shapes.thin[light]:
+                own = math.hypot(force[light, 0], force[light, 1])
+                own = max(own, press * inverse_mass[heavy] / inverse_mass[light])
+                load = _THROUGH_ONE * press / own
+                if load > largest and _is_near_another(light, motion, shapes, label, dt):
+                    largest = load
     return largest
 
 
@@ -179,7 +207,7 @@ def _fastest_whip(joints: Joints, angular: Numbers, inverse_mass: Numbers) -> fl
 
 @inlined
 def factor_for(
-    near: Near, joints: Joints, angular: Numbers, inverse: Inverse, force: Vectors, plan: Plan,
+    near: Near, joints: Joints, motion: Motion, shapes: Shapes, inverse: Inverse, force: Vectors, plan: Plan,
     softness: Softness, impulse_dt: float,
 ) -> int:  # fmt: skip
     """Return the factor for the next step, by the impulses of the last substep and the present speeds.
@@ -194,10 +222,11 @@ def factor_for(
         settled = sweeps / MAX_SWEEPS
         load = _heaviest_load(near, inverse.mass, force, sunk)
         if rows > 0:
-            load = max(load, _carried_load(near, joints, inverse.mass, force, sunk))
+            borne = max(load, _LIGHT_LOAD / (settled * settled))
+            load = _carried_load(near, joints, motion, shapes, inverse.mass, force, sunk, plan.dt, borne)
         over = max(over, load * settled * settled / _LIGHT_LOAD)
     if rows > 0:
-        over = max(over, 0.5 * _fastest_whip(joints, angular, inverse.mass) * h * h / _LEFT)
+        over = max(over, 0.5 * _fastest_whip(joints, motion.angular, inverse.mass) * h * h / _LEFT)
     factor, last = 1, 1
     while factor < MAX_SUBSTEP_FACTOR and factor * factor < over:
         factor, last = factor + 1 if factor < 4 else 2 * last, factor  # 1, 2, 3, 4, 6, 8
@@ -207,11 +236,11 @@ def factor_for(
 
 @kernel
 def needed_factor(
-    near: NearTuple, joints: JointsTuple, angular: Numbers, inverse: InverseTuple, force: Vectors,
-    plan: PlanTuple, softness: SoftnessTuple, impulse_dt: float,
+    near: NearTuple, joints: JointsTuple, motion: MotionTuple, shapes: ShapesTuple, inverse: InverseTuple,
+    force: Vectors, plan: PlanTuple, softness: SoftnessTuple, impulse_dt: float,
 ) -> int:  # fmt: skip
     """Return the factor for the next step (:func:`factor_for`)."""
     return factor_for(
-        named_near(near), Joints(*joints), angular, Inverse(*inverse), force, Plan(*plan),
-        Softness(*softness), impulse_dt,
+        named_near(near), Joints(*joints), Motion(*motion), named_shapes(shapes), Inverse(*inverse), force,
+        Plan(*plan), Softness(*softness), impulse_dt,
     )  # fmt: skip

@@ -330,7 +330,9 @@ def _advance(
             if pending == ALL and counts[OUTSIDE] != 0:
                 pending = WALL_PENDING
             if pending == ALL and plan.finer > 0:
-                needed = factor_for(near, joints, angular, inverse, acting.force, plan, softness, impulse_dt)
+                needed = factor_for(
+                    near, joints, motion, shapes, inverse, acting.force, plan, softness, impulse_dt
+                )
                 now = charge(cost, RESOLVE, now)
                 pending = ALL if needed == plan.finer else OTHER_SUBSTEPS
             if pending != ALL:

@@ -57,7 +57,7 @@ def _build_result(ui: Ui, window: Window) -> None:
     room = 0.9 * window.framing.room()[2]
     beside = room >= (_TABLE + _PLOT[0]) * size
     wide = (_TABLE + _PLOT[1]) * size
-    wide = min(room, wide) if beside else min(max(room, 0.6 * width), 0.9 * width)
+    wide = min(room, wide) if beside else min(max(room, 0.7 * width), 0.9 * width)
     high = min(0.9 * height - _WORDS * size, _HEIGHT * size)
     with ui.floating(_TITLE, window.framing.middle, window.closing_of("error_study.shown")):
         with ui.wrapping(wide):
