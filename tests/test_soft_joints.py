@@ -26,7 +26,7 @@ from physicslab.components import (
     Weld,
 )
 from physicslab.components.layer import NONE
-from physicslab.contacts.arguments import inverse_in, joints_in, near_in
+from physicslab.contacts.arguments import inverse_in, joints_in, motion_of, near_in, shapes_of
 from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.diagnostics.joints import JointState, joint_states
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
@@ -102,9 +102,8 @@ def test_a_chain_of_100_links_carries_10_000_times_the_mass_of_one() -> None:
 def needed(world: World) -> int:
     """Return how many times as many substeps the next step needs."""
     plan, spring = (4, 0, 1 / 240, 1 / 60, 0.0, 1 / 60, 0, 1 / 240, 1), ResolveSystem().softness(world)
-    spin = world.table(Velocity)["angular"]
-    pulled = world.bodies.force
-    return needed_factor(near_in(world), joints_in(world), spin, inverse_in(world), pulled, plan, spring, 0.0)
+    bodies = motion_of(world), shapes_of(world), inverse_in(world), world.bodies.force
+    return needed_factor(near_in(world), joints_in(world), *bodies, plan, spring, 0.0)
 
 
 @pytest.mark.parametrize(("heavy", "spin", "factor"), [(20.0, 60.0, 8), (1e4, 60.0, 8), (5.0, 60.0, 1)])
