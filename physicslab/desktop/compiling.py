@@ -234,8 +234,11 @@ class Compiling:
             draw_progress(canvas, self._theme, share, so_far)
         self._display.show()
 
-    def advance(self, theme: Theme) -> None:
-        """Show in a corner how far it is, and load a kernel if this frame has time left for it."""
+    def advance(self, theme: Theme, bottom: int | None = None) -> None:
+        """Show at the right how far it is, and load a kernel if this frame has time left for it.
+
+        What is below ``bottom`` [px] stays in sight; without it that is nothing.
+        """
         self._frames += 1
         self._theme = theme
         compiles = self._started or self._frames >= _UNDISTURBED
@@ -243,7 +246,8 @@ class Compiling:
         if self._warmup is not None and compiles and not self._warmup.finished:
             self._progress = self._start().poll()
             self._warmup.yield_to_others(not pending)  # slow motion ends sooner, on a busy computer too
-            draw_corner(self._display.canvas, theme, self._progress.share)
+            canvas = self._display.canvas
+            draw_corner(canvas, theme, self._progress.share, canvas.size[1] if bottom is None else bottom)
         if interpreter.is_forced():
             return
         if self.scenes.notice(self._display.left):
