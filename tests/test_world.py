@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from physicslab.components import Mass, Name, Spring, Transform, Velocity
+from physicslab.components import Mass, Name, Shape, Spring, Transform, Velocity
 from physicslab.ecs.config import MIN_TIME, PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
@@ -95,6 +95,23 @@ def test_spawn_refuses_types_and_doubles() -> None:
         world.spawn(Transform(), Transform())
     with pytest.raises(ValueError, match="an entity has one Name, not 2"):
         world.spawn(Name("a"), name="b")
+
+
+def test_what_is_read_while_a_world_is_built_is_followed_once() -> None:
+    world = World()
+    first = world.spawn(Transform(), Velocity(), Mass(1.0))
+    assert world.component(first, Mass).inertia == 0.0
+    followed = world.revision
+    for n in range(20):
+        last = world.spawn(Transform((n, 0.0)), Velocity(), Mass(2.0))
+        assert world.component(first, Mass).mass == 1.0
+    assert world.revision == followed
+    world.add(first, Shape.circle(2.0))
+    assert world.component(first, Mass).inertia == 2.0
+    assert world.component(last, Mass).mass == 2.0
+    world.remove(last)
+    with pytest.raises(KeyError):
+        world.component(last, Mass)
 
 
 def test_clear_leaves_nothing_behind() -> None:

@@ -1,6 +1,7 @@
 """Which entity has which row: keeps a world's tables in step with esper."""
 
 from collections.abc import Iterable, Mapping, Set
+from operator import is_
 from typing import Any
 
 import esper
@@ -90,6 +91,16 @@ class EntityIndex:
         if renumbered or self.motion_edited:
             self.revision += 1
         return True
+
+    def has_followed(self, entity: int) -> bool:
+        """Whether the components of an entity of esper's active context are those that it had lately."""
+        if esper.get_component(_Nothing) is self._seen and not esper._dead_entities:
+            return True
+        if entity in esper._dead_entities:
+            return False
+        present: tuple[Any, ...] = esper.components_for_entity(entity)
+        known = self._components.get(entity)
+        return known is not None and len(known) == len(present) and all(map(is_, known, present))
 
     def flush_deleted(self) -> None:
         """Delete the entities that ``esper.delete_entity`` marked.

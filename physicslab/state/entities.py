@@ -145,7 +145,8 @@ class Entities:
         """
         with self.active():
             entity = self._found(entity)
-            self._follow()
+            if not self.entity_index.has_followed(entity):  # reading while n springs are made would take n^2
+                self._follow()
             found: C | None = esper.try_component(entity, _checked(component))
             if found is None:
                 raise KeyError(f"{self.label(entity)} has no {component.__name__}")
