@@ -237,7 +237,7 @@ class Compiling:
     def advance(self, theme: Theme, bottom: int | None = None) -> None:
         """Show at the right how far it is, and load a kernel if this frame has time left for it.
 
-        What is below ``bottom`` [px] stays in sight; without it that is nothing.
+        Everything below ``bottom`` [px] stays in sight; without it the figure is in the corner.
         """
         self._frames += 1
         self._theme = theme
