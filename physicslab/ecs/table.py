@@ -51,6 +51,7 @@ class Table:
                 self._names.append(f"{spec.name}_given")
                 self._storage.append(np.zeros(0, np.bool_))
         self._present = self.present
+        self._zeros = [[column.dtype.type(0).item()] * column.ndim for column in self._storage]
         self.resize(0, capacity)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
@@ -90,7 +91,7 @@ class Table:
     def blank(self) -> Component:
         """Return a component of no entity, whose values are all zero: its row is written later."""
         made: Component = Component.__new__(self.component)
-        made._views = [[column.dtype.type(0).item()] * (column.ndim) for column in self.columns]
+        made._views = [zero.copy() for zero in self._zeros]
         made._row = 0
         return made
 
