@@ -26,8 +26,8 @@ _LOOKAHEAD_APART = 4.0
 2,000 bodies with chains that swing are listed .2 times a step with it, .6 to 1 times without."""
 _LOOKAHEAD_OF_FEW, _MANY = 2.0, 256
 """Factor for fewer bodies than that: listing their pairs takes as long as calling the loop once more, surplus
-pairs take little. Of 19 random scenes of 11 to 260 bodies 15 take .79 to .97 of the time with it and with
-margins that do not shrink with substeps, 4 take 1.0 to 1.1; of those of 286 to 843, .90 to 1.5."""
+pairs take little. Of 17 random scenes of 11 to 260 bodies 14 take .79 to .97 of the time with it and with
+margins that do not shrink with substeps, 3 take .99 to 1.13; five of 286 to 843 take .90 to 1.47."""
 _FEW = 64
 """Number of bodies up to which all pairs are listed again: that takes no longer than to find the new ones."""
 _SPARSE = 2
