@@ -7,11 +7,10 @@ from contextlib import suppress
 from importlib.metadata import PackageNotFoundError
 
 import physicslab
-from physicslab.commands import COMMANDS, FAILED, USAGE, CommandError, command, require_window
+from physicslab.commands import FAILED, USAGE, CommandError, command, require_window
 from physicslab.commands.parsers import WindowParser, completion, manual, parser_of
-from physicslab.ecs.fields import InvalidValue
+from physicslab.commands.usage import COMMANDS
 from physicslab.ecs.text import printable, shortened
-from physicslab.files.checks import SceneError
 from physicslab.scenes import SCENES
 
 _LINE_LIMIT = 4_000
@@ -47,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return done.code if isinstance(done.code, int) else 0
     except CommandError as error:
         return _complain(str(error), error.status)
-    except (SceneError, InvalidValue) as error:
+    except _refusals() as error:
         return _complain(str(error), USAGE)
     except ImportError as error:  # a package that is not there, or a setting with which none of this works
         return _complain(str(error), FAILED)
@@ -64,12 +63,21 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _dispatch(arguments: list[str]) -> int:
     if arguments and arguments[0] in COMMANDS:
         name, *rest = arguments
-        return command(name).execute(parser_of(name).parse_args(rest))
+        parsed = parser_of(name).parse_args(rest)  # help and bad usage end here, before physics is imported
+        return command(name).execute(parsed)
     given = WindowParser(_version()).parse_args(arguments)
     if given.print_completion is not None or given.print_manual:
         print(manual(_version()) if given.print_manual else completion(given.print_completion), end="")
         return 0
     return _open(given.scene)
+
+
+def _refusals() -> tuple[type[Exception], ...]:
+    """Return the errors that name a bad value; they are imported where something was raised."""
+    from physicslab.ecs.fields import InvalidValue
+    from physicslab.files.checks import SceneError
+
+    return SceneError, InvalidValue
 
 
 def _open(scene: str | None) -> int:

@@ -19,7 +19,8 @@ __all__ = ["ForkedProgram"]
 
 _SERVER = """
 import json, os, runpy, sys
-from physicslab.commands import COMMANDS, command
+from physicslab.commands import command
+from physicslab.commands.usage import COMMANDS
 for name in COMMANDS:
     command(name)
 for line in sys.stdin:

@@ -15,15 +15,18 @@ from physicslab import cli
 from physicslab.components import Spring, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.lab.bench import like_quality
 from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
 from physicslab.lab.bench.engine import Engine
 from physicslab.lab.bench.measure import Judge, measure_scene
 from physicslab.lab.bench.moving import _in_funnel, funnel
+from physicslab.lab.bench.random_runs import RandomReport, measure_random, random_text
 from physicslab.lab.bench.result import EngineResult, SceneResult, Spread
 from physicslab.lab.bench.scene import BenchScene, at_rest, largest_overlap, lost, within
 from physicslab.lab.bench.targets import checks
 from physicslab.lab.jobs import result_of
 from physicslab.lab.peers.box2d3_built import BuildError, built_box2d
+from physicslab.lab.peers.mirrors import PymunkMirror
 from physicslab.lab.worlds import open_space, place
 from physicslab.prefabs import box, circle
 
@@ -217,6 +220,34 @@ def test_box2d_in_c_is_timed_beside_others(box2d: Any) -> None:
     assert other.step_ms is not None and other.times_ours is not None and not other.failure
     assert other.quality["deepest overlap"] == pytest.approx(0.0, abs=0.02)
     assert other.quality["lost bodies"] == 0.0
+
+
+def _judged(overlap: float | None, failure: str = "") -> EngineResult:
+    return EngineResult("", quality={"largest overlap": overlap}, failure=failure)
+
+
+@pytest.mark.parametrize(
+    ("other", "ours", "alike"),
+    [
+        (_judged(0.02), 0.02, True), (_judged(0.021), 0.02, False), (_judged(0.009), 0.001, True),
+        (_judged(0.011), 0.001, False), (_judged(None), 0.02, False), (_judged(0.0, "NaN"), 0.02, False),
+    ],
+)  # fmt: skip
+def test_a_peer_is_alike_if_no_figure_is_worse(other: EngineResult, ours: float, alike: bool) -> None:
+    assert like_quality._is_alike(other, _judged(ours)) is alike
+
+
+@pytest.mark.peers
+def test_a_peer_that_overlaps_deeper_is_run_in_shorter_steps_until_it_does_not() -> None:
+    found = result_of(measure_random(62, 10, (PymunkMirror,)))
+    ours, other = found.result.ours, found.result.engines["pymunk"]
+    assert not like_quality._is_alike(other, ours) and other.times_ours is not None
+    assert other.alike is not None and other.alike.is_reached and other.alike.finer > 1
+    assert other.alike.times_ours > other.times_ours
+    report = RandomReport("62:10", ["pymunk"], [found])
+    assert f"steps of 1/{other.alike.finer} of the usual" in random_text(report)
+    (engine,) = [engine for engine in report.document["scenes"][0]["engines"] if engine["name"] == "pymunk"]
+    assert engine["alike"] == dataclasses.asdict(other.alike)
 
 
 @pytest.mark.peers

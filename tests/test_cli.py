@@ -18,9 +18,10 @@ import pytest
 
 import physicslab
 from physicslab import cli, load_scene, save_scene
-from physicslab.commands import COMMANDS, progress
+from physicslab.commands import progress
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.output import Output
+from physicslab.commands.usage import COMMANDS
 from physicslab.components.quantities import ENERGY_CAUSES
 from physicslab.diagnostics.run_report import find_not_finite
 from physicslab.lab.accuracy.catalogue import PROBLEMS

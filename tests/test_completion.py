@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from physicslab import cli
-from physicslab.commands import COMMANDS, command
-from physicslab.commands.parsers import SHELLS, summary_of
+from physicslab.commands.parsers import SHELLS
+from physicslab.commands.usage import COMMANDS
+from physicslab.kernels.keys import LEVELS
 
 MANUAL = Path(__file__).parent.parent / "docs" / "physicslab.1"
 COMPLETE = """
@@ -54,14 +55,27 @@ def test_the_manual_is_that_of_the_commands(capsys: pytest.CaptureFixture[str]) 
     assert printed(capsys, "--print-manual") == MANUAL.read_text("utf-8"), words
 
 
-def test_a_summary_is_the_first_line_of_the_help() -> None:
-    for name in COMMANDS:
-        assert summary_of(name) == (command(name).__doc__ or "").splitlines()[0]
+WITHOUT_NUMBA = """
+import sys
+from physicslab.cli import main
+from physicslab.commands.usage import COMMANDS
+
+for line in (["--help"], ["--version"], *([name, "--help"] for name in COMMANDS), ["scenes"]):
+    assert main(line) == 0, line
+    assert "numba" not in sys.modules, line
+for name in COMMANDS:
+    assert main([name, "--no-such-option"]) == 2
+    assert "numba" not in sys.modules, name
+"""
 
 
-@pytest.mark.parametrize("argument", ["--help", "--version", "scenes"])
-def test_little_is_said_without_waiting_for_numba(argument: str) -> None:
-    code = (
-        f"import sys; from physicslab.cli import main; main(['{argument}']); sys.exit('numba' in sys.modules)"
-    )
-    assert subprocess.run([sys.executable, "-c", code], stdout=subprocess.DEVNULL).returncode == 0
+def test_nothing_is_said_of_commands_that_waits_for_numba() -> None:
+    done = subprocess.run([sys.executable, "-c", WITHOUT_NUMBA], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count("physicslab: ") == len(COMMANDS)
+
+
+def test_kernels_are_compiled_for_the_processors_that_the_command_names(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert f"{{{','.join(('native', *LEVELS))}}}" in printed(capsys, "kernels", "--help")

@@ -1,11 +1,11 @@
-"""The commands of the command line, one file each, in one explicit list.
+"""The commands of the command line.
 
-A command is a module with ``add_arguments(parser)`` and ``execute(arguments) -> int``, which returns the exit
-status or raises :class:`CommandError`. To add one, write its file and name it here.
+:mod:`physicslab.commands.usage` declares each with a function of its name; a module of that name has its
+``execute(arguments) -> int``, which returns the exit status or raises :class:`CommandError`.
 """
 
 import importlib.util
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from importlib import import_module
 from keyword import iskeyword
 from typing import Protocol, cast
@@ -59,27 +59,15 @@ def require_window(user: str) -> None:
 
 
 class Command(Protocol):
-    """The interface of a command's module; its docstring is the help."""
-
-    def add_arguments(self, parser: ArgumentParser) -> None:
-        """Declare what the command takes."""
+    """The interface of a command's module."""
 
     def execute(self, arguments: Namespace) -> int:
         """Do it, and return the exit status."""
 
 
-COMMANDS = (
-    "run", "replay", "accuracy", "stability", "bench", "scenes", "lesson", "grade", "import", "export",
-    "kernels", "sweep", "schema",
-)  # fmt: skip
-"""Every command, by the name of its module, which has an underscore behind a keyword of Python."""
-
-
 def command(name: str) -> Command:
-    """Return a command by name; only now is it imported, and the physics with it."""
-    return cast(Command, import_module(module_of(name)))
+    """Return the module of a command, whose name has an underscore behind a keyword of Python.
 
-
-def module_of(name: str) -> str:
-    """Return the full name of a command's module."""
-    return f"{__name__}.{name}{'_' * iskeyword(name)}"
+    Only now is it imported, and the physics with it.
+    """
+    return cast(Command, import_module(f"{__name__}.{name}{'_' * iskeyword(name)}"))

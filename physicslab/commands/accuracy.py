@@ -1,13 +1,12 @@
 """Measure error against run time, for every integrator, on problems with known answers or on a scene."""
 
 import os
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 
 from physicslab.commands import FAILED, CommandError
-from physicslab.commands.arguments import positive_duration
-from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
+from physicslab.commands.lab import LabRun, chosen_cases, list_cases, unknown_name
 from physicslab.ecs.text import printable
 from physicslab.files.scene import load_scene
 from physicslab.lab.accuracy import tables
@@ -19,7 +18,7 @@ from physicslab.lab.accuracy.document import document, trust_document
 from physicslab.lab.accuracy.honesty.study import FAMILIES, HonestRow, assess_known
 from physicslab.lab.accuracy.plot import case_plot, overview, work_precision
 from physicslab.lab.accuracy.problem import Problem
-from physicslab.lab.accuracy.scene_study import DEFAULT_S, SceneStudy, study_scene
+from physicslab.lab.accuracy.scene_study import SceneStudy, study_scene
 from physicslab.lab.accuracy.study import Study, study
 from physicslab.lab.accuracy.trust import Trust, assess, moments_of
 from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem
@@ -32,28 +31,6 @@ _DRAWN = 10
 """How many random scenes of each family estimates are judged by."""
 _LOOKS = 24
 """How often digits are counted in a run of a scene."""
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    what = (
-        "a problem, a contact case, a family of them, a built-in scene or a scene file; every problem and "
-        "case, sparsely, if none"
-    )
-    add_lab_arguments(parser, "problem", what, "draw a work-precision plot of each problem, as PNG")
-    seconds = f"how long scenes are run, in their time ({DEFAULT_S:g})"
-    parser.add_argument("--seconds", metavar="T", type=positive_duration, default=DEFAULT_S, help=seconds)
-    words = (
-        "print the estimate of the error of each problem, as run --trust makes it, beside its true error, "
-        "and of random scenes how often it is honest; of a scene, how many digits can be relied on from its "
-        "start to some moments"
-    )
-    parser.add_argument("--trust", action="store_true", help=words)
-    parser.epilog = (
-        f"families: {', '.join(PROBLEMS.families)}; of contact cases, by other engines as well where "
-        f"installed: {', '.join(CONTACTS.families)}, or {_CONTACTS} for all; --list names "
-        f"the {len(PROBLEMS)} problems and {len(CONTACTS)} cases"
-    )
 
 
 def execute(arguments: Namespace) -> int:

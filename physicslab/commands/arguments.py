@@ -1,22 +1,18 @@
-"""Arguments of several commands: a scene, and numbers, each refused with the allowed range."""
+"""Arguments of the commands: numbers, each refused with the allowed range, and options that several have."""
 
 import argparse
 import math
-import sys
-from argparse import Namespace
-from collections.abc import Iterable
-from pathlib import Path
-
-from physicslab.commands import CommandError
-from physicslab.commands.output import Output
-from physicslab.ecs.text import printable
-from physicslab.files.assignments import assign
-from physicslab.files.scene import load_scene
-from physicslab.scenes import SCENES
-from physicslab.world import World
 
 STEP_LIMIT = 10**15
 """More than any run will do; beyond it, times could no longer be counted exactly."""
+MOST_SLIDERS, MOST_VALUES = 2, 40
+"""How many quantities a page may vary, as it has so many sliders, and how many values each may have."""
+POSES = 2_000_000
+"""Poses that a page may hold, bodies times instants: some 30 MB, which a browser unpacks within seconds."""
+SAMPLE_FORM = "ID.Component.field=LAW:A:B"
+VARY_FORM = "ID.Component.field=START:STOP:COUNT"
+_MAX_RATE = 1000.0
+_SMALLEST_PX, _LARGEST_PX = 16, 4096
 
 
 def add_assignments(parser: argparse.ArgumentParser) -> None:
@@ -35,10 +31,21 @@ def add_budget(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--at-most", metavar="SECONDS", type=positive_duration, help=budget)
 
 
-def stopped_at(budget: float, time: float, done: int, whole: int) -> str:
-    """Return in words where a command was stopped by it."""
-    place = f"at t = {time:.9g} s, after {done} of {whole} steps"
-    return f"stopped after {budget:g} s of wall clock (--at-most) {place}"
+def add_lab_arguments(parser: argparse.ArgumentParser, kind: str, what: str, plot: str = "") -> None:
+    """Declare the arguments of every lab: names, of what ``kind`` and ``what`` they may be, and outputs.
+
+    Parameters
+    ----------
+    plot : str
+        What ``--plot`` draws; there is no such option where it is empty.
+    """
+    parser.add_argument("names", metavar=kind.upper(), nargs="*", help=what)
+    parser.add_argument("--list", action="store_true", help=f"print the name of every {kind} and stop")
+    parser.add_argument("--json", metavar="FILE", help="write everything that was measured (- for stdout)")
+    words = "write to stderr how far it is, where that is no terminal too"
+    parser.add_argument("--progress", action="store_true", help=words)
+    if plot:
+        parser.add_argument("--plot", metavar="DIR", help=plot)
 
 
 def duration(text: str) -> float:
@@ -83,34 +90,32 @@ def _whole(text: str, least: int) -> int:
     return number
 
 
-def opened(arguments: Namespace, *, again: bool = False) -> World:
-    """Return the scene that was named, with the fields that were set; say once what of it is not taken."""
-    losses: list[str] = []
-    world = load_scene(arguments.scene, losses)
-    if not again:
-        tell_losses(losses)
-    assign(world, arguments.set)
-    return world
+def rate(text: str) -> float:
+    """Return how many pictures are shown a second."""
+    try:
+        number = float(text)
+    except ValueError:
+        number = 0.0
+    if not 0.0 < number <= _MAX_RATE:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be a number > 0, at most {_MAX_RATE:g} a second")
+    return number
 
 
-def tell_losses(losses: Iterable[str]) -> None:
-    """Name on stderr what of a file has no place in a scene, a line each."""
-    for loss in losses:
-        print(f"not taken: {printable(loss)}", file=sys.stderr)
+def film_size(text: str) -> tuple[int, int]:
+    """Return width and height [px] of ``960x540``."""
+    try:
+        width, height = map(int, text.lower().split("x"))
+    except ValueError:
+        width = height = 0
+    if not all(_SMALLEST_PX <= number <= _LARGEST_PX for number in (width, height)):
+        allowed = f"WIDTHxHEIGHT, each from {_SMALLEST_PX} to {_LARGEST_PX} px"
+        raise argparse.ArgumentTypeError(f"{text!r}: must be {allowed}")
+    return width, height
 
 
-def name_of(world: World, arguments: Namespace) -> str:
-    """Return what the scene is called, in a report and in the names of files."""
-    return world.name or Path(arguments.scene).stem
-
-
-def check_output(output: Output, arguments: Namespace) -> None:
-    """Refuse an output that is the scene itself."""
-    if arguments.scene not in SCENES:
-        output.refuse_same(arguments.scene, "the scene")
-
-
-def check_seconds(seconds: float, dt: float) -> None:
-    """Refuse a time of more steps than can be counted."""
-    if seconds / dt > STEP_LIMIT:
-        raise CommandError(f"--seconds {seconds:g}: must be at most {STEP_LIMIT:g} steps of dt")
+def series(text: str) -> tuple[int, int]:
+    """Return a seed and the number of a scene of its series, of ``S`` or ``S:K``."""
+    seed, colon, first = text.partition(":")
+    if not (seed.isdecimal() and (first.isdecimal() or not colon)):
+        raise argparse.ArgumentTypeError(f"{text!r}: must be S or S:K, whole numbers from 0 on")
+    return int(seed), int(first or 0)

@@ -2,7 +2,7 @@
 
 import os
 import sys
-from argparse import ArgumentParser, ArgumentTypeError, Namespace
+from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -11,8 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from physicslab.commands import FAILED, CommandError, require_window
-from physicslab.commands.arguments import positive_count
-from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
+from physicslab.commands.lab import LabRun, chosen_cases, list_cases, unknown_name
 from physicslab.ecs.text import printable
 from physicslab.files.checks import shown
 from physicslab.lab.bench.catalogue import PEER_SIZE_LIMIT, SCENES, by_default, opened
@@ -36,34 +35,6 @@ _SIZE_LIMITS = {Box2DMirror.title: 2_000}
 """Bodies of the largest scene that an engine runs unless it is named; ``PEER_SIZE_LIMIT`` for others."""
 _UNUSED_SIZE = 1_000
 """Bodies that timing the unused systems takes as long as."""
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    others = ", ".join(name for name, scene in SCENES.items() if not scene.by_default)
-    what = (
-        f"a scene of the benchmark, a group of them, a built-in scene or a scene file; if none, everything "
-        f"but {others}"
-    )
-    add_lab_arguments(parser, "scene", what, "draw growth and ratios, as bench.png")
-    peers = (
-        "time pymunk, Box2D 2.3 and Box2D 3 on the same scenes, in turn (needs the dependency group peers); "
-        f"those of more than {PEER_SIZE_LIMIT:,} bodies, for Box2D 2.3 {_SIZE_LIMITS[Box2DMirror.title]:,}, "
-        "only where they are named"
-    )
-    parser.add_argument("--peers", action="store_true", help=peers)
-    built = "time Box2D 3 in C as well, compiled with cc, or CC, from this checkout of it (3.2 or later)"
-    parser.add_argument("--box2d", metavar="DIR", type=Path, help=built)
-    random = "time N random scenes instead; list the slowest and what they have in common"
-    parser.add_argument("--random", metavar="N", type=positive_count, help=random)
-    series = "their series (0); S:K begins at its K-th"
-    parser.add_argument("--seed", metavar="S", type=_series, default=(0, 0), help=series)
-    parser.epilog = (
-        f"groups: {', '.join(SCENES.families)}; --list names the {len(SCENES)} scenes; {_UNUSED}: what a "
-        f"step costs more for systems that the scene does not use; {_MEMORY}: bytes a body. dt is 1/60 s, 4 "
-        "substeps, one thread, nothing sleeps; pymunk takes 10 iterations with a slop of 5 mm, Box2D 2.3 8 "
-        "and 3. The exit status is 0 whether targets are met or not, and 1 if a run diverges."
-    )
 
 
 def execute(arguments: Namespace) -> int:
@@ -116,14 +87,6 @@ def _run_random(run: LabRun, arguments: Namespace) -> int:
     run.show(random_text(report))
     run.write(report.document)
     return FAILED if any(found.result.ours.failure for found in report.found) else 0
-
-
-def _series(text: str) -> tuple[int, int]:
-    """Return a seed and the number of a scene of its series, of ``S`` or ``S:K``."""
-    seed, colon, first = text.partition(":")
-    if not (seed.isdecimal() and (first.isdecimal() or not colon)):
-        raise ArgumentTypeError(f"{shown(text)}: must be S or S:K, whole numbers from 0 on")
-    return int(seed), int(first or 0)
 
 
 def _opened(extras: list[str], name: str) -> BenchScene | None:

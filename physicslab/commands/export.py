@@ -1,27 +1,19 @@
 """Export a run as a page of HTML that plays it in any browser, or as a film (GIF, MP4)."""
 
-import argparse
 import json
 import os
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from collections.abc import Sequence
 from typing import Any
 
 from physicslab.commands import FAILED, CommandError, require_window
-from physicslab.commands.arguments import (
-    add_assignments,
-    add_budget,
-    check_output,
-    check_seconds,
-    name_of,
-    opened,
-    positive_duration,
-)
+from physicslab.commands.arguments import POSES
 from physicslab.commands.measured_run import MeasuredRun
+from physicslab.commands.opening import check_output, check_seconds, name_of, opened
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
-from physicslab.commands.variations import Variation, add_variations, combinations, variations
+from physicslab.commands.variations import Variation, combinations, variations
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
 from physicslab.export.film import Film, NoEncoder
@@ -36,19 +28,6 @@ from physicslab.stepping.small import is_small
 from physicslab.world import World
 
 _FILM_EVERY_S = 1.0 / 30.0
-_SMALLEST, _LARGEST = 16, 4096
-
-
-def film_size(text: str) -> tuple[int, int]:
-    """Return width and height [px] of ``960x540``."""
-    try:
-        width, height = map(int, text.lower().split("x"))
-    except ValueError:
-        width = height = 0
-    if not all(_SMALLEST <= number <= _LARGEST for number in (width, height)):
-        allowed = f"WIDTHxHEIGHT, each from {_SMALLEST} to {_LARGEST} px"
-        raise argparse.ArgumentTypeError(f"{text!r}: must be {allowed}")
-    return width, height
 
 
 def make_film(option: str, path: str, arguments: Namespace) -> None:
@@ -121,52 +100,10 @@ def _extent(name: str, every: float, arguments: Namespace, tiers: Tiers) -> Box:
     return extent_of_run(world, recorder)
 
 
-_DEFAULT_S = 10.0
 _EVERY_S, _EVERY_OF_MANY_S = 1.0 / 60.0, 1.0 / 30.0
 """Time between two instants of a page, and of one that holds many runs [s]."""
 _SIZE = (960, 540)
 """Width and height of a film [px]."""
-_MAX_RATE = 1000.0
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    add = parser.add_argument
-    add("scene", metavar="SCENE", help="a built-in scene's name, or a path")
-    kind = parser.add_mutually_exclusive_group(required=True).add_argument
-    kind("--html", metavar="FILE", help="one page that plays the run without a network (- for stdout)")
-    kind("--gif", metavar="FILE", help="a film that any browser and any mail shows")
-    kind("--mp4", metavar="FILE", help="a film in H.264; needs ffmpeg, which the extra video brings")
-    seconds = f"how long, in the scene's time ({_DEFAULT_S:g}); the last step may be shorter"
-    add("--seconds", metavar="T", type=positive_duration, default=_DEFAULT_S, help=seconds)
-    spacing = (
-        "time between two instants (1/60, in a film or with --vary 1/30; every step where steps are longer)"
-    )
-    add("--every", metavar="S", type=positive_duration, help=spacing)
-    rate = "pictures of a film a second, where it is not to play as fast as the run (a GIF has 50 at most)"
-    add("--fps", metavar="N", type=_rate, help=rate)
-    add("--size", metavar="WxH", type=film_size, help="width and height of a film [px] (960x540)")
-    add_budget(parser)
-    add_assignments(parser)
-    add_variations(parser)
-    words = "write to stderr how far it is, terminal or not"
-    add("--progress", action="store_true", help=words)
-    parser.epilog = (
-        f"A page holds bodies times instants, of all runs, of at most {POSES:,}, positions to 7 digits. A "
-        "scene of 20 bodies takes less than 300 kB for 10 s. A film with --every 0.02 --fps 25 plays at half "
-        "the speed."
-    )
-
-
-def _rate(text: str) -> float:
-    """Return how many pictures are shown a second."""
-    try:
-        rate = float(text)
-    except ValueError:
-        rate = 0.0
-    if not 0.0 < rate <= _MAX_RATE:
-        raise argparse.ArgumentTypeError(f"{text!r}: must be a number > 0, at most {_MAX_RATE:g} a second")
-    return rate
 
 
 def execute(arguments: Namespace) -> int:
@@ -187,10 +124,6 @@ def execute(arguments: Namespace) -> int:
     arguments.every = arguments.every or (_EVERY_OF_MANY_S if arguments.vary else _EVERY_S)
     make_page(arguments)
     return 0
-
-
-POSES = 2_000_000
-"""Poses that a page may hold, bodies times instants: some 30 MB, which a browser unpacks within seconds."""
 
 
 def make_page(arguments: Namespace) -> None:

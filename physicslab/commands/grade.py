@@ -1,6 +1,6 @@
 """Grade the answers of a learner to a lesson: a report that a teacher can read."""
 
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import asdict
 from functools import partial
@@ -14,14 +14,6 @@ from physicslab.lessons.answers import Answers, Graded, grade, read_answers
 from physicslab.lessons.catalogue import find_lesson, lesson_in
 from physicslab.lessons.lesson import Lesson
 from physicslab.lessons.words import kind_words, sureness_words
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    parser.add_argument("lesson", metavar="LESSON", help="a lesson's name, or its file")
-    parser.add_argument("answers", metavar="ANSWERS.json", help="answers as physicslab-answers/1")
-    parser.add_argument("--language", metavar="CODE", default="", help="of a lesson that has it, as de")
-    parser.add_argument("--json", metavar="FILE", help="write the report as JSON (- for stdout)")
 
 
 def execute(arguments: Namespace) -> int:

@@ -1,21 +1,14 @@
 """Turn a world of KDE Step into a scene file, and name what it leaves out."""
 
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from pathlib import Path
 
 from physicslab.commands import FAILED, CommandError
-from physicslab.commands.arguments import tell_losses
+from physicslab.commands.opening import tell_losses
 from physicslab.commands.output import Output
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.replace import create_file, reason_of
 from physicslab.files.scene import is_step, load_scene, scene_bytes
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    parser.add_argument("file", metavar="FILE", help="a world of KDE Step, FILE.step")
-    out = "the scene file, which must not be there yet (- for stdout); FILE.json beside FILE.step if left out"
-    parser.add_argument("--out", metavar="SCENE", help=out)
 
 
 def execute(arguments: Namespace) -> int:

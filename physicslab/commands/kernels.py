@@ -2,7 +2,7 @@
 
 import platform
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from pathlib import Path
 
 from physicslab.commands import FAILED, CommandError
@@ -12,27 +12,13 @@ from physicslab.ecs.text import printable
 from physicslab.files.replace import reason_of
 from physicslab.kernels import cache_directory
 from physicslab.kernels.archive import ArchiveError, pack, unpack
-from physicslab.kernels.keys import LEVELS, platform_key, use_processor
+from physicslab.kernels.keys import platform_key, use_processor
 from physicslab.kernels.warm import WORKER, Warmup, is_warm, load_all, mark_warm, work
 
-NATIVE = "native"
-"""The name of just this processor."""
 _LOOK_EVERY_S = 0.1
 _WARNING = (
     "physicslab: compiled kernels are programs: import none from people whose programs you would not run"
 )
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    parser.add_argument(
-        "action", nargs="?", choices=("export", "import", WORKER), metavar="{export,import}",
-        help="export: compile all and write them to FILE; import: take them from FILE in place of compiling; "
-        "neither: compile all and keep them",
-    )  # fmt: skip
-    words = "with export: for any processor of the kind, in place of just this one; the same bits (native)"
-    parser.add_argument("--cpu", choices=(NATIVE, *LEVELS), default=NATIVE, help=words)
-    parser.add_argument("file", metavar="FILE", nargs="?", help="an archive of compiled kernels")
 
 
 def execute(arguments: Namespace) -> int:
@@ -41,7 +27,7 @@ def execute(arguments: Namespace) -> int:
         return work()
     if (arguments.action is None) != (arguments.file is None):
         raise CommandError(f"kernels {arguments.action}: FILE is missing (see physicslab kernels --help)")
-    if arguments.cpu != NATIVE:
+    if arguments.cpu != "native":
         if arguments.action != "export":
             raise CommandError(f"--cpu {arguments.cpu}: must go with export")
         if platform.machine() not in ("x86_64", "AMD64"):

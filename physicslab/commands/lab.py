@@ -1,7 +1,7 @@
 """Shared parts of the commands of the labs: names of cases, progress, tables, documents and plots."""
 
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TextIO
 
@@ -14,23 +14,6 @@ from physicslab.files.json_text import json_bytes
 from physicslab.lab.case import Case, Catalogue
 from physicslab.lab.jobs import Job, run_jobs
 from physicslab.lab.table import table
-
-
-def add_lab_arguments(parser: ArgumentParser, kind: str, what: str, plot: str = "") -> None:
-    """Declare the arguments of every lab: names, of what ``kind`` and ``what`` they may be, and outputs.
-
-    Parameters
-    ----------
-    plot : str
-        What ``--plot`` draws; there is no such option where it is empty.
-    """
-    parser.add_argument("names", metavar=kind.upper(), nargs="*", help=what)
-    parser.add_argument("--list", action="store_true", help=f"print the name of every {kind} and stop")
-    parser.add_argument("--json", metavar="FILE", help="write everything that was measured (- for stdout)")
-    words = "write to stderr how far it is, where that is no terminal too"
-    parser.add_argument("--progress", action="store_true", help=words)
-    if plot:
-        parser.add_argument("--plot", metavar="DIR", help=plot)
 
 
 def list_cases[AnyCase: Case](catalogue: Catalogue[AnyCase]) -> int:

@@ -1,7 +1,7 @@
 """Say what a lesson is, check its theories against the engine, or print it for pupils to write on."""
 
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from collections.abc import Iterator
 from dataclasses import asdict
 from functools import partial
@@ -20,21 +20,6 @@ from physicslab.lessons.check import Row, check_lesson
 from physicslab.lessons.lesson import Lesson, Prose
 from physicslab.lessons.page import lesson_page
 from physicslab.lessons.worksheet import worksheet
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    parser.add_argument(
-        "lesson", metavar="NAME|FILE", nargs="?", help="a lesson; without one, all that come with the program"
-    )
-    parser.add_argument("--check", action="store_true", help="compare every theory with the engine: a table")
-    parser.add_argument("--language", metavar="CODE", default="", help="of a lesson that has it, as de")
-    parser.add_argument("--worksheet", metavar="FILE", help="write a page to print, without solutions")
-    words = "write one page for a browser without a network: with its runs, and with its solutions in it"
-    parser.add_argument("--page", metavar="FILE", help=words)
-    words = "say on stderr how far the page is, though that is no terminal"
-    parser.add_argument("--progress", action="store_true", help=words)
-    parser.add_argument("--json", metavar="FILE", help="write what was found as JSON (- for stdout)")
 
 
 def execute(arguments: Namespace) -> int:

@@ -5,7 +5,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 
-from physicslab.commands.arguments import stopped_at
+from physicslab.commands.opening import stopped_at
 from physicslab.commands.progress import Progress
 from physicslab.diagnostics.energy import Accounts, Audit
 from physicslab.diagnostics.impact_table import ImpactTableWriter

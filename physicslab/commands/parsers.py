@@ -1,12 +1,12 @@
 """The parsers of the command line, and what is made of all of them: completion for shells, and a manual."""
 
-import importlib.util
 import inspect
 from argparse import SUPPRESS, Action, ArgumentParser
 from collections.abc import Iterator
 from typing import NoReturn
 
-from physicslab.commands import COMMANDS, CommandError, command, module_of, require
+from physicslab.commands import CommandError, require
+from physicslab.commands.usage import COMMANDS
 from physicslab.scenes import SCENES
 
 SHELLS = ("bash", "zsh", "tcsh")
@@ -32,7 +32,7 @@ class Parser(ArgumentParser):
 
 
 class WindowParser(Parser):
-    """Parses what opens the window, and lists the commands in its help without importing any."""
+    """Parses what opens the window, and lists the commands in its help."""
 
     def __init__(self, version: str) -> None:
         super().__init__("physicslab", _DESCRIPTION)
@@ -54,18 +54,14 @@ class WindowParser(Parser):
 
 
 def summary_of(name: str) -> str:
-    """Return the first line of a command's help, without importing it, and the physics with it."""
-    spec = importlib.util.find_spec(module_of(name))
-    assert spec is not None
-    code = spec.loader.get_code(spec.name)  # type: ignore[union-attr]
-    return str(code.co_consts[0]).splitlines()[0]
+    """Return the first line of a command's help."""
+    return (COMMANDS[name].__doc__ or "").splitlines()[0]
 
 
 def parser_of(name: str) -> Parser:
     """Return the parser of a command."""
-    named = command(name)
-    parser = Parser(f"physicslab {name}", named.__doc__)
-    named.add_arguments(parser)
+    parser = Parser(f"physicslab {name}", COMMANDS[name].__doc__)
+    COMMANDS[name](parser)
     return parser
 
 
@@ -84,7 +80,7 @@ def completion(shell: str) -> str:
     parts = whole.add_subparsers()
     for name in COMMANDS:
         part = parts.add_parser(name, help=summary_of(name))
-        command(name).add_arguments(part)
+        COMMANDS[name](part)
         for action in part._actions:
             if action.dest == "scene":
                 action.complete = {"bash": "_physicslab_scene", "zsh": "_physicslab_scene", "tcsh": "f"}  # type: ignore[attr-defined]

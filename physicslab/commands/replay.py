@@ -1,11 +1,11 @@
 """Play a recording without a window, and say where its bits first differ."""
 
 import time
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from typing import Any
 
 from physicslab.commands import FAILED, CommandError
-from physicslab.commands.arguments import add_budget, stopped_at
+from physicslab.commands.opening import stopped_at
 from physicslab.commands.output import Output
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.json_text import json_bytes
@@ -15,13 +15,6 @@ from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    parser.add_argument("file", metavar="FILE", help="a recording, as the window or History.save writes it")
-    add_budget(parser)
-    parser.add_argument("--json", metavar="FILE", help="write the result (- for stdout)")
 
 
 def execute(arguments: Namespace) -> int:

@@ -4,26 +4,15 @@ import dataclasses
 import io
 import math
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TextIO
 
 from physicslab.commands import FAILED, CommandError, require_window
-from physicslab.commands.arguments import (
-    add_assignments,
-    add_budget,
-    check_output,
-    check_seconds,
-    count,
-    duration,
-    name_of,
-    opened,
-    positive_count,
-    positive_duration,
-)
 from physicslab.commands.measured_run import MeasuredRun
+from physicslab.commands.opening import check_output, check_seconds, name_of, opened
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.diagnostics.impact_table import ImpactTableWriter
@@ -31,7 +20,6 @@ from physicslab.diagnostics.precision import find_imprecise, words_of_digits
 from physicslab.diagnostics.run_report import advice_of, find_not_finite, run_report, run_summary
 from physicslab.diagnostics.trajectory import TrajectoryWriter
 from physicslab.ecs.component import InvalidValue
-from physicslab.ecs.config import CONTACTS, INTEGRATORS
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
 from physicslab.files.json_text import json_bytes
@@ -40,36 +28,6 @@ from physicslab.kernels.tiers import Tiers
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
-
-_DEFAULT_S = 10.0
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    add = parser.add_argument
-    add("scene", metavar="SCENE", help="a built-in scene's name, or a path")
-    length = parser.add_mutually_exclusive_group()
-    seconds = f"how long, in the scene's time ({_DEFAULT_S:g}); the last step may be shorter"
-    length.add_argument("--seconds", metavar="T", type=duration, help=seconds)
-    length.add_argument("--steps", metavar="N", type=count, help="how long, in steps")
-    add("--dt", metavar="S", type=positive_duration, help="length of a step, in place of the scene's")
-    add("--substeps", metavar="N", type=positive_count, help="parts of a step, in place of the scene's")
-    add("--integrator", metavar="NAME", help=f"one of {', '.join(INTEGRATORS)}")
-    add("--contacts", metavar="NAME", help=f"one of {', '.join(CONTACTS)}")
-    add_assignments(parser)
-    add_budget(parser)
-    add("--json", metavar="FILE", help="write energies, momenta, costs and the final state (- for stdout)")
-    table = "write every body's state with all energies and momenta, at the start and after each step (-)"
-    add("--csv", metavar="FILE", help=table)
-    sheet = "with --csv or --ledger: for Excel where numbers have commas: semicolons between cells"
-    add("--csv-for", metavar="PROGRAM", choices=["excel"], help=f"{sheet} (excel)")
-    spacing = "with --csv: rows at most so often, in the scene's time; those of the start and the end always"
-    add("--every", metavar="S", type=positive_duration, help=spacing)
-    words = "compute the run in other ways too: how many digits of motion and energy agree, and until when"
-    add("--trust", action="store_true", help=words)
-    impacts = "write every impact of the run: time, place, speeds before and after, energy lost (-)"
-    add("--ledger", metavar="FILE", help=impacts)
-    add("--png", metavar="FILE", help="draw the final state, without a window (- for stdout)")
 
 
 def execute(arguments: Namespace) -> int:
@@ -90,7 +48,7 @@ def _execute(world: World, arguments: Namespace, outputs: Mapping[str, Output], 
     start = world.time
     name = name_of(world, arguments)
     label = shortened(printable(name))
-    seconds = _DEFAULT_S if arguments.seconds is None and arguments.steps is None else arguments.seconds
+    seconds = arguments.seconds if arguments.steps is None else None
     for_excel = arguments.csv_for is not None
     with _stream(outputs, "csv") as stream, _stream(outputs, "ledger") as impacts:
         keep = None if stream is None else TrajectoryWriter(stream, world, for_excel=for_excel).write
@@ -193,9 +151,8 @@ def _configure(world: World, arguments: Namespace) -> None:
         raise CommandError(
             f"--steps {arguments.steps}: must take a finite time at {world.simulation.dt:g} s each"
         )
-    seconds = _DEFAULT_S if arguments.seconds is None else arguments.seconds
     if arguments.steps is None:
-        check_seconds(seconds, world.simulation.dt)
+        check_seconds(arguments.seconds, world.simulation.dt)
 
 
 def _picture(world: World) -> bytes:

@@ -1,16 +1,11 @@
 """List the built-in scenes: name, number of bodies and description."""
 
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 
 from physicslab.commands.output import Output
 from physicslab.components import Transform
 from physicslab.files.json_text import json_bytes
 from physicslab.scenes import SCENES
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    parser.add_argument("--json", metavar="FILE", help="write the list as JSON (- for stdout)")
 
 
 def execute(arguments: Namespace) -> int:

@@ -1,15 +1,10 @@
 """Write the JSON Schema of scene files, by which editors complete and check them."""
 
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 
 from physicslab.commands.output import Output
 from physicslab.files.json_text import json_bytes
 from physicslab.files.schema import scene_schema
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    parser.add_argument("--out", metavar="FILE", default="-", help="where it goes (stdout)")
 
 
 def execute(arguments: Namespace) -> int:

@@ -1,10 +1,10 @@
 """Run stiff, extreme and hostile cases: which pass, which fall short."""
 
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from concurrent.futures.process import BrokenProcessPool
 
 from physicslab.commands import FAILED, CommandError
-from physicslab.commands.lab import LabRun, add_lab_arguments, chosen_cases, list_cases, unknown_name
+from physicslab.commands.lab import LabRun, chosen_cases, list_cases, unknown_name
 from physicslab.lab.jobs import in_processes
 from physicslab.lab.stability.case import (
     Outcome,
@@ -17,12 +17,6 @@ from physicslab.lab.stability.case import (
     summary_text,
 )
 from physicslab.lab.stability.catalogue import CASES, run_named, runs_of
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    add_lab_arguments(parser, "case", "a case, or a group of them; all if none")
-    parser.epilog = f"groups: {', '.join(CASES.families)}; --list names the {len(CASES)} cases"
 
 
 def execute(arguments: Namespace) -> int:

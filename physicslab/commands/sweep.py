@@ -1,22 +1,15 @@
 """Run a scene many times with other values, on all processors, and keep what is measured of each run."""
 
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from physicslab.commands import FAILED, CommandError, require, require_window
-from physicslab.commands.arguments import (
-    add_assignments,
-    check_seconds,
-    count,
-    name_of,
-    opened,
-    positive_count,
-    positive_duration,
-)
+from physicslab.commands.arguments import SAMPLE_FORM
+from physicslab.commands.opening import check_seconds, name_of, opened
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
 from physicslab.commands.variations import vary
@@ -31,37 +24,8 @@ from physicslab.files.checks import shown
 from physicslab.scenes import SCENES
 from physicslab.world import World
 
-_DEFAULT_S = 10.0
 _MOST_VALUES = 1_000_000
-_SAMPLE_FORM = "ID.Component.field=LAW:A:B"
 _SHOWN_FAILURES = 3
-
-
-def add_arguments(parser: ArgumentParser) -> None:
-    """Declare what the command takes."""
-    add = parser.add_argument
-    add("scene", metavar="SCENE", help="a built-in scene's name, or a path")
-    words = (
-        "a run for each of COUNT values from START to STOP, with those of other options in every combination"
-    )
-    add("--vary", metavar="ID.Component.field=START:STOP:COUNT", action="append", default=[], help=words)
-    words = "a number drawn for each sample: uniform:FROM:TO, normal:MEAN:DEVIATION or sobol:FROM:TO"
-    add("--sample", metavar=_SAMPLE_FORM, action="append", default=[], help=words)
-    add("--samples", metavar="N", type=positive_count, help="how many samples, for each combination")
-    add("--seed", metavar="N", type=count, help="by which they are drawn (0)")
-    words = "what is kept of a run, [NAME=]EXPRESSION: ball.x, max(ball.y), first_impact.time, numerical, ..."
-    add("--measure", metavar="EXPR", action="append", default=[], help=words)
-    add("--seconds", metavar="T", type=positive_duration, default=_DEFAULT_S,
-        help=f"how long a run is, in the scene's time ({_DEFAULT_S:g})")  # fmt: skip
-    add("--until", metavar="CONDITION", help="a run ends when this begins to hold: 'ball.x >= 8 m'")
-    add("--out", metavar="FILE", help="where the rows go: .npz, .csv or .parquet; else a summary on stdout")
-    words = "a picture of the first measure over the two fields that --vary names (extra: plot)"
-    add("--map", metavar="FILE.png", help=words)
-    where = parser.add_mutually_exclusive_group()
-    where.add_argument("--workers", metavar="N", type=positive_count, help="processes (one a processor)")
-    where.add_argument("--dask", metavar="ADDRESS", help="the scheduler of a Dask cluster: tcp://host:8786")
-    add("--open", metavar="ROW", type=count, help="make no run; open the window on the scene of this row")
-    add_assignments(parser)
 
 
 def execute(arguments: Namespace) -> int:
@@ -130,7 +94,7 @@ def _space(world: World, arguments: Namespace) -> dict[str, Any]:
         parts = tuple(part.strip() for part in law.split(":"))
         if not sign or len(parts) != 3 or parts[0] not in ("uniform", "normal", "sobol"):
             raise CommandError(
-                f"--sample {shown(text)}: must be {_SAMPLE_FORM}, LAW one of uniform, normal, sobol"
+                f"--sample {shown(text)}: must be {SAMPLE_FORM}, LAW one of uniform, normal, sobol"
             )
         _once(space, path.strip(), "--sample")
         space[path.strip()] = parts

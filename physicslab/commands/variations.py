@@ -1,13 +1,13 @@
 """Fields of a scene that differ from run to run: ``--vary ball.Velocity.linear.x=1:5:9``."""
 
 import itertools
-from argparse import ArgumentParser
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from physicslab.commands import CommandError
+from physicslab.commands.arguments import MOST_SLIDERS, MOST_VALUES, VARY_FORM
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.ecs.vector import Vector2
@@ -15,21 +15,6 @@ from physicslab.export.page import Varied, field_words
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import Place, find_place
 from physicslab.world import World
-
-MOST_VALUES = 40
-"""How many values a quantity may have."""
-_MOST = 2
-"""How many quantities may be varied: a page has as many sliders."""
-_FORM = "ID.Component.field=START:STOP:COUNT"
-
-
-def add_variations(parser: ArgumentParser) -> None:
-    """Declare the option ``--vary``, which may be given twice."""
-    words = (
-        "one run for each of COUNT values from START to STOP, between which a slider of the page chooses; of "
-        f"a vector field.x or field.y; up to {_MOST} of them, of up to {MOST_VALUES} values each"
-    )
-    parser.add_argument("--vary", metavar=_FORM, action="append", default=[], help=words)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,8 +48,8 @@ def variations(world: World, texts: Sequence[str]) -> list[Variation]:
     CommandError
         If one of them cannot be: which entity, component, field and value, and what is allowed.
     """
-    if len(texts) > _MOST:
-        raise CommandError(f"--vary: is given {len(texts)} times; a page has at most {_MOST} sliders")
+    if len(texts) > MOST_SLIDERS:
+        raise CommandError(f"--vary: is given {len(texts)} times; a page has at most {MOST_SLIDERS} sliders")
     varied = [_variation(world, text) for text in texts]
     for one, other in itertools.combinations(varied, 2):
         if one.place.path == other.place.path:
@@ -87,7 +72,7 @@ def vary(world: World, text: str, most: int) -> tuple[Place, tuple[float, ...]]:
     """
     path, sign, span = text.rpartition("=")
     if not sign or span.count(":") != 2:
-        raise SceneError(f"--vary {shown(text)}: must be {_FORM}")
+        raise SceneError(f"--vary {shown(text)}: must be {VARY_FORM}")
     place = find_place(world, "--vary", path, span)
     spec = place.spec
     if spec.kind not in ("number", "whole", "vector") or (spec.kind == "vector") != bool(place.part):

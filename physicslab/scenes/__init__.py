@@ -4,7 +4,7 @@ They are Python and not JSON: ten lines that call prefabs say what a scene of tw
 read and varied (the pyramid's base, the gas's seed), and are the examples that a contributor starts from.
 ``save_scene`` makes a file of any of them.
 
-To add one: write a file with a :class:`Scene` of the file's name in capitals, and name it here.
+To add one: write a file with a function of its name that a :class:`Scene` decorates, and name it here.
 """
 
 from collections.abc import Iterator, Mapping
@@ -61,7 +61,7 @@ class _Scenes(Mapping[str, "Scene"]):
     def __getitem__(self, name: str) -> "Scene":
         if name not in _NAMES:
             raise KeyError(name)
-        scene: Scene = getattr(import_module(f"{__name__}.{name}"), name.upper())
+        scene: Scene = getattr(import_module(f"{__name__}.{name}"), name)
         return scene
 
     def __contains__(self, name: object) -> bool:

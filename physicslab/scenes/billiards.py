@@ -11,20 +11,9 @@ _RADIUS = 0.15
 _BALL: BodyOptions = {"mass": 0.17, "restitution": 0.95, "friction": 0.05}
 
 
-def _fill(world: Contents) -> None:
-    circle(world, (-3.0, 0.05), radius=_RADIUS, **(_BALL | {"velocity": (8.0, 0.0), "name": "cue ball"}))
-    pitch = 2.0 * _RADIUS + 0.002
-    for row in range(5):
-        for i in range(row + 1):
-            place = (1.5 + row * pitch * math.sqrt(0.75), (i - row / 2.0) * pitch)
-            circle(world, place, radius=_RADIUS, **_BALL)
-
-
-BILLIARDS = Scene(
-    name="billiards",
+@Scene(
     title="The break",
     description="A cue ball runs into a rack of fifteen, seen from above: where does its momentum go?",
-    fill=_fill,
     view=(-5.1, -2.6, 5.1, 2.6),
     moment=1.0,
     teaches=("momentum", "collisions", "energy"),
@@ -38,3 +27,10 @@ BILLIARDS = Scene(
         angular_damping=0.25,
     ),
 )
+def billiards(world: Contents) -> None:
+    circle(world, (-3.0, 0.05), radius=_RADIUS, **(_BALL | {"velocity": (8.0, 0.0), "name": "cue ball"}))
+    pitch = 2.0 * _RADIUS + 0.002
+    for row in range(5):
+        for i in range(row + 1):
+            place = (1.5 + row * pitch * math.sqrt(0.75), (i - row / 2.0) * pitch)
+            circle(world, place, radius=_RADIUS, **_BALL)

@@ -5,19 +5,15 @@ from physicslab.scenes.scene import Scene
 from physicslab.state.contents import Contents
 
 
-def _fill(world: Contents) -> None:
-    box(world, (0, -0.5), width=14, height=1, static=True, restitution=1, name="floor")
-    for i, restitution in enumerate((0.0, 0.25, 0.5, 0.75, 1.0)):
-        circle(world, (2 * i - 4, 4), radius=0.3, restitution=restitution, name=f"e = {restitution:g}")
-
-
-BOUNCES = Scene(
-    name="bounces",
+@Scene(
     title="Five restitutions",
     description="Five balls fall from one height; each bounce reaches e squared of the height before.",
-    fill=_fill,
     view=(-7.0, -1.0, 7.0, 5.2),
     moment=1.2,
     teaches=("energy", "collisions"),
     tags=("solid bodies",),
 )
+def bounces(world: Contents) -> None:
+    box(world, (0, -0.5), width=14, height=1, static=True, restitution=1, name="floor")
+    for i, restitution in enumerate((0.0, 0.25, 0.5, 0.75, 1.0)):
+        circle(world, (2 * i - 4, 4), radius=0.3, restitution=restitution, name=f"e = {restitution:g}")

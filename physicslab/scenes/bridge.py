@@ -12,7 +12,16 @@ _PLANKS, _LENGTH, _THICKNESS, _RADIUS = 20, 0.4, 0.12, 12.0
 """How many planks; the length and the thickness of each, and the radius of the arc in which they hang [m]."""
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="A hanging bridge",
+    description="Twenty planks on pins carry what falls on them: each pin tells the force that it holds.",
+    # A plank that is hit takes a way of its own until its pins act, at the end of the substep.
+    simulation=SimulationConfig(substeps=8),
+    view=(-4.6, -2.0, 4.6, 3.4),
+    teaches=("forces", "equilibrium"),
+    tags=("joints", "solid bodies"),
+)
+def bridge(world: Contents) -> None:
     one = 2.0 * math.asin(0.5 * _LENGTH / _RADIUS)  # the angle that one plank takes of the arc
     half, top = _RADIUS * math.sin(0.5 * _PLANKS * one), _RADIUS * math.cos(0.5 * _PLANKS * one)
     left, right = (
@@ -35,16 +44,3 @@ def _fill(world: Contents) -> None:
         circle(
             world, (1.6 * (n - 1), 0.9 + 0.7 * n), radius=radius, mass=mass, friction=0.6, name=f"{mass:g} kg"
         )
-
-
-BRIDGE = Scene(
-    name="bridge",
-    title="A hanging bridge",
-    description="Twenty planks on pins carry what falls on them: each pin tells the force that it holds.",
-    fill=_fill,
-    # A plank that is hit takes a way of its own until its pins act, at the end of the substep.
-    simulation=SimulationConfig(substeps=8),
-    view=(-4.6, -2.0, 4.6, 3.4),
-    teaches=("forces", "equilibrium"),
-    tags=("joints", "solid bodies"),
-)

@@ -19,7 +19,15 @@ def _height(x: float) -> float:
     return hills + 0.08 * max(0.0, x - 4.2) ** 2 + 0.3 * max(0.0, -8.2 - x) ** 2
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="A car on hills",
+    description="Motors push with 2 M / r = 120 N: up hills, but no slope above 26 degrees.",
+    view=(-9.5, -1.6, 11.5, 5.0),
+    moment=3.0,
+    teaches=("machines", "forces", "friction"),
+    tags=("joints", "solid bodies"),
+)
+def car(world: Contents) -> None:
     along = [_RIGHT - k * _STEP for k in range(round((_RIGHT - _LEFT) / _STEP) + 1)]
     ground(world, [(x, _height(x)) for x in along], friction=1.0, name="hills")
     outline = [(-0.95, -0.12), (0.95, -0.12), (1.0, 0.08), (0.4, 0.42), (-0.4, 0.42), (-0.95, 0.14)]
@@ -31,15 +39,3 @@ def _fill(world: Contents) -> None:
         )  # fmt: skip
         axle = Pin(car, wheel, (place, -0.3), motor_speed=_SPEED, max_torque=_TORQUE)
         world.spawn(axle, name=f"{name} motor")
-
-
-CAR = Scene(
-    name="car",
-    title="A car on hills",
-    description="Motors push with 2 M / r = 120 N: up hills, but no slope above 26 degrees.",
-    fill=_fill,
-    view=(-9.5, -1.6, 11.5, 5.0),
-    moment=3.0,
-    teaches=("machines", "forces", "friction"),
-    tags=("joints", "solid bodies"),
-)

@@ -10,7 +10,15 @@ _TRACK = 4.5
 """Half the length of the track [m]."""
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="Carts on a track",
+    description="1 kg at 2 m/s meets 2 kg: together they keep 2 kg m/s, but not their energy, as e is 0.8.",
+    view=(-4.9, -1.6, 4.9, 2.4),
+    moment=2.2,
+    teaches=("momentum", "collisions", "energy"),
+    tags=("solid bodies",),
+)
+def carts(world: Contents) -> None:
     wall: BodyOptions = {"static": True, "friction": 0.0, "restitution": 1.0}
     box(world, (0.0, -0.1), width=2.0 * _TRACK + 0.4, height=0.2, **(wall | {"name": "track"}))
     for side, name in ((-1.0, "left end"), (1.0, "right end")):
@@ -35,15 +43,3 @@ def _fill(world: Contents) -> None:
     world.spawn(Meter("momentum x", corner="top right"))
     world.spawn(Slider("Mass.mass", carts[0], 0.5, 5.0))
     world.spawn(Slider("Material.restitution", carts[0], 0.0, 1.0))
-
-
-CARTS = Scene(
-    name="carts",
-    title="Carts on a track",
-    description="1 kg at 2 m/s meets 2 kg: together they keep 2 kg m/s, but not their energy, as e is 0.8.",
-    fill=_fill,
-    view=(-4.9, -1.6, 4.9, 2.4),
-    moment=2.2,
-    teaches=("momentum", "collisions", "energy"),
-    tags=("solid bodies",),
-)

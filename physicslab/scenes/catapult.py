@@ -14,7 +14,15 @@ _FROM, _TO, _TARGET = math.radians(-145.0), math.radians(-240.0), 6.6
 _WOOD: BodyOptions = {"material": "wood", "restitution": 0.0}
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="A catapult",
+    description="The stone is three times as far from the axle as the hook: it leaves three times as fast.",
+    view=(-7.9, -0.5, 9.7, 6.0),
+    moment=1.0,
+    teaches=("lever", "energy", "machines"),
+    tags=("joints", "solid bodies"),
+)
+def catapult(world: Contents) -> None:
     (x, y), along = _AXLE, (math.cos(_FROM), math.sin(_FROM))
     middle = 0.5 * sum(_ARM)
 
@@ -47,15 +55,3 @@ def _fill(world: Contents) -> None:
     world.spawn(Weld(arm, cup, (2.34 - middle, -0.16)))
     for n in range(3):
         box(world, (_TARGET, 0.3 + 0.6 * n), width=0.6, height=0.6, **(_WOOD | {"mass": 5.0}))
-
-
-CATAPULT = Scene(
-    name="catapult",
-    title="A catapult",
-    description="The stone is three times as far from the axle as the hook: it leaves three times as fast.",
-    fill=_fill,
-    view=(-7.9, -0.5, 9.7, 6.0),
-    moment=1.0,
-    teaches=("lever", "energy", "machines"),
-    tags=("joints", "solid bodies"),
-)

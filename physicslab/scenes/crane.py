@@ -10,7 +10,16 @@ _SPEED, _HEIGHT, _LENGTH, _STOP = 1.6, 5.0, 3.6, 0.6
 """Speed [m/s] and height [m] of the trolley; length of the rope [m], and where the trolley stops [m]."""
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="A crane",
+    description="The trolley stops, the ball swings on: what moves keeps momentum, until it hits a wall.",
+    view=(-5.4, -0.5, 5.4, 5.8),
+    moment=3.2,
+    teaches=("momentum", "oscillations", "energy"),
+    tags=("joints", "solid bodies"),
+    simulation=SimulationConfig(contacts="soft"),
+)
+def crane(world: Contents) -> None:
     yellow, start = "#e8b33a", -3.0
     box(world, (0.0, -0.2), width=11.0, height=0.4, static=True, friction=0.8, name="ground")
     box(world, (-4.4, 2.7), width=0.4, height=5.4, static=True, colour=yellow, name="tower")
@@ -32,16 +41,3 @@ def _fill(world: Contents) -> None:
         for column in range(2):
             place = (1.6 + 0.5 * column, 0.25 + 0.5 * row)
             box(world, place, width=0.5, height=0.5, mass=4.0, material="wood", restitution=0.0)
-
-
-CRANE = Scene(
-    name="crane",
-    title="A crane",
-    description="The trolley stops, the ball swings on: what moves keeps momentum, until it hits a wall.",
-    fill=_fill,
-    view=(-5.4, -0.5, 5.4, 5.8),
-    moment=3.2,
-    teaches=("momentum", "oscillations", "energy"),
-    tags=("joints", "solid bodies"),
-    simulation=SimulationConfig(contacts="soft"),
-)

@@ -11,7 +11,15 @@ _LENGTH, _START, _APART = 1.0, math.radians(120.0), 1e-3
 """The length of a bar [m], the angle at first [rad], and how much farther the second lower bar is."""
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="Double pendulum",
+    description="Two that begin a thousandth of a radian apart: alike for seconds, and then nothing alike.",
+    view=(-4.5, -2.4, 4.5, 2.2),
+    moment=2.2,
+    teaches=("chaos", "energy"),
+    tags=("joints", "solid bodies"),
+)
+def double_pendulum(world: Contents) -> None:
     for name, middle, further in (("left", -2.2, 0.0), ("right", 2.2, _APART)):
         x, y, above = middle, 0.0, 0
         for part, angle in (("upper", _START), ("lower", _START + further)):
@@ -22,15 +30,3 @@ def _fill(world: Contents) -> None:
             world.spawn(Pin(above or None, bar, held, (-half, 0.0)))
             x, y, above = x + dx, y + dy, bar
         world.add(above, Trail(2.0))
-
-
-DOUBLE_PENDULUM = Scene(
-    name="double_pendulum",
-    title="Double pendulum",
-    description="Two that begin a thousandth of a radian apart: alike for seconds, and then nothing alike.",
-    fill=_fill,
-    view=(-4.5, -2.4, 4.5, 2.2),
-    moment=2.2,
-    teaches=("chaos", "energy"),
-    tags=("joints", "solid bodies"),
-)

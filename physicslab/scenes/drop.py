@@ -5,18 +5,14 @@ from physicslab.scenes.scene import Scene
 from physicslab.state.contents import Contents
 
 
-def _fill(world: Contents) -> None:
-    box(world, (0, -0.5), width=20, height=1, static=True, restitution=0.8, friction=0.6, name="floor")
-    circle(world, (-3, 4), radius=0.25, velocity=(1, 0), restitution=0.8, friction=0.6, name="ball")
-
-
-DROP = Scene(
-    name="drop",
+@Scene(
     title="A ball on a floor",
     description="A ball keeps 0.8 of its approach speed at every bounce; friction sets it rolling.",
-    fill=_fill,
     view=(-5.0, -1.0, 5.0, 4.8),
     moment=1.3,
     teaches=("energy", "collisions"),
     tags=("solid bodies",),
 )
+def drop(world: Contents) -> None:
+    box(world, (0, -0.5), width=20, height=1, static=True, restitution=0.8, friction=0.6, name="floor")
+    circle(world, (-3, 4), radius=0.25, velocity=(1, 0), restitution=0.8, friction=0.6, name="ball")

@@ -22,18 +22,14 @@ def _crystal(world: Contents, x: float, y: float, speed: float, turn: float) -> 
             world.spawn(Transform(where), Velocity((speed, 0.0)), Mass(1.0), Molecule(1.0, _DISTANCE))
 
 
-def _fill(world: Contents) -> None:
-    _crystal(world, -1.8, 0.35, 1.4, 0.2)
-    _crystal(world, 1.8, -0.35, -1.4, 0.6)
-
-
-DROPLETS = Scene(
-    name="droplets",
+@Scene(
     title="Two crystals collide",
     description="Molecules attract their neighbours: two crystals meet, and melt into one drop.",
-    fill=_fill,
     view=(-4.0, -2.4, 4.0, 2.4),
     teaches=("heat", "energy"),
     tags=("many bodies",),
     physics=PhysicsConfig(gravity_mode="none"),
 )
+def droplets(world: Contents) -> None:
+    _crystal(world, -1.8, 0.35, 1.4, 0.2)
+    _crystal(world, 1.8, -0.35, -1.4, 0.6)

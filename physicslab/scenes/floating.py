@@ -9,7 +9,14 @@ _WATER = 1000.0
 """kg/m^2: as if everything were a metre thick."""
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="Floating and sinking",
+    description="What is lighter than water floats, as deep as its share of the density; a stone sinks.",
+    view=(-4.6, -3.5, 4.6, 2.6),
+    teaches=("buoyancy", "equilibrium"),
+    tags=("liquids", "solid bodies"),
+)
+def floating(world: Contents) -> None:
     world.spawn(Transform((0.0, -1.5)), Shape.box(8.0, 3.0), Medium(_WATER, viscosity=60.0), name="water")
     for name, x, width, y, height in (
         ("bottom", 0.0, 8.8, -3.2, 0.4), ("left", -4.2, 0.4, -1.3, 4.2), ("right", 4.2, 0.4, -1.3, 4.2)
@@ -20,14 +27,3 @@ def _fill(world: Contents) -> None:
     box(world, (0.6, 1.4), width=0.7, height=0.7, mass=0.49 * 920.0, angle=0.3, name="ice, 0.92")
     capsule(world, (2.4, 1.5), length=0.8, radius=0.2, mass=0.4457 * 500.0, angle=0.8, name="log, 0.5")
     circle(world, (3.3, 2.4), radius=0.3, mass=0.2827 * 2500.0, name="stone, 2.5")
-
-
-FLOATING = Scene(
-    name="floating",
-    title="Floating and sinking",
-    description="What is lighter than water floats, as deep as its share of the density; a stone sinks.",
-    fill=_fill,
-    view=(-4.6, -3.5, 4.6, 2.6),
-    teaches=("buoyancy", "equilibrium"),
-    tags=("liquids", "solid bodies"),
-)

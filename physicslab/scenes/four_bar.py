@@ -15,7 +15,15 @@ pen is also nearly even in its speed.
 """
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="A four-bar linkage",
+    description="Bars that only turn draw a line: for half of each turn the pen is off by 4 mm in 1.7 m.",
+    view=(-1.3, -0.7, 3.0, 2.3),
+    moment=3.4,
+    teaches=("machines",),
+    tags=("joints", "solid bodies"),
+)
+def four_bar(world: Contents) -> None:
     tip = _UNIT * math.cos(_START), _UNIT * math.sin(_START)
     foot = (2.0 * _UNIT, 0.0)
     between = foot[0] - tip[0], foot[1] - tip[1]
@@ -43,15 +51,3 @@ def _fill(world: Contents) -> None:
     world.spawn(Pin(None, rocker, foot, (-1.25 * _UNIT, 0.0)))
     world.spawn(Pin(rocker, coupler, (1.25 * _UNIT, 0.0), (0.0, 0.0)))
     world.spawn(Pin(coupler, point, (2.5 * _UNIT, 0.0), (0.0, 0.0)))
-
-
-FOUR_BAR = Scene(
-    name="four_bar",
-    title="A four-bar linkage",
-    description="Bars that only turn draw a line: for half of each turn the pen is off by 4 mm in 1.7 m.",
-    fill=_fill,
-    view=(-1.3, -0.7, 3.0, 2.3),
-    moment=3.4,
-    teaches=("machines",),
-    tags=("joints", "solid bodies"),
-)

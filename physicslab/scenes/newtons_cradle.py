@@ -9,20 +9,9 @@ _RADIUS = 0.25
 _GAP = 1e-4
 
 
-def _fill(world: Contents) -> None:
-    for i in range(5):
-        pendulum(
-            world, ((i - 2) * (2.0 * _RADIUS + _GAP), 4.0), length=3.0, angle=-0.6 if i == 0 else 0.0,
-            radius=_RADIUS, stiffness=50_000.0, damping=20.0, restitution=1.0, friction=0.0,
-            name=f"ball {i + 1}",
-        )  # fmt: skip
-
-
-NEWTONS_CRADLE = Scene(
-    name="newtons_cradle",
+@Scene(
     title="Newton's cradle",
     description="One ball goes in and one comes out: momentum and energy together leave no other way.",
-    fill=_fill,
     view=(-3.2, 0.4, 3.2, 4.2),
     moment=0.8,
     teaches=("momentum", "energy", "collisions"),
@@ -30,3 +19,10 @@ NEWTONS_CRADLE = Scene(
     # The strings are springs of 224 rad/s, which eight substeps follow closely.
     simulation=SimulationConfig(substeps=8),
 )
+def newtons_cradle(world: Contents) -> None:
+    for i in range(5):
+        pendulum(
+            world, ((i - 2) * (2.0 * _RADIUS + _GAP), 4.0), length=3.0, angle=-0.6 if i == 0 else 0.0,
+            radius=_RADIUS, stiffness=50_000.0, damping=20.0, restitution=1.0, friction=0.0,
+            name=f"ball {i + 1}",
+        )  # fmt: skip

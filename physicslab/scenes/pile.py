@@ -1,21 +1,17 @@
 """A thousand discs that fall into a container."""
 
-from physicslab.prefabs import container, pile
+from physicslab import prefabs
 from physicslab.scenes.scene import Scene
 from physicslab.state.contents import Contents
 
 
-def _fill(world: Contents) -> None:
-    container(world, width=11, height=8)
-    pile(world, 1_000, (0.0, 0.5))
-
-
-PILE = Scene(
-    name="pile",
+@Scene(
     title="A thousand discs",
     description="A thousand discs of 0.2 m fall into a container and come to rest.",
-    fill=_fill,
     view=(-6.5, -1.0, 6.5, 8.0),
     teaches=("equilibrium", "friction"),
     tags=("solid bodies", "many bodies"),
 )
+def pile(world: Contents) -> None:
+    prefabs.container(world, width=11, height=8)
+    prefabs.pile(world, 1_000, (0.0, 0.5))

@@ -11,7 +11,14 @@ _CRANK, _ROD, _SPEED, _START = 0.5, 1.4, math.pi, math.radians(60.0)
 """The lengths of crank and connecting rod [m], the speed of the motor [rad/s], its angle at first [rad]."""
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="Crank and piston",
+    description="A slider-crank, half a turn a second: the piston's way is no sine, but sharper far out.",
+    view=(-1.2, -1.4, 3.2, 1.4),
+    teaches=("machines", "circular motion"),
+    tags=("joints", "solid bodies"),
+)
+def piston(world: Contents) -> None:
     x, y = _CRANK * math.cos(_START), _CRANK * math.sin(_START)
     across, leaning = math.sqrt(_ROD**2 - y**2), -math.asin(y / _ROD)
     crank = capsule(
@@ -27,14 +34,3 @@ def _fill(world: Contents) -> None:
     world.spawn(Slot(None, piston), name="cylinder")
     graph = world.spawn(Graph())
     world.spawn(GraphLine(graph, "x", piston))
-
-
-PISTON = Scene(
-    name="piston",
-    title="Crank and piston",
-    description="A slider-crank, half a turn a second: the piston's way is no sine, but sharper far out.",
-    fill=_fill,
-    view=(-1.2, -1.4, 3.2, 1.4),
-    teaches=("machines", "circular motion"),
-    tags=("joints", "solid bodies"),
-)

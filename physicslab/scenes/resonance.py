@@ -10,7 +10,15 @@ _DRIVE = 1.0
 """Frequency of the force [Hz]."""
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="Resonance",
+    description="Seven bobs on springs are shaken alike at 1 Hz: the one that is in tune swings widest.",
+    view=(-4.4, -1.4, 4.4, 2.8),
+    moment=3.0,
+    teaches=("oscillations", "energy"),
+    tags=("springs", "solid bodies"),
+)
+def resonance(world: Contents) -> None:
     for n, frequency in enumerate((0.6, 0.75, 0.9, 1.0, 1.1, 1.25, 1.4)):
         x = 1.2 * n - 3.6
         world.spawn(
@@ -18,15 +26,3 @@ def _fill(world: Contents) -> None:
             Spring(anchor_b=(x, 2.5), rest_length=2.5, stiffness=(2.0 * math.pi * frequency) ** 2),
             Thrust((0.0, 2.0), frequency=_DRIVE), name=f"{frequency:g} Hz",
         )  # fmt: skip
-
-
-RESONANCE = Scene(
-    name="resonance",
-    title="Resonance",
-    description="Seven bobs on springs are shaken alike at 1 Hz: the one that is in tune swings widest.",
-    fill=_fill,
-    view=(-4.4, -1.4, 4.4, 2.8),
-    moment=3.0,
-    teaches=("oscillations", "energy"),
-    tags=("springs", "solid bodies"),
-)

@@ -10,7 +10,16 @@ _RADIUS, _RATE = 2.0, 1.0
 """Radius of the circle [m], and rate of going round it [rad/s]."""
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="Rockets",
+    description="A push across its path leads one round in a circle; one along it makes the other faster.",
+    view=(-4.5, -3.6, 3.0, 4.0),
+    moment=2.0,
+    teaches=("forces", "circular motion"),
+    tags=("solid bodies",),
+    physics=PhysicsConfig(gravity_mode="none"),
+)
+def rocket(world: Contents) -> None:
     # A push at a right angle to its path keeps it on a circle, as gravity keeps a planet: F = m w^2 r.
     circling = box(
         world, (_RADIUS, 0.0), width=0.3, height=0.8, velocity=(0.0, _RADIUS * _RATE),
@@ -22,16 +31,3 @@ def _fill(world: Contents) -> None:
     world.add(straight, Thrust((0.0, 0.15), frame="body", at=(0.0, -0.4)))
     for rocket in (circling, straight):
         world.add(rocket, Trail(7.0))
-
-
-ROCKET = Scene(
-    name="rocket",
-    title="Rockets",
-    description="A push across its path leads one round in a circle; one along it makes the other faster.",
-    fill=_fill,
-    view=(-4.5, -3.6, 3.0, 4.0),
-    moment=2.0,
-    teaches=("forces", "circular motion"),
-    tags=("solid bodies",),
-    physics=PhysicsConfig(gravity_mode="none"),
-)

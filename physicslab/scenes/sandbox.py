@@ -8,7 +8,18 @@ from physicslab.scenes.scene import Scene
 from physicslab.state.contents import Contents
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="Sandbox",
+    description="A floor, a ramp, a pile of boxes and a pendulum to play with.",
+    view=(-5.9, -0.5, 5.9, 5.9),
+    teaches=("energy", "collisions"),
+    tags=("joints", "solid bodies"),
+    physics=PhysicsConfig(bounds=(-5.8, -0.4, 5.8, 5.8)),
+    # The pile sleeps until something touches it: the rest is moved at life's speed by plain Python too, while
+    # kernels are compiled on a first start.
+    simulation=SimulationConfig(sleeping=True),
+)
+def sandbox(world: Contents) -> None:
     box(world, (0.0, -0.2), width=11.6, height=0.4, static=True, friction=0.6, name="floor")
     box(world, (-4.0, 0.9), width=3.2, height=0.16, angle=-0.42, static=True, friction=0.6, name="ramp")
     for n, radius in enumerate((0.22, 0.3, 0.18)):
@@ -20,18 +31,3 @@ def _fill(world: Contents) -> None:
             box(world, position, width=0.5, height=0.5, restitution=0.1, friction=0.6)
     pendulum(world, (0.4, 4.6), length=2.6, angle=-1.0, radius=0.28, mass=2.0, restitution=0.3, name="bob")
     circle(world, (-0.9, 0.4), radius=0.4, mass=1.5, restitution=0.7, name="ball")
-
-
-SANDBOX = Scene(
-    name="sandbox",
-    title="Sandbox",
-    description="A floor, a ramp, a pile of boxes and a pendulum to play with.",
-    fill=_fill,
-    view=(-5.9, -0.5, 5.9, 5.9),
-    teaches=("energy", "collisions"),
-    tags=("joints", "solid bodies"),
-    physics=PhysicsConfig(bounds=(-5.8, -0.4, 5.8, 5.8)),
-    # The pile sleeps until something touches it: the rest is moved at life's speed by plain Python too, while
-    # kernels are compiled on a first start.
-    simulation=SimulationConfig(sleeping=True),
-)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
@@ -13,16 +13,18 @@ if TYPE_CHECKING:
     from physicslab.world import World
 
 
+def _nothing(contents: Contents) -> None:
+    """Spawn nothing."""
+
+
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A built-in scene: what it is called, the laws in it, and what fills it.
+    """A built-in scene: what it is called, and the laws in it; it decorates the function that fills it.
 
     Attributes
     ----------
-    name, title, description : str
-        For the command line, for a heading, and one line on what there is to see.
-    fill : callable
-        Spawns everything in the contents that it is given, those of a world or alone.
+    title, description : str
+        A heading, and one line on what there is to see.
     view : tuple of four floats, optional
         The part that a window shows: xmin, ymin, xmax, ymax [m], with room for 10 s of motion; by default
         all that there is at the start.
@@ -34,18 +36,28 @@ class Scene:
         Its contents, by which it is found: as :func:`physicslab.view.workbench.thumbnails.tags_of` finds.
     physics, simulation : PhysicsConfig, SimulationConfig
         The laws, and how they are stepped.
+    fill : callable
+        Spawns everything in the contents that it is given, those of a world or alone.
     """
 
-    name: str
     title: str
     description: str
-    fill: Callable[[Contents], None]
     view: View | None = None
     moment: float = 0.6
     teaches: tuple[str, ...] = ()
     tags: tuple[str, ...] = ()
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     simulation: SimulationConfig = field(default_factory=SimulationConfig)
+    fill: Callable[[Contents], None] = _nothing
+
+    def __call__(self, fill: Callable[[Contents], None]) -> Scene:
+        """Return the scene that a function fills."""
+        return replace(self, fill=fill)
+
+    @property
+    def name(self) -> str:
+        """The name for the command line: that of the function."""
+        return self.fill.__name__
 
     def contents(self) -> Contents:
         """Return what a new world of this scene holds, without all that steps it."""

@@ -11,7 +11,15 @@ _LONG, _HEIGHT, _ARM = 3.6, 0.55, 1.5
 _WOOD: BodyOptions = {"material": "wood", "restitution": 0.0, "friction": 0.8}
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="Seesaws",
+    description="30 kg at 0.5 m hold 10 kg at 1.5 m in balance, as levers do; at 0.4 or 0.6 m they do not.",
+    view=(-6.5, -0.5, 6.5, 2.6),
+    teaches=("lever", "equilibrium"),
+    tags=("joints", "solid bodies"),
+    simulation=SimulationConfig(contacts="soft"),
+)
+def seesaw(world: Contents) -> None:
     box(world, (0.0, -0.15), width=13.0, height=0.3, static=True, friction=0.8, name="ground")
     for name, x, arm in (("too near", -4.2, 0.4), ("in balance", 0.0, 0.5), ("too far", 4.2, 0.6)):
         corners = [(-0.4, 0.0), (0.4, 0.0), (0.0, _HEIGHT)]
@@ -31,15 +39,3 @@ def _fill(world: Contents) -> None:
                 world, place, width=size, height=size, mass=mass, friction=0.8, colour=colour,
                 name=f"{mass:g} kg {name}",
             )  # fmt: skip
-
-
-SEESAW = Scene(
-    name="seesaw",
-    title="Seesaws",
-    description="30 kg at 0.5 m hold 10 kg at 1.5 m in balance, as levers do; at 0.4 or 0.6 m they do not.",
-    fill=_fill,
-    view=(-6.5, -0.5, 6.5, 2.6),
-    teaches=("lever", "equilibrium"),
-    tags=("joints", "solid bodies"),
-    simulation=SimulationConfig(contacts="soft"),
-)

@@ -10,7 +10,14 @@ from physicslab.state.contents import Contents
 _ANGLE = math.radians(20.0)
 
 
-def _fill(world: Contents) -> None:
+@Scene(
+    title="Friction on a slope",
+    description="Four blocks on a slope of 20 degrees: those with a friction below tan 20 = 0.364 slide.",
+    view=(-7.8, -3.4, 7.8, 3.4),
+    teaches=("friction", "forces"),
+    tags=("solid bodies",),
+)
+def slope(world: Contents) -> None:
     along = Vector2.from_angle(_ANGLE)
     box(world, (0, 0), width=16, height=0.5, angle=_ANGLE, static=True, friction=1, name="slope")
     for i, friction in enumerate((0.1, 0.2, 0.5, 0.8)):
@@ -19,14 +26,3 @@ def _fill(world: Contents) -> None:
         box(
             world, place, width=0.8, height=0.5, angle=_ANGLE, friction=friction**2, name=f"mu = {friction:g}"
         )
-
-
-SLOPE = Scene(
-    name="slope",
-    title="Friction on a slope",
-    description="Four blocks on a slope of 20 degrees: those with a friction below tan 20 = 0.364 slide.",
-    fill=_fill,
-    view=(-7.8, -3.4, 7.8, 3.4),
-    teaches=("friction", "forces"),
-    tags=("solid bodies",),
-)

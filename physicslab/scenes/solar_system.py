@@ -15,18 +15,14 @@ _PLANETS = (
 )
 
 
-def _fill(world: Contents) -> None:
-    planets(world, 4.0, _PLANETS)
-
-
-SOLAR_SYSTEM = Scene(
-    name="solar_system",
+@Scene(
     title="A star and five planets",
     description="The squares of the periods go like the cubes of the distances: Kepler's third law.",
-    fill=_fill,
     view=(-3.5, -3.3, 2.5, 3.5),
     moment=12.0,
     teaches=("gravity", "circular motion"),
     tags=("planets",),
     physics=PhysicsConfig(gravity_mode="planet"),
 )
+def solar_system(world: Contents) -> None:
+    planets(world, 4.0, _PLANETS)

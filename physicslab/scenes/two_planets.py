@@ -6,19 +6,15 @@ from physicslab.scenes.scene import Scene
 from physicslab.state.contents import Contents
 
 
-def _fill(world: Contents) -> None:
-    # Point masses: without Shapes, nothing has to be searched for contacts.
-    binary(world, (6.0, 3.0), separation=5.0, eccentricity=0.5, names=("heavy", "light"))
-
-
-TWO_PLANETS = Scene(
-    name="two_planets",
+@Scene(
     title="Two planets",
     description="Two planets on ellipses about their centre of mass; their total momentum stays zero.",
-    fill=_fill,
     view=(-2.2, -2.2, 3.8, 2.2),
     moment=4.0,
     teaches=("gravity", "momentum"),
     tags=("planets",),
     physics=PhysicsConfig(gravity_mode="planet"),
 )
+def two_planets(world: Contents) -> None:
+    # Point masses: without Shapes, nothing has to be searched for contacts.
+    binary(world, (6.0, 3.0), separation=5.0, eccentricity=0.5, names=("heavy", "light"))

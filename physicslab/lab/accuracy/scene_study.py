@@ -24,7 +24,6 @@ from physicslab.stepping.method import tolerance_for
 from physicslab.world import World
 
 ESTIMATE = "an estimate: there is no reference, runs are compared with each other"
-DEFAULT_S = 5.0
 """The default length of a run of a scene [s]."""
 _ESTIMATE_SHARE, _HORIZON_SHARE = 0.3, 0.4
 """Rough shares of the work of a study that are done after the estimate, and after the horizon."""
@@ -126,7 +125,7 @@ class SceneStudy:
     horizon_s: float | None = None
 
 
-def study_scene(name: str, load: Callable[[], World], seconds: float = DEFAULT_S) -> Job[SceneStudy]:
+def study_scene(name: str, load: Callable[[], World], seconds: float) -> Job[SceneStudy]:
     """Run a scene with every method; yield the share of the work that is done.
 
     Parameters

@@ -91,6 +91,8 @@ class OtherEngine(Engine):
         The world that is built in it.
     peer : type of Peer
         Which engine.
+    finer : int
+        How many times as short as usual its steps are.
 
     Raises
     ------
@@ -98,10 +100,10 @@ class OtherEngine(Engine):
         If the engine has nothing of the kind that the world holds.
     """
 
-    def __init__(self, world: World, peer: type[Peer]) -> None:
+    def __init__(self, world: World, peer: type[Peer], finer: int = 1) -> None:
         super().__init__(world)
         self.title = peer.title
-        self._peer = peer(self.world)
+        self._peer = peer(self.world, finer)
 
     @override
     def set_gravity(self, gravity: Vector2) -> None:

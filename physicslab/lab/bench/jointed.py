@@ -6,8 +6,7 @@ from functools import partial
 import numpy as np
 
 from physicslab.components import Pin
-from physicslab.diagnostics.joints import joint_states
-from physicslab.lab.bench.scene import BenchScene, Moment, Quality, lost, overlap, within
+from physicslab.lab.bench.scene import BenchScene, lost, overlap, stretched, within
 from physicslab.lab.worlds import soft_space
 from physicslab.prefabs import box, circle, container, ragdoll, regular_polygon
 from physicslab.world import World
@@ -66,27 +65,21 @@ def polygons(count: int) -> World:
     return world
 
 
-def _stretch(world: World, before: Moment) -> float:
-    world.synchronise()
-    return max(joint.stretch for joint in joint_states(world))
-
-
 _scene = partial(BenchScene, group="joints", by_default=False, seconds=4.0, steps=240)
-_stretched = partial(Quality, "joint off", "m", measure=_stretch, when="throughout")
 
 JOINTED = (
     _scene(
         name="bridge_60", title="a bridge of 60 planks, ten balls fall on it", size=70,
-        build=partial(bridge, 60), quality=(_stretched(0.05),),
+        build=partial(bridge, 60), quality=(stretched(0.05),),
     ),
     _scene(
         name="chains_20", title="20 chains of 30 links with a weight, which swing", size=620,
-        build=partial(chains, 20, 30), quality=(_stretched(0.02),),
+        build=partial(chains, 20, 30), quality=(stretched(0.02),),
     ),
     _scene(
         name="ragdolls_40", title="40 ragdolls that fall in a heap", size=400,
         build=partial(ragdolls, 40),
-        quality=(_stretched(0.02), overlap(_OVERLAP), lost(within(4.0))),
+        quality=(stretched(0.02), overlap(_OVERLAP), lost(within(4.0))),
     ),
     _scene(
         name="polygons_800", title="800 polygons that fall in a heap", size=800,

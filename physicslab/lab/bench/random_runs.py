@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from physicslab.lab.bench.engine import OURS, Engine
+from physicslab.lab.bench.like_quality import BLOCK, PORTION, WARM, run_alike
 from physicslab.lab.bench.measure import Judge, build_others, load_kernels, spent_by_system
 from physicslab.lab.bench.random_scenes import random_scene
-from physicslab.lab.bench.result import EngineResult, SceneResult, Spread, Times, take_turns
+from physicslab.lab.bench.result import Alike, EngineResult, SceneResult, Spread, Times, take_turns
 from physicslab.lab.document import lab_document, machine_text
 from physicslab.lab.jobs import Job
 from physicslab.lab.peers.mirrors import PymunkMirror
@@ -18,12 +19,8 @@ from physicslab.lab.table import cell, table
 from physicslab.state.masses import Diverged
 from physicslab.world import World
 
-_BLOCK, _LONGEST = 5, 240
-"""Steps of a turn, and most steps of a scene."""
-_PORTION = 2
-"""Turns between two looks at the clock: scenes that no engine is fit for take seconds a step."""
-_WARM = 2
-"""Steps before the timing: kernels are loaded in them, and pairs are listed for the first time."""
+_LONGEST = 240
+"""Most steps of a scene."""
 _BUDGET_MS = 1_500.0
 """CPU time of all engines together after which a scene takes no more turns."""
 _SHOWN = 10
@@ -41,7 +38,7 @@ class RandomResult:
     Attributes
     ----------
     result : SceneResult
-        Times and quality; ``times_ours`` are ratios of whole times.
+        Times and quality; ``times_ours`` are ratios of whole times, the largest of all looks counts.
     features : list of str
         Properties of the scene.
     path : str
@@ -79,23 +76,26 @@ def measure_random(seed: int, number: int, peers: Sequence[type[Peer]]) -> Job[R
     judge = Judge(result)
     try:
         for engine in engines:
-            engine.run(_WARM)
+            engine.run(WARM)
         judge.begin(engines)
         before = spent_by_system(ours.world)
         times: list[Times] = []
-        for times in take_turns(engines, _LONGEST // _BLOCK, _BLOCK, _PORTION):
-            if sum(sum(spent.step) for spent in times) * _BLOCK > _BUDGET_MS:
+        for times in take_turns(engines, _LONGEST // BLOCK, BLOCK, PORTION):
+            judge.look(engines, "throughout")
+            if sum(sum(spent.step) for spent in times) * BLOCK > _BUDGET_MS:
                 break
-            yield len(times[0].step) * _BLOCK / _LONGEST
+            yield len(times[0].step) * BLOCK / _LONGEST
     except Diverged as error:
         result.ours.failure = str(error)
         return RandomResult(result, features)
-    judge.look(engines, "settled")
     _note(result, engines, times, before)
     contacts = ours.world.contacts
     wide = sum(part.contacts.wide.filled for part in ours.world.parts)
     result.contacts = contacts.count
-    return RandomResult(result, features, _path(ours.world), contacts.count - wide, wide)
+    path = _path(ours.world)
+    for peer in peers:
+        result.engines[peer.title].alike = yield from run_alike(result, peer, times[0])
+    return RandomResult(result, features, path, contacts.count - wide, wide)
 
 
 def _note(
@@ -106,7 +106,7 @@ def _note(
     for engine, spent in zip(engines, times, strict=True):
         found = result.engines[engine.title]
         found.step_ms, found.times_ours = Spread.of(spent.step), sum(spent.step) / whole
-    steps = len(times[0].step) * _BLOCK
+    steps = len(times[0].step) * BLOCK
     after = spent_by_system(engines[0].world)
     result.systems = {name: (after[name] - before.get(name, 0)) / 1e6 / steps for name in after}
     rest = times[0].wall_ms / steps - sum(result.systems.values())
@@ -153,6 +153,11 @@ class RandomReport:
         speeds = [one.speed(peer) for one in (self.found if found is None else found)]
         return sorted(speed for speed in speeds if speed is not None)
 
+    def alike(self, peer: str) -> list[Alike]:
+        """Return how a peer ran at like quality, in the scenes in which both ran."""
+        engines = (one.result.engines.get(peer) for one in self.found)
+        return [engine.alike for engine in engines if engine is not None and engine.alike is not None]
+
     @property
     def document(self) -> dict[str, Any]:
         """Every figure, and the machine."""
@@ -189,23 +194,37 @@ def random_text(report: RandomReport) -> str:
 
 def _whole(report: RandomReport) -> str:
     rows = [["time of the other by ours", "scenes", "least", "a tenth", "median", "nine tenths", "below 1"]]
+    lines = []
     for peer in report.peers:
-        ratios = report.ratios(peer)
-        if ratios:
-            shares = (f"{share:.2f}" for share in np.quantile(ratios, (0.0, 0.1, 0.5, 0.9)))
-            rows.append([peer, f"{len(ratios)}", *shares, f"{sum(ratio < 1.0 for ratio in ratios)}"])
-    lines = [table(rows)]
-    for name in (OURS, *report.peers):
-        deep = [
-            one.result.engines[name].quality.get("deepest overlap")
-            for one in report.found
-            if name in one.result.engines
-        ]
-        known = [depth for depth in deep if depth is not None]
-        if known:
-            middle, most = np.quantile(known, (0.5, 1.0))
-            lines.append(f"deepest overlap, {name}: median {middle:.2g} m, most {most:.2g} m")
-    return "\n".join(lines)
+        alike = report.alike(peer)
+        for name, ratios in (
+            (peer, report.ratios(peer)),
+            (f"{peer}, at like quality", sorted(one.times_ours for one in alike)),
+        ):
+            if ratios:
+                shares = (f"{share:.2f}" for share in np.quantile(ratios, (0.0, 0.1, 0.5, 0.9)))
+                below = sum(ratio < 1.0 for ratio in ratios)
+                rows.append([name, f"{len(ratios)}", *shares, f"{below}"])
+        if alike:
+            finer = sorted(one.finer for one in alike)
+            missed = sum(not one.is_reached for one in alike)
+            lines.append(
+                f"{peer}, at like quality: steps of 1/{finer[len(finer) // 2]} of the usual "
+                f"(median); {missed} of {len(finer)} scenes not as right at the shortest that were tried"
+            )
+    for quality in report.found[0].result.scene.quality:
+        for name in (OURS, *report.peers):
+            seen = [
+                one.result.engines[name].quality.get(quality.name)
+                for one in report.found
+                if name in one.result.engines
+            ]
+            known = [figure for figure in seen if figure is not None]
+            if known:
+                middle, most = np.quantile(known, (0.5, 1.0))
+                figures = f"median {middle:.2g} {quality.unit}, most {most:.2g} {quality.unit}"
+                lines.append(f"{quality.name}, {name}: {figures}")
+    return "\n".join([table(rows), *lines])
 
 
 def _worst(report: RandomReport, worst: Sequence[RandomResult]) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 from physicslab.components import Drag, Mass, Pin, Shape, Spring, Transform, Velocity
 from physicslab.components.vertices import regular
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.bench.scene import BenchScene, overlap
+from physicslab.lab.bench.scene import BenchScene, largest_overlap, stretched
 from physicslab.lab.worlds import GRAVITY, floor, soft_space
 from physicslab.prefabs import BodyOptions, box, container
 from physicslab.prefabs.body import body
@@ -32,6 +32,8 @@ _SHARE_FLYING = {"cloud": 0.7, "walls": 0.5}
 """Scenes of a family without gravity."""
 _OVERLAP = 0.25
 """Deepest overlap that counts as right, as a share of the largest body's size."""
+_STRETCH = 0.05
+"""Largest error of a joint that counts as right, as a share of the same."""
 _SHAPES = ("discs", "boxes", "polygons", "capsules", "mixed")
 
 
@@ -340,5 +342,5 @@ def random_scene(seed: int, number: int) -> tuple[BenchScene, list[str]]:
     return BenchScene(
         name=f"{seed}:{number}", title=f"{drawn.family} of about {drawn.count:,}", group=drawn.family,
         size=drawn.count, build=partial(_build, seed, number), seconds=0.0,
-        quality=(overlap(_OVERLAP * _LARGEST),),
+        quality=(largest_overlap(_OVERLAP * _LARGEST), stretched(_STRETCH * _LARGEST)),
     ), drawn.features  # fmt: skip

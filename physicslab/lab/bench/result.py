@@ -125,6 +125,25 @@ _SIZES_NEEDED = 3
 """Without so many, no exponent is fitted."""
 
 
+@dataclass(frozen=True, slots=True)
+class Alike:
+    """A peer in steps so short that it is as right as PhysicsLab.
+
+    Attributes
+    ----------
+    finer : int
+        How many times as short as usual its steps were.
+    times_ours : float
+        How many times as long as PhysicsLab it took.
+    is_reached : bool
+        Whether it was as right; if not, it would take longer still.
+    """
+
+    finer: int
+    times_ours: float
+    is_reached: bool
+
+
 @dataclass(slots=True)
 class EngineResult:
     """The results of a scene in one engine.
@@ -141,6 +160,8 @@ class EngineResult:
         A step of the first two seconds, while a pile falls.
     times_ours, times_ours_with_read, times_ours_first_seconds : float, optional
         Median of how many times longer than PhysicsLab it took for the same step; 1 for PhysicsLab.
+    alike : Alike, optional
+        A peer at like quality, in random scenes.
     quality : dict of str to float or None
         Measures of quality; ``None`` where it is not finite.
     failure : str
@@ -154,6 +175,7 @@ class EngineResult:
     times_ours: float | None = None
     times_ours_with_read: float | None = None
     times_ours_first_seconds: float | None = None
+    alike: Alike | None = None
     quality: dict[str, float | None] = field(default_factory=dict)
     failure: str = ""
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
+from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.vector import Vector2
 from physicslab.lab.case import Case
 from physicslab.lab.peers.peer import find_contacts
@@ -90,6 +91,11 @@ def _overlap(world: World, before: Moment) -> float:
     return max(0.0, world.contacts.max_penetration)
 
 
+def _stretch(world: World, before: Moment) -> float:
+    world.synchronise()
+    return max((joint.stretch for joint in joint_states(world)), default=0.0)
+
+
 def _energy(world: World, before: Moment) -> float:
     return abs(measure_energy(world).total / before.energy - 1.0)
 
@@ -111,6 +117,8 @@ overlap = partial(Quality, "deepest overlap", "m", measure=_overlap)
 """Returns the deepest overlap of two bodies as a quality, with its limit [m]."""
 largest_overlap = partial(Quality, "largest overlap", "m", measure=_overlap, when="throughout")
 """Returns the deepest overlap that was seen while bodies moved as a quality, with its limit [m]."""
+stretched = partial(Quality, "joint off", "m", measure=_stretch, when="throughout")
+"""Returns the largest error of a joint that was seen as a quality, with its limit [m]."""
 energy_change = partial(Quality, "energy change", "", measure=_energy)
 """Returns the change of the energy since the start as a quality, with its limit, as a share of it."""
 

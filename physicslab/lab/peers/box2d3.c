@@ -182,6 +182,12 @@ void scene_joint( Scene* scene, int kind, int a, int b, int collide, int limited
 	}
 }
 
+void scene_stiffness( Scene* scene, double hertz )
+{
+	b2WorldDef usual = b2DefaultWorldDef();
+	b2World_SetContactTuning( scene->world, (float)hertz, usual.contactDampingRatio, usual.contactSpeed );
+}
+
 void scene_step( Scene* scene, double dt, int substeps, int steps )
 {
 	for ( int i = 0; i < steps; ++i )

@@ -14,7 +14,10 @@ FAST = 20.0
 
 
 class PymunkMirror(Peer):
-    """A world in a space of pymunk's, at its usual settings of 10 iterations and a slop of 5 mm."""
+    """A world in a space of pymunk's, at its usual settings of 10 iterations and a slop of 5 mm.
+
+    The slop is less where steps are shorter.
+    """
 
     title, module = "pymunk", "pymunk"
 
@@ -22,7 +25,7 @@ class PymunkMirror(Peer):
     def make_space(self) -> None:
         engine, physics = self.engine, self.world.physics
         self.space = engine.Space()
-        self.space.iterations, self.space.collision_slop = 10, 0.005
+        self.space.iterations, self.space.collision_slop = 10, 0.005 / self.finer
         self.set_gravity(self.gravity)
         self.ground = self.space.static_body
         self._one_restitution = len(self.restitutions(bounds=False)) < 2

@@ -4,7 +4,7 @@ import importlib
 import math
 import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
@@ -97,12 +97,21 @@ class Peer(ABC):
 
     Masses, moments of inertia, outlines, springs, joints, friction and restitution are the world's.
 
+    Parameters
+    ----------
+    world : World
+        Where the bodies are taken from.
+    finer : int
+        How many times as short as usual its steps are.
+
     Attributes
     ----------
     title, module : str
         The engine's name, and that of its package.
     world : World
         Where the bodies came from, and where :meth:`write_back` writes their state.
+    finer : int
+        How many times as short as usual its steps are.
     moving : list of int
         The entities that can move.
     space : Any
@@ -127,7 +136,8 @@ class Peer(ABC):
     step_name: ClassVar[str] = "step"
     settings: ClassVar[tuple[int, ...]] = ()
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, finer: int = 1) -> None:
+        self.finer = finer
         with warnings.catch_warnings():
             # Box2D's binding has types without modules, of which Python 3.12 warns; as an error it crashes.
             warnings.simplefilter("ignore", DeprecationWarning)
@@ -239,20 +249,15 @@ class Peer(ABC):
     def add_joint(self, joint: PeerJoint) -> None:
         """Add a joint."""
 
-    @property
-    def stepping(self) -> tuple[Callable[..., object], tuple[int, ...]]:
-        """The function that a program calls with the step [s], and the settings that follow the step."""
-        return getattr(self.space, self.step_name), self.settings
-
     def step(self, dt: float) -> None:
         """Advance by one step [s]."""
         self.run(dt, 1)
 
     def run(self, dt: float, steps: int) -> None:
         """Advance by so many steps [s]."""
-        step, settings = self.stepping
-        for _ in range(steps):
-            step(dt, *settings)
+        step = getattr(self.space, self.step_name)
+        for _ in range(steps * self.finer):
+            step(dt / self.finer, *self.settings)
 
     @abstractmethod
     def positions(self) -> object:
