@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ecs.sentences import sentence
+from physicslab.kernels import Plain
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, OVERLAP, PX, PY
 from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.joints import layout
@@ -16,7 +17,7 @@ from physicslab.kernels.rigid import motion, time_stepping
 from physicslab.kernels.rigid.equations import UNKNOWN, VECTORS
 from physicslab.kernels.rigid.features import MEASURES, PAIR, POINT_FIELDS
 from physicslab.kernels.rigid.segment_end import STARTS
-from physicslab.kernels.rigid.smooth_segment import StagesTuple
+from physicslab.kernels.rigid.smooth_segment import Stages
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 from physicslab.stepping.forces import fastest_rate
@@ -106,7 +107,7 @@ class MadeStep:
     refused: str = ""
 
 
-def _stages_of(n: int) -> StagesTuple:
+def _stages_of(n: int) -> Plain[Stages]:
     """Return room for the stages of a segment with n coordinates, the clock and accounts among them."""
     return np.zeros((16, n)), np.zeros((16, n)), np.zeros(n), np.zeros(n), np.zeros(n)
 

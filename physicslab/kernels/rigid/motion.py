@@ -9,7 +9,7 @@ steps.
 
 import math
 
-from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, kernel
+from physicslab.kernels import Numbers, Plain, Rows, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.ode.dop853_tableau import LAST
@@ -18,16 +18,7 @@ from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.budget import book_contacts, book_speeds
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED
 from physicslab.kernels.rigid.constraints import apply, find_loads, measure_all, project
-from physicslab.kernels.rigid.equations import (
-    OPEN,
-    SLIDES_BACK,
-    SLIDES_ON,
-    STICKS,
-    UNKNOWN,
-    Equations,
-    EquationsTuple,
-    named_equations,
-)
+from physicslab.kernels.rigid.equations import OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, named_scene
 from physicslab.kernels.rigid.impacts import approaches, resolve_simultaneous_impacts
 from physicslab.kernels.rigid.jammed import stop_sliding
@@ -44,11 +35,9 @@ from physicslab.kernels.rigid.segment_end import (
 from physicslab.kernels.rigid.smooth_segment import (
     SHORT_LAST,
     Stages,
-    StagesTuple,
     begin_segment,
     make_segment,
     make_stages,
-    named_stages,
 )
 from physicslab.kernels.rigid.touching import (
     NO_PUSH,
@@ -145,7 +134,7 @@ def _is_balanced(
 
 @kernel
 def touch(
-    scene: SceneTuple, equations: EquationsTuple, room: EquationsTuple, acceleration: Numbers,
+    scene: SceneTuple, equations: Plain[Equations], room: Plain[Equations], acceleration: Numbers,
     place: Numbers, q: Numbers, v: Numbers, within: float,
 ) -> tuple[int, int, float, float, bool]:  # fmt: skip
     """Find which points touch at ``place``, or are ``within`` a share of a size.
@@ -153,7 +142,7 @@ def touch(
     Returns why the motion cannot go on (DONE if it can), how many points touch, the tolerance of speeds
     [m/s], the deepest overlap as a share of a size, and whether any point approaches in (q, v).
     """
-    of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
+    of, points, scratch = named_scene(scene), Equations(*equations), Equations(*room)
     accelerate(place, v, acceleration, of.inverse_mass, of.damping, of.calls)
     rest, least = rest_limits(of, acceleration, v)
     count, deepest = find_touching(of, points, scratch, place, v, within, least / NO_PUSH)
@@ -164,9 +153,9 @@ def touch(
 
 @kernel
 def collide(
-    scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, q: Numbers, v: Numbers,
-    old: Numbers, acceleration: Numbers, tolerance: float, rate: float, entities: Rows, log: Impacts,
-    logged: int, time: float, account: Vectors,
+    scene: SceneTuple, equations: Plain[Equations], count: int, room: Plain[Equations], q: Numbers,
+    v: Numbers, old: Numbers, acceleration: Numbers, tolerance: float, rate: float, entities: Rows,
+    log: Impacts, logged: int, time: float, account: Vectors,
 ) -> tuple[int, bool, int, int, int, int]:  # fmt: skip
     """Let those of ``count`` points that approach in (q, v) bounce.
 
@@ -176,7 +165,7 @@ def collide(
     Stronge's law, how often restitutions were lowered to keep the energy, how many points the last impulses
     act at, which are left in ``room``, and the work of all rounds (1 + n^4 / 500 for n points).
     """
-    of, points, scratch = named_scene(scene), named_equations(equations), named_equations(room)
+    of, points, scratch = named_scene(scene), Equations(*equations), Equations(*room)
     new, solved, by_energy, kept, last, rounds = resolve_simultaneous_impacts(
         of, points, count, scratch, q, v, old, acceleration, tolerance, rate, entities, log, logged, time,
         account,
@@ -216,7 +205,7 @@ def _make_smooth(
 
 @kernel
 def advance_segment(
-    scene: SceneTuple, equations: EquationsTuple, count: int, room: EquationsTuple, stages: StagesTuple,
+    scene: SceneTuple, equations: Plain[Equations], count: int, room: Plain[Equations], stages: Plain[Stages],
     start: Vectors, changed: Points, q: Numbers, v: Numbers, left: float, tolerance: float, rest: float,
     foreseen: bool,
 ) -> tuple[float, int, bool]:  # fmt: skip
@@ -226,8 +215,8 @@ def advance_segment(
     curve of a short segment is exact. Returns the time that passed [s], how many force evaluations the
     segment took, its beginning included, and whether there was an event.
     """
-    of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
-    scratch = named_equations(room)
+    of, points, at = named_scene(scene), Equations(*equations), Stages(*stages)
+    scratch = Equations(*room)
     soonest = note_start(of, points, count, scratch, q, v, at.acceleration, start)
     allowed, evaluations, kind, index = start[ALLOWED], 4, -1, -1
     limit = longest_segment(of, q, v, at.acceleration, allowed)
@@ -256,7 +245,7 @@ def advance_segment(
 
 @kernel
 def begin_motion(
-    scene: SceneTuple, equations: EquationsTuple, count: int, stages: StagesTuple, changed: Points,
+    scene: SceneTuple, equations: Plain[Equations], count: int, stages: Plain[Stages], changed: Points,
     q: Numbers, v: Numbers, steady: bool,
 ) -> tuple[int, int, float, bool]:  # fmt: skip
     """Find what each of ``count`` points that touch does, and with what force; begin a segment of motion.
@@ -265,7 +254,7 @@ def begin_motion(
     motion alone. Returns why the motion cannot go on (DONE if it can), the number of closed points, the
     tolerance of speeds [m/s], and whether nothing moves or accelerates.
     """
-    of, points, at = named_scene(scene), named_equations(equations), named_stages(stages)
+    of, points, at = named_scene(scene), Equations(*equations), Stages(*stages)
     accelerate(q, v, at.acceleration, of.inverse_mass, of.damping, of.calls)
     rest, least = rest_limits(of, at.acceleration, v)
     count = take_closed(of, points, count, changed, q, v, rest)

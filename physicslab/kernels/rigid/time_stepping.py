@@ -9,7 +9,7 @@ of order one.
 
 import math
 
-from physicslab.kernels import Numbers, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Plain, Vectors, inlined, kernel
 from physicslab.kernels.accounts import HAND, MOTORS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ENDS, FIRST, PLACES, ROWS
@@ -18,17 +18,10 @@ from physicslab.kernels.rigid.budget import book_row
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.detect import find_points
-from physicslab.kernels.rigid.equations import (
-    FREE,
-    SLIDES_ON,
-    UNKNOWN,
-    Equations,
-    EquationsTuple,
-    named_equations,
-)
+from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import RigidScene, SceneTuple, named_scene
 from physicslab.kernels.rigid.joined import book_impulses
-from physicslab.kernels.rigid.smooth_segment import StagesTuple, named_stages
+from physicslab.kernels.rigid.smooth_segment import Stages
 from physicslab.kernels.rigid.touching import length_of
 
 _SEPARATIONS = 2
@@ -61,14 +54,14 @@ def kick(scene: SceneTuple, acceleration: Numbers, q: Numbers, v: Numbers, h: fl
 
 @kernel
 def drive(
-    scene: SceneTuple, equations: EquationsTuple, acceleration: Numbers, old: Numbers, q: Numbers, v: Numbers,
-    h: float, account: Vectors,
+    scene: SceneTuple, equations: Plain[Equations], acceleration: Numbers, old: Numbers, q: Numbers,
+    v: Numbers, h: float, account: Vectors,
 ) -> None:  # fmt: skip
     """Let motors with a cap act for ``h`` seconds, one after the other, each by what it takes or its cap.
 
     ``acceleration`` is what forces have caused in that time, ``old`` room for speeds.
     """
-    of, points = named_scene(scene), named_equations(equations)
+    of, points = named_scene(scene), Equations(*equations)
     for p in range(len(of.pairs)):
         if of.pairs[p, 2] != F.MOTOR - F.WALL:
             continue
@@ -87,12 +80,12 @@ def drive(
 
 
 @kernel
-def separate(scene: SceneTuple, equations: EquationsTuple, count: int, q: Numbers, v: Numbers) -> bool:
+def separate(scene: SceneTuple, equations: Plain[Equations], count: int, q: Numbers, v: Numbers) -> bool:
     """Move bodies that overlap apart, by the least that it takes; return whether that can be done.
 
     The ``count`` points that touch are pushed and never pulled, and friction plays no part.
     """
-    of, points = named_scene(scene), named_equations(equations)
+    of, points = named_scene(scene), Equations(*equations)
     for _ in range(_SEPARATIONS):
         measure_all(of, points, count, q, v)
         for i in range(count):
@@ -137,7 +130,7 @@ def _find_islands(scene: RigidScene, equations: Equations, count: int, island: N
 
 @kernel
 def take_work(
-    scene: SceneTuple, equations: EquationsTuple, count: int, stages: StagesTuple, before: Numbers,
+    scene: SceneTuple, equations: Plain[Equations], count: int, stages: Plain[Stages], before: Numbers,
     q: Numbers, v: Numbers, pay: bool,
 ) -> tuple[float, float]:  # fmt: skip
     """Return the energy that a short move from ``before`` to ``q`` adds, by its work against forces [J].
@@ -147,7 +140,7 @@ def take_work(
     rests does so still. Work beyond their energy is returned; then by how much the energy has
     changed, be it that it was less.
     """
-    of, points, room = named_scene(scene), named_equations(equations), named_stages(stages)
+    of, points, room = named_scene(scene), Equations(*equations), Stages(*stages)
     rows, island, push, added, change = of.rows, room.v, room.acceleration, 0.0, 0.0
     accelerate(before, v, room.q, of.inverse_mass, of.damping, of.calls)
     accelerate(q, v, push, of.inverse_mass, of.damping, of.calls)
