@@ -19,7 +19,9 @@ from physicslab.ensembles import sink
 from physicslab.ensembles.runs import task_of
 from physicslab.ensembles.sobol import DIMENSIONS, sobol
 from physicslab.ensembles.space import space_of
+from physicslab.ensembles.task import Runner
 from physicslab.files.places import entity_names
+from physicslab.prefabs import box
 
 E, M = "ball.Material.restitution", "ball.Mass.mass"
 DRAWN: dict[str, Any] = {
@@ -123,6 +125,26 @@ def test_rows_of_other_scenes_have_the_bits_of_fresh_worlds(scene: str) -> None:
             from physicslab.diagnostics.quantities import Reading
 
             assert result.columns["numerical"][row] == Reading(fresh).value("error of energy"), path
+
+
+def test_rows_of_several_islands_have_the_bits_of_fresh_worlds_and_keep_their_islands() -> None:
+    world = World()
+    box(world, (0, -0.5), width=200, height=1, static=True)
+    for name, x in (("a", 0.0), ("b", 0.3), ("c", 30.0), ("d", 33.0)):
+        box(world, (x, 1.5 if name == "b" else 0.5), width=1, height=1, mass=1, name=name)
+    measures = {f"{name}.{axis}": f"{name}.{axis}" for name in "abcd" for axis in "xy"}
+    space = {"c.Velocity.linear.x": [0.0, 1.0, -40.0, 0.5], "b.Material.restitution": [0.0, 0.5]}
+    task = task_of(world, space, measure=measures, seconds=0.5)
+    runner, parts = Runner(task), []
+    for row in range(8):
+        found = runner.block(row, row + 1)
+        parts.append([island.world for island in runner._world.islands.members])
+        fresh = task.world(row)
+        fresh.run(seconds=0.5)
+        ends = [fresh.component(name, Transform).position for name in "abcd"]
+        assert found.values[0].tolist() == [number for end in ends for number in (end.x, end.y)], row
+    assert len(parts[0]) == 2 and parts[0] == parts[1] == parts[2] == parts[3]
+    assert parts[4] != parts[0], "what runs to the others is one island with them"
 
 
 def test_measures_are_expressions_of_a_run_and_functions_of_its_end() -> None:

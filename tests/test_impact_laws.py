@@ -19,12 +19,12 @@ from physicslab.kernels import accounts
 from physicslab.kernels.constraint import impact_law
 from physicslab.kernels.constraint.impact_law import LOWERED, NEWTON, ImpactImpulses, PointResponse
 from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity, PointState
-from physicslab.kernels.rigid import motion
+from physicslab.kernels.rigid import motion, step
 from physicslab.kernels.solver import impact_log
 from physicslab.kernels.solver.impact_log import ImpactPoints, Pose
 from physicslab.prefabs import box, circle
 from physicslab.stepping.rigid import Rigid
-from physicslab.stepping.rigid_motion import MadeStep, _stages_of
+from physicslab.stepping.rigid_motion import room_for
 from physicslab.systems.standard import standard_systems
 
 point_response: Any = compiled(impact_law.point_response)
@@ -33,6 +33,15 @@ solve_impact: Any = compiled(impact_law.solve_impact)
 solve_impact_of_two: Any = compiled(impact_law.solve_impact_of_two)
 book_impact: Any = compiled(impact_log.book_impact)
 shares_of: Any = compiled(impact_log.shares_of)
+
+
+@numba.njit(error_model="numpy")
+def meet(scene: Any, room: Any, q: Any, v: Any, entities: Any, log: Any, account: Any) -> Any:
+    """Let what approaches bounce; return why that has failed, and how many points touch and are pushed."""
+    return step.meet(
+        step.named_course(scene, room, q, v, entities, log, account), q, 0.0, 0.0, step.REPEATS, 0.0
+    )
+
 
 CIRCLE, FACE, CORNER = range(3)
 MOVABLE, FIXED, KINEMATIC = range(3)
@@ -265,11 +274,11 @@ class Cluster:
         (rigid,) = (s for s in self.world.steppers.usable if isinstance(s, Rigid))
         self.kinds, self.fixed, self.wall = kinds, fixed, wall
         with self.world.active():
-            self._motion, self._ode = rigid._motion, rigid._ode
+            self._ode = rigid._ode
             self.world.compile(rigid.kernels)
             self._ode.gather(self.world)
             self.scene = rigid._scene(self.world)
-        self._motion._stages = _stages_of(len(self._ode.q))
+        self._room = room_for(len(self._ode.q), len(rigid._pairs))
 
     def place(self, random: np.random.Generator) -> None:
         """Let all touch: two discs, or a corner, or two faces, and the third where it touches the second."""
@@ -324,9 +333,14 @@ class Cluster:
         self.world.account.sums[:] = 0.0
         free = inverse > 0.0
         old = v.copy()
-        made = MadeStep(np.zeros((0, 0), np.int64), np.zeros((0, 0)), np.zeros(0))
-        why, _ = self._motion._collide(self.scene, self.world, 0.0, made)
-        if why != motion.DONE or not made.impacts:
+        world, counts = self.world, self._room[-1]
+        counts[:] = 0
+        why, _, _ = meet(
+            self.scene, self._room, self._ode.q, self._ode.v, world.entity_index.entities, world.contacts.log,
+            world.account.sums,
+        )  # fmt: skip
+        impacts = int(counts[step.IMPACTS])
+        if why != motion.DONE or not impacts:
             return None
         before, after = (
             0.5 * (old[free] ** 2 / inverse[free]).sum(),
@@ -342,7 +356,7 @@ class Cluster:
         change, scale = new - earlier, np.abs(new).sum() + np.abs(earlier).sum()
         unbalanced = np.abs((change[::2].sum(), change[1::2].sum()) - sums[accounts.IMPACTS, 1:3]).max()
         # What is light between heavy bodies bounces hundreds of times at once.
-        return worst / (before * made.impacts), abs(after - before - booked) / before, unbalanced / scale
+        return worst / (before * impacts), abs(after - before - booked) / before, unbalanced / scale
 
 
 def _check_rigid(count: int) -> int:

@@ -187,6 +187,10 @@ def test_a_finished_sentence_is_said_in_another_language_with_what_is_in_its_gap
     )
     assert german.reword("new box") == german.reword("New box") == "Neuer Kasten"
     assert german.reword("pause") == german.reword("Pause") == "Pause"
+    taken = "Taken: friction 1 J, impacts 37.4 J, damping 2 J, resting contacts 3 J"
+    assert german.reword(taken) == (
+        "Abgeführt: Reibung 1 J, Stöße 37,4 J, Dämpfung 2 J, ruhende Kontakte 3 J"
+    )
     said = german.reword("pendulum-0.5.json (0.5, -1.25) 1.013 m")
     assert said == german.reword(said) == "pendulum-0.5.json (0,5; -1,25) 1,013 m"
     assert [german.reword(words) for words in ("", ".", "ball", "v1.2.3")] == ["", ".", "ball", "v1.2.3"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numba
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -17,7 +18,7 @@ from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels.python_fallback import fallback_of
-from physicslab.kernels.rigid import complementarity, lemke, motion, time_stepping
+from physicslab.kernels.rigid import complementarity, lemke, motion, step, time_stepping
 from physicslab.kernels.rigid.equations import (
     FREE,
     OPEN,
@@ -203,6 +204,16 @@ def test_what_moving_bodies_apart_adds_is_booked_and_told() -> None:
     assert rigid_of(world).energy_added == told[0].value
 
 
+@numba.njit(error_model="numpy")
+def take_work(
+    scene: Any, room: Any, before: Any, q: Any, v: Any, entities: Any, log: Any, account: Any
+) -> Any:  # fmt: skip
+    """Let bodies that touch pay for a move from ``before``; return what they cannot pay, and all of it."""
+    of = step.named_course(scene, room, q, v, entities, log, account)
+    _, count, _, _, _ = motion.touch(of.scene, of.equations, of.room, of.stages.acceleration, q, q, v, 0.0)
+    return time_stepping.take_work(of.scene, of.equations, count, of.stages, before, q, v, True)
+
+
 def test_bodies_that_hang_together_pay_for_their_move() -> None:
     """Two boxes that touch slide; a third one far off keeps its speed. What cannot be paid is returned."""
     world = laboratory()
@@ -218,10 +229,10 @@ def test_bodies_that_hang_together_pay_for_their_move() -> None:
         before = ode.q.copy()
         ode.q[3:6:2] += by
         energy = 0.5 * 4 * ode.v[2] ** 2
-        found = motion.touch(scene, made._equations, made._room, made._stages[-1], ode.q, ode.q, ode.v, 0.0)
-        left, change = time_stepping.take_work(
-            scene, made._equations, found[1], made._stages, before, ode.q, ode.v, True
-        )
+        left, change = take_work(
+            scene, made._room, before, ode.q, ode.v, world.entity_index.entities, world.contacts.log,
+            world.account.sums,
+        )  # fmt: skip
         work = 4 * G * by
         assert left == change == pytest.approx(0.0 if paid else work - energy, rel=1e-9)
         assert 0.5 * 4 * ode.v[2] ** 2 == pytest.approx(energy - work if paid else 0.0, rel=1e-9)

@@ -13,6 +13,8 @@ from pathlib import Path
 
 import physicslab
 from physicslab.components.quantities import KIND_OF_UNIT, QUANTITIES
+from physicslab.diagnostics import free_body
+from physicslab.diagnostics.energy import ACCOUNT_WORDS
 from physicslab.ecs.component import COMPONENTS
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import Field
@@ -90,6 +92,7 @@ def tables() -> dict[str, list[str]]:
         "player": player_texts(), "quantities": [*QUANTITIES, *KIND_OF_UNIT.values()],
         "levels": [*LEVELS, *LEVELS.values()],
         "methods": [one.title for one in (*INTEGRATORS.values(), *SPLIT_METHODS.values())],
+        "accounts": list(ACCOUNT_WORDS.values()), "forces": list(free_body._NAMES.values()),
         "reasons": list(SENTENCES.values()),
         "themes": [theme.name for theme in THEMES],
         "fields": [text for one in fields() for text in (_label(one), one.meaning)],

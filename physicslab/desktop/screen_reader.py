@@ -1,7 +1,7 @@
 """The window as a screen reader gets it: every control with its name, value and place, and the scene.
 
 AccessKit (extra ``access``) hands it to the system: on Linux to AT-SPI, which Orca reads. Nothing is made
-while no reader asks, and a window without the package works as ever.
+while no reader is connected, and a window without the package works as ever.
 """
 
 import time

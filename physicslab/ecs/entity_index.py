@@ -197,6 +197,11 @@ class EntityIndex:
             table.resize(len(self), self.capacity)
         return table
 
+    def has_any(self, component: type[Any]) -> bool:
+        """Whether any entity has a component; no table is made for one that none has."""
+        table = self.tables.get(component)
+        return table is not None and bool(table.handles)
+
     def batch(self, *components: type[Any]) -> Batch:
         """Return the rows whose entity has every one of ``components``."""
         batch = self._batches.get(components)

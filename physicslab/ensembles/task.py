@@ -250,11 +250,12 @@ class Runner:
             except InvalidValue as error:
                 raise SceneError(f"{place.words} = {shown(value)}: must be {error.allowed}") from error
         with world.active():
-            if not self._alone:
-                world.islands.forget(world)
-            elif self._bounces():
+            if self._alone and self._bounces():
                 return True
             world.synchronise()
+            if not (self._alone or world.islands.hold(world)):
+                world.islands.forget(world)
+                world.synchronise()
             if self._chooses_the_same():
                 return True
         if not self._alone:

@@ -1,6 +1,6 @@
 """The answers of one learner to a lesson, read from a file and graded.
 
-A report has the same bits whenever the same answers are graded: runs that answers ask for are made again.
+A report has the same bits whenever the same answers are graded: runs that answers name are made again.
 """
 
 import itertools
@@ -73,7 +73,7 @@ class Graded:
 
 
 def asked(lesson: Lesson, find: Callable[[str], Lesson]) -> Iterator[tuple[str, str, _Asked, Lesson]]:
-    """Yield all that a lesson asks for: name, kind, the question, and the lesson that it is of.
+    """Yield all questions of a lesson: name, kind, the question, and the lesson that it is of.
 
     Questions of earlier lessons are named ``LESSON/CHECK``; ``find`` returns such a lesson.
     """

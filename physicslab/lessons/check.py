@@ -97,7 +97,7 @@ class LessonRuns:
 
 
 def _expected(question: Question, reply: Reply | None) -> Expression:
-    """Return what a question asks for, or what a foreseen mistake has instead."""
+    """Return the answer of a question, or that of a foreseen mistake."""
     expression = question.answer if reply is None else reply.value
     assert expression is not None
     return expression

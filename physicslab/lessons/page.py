@@ -3,7 +3,7 @@
 Every run is made here, for each value of its sliders and each case that the lesson names; their pictures and
 figures go into books, which the player of shared pages plays. Questions become forms, and what the engine
 knows of them (right numbers, foreseen mistakes, theory beside measurement) stands beside the books in the
-page's JSON. The page asks, keeps each run shut until all is predicted of it, says what the lesson says to an
+page's JSON. The page keeps each run shut until all is predicted of it, says what the lesson says to an
 answer, and saves ``physicslab-answers/1``, which :mod:`physicslab.lessons.answers` grades.
 """
 
@@ -362,7 +362,7 @@ class _Page:
         return self.own.decimal(words) if share < np.inf else "∞"
 
     def _prediction(self, compare: Compare) -> dict[str, Any] | None:
-        """Return which question asks for the number that is compared, and how many SI units its unit is."""
+        """Return the question of the number that is compared, and how many SI units its unit is."""
         for one in self.lesson.questions("predict"):
             same = one.run and one.run.line == compare.run.line and one.answer
             if same and one.form == "number" and one.answer and one.answer.text == compare.measured.text:

@@ -133,8 +133,8 @@ class Joints:
         edges: set[tuple[int, int]] = set()
         apart: set[tuple[int, int]] = set()
         welded: dict[int, set[int]] = {}
-        for kind, rows_of in KINDS.items():
-            table = index.table(kind)
+        for kind in filter(index.has_any, KINDS):
+            table, rows_of = index.table(kind), KINDS[kind]
             for row, a, b in zip(index.batch(kind).rows.tolist(), *ends_of(index, kind), strict=True):
                 if a < 0 or b < 0:
                     continue  # its body is gone, and it goes with that

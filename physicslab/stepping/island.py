@@ -18,7 +18,7 @@ from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
 from physicslab.stepping.partition import Extent, movable_in
 from physicslab.stepping.plan import StepPlan
-from physicslab.stepping.planning import outlived
+from physicslab.stepping.planning import choose_plan, outlived
 from physicslab.stepping.run import Stepped
 from physicslab.stepping.select import Steppers
 
@@ -92,6 +92,12 @@ class Island:
         if edited.any():
             copy_rows(state, self.state, self.every_there[edited], self.every[edited])
             self.world.book_edits()
+
+    def chooses_the_same(self) -> bool:
+        """Whether the same systems and the same method would be chosen for it as it is now."""
+        own, world = self.state, self.world
+        with own.active():
+            return world.schedule.holds(own) and choose_plan(own, world.schedule) == world.plan
 
     def go(self, state: State, time: float, h: float, steps: int) -> int:
         """Advance by ``steps`` steps of ``h`` seconds from ``time`` [s] on; return the parts of each.

@@ -22,6 +22,7 @@ from physicslab.ecs.sentences import sentence
 from physicslab.state.masses import Diverged
 from physicslab.state.remainders import Remainders
 from physicslab.state.state import State
+from physicslab.stepping import partition
 from physicslab.stepping.island import (
     Island,
     KeptIsland,
@@ -34,7 +35,6 @@ from physicslab.stepping.island import (
     numbers_of,
     rows_changed,
 )
-from physicslab.stepping.partition import MAX_BODIES, MAX_ISLANDS, groups_of, join, movable_in, why_whole
 from physicslab.stepping.stepper import Advance
 from physicslab.stepping.undo import go_back
 from physicslab.systems.schedule import Schedule
@@ -180,7 +180,7 @@ class Islands:
         """Return how many steps of ``h`` seconds are made at most before islands are looked for again."""
         if not self._comes_apart:
             return _NEVER
-        every = FEW_EXAMINED if not self.members and self._bodies <= MAX_BODIES else 1
+        every = FEW_EXAMINED if not self.members and self._bodies <= partition.MAX_BODIES else 1
         until = (self._examined // every + 1) * every * EXAMINED_S - _LATE
         steps = math.ceil((until - state.time) / h)
         if self.members:
@@ -202,7 +202,7 @@ class Islands:
 
     def _write_back(self, state: State) -> None:
         """Write the motion of all islands into the whole world."""
-        driven = state.table(Transform).present & state.table(Velocity).present & ~movable_in(state)
+        driven = state.table(Transform).present & state.table(Velocity).present & ~partition.movable_in(state)
         rows = np.flatnonzero(driven)
         for n, island in enumerate(self.members):
             island.write_back(state, rows if n == 0 else rows[:0])
@@ -251,7 +251,7 @@ class Islands:
         rows = self._survey(state)
         if self.why_one:
             return
-        groups, self.why_one = groups_of(state, self._schedule, rows)
+        groups, self.why_one = partition.groups_of(state, self._schedule, rows)
         if len(groups) > 1:
             entities = state.entity_index.entities
             self.members = tuple(self._island(state, entities[group], [state]) for group in groups)
@@ -259,8 +259,8 @@ class Islands:
 
     def _survey(self, state: State) -> Rows:
         """Find whether a world that is one may be divided; return the rows of its bodies."""
-        self._apart_until, rows = -math.inf, np.flatnonzero(movable_in(state))
-        self.why_one = why_whole(state, self._schedule) or ""
+        self._apart_until, rows = -math.inf, np.flatnonzero(partition.movable_in(state))
+        self.why_one = partition.why_whole(state, self._schedule) or ""
         self._comes_apart = not self.why_one and len(rows) > 1 and self._schedule.runs(Stage.CONTACT)
         self._bodies = len(rows)
         return rows
@@ -281,16 +281,16 @@ class Islands:
         self._examined = period
         few_too = period % FEW_EXAMINED == 0
         if not self.members:
-            if few_too or self._bodies > MAX_BODIES:
+            if few_too or self._bodies > partition.MAX_BODIES:
                 self._divide(state)
             return bool(self.members)
         found = [
-            groups_of(island.state, island.world.schedule, island.own).groups
-            if island.touches and (few_too or len(island.own) > MAX_BODIES)
+            partition.groups_of(island.state, island.world.schedule, island.own).groups
+            if island.touches and (few_too or len(island.own) > partition.MAX_BODIES)
             else (island.own,)
             for island in self.members
         ]
-        if not len(self.members) < sum(map(len, found)) <= MAX_ISLANDS:
+        if not len(self.members) < sum(map(len, found)) <= partition.MAX_ISLANDS:
             return False
         members: list[Island] = []
         for island, groups in zip(self.members, found, strict=True):
@@ -316,7 +316,7 @@ class Islands:
         self._apart_until = state.time + min(steps, 1 << 20) * h
         if not near:
             return False
-        labels = join(np.arange(len(touching)), near)
+        labels = partition.join(np.arange(len(touching)), near)
         members = [island for island in self.members if not island.touches]
         all_one = not members and not labels.any()
         for label in dict.fromkeys(labels.tolist()):
@@ -352,12 +352,12 @@ class Islands:
         """Return an island of some bodies, of which ``sources`` have contacts, sleep and remainders."""
         island = Island(self.blank(state), entities)
         part = island.state
-        fixed = state.table(Transform).present & ~movable_in(state)
+        fixed = state.table(Transform).present & ~partition.movable_in(state)
         fill(state, part, entities, state.entity_index.entities[np.flatnonzero(fixed)])
         part.time, part.steps = state.time, state.steps
         island.world.synchronise()
         # Slots of wide contacts are those of one world, and no matter of few bodies.
-        apart = len(sources) > 1 or len(entities) <= MAX_BODIES
+        apart = len(sources) > 1 or len(entities) <= partition.MAX_BODIES
         kept = [KeptContacts.of(source.contacts).among(entities, apart=apart) for source in sources]
         KeptContacts.joined(kept, part.contacts.counts).restore(part)
         for source in sources:
@@ -376,19 +376,21 @@ class Islands:
 
     def keep(self, state: State) -> list[KeptIsland] | None:
         """Return what a file keeps of the islands; ``None`` where a loaded world would find the same."""
-        present = [island.entities.tolist() for island in self.members]
         kept = [kept_of(state, island) for island in self.members]
-        found: list[list[int]] = []
-        if self._make is not None and why_whole(state, self._schedule) is None:
-            groups, _ = groups_of(state, self._schedule, np.flatnonzero(movable_in(state)))
-            entities = state.entity_index.entities
-            found = [entities[group].tolist() for group in groups] if len(groups) > 1 else []
-        return None if found == present and all(one.is_fresh(state) for one in kept) else kept
+        return None if all(one.is_fresh(state) for one in kept) and self._are_found(state) else kept
+
+    def hold(self, state: State) -> bool:
+        """Whether a world made as this one is now would have the same islands, with the same steppers."""
+        return self._are_found(state) and all(island.chooses_the_same() for island in self.members)
+
+    def _are_found(self, state: State) -> bool:
+        """Whether they are those that are found where bodies are."""
+        return partition.islands_of(state, self._schedule) == [one.entities.tolist() for one in self.members]
 
     def restore(self, state: State, kept: Sequence[KeptIsland]) -> None:
         """Go on with the islands of a file, whose contacts, rests and remainders the state has."""
         bodies = np.array(sorted(body for one in kept for body in one.bodies), np.int64)
-        if len(kept) and not np.array_equal(bodies, state.entity_index.entities[movable_in(state)]):
+        if len(kept) and not np.array_equal(bodies, state.entity_index.entities[partition.movable_in(state)]):
             self.find_again()  # what moves was edited in the file
             return
         members: list[Island] = []

@@ -99,6 +99,15 @@ def is_one(state: State, schedule: Schedule) -> bool:
     return not join(np.arange(len(rows)), _couples(state, schedule, rows).tolist()).any()
 
 
+def islands_of(state: State, schedule: Schedule) -> list[list[int]]:
+    """Return the entities of each island of a world where its bodies are; none where it is one."""
+    if why_whole(state, schedule) is not None:
+        return []
+    groups, _ = groups_of(state, schedule, np.flatnonzero(movable_in(state)))
+    entities = state.entity_index.entities
+    return [entities[group].tolist() for group in groups] if len(groups) > 1 else []
+
+
 def groups_of(state: State, schedule: Schedule, rows: Rows) -> Partition:
     """Return into which islands some movable bodies are to be divided."""
     if len(rows) < 2:

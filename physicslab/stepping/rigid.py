@@ -13,10 +13,10 @@ from physicslab.contacts.arguments import shapes_of
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import CONTACT, FRICTION, HAND, JOINTS, MOTORS
 from physicslab.kernels.broad import near_pairs
-from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.kernels.joints.rows import forces_of
-from physicslab.kernels.rigid import joined, motion, time_stepping
+from physicslab.kernels.rigid import joined, step
 from physicslab.kernels.rigid.features import PAIR
+from physicslab.kernels.rigid.point_records import write_points
 from physicslab.kernels.wide import slots
 from physicslab.ode.system import OdeSystem
 from physicslab.state.masses import check_finite
@@ -67,10 +67,7 @@ class Rigid:
     leaves_forces: bool = False
     samples: bool = True
     kernels: tuple[Any, ...] = (
-        motion.touch, motion.collide, motion.advance_segment, motion.begin_motion,
-        time_stepping.drift, time_stepping.drive, time_stepping.kick, time_stepping.separate,
-        time_stepping.take_work,
-        near_pairs.carry_over, slots.list_scalar,
+        step.make_step, write_points, near_pairs.carry_over, slots.list_scalar,
     )  # fmt: skip
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
@@ -87,6 +84,9 @@ class Rigid:
         self._refused, self.left_to_soft, self.why_soft = -1, 0, ""
         # Soft joints err less than impulses in 32 parts, and take a hundredth of the time.
         self._gives_up = bool(len(state.joints)) and state.simulation.contacts == "auto"
+        self._made_of: object = None
+        self._laws: tuple[Any, ...] = ()
+        self._unmoved: NDArray[np.int64] = np.zeros(0, np.int64)
         self.energetic_impacts = self.restitutions_lowered = self.by_impulses = 0
         self.why_impulses, self.energy_added = "", 0.0
         within = [system for system in schedule.running if system.is_engine and system.acts_within_step()]
@@ -176,36 +176,55 @@ class Rigid:
 
     def _scene(self, state: State) -> tuple[Any, ...]:
         """Return what the kernels take of the state, beside the state of motion."""
-        material, physics = state.table(Material), state.physics
-        present = np.concatenate((np.repeat(state.table(Velocity).present, 2), state.table(Velocity).present))
-        self._ode.v[: len(present)][~present] = 0.0
-        size = 2.0 * state.bodies.shapes.thin
+        material, velocity, bodies, ode = (
+            state.table(Material),
+            state.table(Velocity),
+            state.bodies,
+            self._ode,
+        )
+        integers, lengths, pool = shapes_of(state)
+        columns = (
+            velocity.present, material["friction"], material["restitution"], bodies.inverse_mass,
+            bodies.inverse_inertia, integers, lengths,
+        )  # fmt: skip
+        inputs = state.physics, ode.slots, [column.tobytes() for column in columns]
+        if inputs != self._made_of:
+            self._made_of, present = inputs, velocity.present
+            self._unmoved = np.flatnonzero(~np.concatenate((np.repeat(present, 2), present)))
+            self._laws = self._laws_of(state, *columns[1:3])
+        ode.v[self._unmoved] = 0.0
+        walls, coefficients, bare_lengths, accounts = self._laws
+        shapes = integers, lengths if bare_lengths is None else bare_lengths, pool
+        return (
+            len(bodies.inverse_mass), ode.inverse_mass, ode.damping, ode.damped_calls, shapes, walls,
+            self._pairs, coefficients, accounts, *ode.joints,
+        )  # fmt: skip
+
+    def _laws_of(
+        self, state: State, friction: NDArray[np.float64], restitution: NDArray[np.float64]
+    ) -> tuple[Any, ...]:
+        """Return the walls, the coefficients of all pairs, the lengths of shapes, and where accounts are.
+
+        These lengths are others than the shapes' own where a body without a shape reaches as far as its
+        radius of gyration; else ``None``.
+        """
+        physics, bodies, slots = state.physics, state.bodies, self._ode.slots
+        size = 2.0 * bodies.shapes.thin
         a, b, wall = self._pairs[: len(self._pairs) - len(self._rows)].T
         walled = wall >= 0
         coefficients = np.empty((len(a), 3))
-        friction, restitution = material["friction"], material["restitution"]
         of_a = np.where(walled, physics.bounds_friction, friction[a])
         coefficients[:, 0] = friction_of_pair(of_a, friction[b])
         of_a = np.where(walled, physics.bounds_restitution, restitution[a])
         coefficients[:, 1] = restitution_of_pair(of_a, restitution[b])
         coefficients[:, 2] = np.where(walled, size[b], np.minimum(size[a], size[b]))
         walls: NDArray[np.float64] = np.array(physics.bounds or (0.0, 0.0, 0.0, 0.0))
-        ode = self._ode
-        accounts = np.array([ode.slots.get(cause, -1) for cause in (FRICTION, CONTACT, HAND, JOINTS, MOTORS)])
-        return (
-            len(size), ode.inverse_mass, ode.damping, ode.damped_calls, self._shapes(state), walls,
-            self._pairs, self._rows.behind(coefficients), accounts, *ode.joints,
-        )  # fmt: skip
-
-    def _shapes(self, state: State) -> ShapesTuple:
-        """Return the table of shapes, where what has none reaches as far as its radius of gyration."""
-        plain, bodies = shapes_of(state), state.bodies
-        bare = (plain[0][0] == 0) & (bodies.inverse_inertia > 0.0)
-        if not bare.any():
-            return plain
-        lengths = plain[1].copy()
-        lengths[3, bare] = np.sqrt(bodies.inverse_mass[bare] / bodies.inverse_inertia[bare])
-        return plain[0], lengths, plain[2]
+        bare, lengths = (bodies.shapes.vertices == 0) & (bodies.inverse_inertia > 0.0), None
+        if bare.any():
+            lengths = shapes_of(state)[1].copy()
+            lengths[3, bare] = np.sqrt(bodies.inverse_mass[bare] / bodies.inverse_inertia[bare])
+        accounts = np.array([slots.get(cause, -1) for cause in (FRICTION, CONTACT, HAND, JOINTS, MOTORS)])
+        return walls, self._rows.behind(coefficients), lengths, accounts
 
     def _find_joint_forces(self, scene: tuple[Any, ...], state: State, made: MadeStep) -> None:
         """Find the forces of joints at the end of a step, their answer to those of contacts among them."""

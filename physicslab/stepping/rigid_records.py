@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform
 from physicslab.contacts.near_pairs import list_all
+from physicslab.kernels import direct_entry
 from physicslab.kernels.rigid import features as F
+from physicslab.kernels.rigid.point_records import write_points
 from physicslab.state.chain_links import segment_of_link
 from physicslab.state.state import State
 from physicslab.stepping.rigid_motion import MadeStep
@@ -37,46 +39,16 @@ class RigidRecords:
         contacts.recorded = (
             0  # blank: what soft steps before have left would depend on where a run was parted
         )
-        contacts.wide.reset(len(state.entity_index))
+        if contacts.wide.filled:
+            contacts.wide.reset(len(state.entity_index))
         pairs, number = self._list(state, made)
         list_all(state, pairs, len(pairs))
-        records, points = contacts.manifolds[: contacts.recorded], contacts.points[: 2 * contacts.recorded]
         contacts.impulse_dt = h / state.simulation.substeps
-        position = state.table(Transform)["position"]
-        of, measures, forces = made.points, made.measures, made.forces
-        touching: list[int] = []
-        for i in range(made.closed):
-            p = int(of[i, F.PAIR])
-            if p >= len(self._pairs):
-                continue
-            if self._chained[p]:
-                p = number[self._key(state, made, i)]
-            elif number:
-                p = number[tuple(self._pairs[p].tolist())]
-            record = records[p]
-            a, b = record["a"], record["b"]
-            k = int(record["count"])
-            if k == 2:
-                continue
-            if k == 0:
-                touching.append(p)
-            sign = 1.0 if of[i, F.ONE] == a else -1.0
-            record["count"] = k + 1
-            record["normal_x"], record["normal_y"] = (
-                0.0 + sign * measures[i, F.NX],
-                0.0 + sign * measures[i, F.NY],
-            )
-            record["friction"], record["restitution"] = measures[i, F.MU], measures[i, F.RESTITUTION]
-            point = points[2 * p + k]
-            place = measures[i, F.PX : F.PY + 1]
-            point["arm_ax"], point["arm_ay"] = place - position[a]
-            point["arm_bx"], point["arm_by"] = place - position[b]
-            point["separation"] = measures[i, F.GAP]
-            point["normal_impulse"] = forces[2 * i] * contacts.impulse_dt
-            point["tangent_impulse"] = forces[2 * i + 1] * contacts.impulse_dt
+        contacts.active = direct_entry(write_points)(
+            made.points, made.measures, made.forces, number, contacts.impulse_dt,
+            state.table(Transform)["position"], contacts.manifolds, contacts.points, contacts.touching,
+        )  # fmt: skip
         self._write_impacts(state, made.impacts)
-        contacts.active = len(touching)
-        contacts.touching[: len(touching)] = touching
         contacts.stale = True  # for the contact step, should it have to go on
 
     def _key(self, state: State, made: MadeStep, i: int) -> tuple[int, ...]:
@@ -86,26 +58,31 @@ class RigidRecords:
         link, row = (F.LINK - feature, F.ONE) if feature < 0 else (int(made.points[i, F.VERTEX]), F.OTHER)
         return a, b, -2 - segment_of_link(shapes, int(made.points[i, row]), link)
 
-    def _list(self, state: State, made: MadeStep) -> tuple[NDArray[np.int64], dict[tuple[int, ...], int]]:
-        """Return the pairs to record, in order, with segments of chains that are touched, and their numbers.
+    def _list(self, state: State, made: MadeStep) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the pairs to record, in order, with segments of chains that are touched.
 
-        Without a chain they have those that they are known by.
+        And which of them each closed point (closed,) belongs to, -1 for rows of joints.
         """
+        of = made.points[: made.closed, F.PAIR]
+        known = of < len(self._pairs)
         if not self._chained.any():
-            return self._pairs, {}
-        known = len(self._pairs)
-        touched = {
-            self._key(state, made, i)
-            for i in range(made.closed)
-            if made.points[i, F.PAIR] < known and self._chained[made.points[i, F.PAIR]]
+            return self._pairs, np.where(known, of, -1)
+        keys = {
+            i: self._key(state, made, i) if self._chained[of[i]] else tuple(self._pairs[of[i]].tolist())
+            for i in np.flatnonzero(known).tolist()
         }
+        touched = {key for key in keys.values() if key[2] < -1}
         entities = state.entity_index.entities
-        of = {(int(entities[a]), int(entities[b])): (a, b) for a, b, _ in self._pairs[self._chained].tolist()}
+        ends = {
+            (int(entities[a]), int(entities[b])): (a, b) for a, b, _ in self._pairs[self._chained].tolist()
+        }
         for impact in _last_impacts(state, made.impacts):
             if impact["wall"] < -1:
-                touched.add((*of[int(impact["entity_a"]), int(impact["entity_b"])], int(impact["wall"])))
+                touched.add((*ends[int(impact["entity_a"]), int(impact["entity_b"])], int(impact["wall"])))
         listed = sorted([*map(tuple, self._pairs[~self._chained].tolist()), *touched])
-        return np.array(listed, np.int64).reshape(-1, 3), {pair: n for n, pair in enumerate(listed)}
+        place = {pair: n for n, pair in enumerate(listed)}
+        number = np.array([place[keys[i]] if i in keys else -1 for i in range(made.closed)], np.int64)
+        return np.array(listed, np.int64).reshape(-1, 3), number
 
     def _write_impacts(self, state: State, impacts: int) -> None:
         """Write the impacts of the last step into their pairs' records, at their first point."""

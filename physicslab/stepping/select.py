@@ -119,10 +119,10 @@ def remake(state: State, schedule: Schedule, plan: StepPlan | None) -> tuple[Ste
 
     Whether bodies may sleep depends on how collisions are found.
     """
+    schedule.remake(state)
     while True:
-        before = state.event_driven, state.rigid_contacts
-        schedule.remake(state)
         state.has_forces = bool(schedule.forces)
         chosen = choose(state, schedule, plan)
-        if (state.event_driven, state.rigid_contacts) == before:
+        if schedule.holds(state):
             return chosen
+        schedule.remake(state)

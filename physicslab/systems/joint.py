@@ -120,7 +120,7 @@ class JointSystem(System):
             If an end is nothing that has a place, both are the same, or two joints of a kind are.
         """
         index = state.entity_index
-        for kind in KINDS:
+        for kind in filter(index.has_any, KINDS):
             rows, (a, b) = state.batch(kind).rows, ends_of(index, kind)
             remove_lost(state, kind, a, b)
             there = (a >= 0) & (b >= 0)

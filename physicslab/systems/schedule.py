@@ -124,6 +124,11 @@ class Schedule:
             for stage, method in self._marked[system].items():
                 self._calls[stage].append((getattr(system, method), timing))
 
+    def holds(self, state: State) -> bool:
+        """Whether the world needs the same systems still, and others are left out for the same reasons."""
+        reasons = {left.name: left.reason for left in self.left_out}
+        return all(system.why_left_out(state) == reasons.get(system.name) for system in self.systems)
+
     def runs(self, stage: Stage) -> bool:
         """Whether any system has work at ``stage``."""
         return bool(self._calls.get(stage))

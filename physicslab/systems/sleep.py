@@ -58,10 +58,10 @@ class SleepSystem(System):
             return sentence("planets")
         if state.physics.coulomb_constant and len(state.batch(Charge)) > 1:
             return sentence("charges")
-        if state.event_driven or state.rigid_contacts:
-            return sentence("impacts_located")
         if wish == "auto" and len(state.batch(Shape, Transform, Velocity, Mass)) <= _AWAKE_LIMIT:
             return sentence("few_awake", limit=_AWAKE_LIMIT)
+        if state.event_driven or state.rigid_contacts:
+            return sentence("impacts_located")
         return None
 
     @at(Stage.CONTACT)

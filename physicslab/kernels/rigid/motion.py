@@ -9,18 +9,17 @@ steps.
 
 import math
 
-from physicslab.kernels import Numbers, Plain, Rows, Vectors, always_inlined, inlined, kernel
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.ode.dop853_tableau import LAST
-from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.budget import book_contacts, book_speeds
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED
 from physicslab.kernels.rigid.constraints import apply, find_loads, measure_all, project
 from physicslab.kernels.rigid.equations import OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, named_scene
-from physicslab.kernels.rigid.impacts import approaches, resolve_simultaneous_impacts
+from physicslab.kernels.rigid.features import Points, RigidScene
+from physicslab.kernels.rigid.impacts import approaches
 from physicslab.kernels.rigid.jammed import stop_sliding
 from physicslab.kernels.rigid.joined import book_answer
 from physicslab.kernels.rigid.passing import longest_segment, share_of_ways
@@ -50,9 +49,9 @@ from physicslab.kernels.rigid.touching import (
     take_closed,
 )
 
-DONE, NO_FORCES, UNRESOLVED, TOO_MANY, STOPPED = 0, 1, 2, 3, 4
-"""Why the motion cannot go on: it can; no contact forces keep all laws; an impact has no solution; more
-points touch than there is room for; sliding was stopped by impulses, so that all has to be found again."""
+DONE, STOPPED, NO_FORCES, UNRESOLVED, TOO_MANY = range(5)
+"""Why the motion cannot go on: it can; sliding was stopped by impulses, so that all has to be found again; no
+contact forces keep all laws; an impact has no solution; more points touch than there is room for."""
 _SAME_MOMENT = 1e-9
 """Share of its load within which a point that sticks reaches the limit of friction with another one."""
 _BALANCED, _FITTED = 1e-11, 1e-8
@@ -132,45 +131,22 @@ def _is_balanced(
     return True
 
 
-@kernel
+@inlined
 def touch(
-    scene: SceneTuple, equations: Plain[Equations], room: Plain[Equations], acceleration: Numbers,
-    place: Numbers, q: Numbers, v: Numbers, within: float,
+    of: RigidScene, equations: Equations, room: Equations, acceleration: Numbers, place: Numbers, q: Numbers,
+    v: Numbers, within: float,
 ) -> tuple[int, int, float, float, bool]:  # fmt: skip
     """Find which points touch at ``place``, or are ``within`` a share of a size.
 
     Returns why the motion cannot go on (DONE if it can), how many points touch, the tolerance of speeds
     [m/s], the deepest overlap as a share of a size, and whether any point approaches in (q, v).
     """
-    of, points, scratch = named_scene(scene), Equations(*equations), Equations(*room)
     accelerate(place, v, acceleration, of.inverse_mass, of.damping, of.calls)
     rest, least = rest_limits(of, acceleration, v)
-    count, deepest = find_touching(of, points, scratch, place, v, within, least / NO_PUSH)
-    if count > len(points.points):
+    count, deepest = find_touching(of, equations, room, place, v, within, least / NO_PUSH)
+    if count > len(equations.points):
         return TOO_MANY, 0, rest, deepest, False
-    return DONE, count, rest, deepest, _any_approaches(of, points, count, place, v, rest)
-
-
-@kernel
-def collide(
-    scene: SceneTuple, equations: Plain[Equations], count: int, room: Plain[Equations], q: Numbers,
-    v: Numbers, old: Numbers, acceleration: Numbers, tolerance: float, rate: float, entities: Rows,
-    log: Impacts, logged: int, time: float, account: Vectors,
-) -> tuple[int, bool, int, int, int, int]:  # fmt: skip
-    """Let those of ``count`` points that approach in (q, v) bounce.
-
-    Speeds up to ``tolerance`` [m/s] are treated as zero; points that would touch in 1 / ``rate`` seconds do.
-    ``old`` is room for speeds, ``acceleration`` what forces cause; what the impulses give is added to
-    ``account``. Returns how many impacts there were, whether impulses were found, how many impacts obeyed
-    Stronge's law, how often restitutions were lowered to keep the energy, how many points the last impulses
-    act at, which are left in ``room``, and the work of all rounds (1 + n^4 / 500 for n points).
-    """
-    of, points, scratch = named_scene(scene), Equations(*equations), Equations(*room)
-    new, solved, by_energy, kept, last, rounds = resolve_simultaneous_impacts(
-        of, points, count, scratch, q, v, old, acceleration, tolerance, rate, entities, log, logged, time,
-        account,
-    )  # fmt: skip
-    return new, solved, by_energy, kept, last, rounds * (500 + count * count * count * count) // 500
+    return DONE, count, rest, deepest, _any_approaches(of, equations, count, place, v, rest)
 
 
 @inlined
@@ -203,11 +179,10 @@ def _make_smooth(
     return h, _SHORTENINGS
 
 
-@kernel
+@always_inlined
 def advance_segment(
-    scene: SceneTuple, equations: Plain[Equations], count: int, room: Plain[Equations], stages: Plain[Stages],
-    start: Vectors, changed: Points, q: Numbers, v: Numbers, left: float, tolerance: float, rest: float,
-    foreseen: bool,
+    of: RigidScene, points: Equations, count: int, scratch: Equations, at: Stages, start: Vectors,
+    changed: Points, q: Numbers, v: Numbers, left: float, tolerance: float, rest: float, foreseen: bool,
 ) -> tuple[float, int, bool]:  # fmt: skip
     """Advance from where :func:`begin_motion` left it to the next event, for ``left`` seconds at most.
 
@@ -215,8 +190,6 @@ def advance_segment(
     curve of a short segment is exact. Returns the time that passed [s], how many force evaluations the
     segment took, its beginning included, and whether there was an event.
     """
-    of, points, at = named_scene(scene), Equations(*equations), Stages(*stages)
-    scratch = Equations(*room)
     soonest = note_start(of, points, count, scratch, q, v, at.acceleration, start)
     allowed, evaluations, kind, index = start[ALLOWED], 4, -1, -1
     limit = longest_segment(of, q, v, at.acceleration, allowed)
@@ -243,10 +216,10 @@ def advance_segment(
     return passed, evaluations, kind >= 0
 
 
-@kernel
+@inlined
 def begin_motion(
-    scene: SceneTuple, equations: Plain[Equations], count: int, stages: Plain[Stages], changed: Points,
-    q: Numbers, v: Numbers, steady: bool,
+    of: RigidScene, points: Equations, count: int, at: Stages, changed: Points, q: Numbers, v: Numbers,
+    steady: bool,
 ) -> tuple[int, int, float, bool]:  # fmt: skip
     """Find what each of ``count`` points that touch does, and with what force; begin a segment of motion.
 
@@ -254,7 +227,6 @@ def begin_motion(
     motion alone. Returns why the motion cannot go on (DONE if it can), the number of closed points, the
     tolerance of speeds [m/s], and whether nothing moves or accelerates.
     """
-    of, points, at = named_scene(scene), Equations(*equations), Stages(*stages)
     accelerate(q, v, at.acceleration, of.inverse_mass, of.damping, of.calls)
     rest, least = rest_limits(of, at.acceleration, v)
     count = take_closed(of, points, count, changed, q, v, rest)

@@ -9,7 +9,7 @@ of order one.
 
 import math
 
-from physicslab.kernels import Numbers, Plain, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import HAND, MOTORS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ENDS, FIRST, PLACES, ROWS
@@ -19,7 +19,7 @@ from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complement
 from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.detect import find_points
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import RigidScene, SceneTuple, named_scene
+from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.joined import book_impulses
 from physicslab.kernels.rigid.smooth_segment import Stages
 from physicslab.kernels.rigid.touching import length_of
@@ -29,39 +29,33 @@ _SEPARATIONS = 2
 
 
 @inlined
-def _move(q: Numbers, v: Numbers, h: float) -> None:
+def move(q: Numbers, v: Numbers, h: float) -> None:
+    """Move everything for ``h`` seconds at the speeds that it has."""
     for i in range(len(q)):
         q[i] += h * v[i]
 
 
-@kernel
-def drift(q: Numbers, v: Numbers, h: float) -> None:
-    """Move everything for ``h`` seconds at the speeds that it has."""
-    _move(q, v, h)
-
-
-@kernel
-def kick(scene: SceneTuple, acceleration: Numbers, q: Numbers, v: Numbers, h: float) -> float:
+@inlined
+def kick(of: RigidScene, acceleration: Numbers, q: Numbers, v: Numbers, h: float) -> float:
     """Change speeds by the forces of ``h`` seconds; return the largest acceleration of a body [m/s^2]."""
-    of, largest = named_scene(scene), 0.0
+    largest = 0.0
     accelerate(q, v, acceleration, of.inverse_mass, of.damping, of.calls)
-    _move(v, acceleration, h)
+    move(v, acceleration, h)
     for row in range(of.rows):
         if of.inverse_mass[2 * row] > 0.0:
             largest = max(largest, length_of(acceleration[2 * row], acceleration[2 * row + 1]))
     return largest
 
 
-@kernel
+@always_inlined
 def drive(
-    scene: SceneTuple, equations: Plain[Equations], acceleration: Numbers, old: Numbers, q: Numbers,
-    v: Numbers, h: float, account: Vectors,
+    of: RigidScene, points: Equations, acceleration: Numbers, old: Numbers, q: Numbers, v: Numbers, h: float,
+    account: Vectors,
 ) -> None:  # fmt: skip
     """Let motors with a cap act for ``h`` seconds, one after the other, each by what it takes or its cap.
 
     ``acceleration`` is what forces have caused in that time, ``old`` room for speeds.
     """
-    of, points = named_scene(scene), Equations(*equations)
     for p in range(len(of.pairs)):
         if of.pairs[p, 2] != F.MOTOR - F.WALL:
             continue
@@ -79,13 +73,12 @@ def drive(
             book_impulses(of, points.points, points.measures, points.vectors[UNKNOWN], 1, q, v, account)
 
 
-@kernel
-def separate(scene: SceneTuple, equations: Plain[Equations], count: int, q: Numbers, v: Numbers) -> bool:
+@inlined
+def separate(of: RigidScene, points: Equations, count: int, q: Numbers, v: Numbers) -> bool:
     """Move bodies that overlap apart, by the least that it takes; return whether that can be done.
 
     The ``count`` points that touch are pushed and never pulled, and friction plays no part.
     """
-    of, points = named_scene(scene), Equations(*equations)
     for _ in range(_SEPARATIONS):
         measure_all(of, points, count, q, v)
         for i in range(count):
@@ -128,10 +121,10 @@ def _find_islands(scene: RigidScene, equations: Equations, count: int, island: N
                 changed = True
 
 
-@kernel
+@inlined
 def take_work(
-    scene: SceneTuple, equations: Plain[Equations], count: int, stages: Plain[Stages], before: Numbers,
-    q: Numbers, v: Numbers, pay: bool,
+    of: RigidScene, points: Equations, count: int, room: Stages, before: Numbers, q: Numbers, v: Numbers,
+    pay: bool,
 ) -> tuple[float, float]:  # fmt: skip
     """Return the energy that a short move from ``before`` to ``q`` adds, by its work against forces [J].
 
@@ -140,7 +133,6 @@ def take_work(
     rests does so still. Work beyond their energy is returned; then by how much the energy has
     changed, be it that it was less.
     """
-    of, points, room = named_scene(scene), Equations(*equations), Stages(*stages)
     rows, island, push, added, change = of.rows, room.v, room.acceleration, 0.0, 0.0
     accelerate(before, v, room.q, of.inverse_mass, of.damping, of.calls)
     accelerate(q, v, push, of.inverse_mass, of.damping, of.calls)

@@ -1,4 +1,4 @@
-"""Joints: heavy loads at their ends, motors and pulleys at stops, joints that contradict each other; ragdolls."""
+"""Joints: heavy loads at their ends, motors and pulleys at stops, contradictions; ragdolls."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Bodies that stand, slide, roll and turn over: on floors, hills and slopes, at thresholds; round a planet."""
+"""Bodies that stand, slide, roll and turn over: on floors, hills and slopes; round a planet."""
 
 import math
 from functools import partial
