@@ -304,7 +304,8 @@ def test_contacts_are_found_in_a_world_of_many_islands() -> None:
 
 
 @pytest.mark.parametrize(
-    "given", [["--seed", "x"], ["--seed", "1:"], ["--random", "0"], ["--random", "1", "heap"]]
+    "given",
+    [["--seed", "x"], ["--seed", "1:"], ["--random", "0"], ["--random", "1", "heap"], ["--like-quality"]],
 )
 def test_random_scenes_that_cannot_be_are_refused(given: list[str]) -> None:
     with contextlib.suppress(SystemExit):

@@ -20,10 +20,11 @@ from physicslab.lab.bench.catalogue import SCENES, gas_scene, pile_scene
 from physicslab.lab.bench.engine import Engine
 from physicslab.lab.bench.measure import Judge, measure_scene
 from physicslab.lab.bench.moving import _in_funnel, funnel
-from physicslab.lab.bench.random_runs import RandomReport, measure_random, random_text
+from physicslab.lab.bench.random_scenes import random_scene
 from physicslab.lab.bench.result import EngineResult, SceneResult, Spread
 from physicslab.lab.bench.scene import BenchScene, at_rest, largest_overlap, lost, within
 from physicslab.lab.bench.targets import checks
+from physicslab.lab.bench.whole_runs import WholeReport, alike_jobs, measure_whole, whole_text
 from physicslab.lab.jobs import result_of
 from physicslab.lab.peers.box2d3_built import BuildError, built_box2d
 from physicslab.lab.peers.mirrors import PymunkMirror
@@ -239,15 +240,27 @@ def test_a_peer_is_alike_if_no_figure_is_worse(other: EngineResult, ours: float,
 
 @pytest.mark.peers
 def test_a_peer_that_overlaps_deeper_is_run_in_shorter_steps_until_it_does_not() -> None:
-    found = result_of(measure_random(62, 10, (PymunkMirror,)))
+    found = result_of(measure_whole(*random_scene(62, 10), (PymunkMirror,)))
     ours, other = found.result.ours, found.result.engines["pymunk"]
     assert not like_quality._is_alike(other, ours) and other.times_ours is not None
     assert other.alike is not None and other.alike.is_reached and other.alike.finer > 1
     assert other.alike.times_ours > other.times_ours
-    report = RandomReport("62:10", ["pymunk"], [found])
-    assert f"steps of 1/{other.alike.finer} of the usual" in random_text(report)
+    report = WholeReport("62:10", ["pymunk"], [found])
+    assert f"steps of 1/{other.alike.finer} of the usual" in whole_text(report)
     (engine,) = [engine for engine in report.document["scenes"][0]["engines"] if engine["name"] == "pymunk"]
     assert engine["alike"] == dataclasses.asdict(other.alike)
+
+
+@pytest.mark.peers
+def test_scenes_of_the_benchmark_are_run_at_like_quality_to_their_end() -> None:
+    scene = dataclasses.replace(pile_scene(20), seconds=0.5, steps=10)
+    ((_, job),) = alike_jobs([scene], (PymunkMirror,))
+    found = result_of(job)
+    other = found.result.engines["pymunk"]
+    assert other.alike is not None and set(other.quality) == {"largest overlap", "joint off"}
+    assert found.features == [] and f"(1/{other.alike.finer})" in whole_text(
+        WholeReport("", ["pymunk"], [found])
+    )
 
 
 @pytest.mark.peers

@@ -19,10 +19,10 @@ from physicslab.lab.bench.costs import UNUSED, Unused, measure_memory, measure_u
 from physicslab.lab.bench.engine import PEERS, Engine, missing_peers
 from physicslab.lab.bench.measure import measure_scene
 from physicslab.lab.bench.plot import bench_picture
-from physicslab.lab.bench.random_runs import RANDOM_PEERS, RandomReport, random_jobs, random_text
 from physicslab.lab.bench.result import SceneResult
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.bench.tables import BenchReport, report_text, scene_text
+from physicslab.lab.bench.whole_runs import WHOLE_PEERS, WholeReport, alike_jobs, random_jobs, whole_text
 from physicslab.lab.jobs import Job
 from physicslab.lab.peers.box2d3_built import BuildError, built_box2d
 from physicslab.lab.peers.mirrors import Box2DMirror
@@ -45,11 +45,16 @@ def execute(arguments: Namespace) -> int:
     scenes = chosen_cases(arguments.names, SCENES, partial(_opened, extras))
     if not arguments.names:
         scenes, extras = by_default(), [_UNUSED, _MEMORY]
+    if arguments.random is not None and arguments.names:
+        given = shown(arguments.names[0])
+        raise CommandError(f"--random: draws its scenes, and takes none by name ({given})")
     if arguments.peers:
         _check_peers()
+    elif arguments.like_quality:
+        raise CommandError("--like-quality: is about other engines: add --peers")
     run = LabRun("bench", arguments, "bench")
-    if arguments.random is not None:
-        return _run_random(run, arguments)
+    if arguments.random is not None or arguments.like_quality:
+        return _run_whole(run, arguments, scenes)
     report = BenchReport(arguments.peers)
     with _other_engines(arguments) as peers:
         results: Iterator[SceneResult | Unused] = run.results(_jobs(scenes, extras, peers, arguments.names))
@@ -71,20 +76,18 @@ def execute(arguments: Namespace) -> int:
     return 0
 
 
-def _run_random(run: LabRun, arguments: Namespace) -> int:
-    """Time scenes of a series, and print what the slowest of them are."""
-    if arguments.names:
-        raise CommandError(
-            f"--random: draws its scenes, and takes none by name ({shown(arguments.names[0])})"
-        )
+def _run_whole(run: LabRun, arguments: Namespace, scenes: list[BenchScene]) -> int:
+    """Time whole runs of random scenes or of those that are named; print the slowest of them."""
     seed, first = arguments.seed
-    with _other_engines(arguments, RANDOM_PEERS) as peers:
-        report = RandomReport(f"{seed}:{first}", [peer.title for peer in peers])
-        for found in run.results([*random_jobs(seed, first, arguments.random, peers)]):
+    with _other_engines(arguments, WHOLE_PEERS) as peers:
+        series = "" if arguments.random is None else f"{seed}:{first}"
+        report = WholeReport(series, [peer.title for peer in peers])
+        jobs = random_jobs(seed, first, arguments.random, peers) if series else alike_jobs(scenes, peers)
+        for found in run.results([*jobs]):
             report.found.append(found)
             _note(run, scene_text(found.result))
     _note(run, "")
-    run.show(random_text(report))
+    run.show(whole_text(report))
     run.write(report.document)
     return FAILED if any(found.result.ours.failure for found in report.found) else 0
 

@@ -1,16 +1,22 @@
-"""Short runs of random scenes beside other engines, and what the slowest of them have in common."""
+"""Whole runs of scenes beside other engines, also at like quality; features that the slowest have in common.
 
+Scenes drawn at random are run for a short while, others to the end of the steps that are timed.
+"""
+
+import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
+from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.bench.engine import OURS, Engine
 from physicslab.lab.bench.like_quality import BLOCK, PORTION, WARM, run_alike
 from physicslab.lab.bench.measure import Judge, build_others, load_kernels, spent_by_system
 from physicslab.lab.bench.random_scenes import random_scene
 from physicslab.lab.bench.result import Alike, EngineResult, SceneResult, Spread, Times, take_turns
+from physicslab.lab.bench.scene import BenchScene, largest_overlap, stretched
 from physicslab.lab.document import lab_document, machine_text
 from physicslab.lab.jobs import Job
 from physicslab.lab.peers.mirrors import PymunkMirror
@@ -20,9 +26,9 @@ from physicslab.state.masses import Diverged
 from physicslab.world import World
 
 _LONGEST = 240
-"""Most steps of a scene."""
+"""Most steps of a random scene."""
 _BUDGET_MS = 1_500.0
-"""CPU time of all engines together after which a scene takes no more turns."""
+"""CPU time of all engines together after which a random scene takes no more turns."""
 _SHOWN = 10
 """The slowest scenes that are listed."""
 _FEW = 4
@@ -32,8 +38,8 @@ BESIDE = "beside systems"
 
 
 @dataclass(frozen=True, slots=True)
-class RandomResult:
-    """Results of a run of a random scene.
+class WholeResult:
+    """Results of a run of a scene.
 
     Attributes
     ----------
@@ -66,9 +72,13 @@ class RandomResult:
         return name.removesuffix("System"), spent / whole
 
 
-def measure_random(seed: int, number: int, peers: Sequence[type[Peer]]) -> Job[RandomResult]:
-    """Time a scene of the series of a seed; yield the share that is done now and then."""
-    scene, features = random_scene(seed, number)
+def measure_whole(scene: BenchScene, features: list[str], peers: Sequence[type[Peer]]) -> Job[WholeResult]:
+    """Time a scene from its start; yield the share that is done now and then.
+
+    A random scene has ``features``, and is run for a short while; others are run to their end.
+    """
+    longest = _LONGEST if features else round(scene.seconds / SimulationConfig().dt) + scene.steps
+    budget = _BUDGET_MS if features else math.inf
     ours = Engine(scene.build())
     result = SceneResult(scene, engines={OURS: EngineResult(OURS)})
     engines = [ours, *build_others(scene, peers, result)]
@@ -80,14 +90,14 @@ def measure_random(seed: int, number: int, peers: Sequence[type[Peer]]) -> Job[R
         judge.begin(engines)
         before = spent_by_system(ours.world)
         times: list[Times] = []
-        for times in take_turns(engines, _LONGEST // BLOCK, BLOCK, PORTION):
+        for times in take_turns(engines, longest // BLOCK, BLOCK, PORTION):
             judge.look(engines, "throughout")
-            if sum(sum(spent.step) for spent in times) * BLOCK > _BUDGET_MS:
+            if sum(sum(spent.step) for spent in times) * BLOCK > budget:
                 break
-            yield len(times[0].step) * BLOCK / _LONGEST
+            yield len(times[0].step) * BLOCK / longest
     except Diverged as error:
         result.ours.failure = str(error)
-        return RandomResult(result, features)
+        return WholeResult(result, features)
     _note(result, engines, times, before)
     contacts = ours.world.contacts
     wide = sum(part.contacts.wide.filled for part in ours.world.parts)
@@ -95,7 +105,7 @@ def measure_random(seed: int, number: int, peers: Sequence[type[Peer]]) -> Job[R
     path = _path(ours.world)
     for peer in peers:
         result.engines[peer.title].alike = yield from run_alike(result, peer, times[0])
-    return RandomResult(result, features, path, contacts.count - wide, wide)
+    return WholeResult(result, features, path, contacts.count - wide, wide)
 
 
 def _note(
@@ -131,24 +141,24 @@ def _path(world: World) -> str:
 
 
 @dataclass(slots=True)
-class RandomReport:
-    """All runs of random scenes.
+class WholeReport:
+    """All runs.
 
     Attributes
     ----------
     seed : str
-        The series, and where in it the scenes begin.
+        The series, and where in it the scenes begin; empty of scenes that were named.
     peers : list of str
         The other engines.
-    found : list of RandomResult
+    found : list of WholeResult
         Scene by scene.
     """
 
     seed: str
     peers: list[str]
-    found: list[RandomResult] = field(default_factory=list)
+    found: list[WholeResult] = field(default_factory=list)
 
-    def ratios(self, peer: str, found: Sequence[RandomResult] | None = None) -> list[float]:
+    def ratios(self, peer: str, found: Sequence[WholeResult] | None = None) -> list[float]:
         """Return how many times as long a peer took, in the scenes that it ran, the smallest first."""
         speeds = [one.speed(peer) for one in (self.found if found is None else found)]
         return sorted(speed for speed in speeds if speed is not None)
@@ -166,7 +176,7 @@ class RandomReport:
         )
 
 
-def _scene(one: RandomResult) -> dict[str, Any]:
+def _scene(one: WholeResult) -> dict[str, Any]:
     result = one.result
     return {
         "name": result.scene.name, "family": result.scene.group, "bodies": result.scene.size,
@@ -175,7 +185,7 @@ def _scene(one: RandomResult) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def random_text(report: RandomReport) -> str:
+def whole_text(report: WholeReport) -> str:
     """Return the tables of a run: the whole, the slowest beside each peer, medians by feature."""
     blocks = [machine_text(peers=True), _whole(report)]
     for peer in report.peers:
@@ -192,7 +202,7 @@ def random_text(report: RandomReport) -> str:
     return "\n\n".join([*blocks, *failed])
 
 
-def _whole(report: RandomReport) -> str:
+def _whole(report: WholeReport) -> str:
     rows = [["time of the other by ours", "scenes", "least", "a tenth", "median", "nine tenths", "below 1"]]
     lines = []
     for peer in report.peers:
@@ -227,25 +237,33 @@ def _whole(report: RandomReport) -> str:
     return "\n".join([table(rows), *lines])
 
 
-def _worst(report: RandomReport, worst: Sequence[RandomResult]) -> str:
-    rows = [
-        ["scene", "family", "bodies", "scalar", "wide", "ms", *report.peers, "most of it", "path", "features"]
-    ]
+def _worst(report: WholeReport, worst: Sequence[WholeResult]) -> str:
+    engines = [column for peer in report.peers for column in (peer, "at like quality")]
+    rows = [["scene", "family", "bodies", "scalar", "wide", "ms", *engines, "most of it", "path", "features"]]
     for one in worst:
         result, (name, share) = one.result, one.dearest
         ms = result.ours.step_ms
         rows.append([
             result.scene.name, result.scene.group, f"{result.scene.size}", f"{one.scalar}", f"{one.wide}",
             cell(None if ms is None else ms.mean, ".3g"),
-            *(cell(one.speed(peer), ".2f") for peer in report.peers), f"{name} {share:.0%}", one.path,
-            ", ".join(one.features),
+            *(text for peer in report.peers for text in _ratios(result.engines.get(peer))),
+            f"{name} {share:.0%}", one.path, ", ".join(one.features),
         ])  # fmt: skip
-    return table(rows, words=(0, 1, *range(6 + len(report.peers), 9 + len(report.peers))))
+    return table(rows, words=(0, 1, *range(6 + len(engines), 9 + len(engines))))
 
 
-def _common(report: RandomReport) -> str:
+def _ratios(found: EngineResult | None) -> tuple[str, str]:
+    """Return a peer's time by PhysicsLab's, and that at like quality with its parts of a step."""
+    usual = cell(None if found is None else found.times_ours, ".2f")
+    if found is None or found.alike is None:
+        return usual, cell(None, ".2f")
+    least = "" if found.alike.is_reached else "more than "
+    return usual, f"{least}{found.alike.times_ours:.2f} (1/{found.alike.finer})"
+
+
+def _common(report: WholeReport) -> str:
     """Return a line for each feature and family, those with the smallest median first."""
-    groups: dict[str, list[RandomResult]] = {}
+    groups: dict[str, list[WholeResult]] = {}
     for one in report.found:
         for feature in (one.result.scene.group, *one.features):
             groups.setdefault(feature, []).append(one)
@@ -267,11 +285,21 @@ def _common(report: RandomReport) -> str:
 
 def random_jobs(
     seed: int, first: int, count: int, peers: Sequence[type[Peer]]
-) -> Iterator[tuple[float, Job[RandomResult]]]:
+) -> Iterator[tuple[float, Job[WholeResult]]]:
     """Yield the work: ``count`` scenes of a series from the ``first`` on, each with its bodies."""
     for number in range(first, first + count):
-        yield float(random_scene(seed, number)[0].size), measure_random(seed, number, peers)
+        scene, features = random_scene(seed, number)
+        yield float(scene.size), measure_whole(scene, features, peers)
 
 
-RANDOM_PEERS: tuple[type[Peer], ...] = (PymunkMirror,)
-"""The packages that random scenes are run beside: the others are slower, or the same in C."""
+def alike_jobs(
+    scenes: Sequence[BenchScene], peers: Sequence[type[Peer]]
+) -> Iterator[tuple[float, Job[WholeResult]]]:
+    """Yield the work: scenes of the benchmark, judged by their overlaps and joints alone."""
+    for scene in scenes:
+        judged = replace(scene, quality=(largest_overlap(math.inf), stretched(math.inf)))
+        yield float(scene.size), measure_whole(judged, [], peers)
+
+
+WHOLE_PEERS: tuple[type[Peer], ...] = (PymunkMirror,)
+"""The packages that whole runs are made in: the others are slower, or the same in C."""
