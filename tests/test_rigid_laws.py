@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numba
@@ -11,12 +12,14 @@ import pytest
 from numpy.typing import NDArray
 
 from physicslab import World
-from physicslab.components import Shape, Transform, Velocity
+from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.components.shape import BOX
+from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.report import list_contacts
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.kernels.python_fallback import fallback_of
 from physicslab.kernels.rigid import complementarity, lemke, motion, step, time_stepping
 from physicslab.kernels.rigid.equations import (
@@ -493,3 +496,38 @@ def test_a_problem_without_a_solution_is_found_out() -> None:
     equations.vectors[FREE] = (-1.0, 0.0)
     equations.measures[0, MU], equations.points[0, GIVEN] = 0.8, SLIDES_ON
     assert not solve(equations, 1, 0.0, True)
+
+
+def test_rest_that_is_remembered_is_rest_that_is_found_again() -> None:
+    """A stack rests; whatever is edited then acts at the next step, with the same bits and accounts."""
+    remembering, forgetting = laboratory(), laboratory()
+    remembered = 0
+    for world in (remembering, forgetting):
+        box(world, (0, -0.5), width=20, height=1, static=True, friction=0.5)
+        box(world, (0, 0.5), width=1, height=1, mass=2, friction=0.5, name="low")
+        box(world, (0, 1.5), width=1, height=1, mass=1, friction=0.5, name="high")
+        world.synchronise()
+    for step_number in range(60):
+        for world in (remembering, forgetting):
+            if step_number == 10:
+                world.component("high", Velocity).linear = (0.5, 0.0)
+            if step_number == 30:
+                world.component("low", Mass).mass = 3.0
+            if step_number == 36:
+                world.physics = replace(world.physics, gravity=Vector2(0.5, -4.0))
+            if step_number == 44:
+                world.component("low", Transform).position = (0.1, 0.5)
+            if step_number == 52:
+                world.component("low", Material).friction = 0.0
+                world.physics = replace(world.physics, gravity=Vector2(3.0, -4.0))
+            world.synchronise()
+        rigid_of(forgetting)._resting = None
+        remembered += rigid_of(remembering)._resting is not None
+        remembering.step()
+        forgetting.step()
+        for one, other in zip(motion_of(remembering), motion_of(forgetting), strict=True):
+            assert one.tobytes() == other.tobytes(), step_number
+        assert remembering.account.sums.tolist() == forgetting.account.sums.tolist(), step_number
+        assert list_contacts(remembering) == list_contacts(forgetting)
+    assert 20 < remembered < 55
+    assert remembering.component("high", Transform).position.x > 0.05

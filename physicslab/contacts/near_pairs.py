@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Material
 from physicslab.contacts.arguments import inverse_in, materials_of, motion_of, near_in, shapes_of
+from physicslab.kernels import direct_entry
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.kernels.wide import graph_colour, restore_slots, slots
@@ -66,7 +67,7 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
     if len(contacts.spare_manifolds) < needed:
         room = needed + needed // 4  # a record takes 400 bytes, and there are two sets of them
         contacts.spare_manifolds, contacts.spare_points = np.zeros(room, MANIFOLD), np.zeros(2 * room, POINT)
-    near_pairs.carry_over(
+    direct_entry(near_pairs.carry_over)(
         pairs, count, entities, contacts.manifolds, contacts.points, contacts.recorded, contacts.table, noted,
         contacts.spare_manifolds, contacts.spare_points,
     )  # fmt: skip

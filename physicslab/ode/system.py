@@ -70,6 +70,8 @@ class OdeSystem:
         How many bodies move, where no force depends on the origin and they are few; else 0.
     steepness : float64 array (1,)
         Where attraction notes the square of the fastest rate of a free fall [1/s^2]; zero without one.
+    laws : tuple, optional
+        The numbers that masses and packed forces were made of; ``None`` where a force does not tell.
     tolerance : float
         Relative error a step for methods that choose their steps.
     forces : tuple of ForceSystem
@@ -111,6 +113,9 @@ class OdeSystem:
             if every_row
             else StateLayout(state, part, None if self.interpreted else [f.turned(state) for f in forces])
         )
+        rows = slice(None)  # of which numpy makes no copies
+        self._moving: Any = rows if every_row else self.layout.moving
+        self._turning: Any = rows if every_row else self.layout.turning
         entities, self._carries = state.entity_index.entities, part is None
         self._keys = coordinate_keys(entities[self.layout.moving], entities[self.layout.turning])
         self._low: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
@@ -119,7 +124,7 @@ class OdeSystem:
         self._error: BaseException | None = None
         self._clock = np.zeros(1)
         self._settings = self._look(state)
-        self._packed_of: tuple[Any, ...] | None = None
+        self.laws: tuple[Any, ...] | None = None
 
     def _look(self, state: State) -> bytes:
         return state.bodies.inverse_mass.tobytes() + b"".join(f.settings(state) for f in self.forces)
@@ -131,9 +136,9 @@ class OdeSystem:
     def gather(self, state: State) -> None:
         """Take the state, the masses and the forces from the world's tables."""
         inputs = self._inputs(state)
-        if inputs is None or inputs != self._packed_of:
+        if inputs is None or inputs != self.laws:
             self._gather_laws(state)
-            self._packed_of = inputs
+            self.laws = inputs
         self.gather_state(state)
 
     def _inputs(self, state: State) -> tuple[Any, ...] | None:
@@ -168,7 +173,7 @@ class OdeSystem:
     def gather_state(self, state: State) -> None:
         """Take the state alone, where masses and forces are those of the last :meth:`gather`."""
         transform, velocity = state.table(Transform), state.table(Velocity)
-        moving, turning, fixed = self.layout.moving, self.layout.turning, self.layout.fixed
+        moving, turning, fixed = self._moving, self._turning, self.layout.fixed
         position, linear = transform["position"], velocity["linear"]
         self._clock[0] = state.time
         places = position[moving].ravel(), transform["angle"][turning], position[fixed].ravel()
@@ -319,10 +324,10 @@ class OdeSystem:
     def _write(self, state: State, q: NDArray[np.float64], v: NDArray[np.float64]) -> None:
         layout, transform, velocity = self.layout, state.table(Transform), state.table(Velocity)
         n, d = 2 * len(layout.moving), layout.moving_count
-        transform["position"][layout.moving] = q[:n].reshape(-1, 2)
-        velocity["linear"][layout.moving] = v[:n].reshape(-1, 2)
-        transform["angle"][layout.turning] = q[n:d]
-        velocity["angular"][layout.turning] = v[n:d]
+        transform["position"][self._moving] = q[:n].reshape(-1, 2)
+        velocity["linear"][self._moving] = v[:n].reshape(-1, 2)
+        transform["angle"][self._turning] = q[n:d]
+        velocity["angular"][self._turning] = v[n:d]
 
     def _calls(self, state: State) -> None:
         turned = [rates for force in self.forces if (rates := force.gyration(state)) is not None]

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels import compile_kernels, near_counts
+from physicslab.kernels import compile_kernels, direct_entry, near_counts
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.geometry.contact import AS_FOUND
 from physicslab.kernels.records import IMPACT, MANIFOLD, POINT
@@ -223,7 +223,7 @@ class Contacts:
 
     def list_scalar(self, rows: int) -> None:
         """Find which pairs are scalar and which are inactive."""
-        self.scalar_count, self.sleeping_count = slots.list_scalar(
+        self.scalar_count, self.sleeping_count = direct_entry(slots.list_scalar)(
             self.manifolds, self.recorded, self.inactive, self.scalar, self.sleeping
         )
         self.unordered = 1

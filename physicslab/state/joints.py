@@ -175,9 +175,10 @@ class Joints:
         """Columns of a row that are not fields of its component."""
         return self.impulse, self.force, self.largest
 
-    def settings(self, index: EntityIndex) -> bytes:
-        """Return the numbers of all joints, bit by bit."""
-        return b"".join(self._columns(index))
+    @property
+    def settings(self) -> bytes:
+        """The numbers of all joints that rows were made of, bit by bit."""
+        return b"".join(self._settings)
 
     def _columns(self, index: EntityIndex) -> list[bytes]:
         """Return the same column by column: in one piece they take many times as long."""

@@ -57,9 +57,8 @@ class Register:
                 points = np.concatenate((before, points, behind))
             self._add(points.reshape(-1, 2), -1, -1, 0, beside=1, links=links)
             self._known = code + 1
-        present = self.kinds, self.extents, self.pool
-        if len(self._arrays) == 0 or any(a is not b for a, b in zip(self._arrays, present, strict=True)):
-            self._arrays = present
+        if not self._arrays:
+            self._arrays = self.kinds, self.extents, self.pool
         return self._arrays
 
     def _add(
@@ -70,7 +69,7 @@ class Register:
 
         Before it come its ``links`` as one.
         """
-        row, first = self._cores, self._vertices + len(links)
+        self._arrays, row, first = (), self._cores, self._vertices + len(links)
         self.pool = _with_room(self.pool, first)
         self.pool[self._vertices : first, :2] = links
         extent = np.abs(core).max(axis=0, initial=0.0)

@@ -74,9 +74,10 @@ def _seen(state: State, forces: Sequence[ForceSystem]) -> object | None:
 
     ``None`` where a force may depend on more, and of so few bodies that a balance takes no longer.
     """
+    if len(state.entity_index) < _MANY:
+        return None
     stores = [force for force in forces if force.potential is not None]
-    known = all(force.is_engine or type(force) is SpringSystem for force in stores)
-    if len(state.entity_index) < _MANY or not known:
+    if not all(force.is_engine or type(force) is SpringSystem for force in stores):
         return None
     _, words = _columns(state)
     settings = [force.settings(state) for force in stores]

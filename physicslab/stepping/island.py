@@ -27,7 +27,7 @@ type Rows = NDArray[np.int64]
 
 _COUNTED = ("force_evaluations", "collisions", "returned_inside")
 """Counts of a world that are sums over its islands."""
-_IMPACTS = [near_counts.LOWERED, near_counts.ENERGETIC]
+_IMPACTS = np.array([near_counts.LOWERED, near_counts.ENERGETIC])
 
 
 class Part(Stepped, Protocol):

@@ -39,8 +39,9 @@ from physicslab.systems.system import Stage
 class Rigid:
     """Advances bodies as a constrained system, from event to event.
 
-    Nothing is remembered between steps: what touches follows from the state. A step that it cannot make is
-    left to the next stepper, with soft contacts.
+    Nothing is remembered between steps: what touches follows from the state. So a step that changed no bit of
+    it is not made again while all that it depends on stays the same. A step that it cannot make is left to
+    the next stepper, with soft contacts.
 
     Attributes
     ----------
@@ -85,6 +86,7 @@ class Rigid:
         # Soft joints err less than impulses in 32 parts, and take a hundredth of the time.
         self._gives_up = bool(len(state.joints)) and state.simulation.contacts == "auto"
         self._made_of: object = None
+        self._resting: tuple[object, ...] | None = None
         self._laws: tuple[Any, ...] = ()
         self._unmoved: NDArray[np.int64] = np.zeros(0, np.int64)
         self.energetic_impacts = self.restitutions_lowered = self.by_impulses = 0
@@ -113,8 +115,13 @@ class Rigid:
         self._ode.gather(state)
         put_together(state, self._schedule.forces, self._ode)
         scene = self._scene(state)
-        last, made = None, 0
+        figures, last, made = self._figures(state, h), None, 0
+        rests = figures is not None and figures == self._resting
         while made < steps:
+            if rests:
+                self._motion.rest(h)
+                made += 1
+                continue
             step = self._step(scene, state, state.time + made * h, h, parts)
             if step.by_impulses and self._gives_up:
                 if made:
@@ -125,18 +132,35 @@ class Rigid:
                 self.left_to_soft += 1
                 break
             last, made = step, made + 1
+            rests = step.rests and figures is not None
             if state.samples is not None:
                 self._sample(state.samples, state.time + (made - 1) * h, h)
-        if last is not None:
+        self._resting = None
+        if made:
             self._ode.scatter(state, 0.0)
-            self._records.write(state, last, h / parts)
-            self._find_joint_forces(scene, state, last)
+            if last is not None:
+                self._records.write(state, last, h / parts)
+                self._find_joint_forces(scene, state, last)
+            if rests:
+                self._resting = self._figures(state, h, state.steps + made)
             spent = time.perf_counter_ns() - began
             self._schedule.note_loop(IntegrateSystem.__name__, made, spent, self._within)
             check_finite(state, state.time + h * made)
             state.substeps = state.simulation.substeps
             self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
         return Advance(made, parts)
+
+    def _figures(self, state: State, h: float, steps: int | None = None) -> tuple[object, ...] | None:
+        """Return all that a step of ``h`` seconds depends on; ``None`` if it may on more, or samples are due.
+
+        ``steps`` is how many are made by then, by default as many as now: contacts are as this stepper has
+        left them.
+        """
+        ode = self._ode
+        if state.samples is not None or ode.laws is None:
+            return None
+        motion = ode.q[: ode.layout.clock].tobytes(), ode.v[: ode.layout.clock].tobytes()
+        return *motion, ode.laws, self._made_of, h, state.steps if steps is None else steps
 
     def _sample(self, samples: Samples, time: float, h: float) -> None:
         """Take a sample of the packed state after a step of ``h`` s from a time [s] on, if one is due."""
@@ -169,6 +193,9 @@ class Rigid:
             if step.by_impulses:
                 self.by_impulses, self.why_impulses = self.by_impulses + 1, step.by_impulses
             impacts, added = impacts + step.impacts, added + step.energy_added
+        step.rests &= parts == 1 and all(
+            now[:clock].tobytes() == then[:clock].tobytes() for now, then in zip((q, v), before, strict=True)
+        )
         state.collisions += impacts
         self.energy_added += added
         step.impacts = impacts

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels import direct_entry
+from physicslab.kernels.accounts import PX
+from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.rigid import motion, step
 from physicslab.kernels.rigid.equations import VECTORS
 from physicslab.kernels.rigid.features import MEASURES, POINT_FIELDS
@@ -62,6 +64,8 @@ class MadeStep:
         Why the step, or its last part, was made by impulses in short steps; empty if it was not.
     refused : str
         Why it cannot be made; empty if it was.
+    rests : bool
+        Whether the next step from there changes nothing either, as long as no number is changed.
     """
 
     points: NDArray[np.int64]
@@ -76,6 +80,7 @@ class MadeStep:
     work: int = 0
     by_impulses: str = ""
     refused: str = ""
+    rests: bool = False
 
 
 def room_for(n: int, pairs: int) -> tuple[Any, ...]:
@@ -143,7 +148,13 @@ class RigidMotion:
             made.closed, made.impacts, made.evaluations, made.energetic, made.lowered, made.work,
             state.contacts.logged,
         ) = counts.tolist()  # fmt: skip
+        made.rests = self._steady and not (made.evaluations or made.impacts or made.refused)
         return made
+
+    def rest(self, h: float) -> None:
+        """Book another step of ``h`` seconds like the last one, in which nothing moved."""
+        first, given = self._ode.layout.clock + 1, self._room[2][-1]
+        self._ode.v[first:].reshape(-1, ACCOUNTS)[:, PX:] += h * given[first:].reshape(-1, ACCOUNTS)[:, PX:]
 
     def _make(
         self, scene: tuple[Any, ...], state: State, at: float, h: float, longest: float

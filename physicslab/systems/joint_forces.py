@@ -80,11 +80,11 @@ class JointForces(ForceSystem):
         joints, steady = state.joints, []
         for end in (joints.a, joints.b):
             steady.append(state.table(Transform)["angle"][end[layout.turn[end] < 0]].tobytes())
-        return joints.settings(state.entity_index) + b"".join(steady)
+        return joints.settings + b"".join(steady)
 
     def settings(self, state: State) -> bytes:
         """Return the numbers of all joints."""
-        return state.joints.settings(state.entity_index)
+        return state.joints.settings
 
     def couples(self, state: State) -> NDArray[np.int64]:
         """Return the bodies that joints hold together (n, 2)."""
