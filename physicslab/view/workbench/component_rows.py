@@ -31,7 +31,7 @@ from physicslab.world import World
 _VARIOUS = "various"
 _LESSER = ("inertia", "fixed_rotation", "colour", "collide", "breaks", "breaks_torque")
 """Fields that have no row where few figures are wanted."""
-_AIM = 2.4
+_AIM = 2.6
 """Width of the button beside a list of bodies, in heights of the text."""
 _MAX_LISTED = 60
 """How many entities a list shows; others are clicked in the world."""
