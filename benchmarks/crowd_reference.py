@@ -12,7 +12,7 @@ import json
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.lab.accuracy.planets import CROWD, CROWD_SOFTENING, CROWD_TIME, crowd
+from physicslab.lab.accuracy.forces import CROWD, CROWD_SOFTENING, CROWD_TIME, crowd
 
 Long = np.longdouble
 type Places = NDArray[np.longdouble]

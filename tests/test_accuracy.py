@@ -15,8 +15,8 @@ from physicslab.integrators import INTEGRATORS
 from physicslab.lab.accuracy.catalogue import LEFT_OUT, PROBLEMS
 from physicslab.lab.accuracy.document import document
 from physicslab.lab.accuracy.figures import digits, number, record
+from physicslab.lab.accuracy.forces import crowd
 from physicslab.lab.accuracy.measure import measure, rounding_floor
-from physicslab.lab.accuracy.planets import crowd
 from physicslab.lab.accuracy.plot import method_styles
 from physicslab.lab.accuracy.problem import Setting, ladder, refusal
 from physicslab.lab.accuracy.study import Study, study

@@ -164,15 +164,17 @@ def test_a_field_less_component_is_followed_too() -> None:
 # ---- checks ------------------------------------------------------------------------------------------------
 
 REFUSED: list[tuple[type[Any], str, Any, str]] = [
-    (Mass, "mass", 0.0, "Mass.mass = 0.0: must be a finite number >= 1e-300 kg"),
-    (Mass, "mass", -1, "Mass.mass = -1: must be a finite number >= 1e-300 kg"),
+    (Mass, "mass", 0.0, "Mass.mass = 0.0: must be a finite number > 0 kg"),
+    (Mass, "mass", 1e-310, "must be a finite number > 0 kg, at least 1e-300"),
+    (Mass, "mass", "1e-310 kg", "Mass.mass = '1e-310 kg': must be a finite number > 0 kg, at least 1e-300"),
+    (Mass, "mass", -1, "Mass.mass = -1: must be a finite number > 0 kg"),
     (Mass, "mass", math.nan, "Mass.mass = nan: must be"),
     (Mass, "mass", math.inf, "Mass.mass = inf: must be"),
-    (Mass, "mass", 10**400, "must be a finite number >= 1e-300 kg"),
+    (Mass, "mass", 10**400, "must be a finite number > 0 kg"),
     (Mass, "mass", "one", "Mass.mass = 'one': must be"),
     (Mass, "mass", True, "Mass.mass = True: must be"),
     (Mass, "mass", None, "Mass.mass = None: must be"),
-    (Mass, "inertia", 0.0, "Mass.inertia = 0.0: must be a finite number >= 1e-300 kg m^2 or null"),
+    (Mass, "inertia", 0.0, "Mass.inertia = 0.0: must be a finite number > 0 kg m^2 or null"),
     (Mass, "fixed_rotation", 1, "Mass.fixed_rotation = 1: must be true or false"),
     (Material, "restitution", 1.5, "Material.restitution = 1.5: must be a finite number from 0 to 1"),
     (Material, "friction", -0.1, "Material.friction = -0.1: must be a finite number >= 0"),
@@ -221,7 +223,7 @@ def test_an_entity_is_a_positive_whole_number(value: Any) -> None:
 
 
 def test_errors_travel_between_processes() -> None:
-    error = InvalidValue("Mass", "mass", -1, "a finite number >= 1e-300 kg")
+    error = InvalidValue("Mass", "mass", -1, "a finite number > 0 kg")
     again = pickle.loads(pickle.dumps(error))
     assert (str(again), again.component, again.value) == (str(error), "Mass", -1)
 

@@ -92,6 +92,19 @@ def test_a_body_is_as_large_and_lies_as_it_was_drawn(
     assert desk.world.entities() == [], "one undo"
 
 
+@pytest.mark.parametrize(("below", "made"), [(5.0, True), (20.0, False)])
+def test_a_box_that_is_drawn_a_few_pixels_into_the_floor_lies_on_it(
+    desk: Desk, below: float, made: bool
+) -> None:
+    desk.world.spawn(Transform((0.0, -1.5)), Shape.box(20.0, 1.0))
+    draw(desk, "box", (-1.0, 0.0), (1.0, -1.0 - below / desk.window.camera.scale))
+    boxes = desk.world.batch(Velocity).entities.tolist()
+    assert bool(boxes) == made
+    for one in boxes:
+        foot = desk.world.component(one, Transform).position.y - 0.5 * desk.world.component(one, Shape).height
+        assert foot == pytest.approx(-1.0, abs=1e-9)
+
+
 def test_a_pendulum_is_drawn_from_its_pin_to_its_bob(desk: Desk) -> None:
     draw(desk, "pendulum", (0.0, 1.0), (1.0, 0.0))
     (bob,) = desk.world.batch(Velocity).entities.tolist()

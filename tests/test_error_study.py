@@ -142,6 +142,8 @@ def test_the_plot_lies_within_the_window_and_its_button_closes_it(
     bodies = len(desk.world.entities())
     screen, plot = pygame.Rect(0, 0, *size), pygame.Rect(desk.sandbox.interface.covered[-1])
     assert screen.contains(plot) and plot.width > 0.5 * size[0]
+    within = pygame.Rect(desk.ui.places["Plot of errors"])
+    assert screen.contains(within) and within.height > 5.0 * desk.ui.size, "not a sliver"
     click_at(desk, plot.center)
     assert [desk.window.error_study.shown] == [True]
     click(desk, "Close")

@@ -10,6 +10,7 @@ import pytest
 from desk import FRAME, Desk, empty_world
 from recording import RecordingCanvas
 
+from physicslab.components import Transform
 from physicslab.contacts.report import count_near_pairs
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig, WindowConfig
@@ -308,6 +309,28 @@ def test_words_make_way_for_a_graph() -> None:
     (paused,) = [rect for words, rect in canvas.words if words == "PAUSED"]
     assert len(desk.window.dashboard.graphs) == 1
     assert not any(paused.colliderect(rect) for rect in desk.sandbox.interface.covered)
+
+
+def test_the_same_words_make_way_again_for_a_body_that_came_in_the_meantime() -> None:
+    canvas = MeasuringCanvas((1280, 720))
+    desk = Desk(empty_world(gravity=(0, 0)), canvas)
+    ball = circle(desk.world, (0.0, 0.0), radius=0.1)
+    desk.frames()
+
+    def paused_at() -> pygame.Rect:
+        desk.key("space")
+        desk.frames(8)
+        canvas.words.clear()
+        desk.frames()
+        (found,) = [rect for words, rect in canvas.words if words == "PAUSED"]
+        return found
+
+    first = paused_at()
+    desk.key("space")
+    desk.frames(2)
+    assert not desk.window.pace.paused
+    desk.world.component(ball, Transform).position = desk.window.camera.to_world(first.center)
+    assert not paused_at().colliderect(first)
 
 
 def test_a_step_that_takes_long_is_told_with_its_reason(monkeypatch: pytest.MonkeyPatch) -> None:

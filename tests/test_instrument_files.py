@@ -44,7 +44,7 @@ REFUSED: list[tuple[str, dict[str, object], str]] = [
     ("Meter", {"quantity": "momentum", "corner": "middle"}, '.corner = "middle": must be one of "bottom'),
     ("Slider", {"changes": "gravity", "low": 3, "high": 2}, ".high = 2.0: must be a finite number > 3 m/s^2"),
     ("Slider", MASS | {"low": 1}, f'.entity = "ball": {WITH} Mass'),
-    ("Slider", MASS, ".low = 0.0: must be a finite number >= 1e-300 kg, as Mass.mass is"),
+    ("Slider", MASS, ".low = 0.0: must be a finite number > 0 kg, as Mass.mass is"),
     ("Slider", {"changes": "Mass.mass"}, ".entity = null: must be an entity with a Mass for Mass.mass"),
 ]
 

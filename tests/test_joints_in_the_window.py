@@ -22,6 +22,27 @@ def two_bars(world: World) -> tuple[int, int]:
     return ends[0], ends[1]
 
 
+def test_many_bodies_are_welded_where_they_meet_by_one_act() -> None:
+    desk = Desk(empty_world())
+    world, window = desk.world, desk.window
+    *row, far = (
+        world.spawn(Transform((x, 0)), Velocity(), Mass(1.0), Shape.box(1.0, 0.2)) for x in (0, 1.01, 2, 3, 9)
+    )
+    window.camera.scale = 100.0
+    _, act = attachments(world, (row[0], row[2], far))["Weld together"]
+    act(world, window)
+    assert joint_states(world) == [] and window.notice == "No weld: none of them meets another"
+    _, act = attachments(world, (*row, far))["Weld together"]
+    act(world, window)
+    joints = joint_states(world)
+    assert {(world.entity_index.entities[one.a], world.entity_index.entities[one.b]) for one in joints} == {
+        (row[0], row[1]), (row[1], row[2]), (row[2], row[3])
+    }  # fmt: skip
+    assert sorted(one.place.x for one in joints) == pytest.approx([0.505, 1.505, 2.5])
+    window.edits.history.undo()
+    assert joint_states(world) == []
+
+
 def test_pins_are_made_from_the_list_drawn_selected_removed_and_undone() -> None:
     canvas = RecordingCanvas((1280, 720))
     desk = Desk(empty_world(), canvas)

@@ -429,3 +429,33 @@ def test_words_stand_in_the_folder_of_their_language(tmp_path: Path) -> None:
     assert read_lesson(tmp_path / "fall.md", "fr").language == "en"
     with pytest.raises(LessonError, match="must be the code of a language"):
         read_lesson(tmp_path / "fall.md", "../x")
+
+
+@pytest.mark.parametrize(("shown", "passed"), [
+    ("show: height = 20 m\nwhen: time < 1.005 s", True),
+    ("show: height = 4.9 m\nwhen: time < 1.005 s", False),
+    ("where: height = 4.9 m\nwhen: time < 1.005 s", True),
+    ("where: height = 20 m\nwhen: time < 1.005 s", False),
+])  # fmt: skip
+def test_the_run_that_is_shown_refutes_a_choice_or_is_where_it_is_right(shown: str, passed: bool) -> None:
+    lesson = parse_lesson(LESSON.replace("show: height = 20 m", shown), "fall.md")
+    rows = [
+        row for row in check_lesson(lesson) if row.block == "time" and row.case.startswith("one second, ")
+    ]
+    assert [row.passed for row in rows] == [passed]
+
+
+@pytest.mark.parametrize(("key", "height", "passed"), [
+    ("show", "5 m", True), ("show", "19.62 m", False), ("where", "19.62 m", True), ("where", "5 m", False),
+])  # fmt: skip
+def test_so_does_that_of_a_wrong_number(key: str, height: str, passed: bool) -> None:
+    mistake = "mistake: gravity*2 s\nwrong: No.\n"
+    written = LESSON.replace(mistake, f"{mistake}{key}: height = {height}\n")
+    rows = [row for row in check_lesson(parse_lesson(written, "fall.md")) if f", {key}: " in row.case]
+    assert [row.passed for row in rows] == [passed]
+
+
+def test_one_run_is_shown_to_an_answer() -> None:
+    written = LESSON.replace("show: height = 20 m", "show: height = 20 m\nwhere: height = 4 m")
+    with pytest.raises(LessonError, match=r"line 30: predict time: where = .*must not stand beside show"):
+        parse_lesson(written, "fall.md")

@@ -1,7 +1,6 @@
 """Wide contacts: the same result as one by one, no body twice in a block, woken by an impact."""
 
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.kernels import near_counts
-from physicslab.kernels.arguments import Motion, MotionTuple
+from physicslab.kernels.arguments import Motion
 from physicslab.kernels.solver import soft
 from physicslab.kernels.wide import restore_slots
 from physicslab.kernels.wide_layout import MASS_A, MASS_B, WIDE
@@ -155,7 +154,7 @@ def test_eight_at_a_time_come_to_what_one_by_one_do(name: str) -> None:
         acting = (bodies.pull, True, bodies.unkicked, True)
         do_stage(
             world, soft.SOLVE, h, softness=(0.17, 7.0, 1.5), near=near,
-            motion=cast(MotionTuple, tuple(motion)), inverse=inverse, acting=acting,
+            motion=tuple(motion), inverse=inverse, acting=acting,
         )  # fmt: skip
         ends.append((linear, angular))
     assert ends[0][0] == pytest.approx(ends[1][0], rel=1e-9, abs=1e-12)

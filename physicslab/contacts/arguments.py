@@ -3,22 +3,15 @@
 import numpy as np
 
 from physicslab.components import Material, Transform, Velocity
-from physicslab.kernels.arguments import (
-    ActingTuple,
-    BoundsTuple,
-    InverseTuple,
-    MaterialsTuple,
-    MotionTuple,
-    NearTuple,
-    SoftnessTuple,
-)
+from physicslab.kernels import Plain
+from physicslab.kernels.arguments import ActingTuple, Bounds, Inverse, Materials, Motion, Near, Softness
 from physicslab.kernels.geometry.shapes import ShapesTuple
-from physicslab.kernels.joints.blocks import JointsTuple
+from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.solver import soft
 from physicslab.state.state import State
 
 
-def motion_of(state: State) -> MotionTuple:
+def motion_of(state: State) -> Plain[Motion]:
     """Return positions, angles and velocities."""
     transform, velocity = state.table(Transform), state.table(Velocity)
     return (transform["position"], transform["angle"], velocity["linear"], velocity["angular"])
@@ -29,13 +22,13 @@ def shapes_of(state: State) -> ShapesTuple:
     return state.bodies.plain_shapes
 
 
-def materials_of(state: State) -> MaterialsTuple:
+def materials_of(state: State) -> Plain[Materials]:
     """Return restitutions and frictions."""
     material = state.table(Material)
     return (material["restitution"], material["friction"])
 
 
-def inverse_in(state: State) -> InverseTuple:
+def inverse_in(state: State) -> Plain[Inverse]:
     """Return the inverse masses that are simulated: those of sleeping bodies are zero."""
     return (state.bodies.awake_inverse_mass, state.bodies.awake_inverse_inertia)
 
@@ -46,7 +39,7 @@ def acting_in(state: State) -> ActingTuple:
     return (bodies.pull, state.has_forces, bodies.unkicked, state.uniform_forces)
 
 
-def joints_in(state: State) -> JointsTuple:
+def joints_in(state: State) -> Plain[Joints]:
     """Return the rows of joints."""
     joints = state.joints
     joints.refresh(state.entity_index)
@@ -57,14 +50,14 @@ def joints_in(state: State) -> JointsTuple:
     )  # fmt: skip
 
 
-def bounds_of(state: State) -> BoundsTuple:
+def bounds_of(state: State) -> Plain[Bounds]:
     """Return the bounds of the world; all zero where there are none, which then have no pairs."""
     physics = state.physics
     walls = np.array(physics.bounds or (0.0, 0.0, 0.0, 0.0))
     return (walls, physics.bounds_restitution, physics.bounds_friction)
 
 
-def near_in(state: State) -> NearTuple:
+def near_in(state: State) -> Plain[Near]:
     """Return the near pairs."""
     contacts, rows = state.contacts, len(state.entity_index)
     if len(contacts.rotations) != rows:
@@ -93,9 +86,9 @@ _NO_VECTORS = np.zeros((0, 2))
 
 
 def do_stage(
-    state: State, part: int, h: float, *, softness: SoftnessTuple = (0.0, 0.0, 0.0), first: bool = False,
-    near: NearTuple | None = None, motion: MotionTuple | None = None, inverse: InverseTuple | None = None,
-    acting: ActingTuple | None = None,
+    state: State, part: int, h: float, *, softness: Plain[Softness] = (0.0, 0.0, 0.0), first: bool = False,
+    near: Plain[Near] | None = None, motion: Plain[Motion] | None = None,
+    inverse: Plain[Inverse] | None = None, acting: ActingTuple | None = None,
 ) -> int:  # fmt: skip
     """Do one part of a substep, as the loop of whole steps does it; return how many impacts there were.
 

@@ -24,6 +24,8 @@ COORDINATE_LIMIT = 1e300
 """The largest coordinate [m]: the difference of two is finite, and the product of one with a usual number."""
 LENGTH_LIMIT = 1e150
 """The largest extent, arm or length of a spring [m]: the squares of two can be added."""
+_TINY = 1e-200
+"""A least number below this is said to be any above 0; a message to one that is still smaller names it."""
 TEXT_LIMIT = 200
 """Characters of a text whose field gives no ``limit`` of its own."""
 POINTS: Interned[tuple[Vector2, ...]] = Interned(())
@@ -133,6 +135,8 @@ class Field:
             words += f" > {self.above:g}"
         if self.minimum > -math.inf and self.maximum < math.inf:
             words += f" from {self.minimum:g} to {self.maximum:g}"
+        elif 0.0 < self.minimum < _TINY:
+            words += " > 0"
         elif self.minimum > -math.inf:
             words += f" >= {self.minimum:g}"
         elif self.maximum < math.inf:
@@ -162,17 +166,20 @@ class Field:
         texts and lists of points as their codes (:mod:`physicslab.ecs.interned`). Numbers may be texts with
         units, as ``"30 deg"``.
         """
-        convert, allowed = _CONVERSIONS[self.kind], ""
+        convert, allowed, written = _CONVERSIONS[self.kind], "", value
         stored = convert(self, value)
         if stored is None and self.kind in MEASURED and is_written(value):
             try:
-                stored = convert(self, evaluate_as(self.kind, value, self.unit))
+                value = evaluate_as(self.kind, written, self.unit)
+                stored = convert(self, value)
             except InvalidText as error:
                 allowed = f": {error}"
         if stored is None:
+            if self.minimum < _TINY and isinstance(value, int | float) and 0.0 < value < self.minimum:
+                allowed = f", at least {self.minimum:g}"
             if self.kind == "entity" and isinstance(value, str):
                 allowed = f": world.entity({value!r}) is that of an id"
-            raise InvalidValue(self.owner, self.name, value, self.allowed + allowed)
+            raise InvalidValue(self.owner, self.name, written, self.allowed + allowed)
         return stored
 
 

@@ -30,10 +30,10 @@ from physicslab.kernels.loading import (
     seconds_waited,
     working_ns,
 )
-from physicslab.kernels.types import Flags, Numbers, Rows, Vectors
+from physicslab.kernels.types import Flags, Numbers, Plain, Rows, Vectors
 
 __all__ = [
-    "FASTMATH", "KERNELS", "Flags", "Numbers", "Rows", "Vectors",
+    "FASTMATH", "KERNELS", "Flags", "Numbers", "Plain", "Rows", "Vectors",
     "allocating", "allocating_kernel", "always_inlined", "ask_before_compiling", "cache_directory", "cached",
     "compile_kernels", "direct_entry", "inlined", "inlined_by_numba", "inlined_loosely", "kernel",
     "load", "prepare", "seconds_waited", "working_ns",

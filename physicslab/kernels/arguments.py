@@ -1,15 +1,15 @@
 """The arguments of kernels: arrays of a world that belong together, in named tuples.
 
-Python passes them as plain tuples, which numba unpacks three times as fast (for the fused loop 4 us instead
-of 15); what Python calls gives them their names: ``Motion(*motion)``.
+Python passes them as :data:`~physicslab.kernels.types.Plain` tuples (for the fused loop that takes 4 us
+instead of 15); what Python calls gives them their names: ``Motion(*motion)``.
 """
 
 from typing import NamedTuple
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined_by_numba
+from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined_by_numba
 from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Couples, Impacts, Manifolds, Points
-from physicslab.kernels.wide_layout import Slots, SlotsTuple
+from physicslab.kernels.wide_layout import Slots
 
 
 class Motion(NamedTuple):
@@ -206,37 +206,7 @@ class Sleepers(NamedTuple):
     unverified: bool
 
 
-MotionTuple = tuple[Vectors, Numbers, Vectors, Numbers]
-MaterialsTuple = tuple[Numbers, Numbers]
-InverseTuple = tuple[Numbers, Numbers]
 ActingTuple = tuple[Numbers, bool, Flags, bool]
-BoundsTuple = tuple[Numbers, float, float]
-NearTuple = tuple[
-    Rows,
-    Manifolds,
-    Points,
-    Rows,
-    Rows,
-    SlotsTuple,
-    SlotsTuple,
-    Couples,
-    Numbers,
-    Rows,
-    Vectors,
-    Vectors,
-    Vectors,
-    Vectors,
-    Numbers,
-    Vectors,
-]
-SoftnessTuple = tuple[float, float, float]
-PlanTuple = tuple[int, int, float, float, float, float, int, float, int]
-CourseTuple = tuple[Rows, Vectors, float, float, float, bool]
-SpringsTuple = tuple[Numbers, Rows]
-PackedTuple = tuple[Vectors, Calls]
-GravityTuple = tuple[Numbers, Numbers, Numbers, Numbers, float, float, float, int]
-SleepersTuple = tuple[bool, int, Flags, Numbers, Numbers, Flags, Flags, Rows, Vectors, bool]
-"""The same, without names."""
 
 
 @inlined_by_numba
@@ -250,7 +220,7 @@ def named_acting(plain: ActingTuple) -> Acting:
 
 
 @inlined_by_numba
-def named_near(plain: NearTuple) -> Near:
+def named_near(plain: Plain[Near]) -> Near:
     """Give names to a tuple, and to the slots within it."""
     (
         counts, manifolds, points, scalar, touching, discs, boxes, proximity, activation_distance, entities,

@@ -63,10 +63,6 @@ class Slots(NamedTuple):
     outside: Flags
 
 
-SlotsTuple = tuple[int, Numbers, Rows, Rows, Rows, Rows, Masks, Rows, Flags]
-"""The same, without names."""
-
-
 @always_inlined
 def rows_of(kind: int) -> int:
     """Return how many numbers a block of a kind has."""

@@ -108,7 +108,8 @@ class Language:
         for pattern, source in (*self._sentences.get(text[:1], ()), *self._sentences.get("", ())):
             if match := pattern.fullmatch(text):
                 # A gap may take up the rest of a list: "friction {value}" of "friction 1 J, damping 2 J".
-                if any(", " in value for value in match.groupdict().values()) and (row := self._list(text)):
+                parts = text.split(", ") if ": " not in text else []
+                if len(parts) > 1 and all(map(_MEASURED.fullmatch, parts)) and (row := self._list(text)):
                     return row
                 gaps = {
                     name: value if name in _AS_WRITTEN else self.reword(value)

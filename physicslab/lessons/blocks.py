@@ -14,7 +14,7 @@ from physicslab.lessons.lesson import Prose
 from physicslab.lessons.setup import AS_IT_IS, Case
 
 _ASKED = ("question", "choice", "number", "curve")
-_ANSWERED = ("answer", "tolerance", "mistake", "right", "wrong", "idea", "show", "when")
+_ANSWERED = ("answer", "tolerance", "mistake", "right", "wrong", "idea", "show", "where", "when")
 KEYS: dict[str, tuple[str, ...]] = {
     "scene": ("let", "open", "set", "tools", "show"),
     "predict": (*_ASKED, *_ANSWERED),

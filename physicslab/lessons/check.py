@@ -228,12 +228,7 @@ def _answered(runs: LessonRuns, question: Question) -> Iterator[Row]:
         if reply.when is not None:
             yield _told(runs, question, reply.text, reply.when.holds(figures), reply.right)
         if reply.shown_by is not None:
-            try:
-                runs.figures(question.run, reply.shown_by)
-            except (InvalidText, SceneError, Diverged) as error:
-                allowed = "must be a case in which the run comes to its end"
-                why = f"{error}; {allowed}"
-                raise _refusal(runs.lesson, question, "show", reply.shown_by, why) from error
+            yield from _shown(runs, question, reply, reply.shown_by)
     if question.form == "number":
         right = runs.number(question)
         yield _told(runs, question, f"{right:.6g} {question.unit}", math.isfinite(right), True)
@@ -253,6 +248,35 @@ def _answered(runs: LessonRuns, question: Question) -> Iterator[Row]:
         solved = question.goal.holds(runs.figures(question.run, question.solution))
         yield _told(runs, question, f"{question.goal.text}: {question.solution.text}", solved, True)
         yield _told(runs, question, f"{question.goal.text}: as it is", question.goal.holds(figures), False)
+
+
+def _shown(runs: LessonRuns, question: Question, reply: Reply, case: Case) -> Iterator[Row]:
+    """Yield whether an answer is as true in the run that is shown to it as the lesson says."""
+    key = "where" if reply.holds_there else "show"
+    try:
+        figures = runs.figures(question.run, case)
+    except (InvalidText, SceneError, Diverged) as error:
+        allowed = "must be a case in which the run comes to its end"
+        raise _refusal(runs.lesson, question, key, case, f"{error}; {allowed}") from error
+    try:
+        claimed = _claimed(question, reply, figures)
+    except InvalidText:  # it is about something that does not happen in this run
+        return
+    if claimed is not None:
+        what = f"{reply.text}, {key}: {case.text}"
+        yield _told(runs, question, what, claimed, reply.right or reply.holds_there)
+
+
+def _claimed(question: Question, reply: Reply, figures: Figures) -> bool | None:
+    """Whether an answer is true in a run; ``None`` for a choice without a condition."""
+    if reply.value is None:
+        return None if reply.when is None else reply.when.holds(figures)
+    assert question.answer is not None
+    if question.form == "curve":
+        gap = curve_gap(figures.series(reply.value), figures.series(question.answer))
+        return gap <= 2.0 * question.tolerance
+    mistaken, right = (one.value(figures).value for one in (reply.value, question.answer))
+    return is_near(mistaken, right, question.tolerance)
 
 
 def is_near(number: float, right: float, tolerance: float) -> bool:

@@ -67,9 +67,9 @@ class Reply:
     feedback, idea : str
         Reply to a learner who gives it; the misconception that it stands for, with its source.
     shown_by : Case, optional
-        A run that shows it.
+        A run that shows it wrong; or, ``holds_there``, the one in which it would be right.
     when : Condition, optional
-        Condition on the run's figures that holds if, and only if, this choice is right.
+        Condition on a run's figures that holds if, and only if, this choice is right there.
     """
 
     text: str
@@ -78,6 +78,7 @@ class Reply:
     feedback: str
     idea: str = ""
     shown_by: Case | None = None
+    holds_there: bool = False
     when: Condition | None = None
 
 

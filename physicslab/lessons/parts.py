@@ -16,6 +16,8 @@ from physicslab.lessons.setup import AS_IT_IS, Case, Setup
 CITED = re.compile(r"\[([a-z]+[0-9]{4}[a-z]?)\]")
 _RATIO = "a share of it, as 0.1 %, or an amount in its unit"
 _TIME = Expression("time")
+_BELOW = ("idea", "show", "where", "when")
+"""Keys below a choice or a mistake, beside right and wrong."""
 
 
 class PartMaker:
@@ -159,9 +161,9 @@ class PartMaker:
                 if own:
                     yield self._reply(block, own)
                 own = [entry] if entry else []
-            elif own and entry.key in ("right", "wrong", "idea", "show", "when"):
+            elif own and entry.key in ("right", "wrong", *_BELOW):
                 own.append(entry)
-            elif entry.key in ("wrong", "idea", "show", "when"):
+            elif entry.key in ("wrong", *_BELOW):
                 raise block.error(f"{entry.key}: must stand below a choice or a mistake", entry.line)
 
     def _reply(self, block: Block, entries: list[Entry]) -> Reply:
@@ -172,7 +174,10 @@ class PartMaker:
         if len(said) != 1 or (first.key == "mistake" and said[0].key == "right"):
             allowed = "wrong: FEEDBACK" if first.key == "mistake" else "right: FEEDBACK or wrong: FEEDBACK"
             raise block.refusal(first, f"must have below it {allowed}")
-        idea, shown_by, when = (by_key.get(key) for key in ("idea", "show", "when"))
+        idea, shown_by, where, when = (by_key.get(key) for key in _BELOW)
+        if where and shown_by:
+            raise block.refusal(where, "must not stand beside show: one run is shown")
+        shown_by = shown_by or where
         return Reply(
             first.value,
             self._expression(block, first) if first.key == "mistake" else None,
@@ -180,6 +185,7 @@ class PartMaker:
             self._cited(block, said[0]),
             self._cited(block, idea) if idea else "",
             self._case(block, shown_by) if shown_by else None,
+            bool(where),
             self._condition(block, when) if when else None,
         )
 

@@ -20,7 +20,7 @@ _WHOLE = {
     "check": ("question", "choice", "right", "wrong", "idea"),
 }  # fmt: skip
 """Lines that are words, by kinds of blocks."""
-_NOTED = ("let", "case", "fails", "show", "solution")
+_NOTED = ("let", "case", "fails", "show", "where", "solution")
 """Lines of which the note behind ``|`` is words."""
 _KEYS = {kind: ("title", *whole, *_NOTED) for kind, whole in _WHOLE.items()}
 _TITLE = re.compile(r'"title"\s*:')

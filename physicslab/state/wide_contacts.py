@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.kernels import near_counts
+from physicslab.kernels import Plain, near_counts
 from physicslab.kernels.wide import graph_colour, refresh, restore_slots, slots
-from physicslab.kernels.wide_layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE, SlotsTuple
+from physicslab.kernels.wide_layout import BOX, BOX_ROWS, DISC, DISC_ROWS, WIDE, Slots
 
 type _Rows = NDArray[np.int64]
 
@@ -73,7 +73,7 @@ class WideConstraints:
         graph_colour.sort_blocks(self.count, self.colour, self.order)
 
     @property
-    def slots(self) -> SlotsTuple:
+    def slots(self) -> Plain[Slots]:
         """The arguments of kernels."""
         return (
             self.kind, self.data, self.a, self.b, self.pair, self.colour, self.used, self.order, self.outside,

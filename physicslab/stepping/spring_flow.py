@@ -10,7 +10,8 @@ from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.ecs.sentences import sentence
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS
-from physicslab.kernels.arguments import SpringsTuple
+from physicslab.kernels import Plain
+from physicslab.kernels.arguments import Springs
 from physicslab.kernels.ode.spring_flow import HEAD, KNOWN, LONGEST, MOST_TERMS, UNIFORM, WEIGHT
 from physicslab.kernels.wide_layout import WIDE
 from physicslab.state.packed import StateLayout, spring_ends, turned_anchors
@@ -99,7 +100,7 @@ class SpringFlow:
 
     Attributes
     ----------
-    arrays : SpringsTuple
+    arrays : Plain[Springs]
         All of it, which the flow goes on from.
     changes_with_speed : bool
         Whether drag slows a body faster if it is faster.
@@ -151,7 +152,7 @@ class SpringFlow:
         ]
         whole += [_terms(decays, half / steps), alone]
         self.changes_with_speed = bool(drag["quadratic"][alone].any())
-        self.arrays: SpringsTuple = np.concatenate(parts), np.concatenate(whole).astype(np.int64)
+        self.arrays: Plain[Springs] = np.concatenate(parts), np.concatenate(whole).astype(np.int64)
         self.arrays[0][LONGEST] = half / steps
         self._place = self.arrays[0][HEAD : HEAD + 2 * p].reshape(-1, 2)
         first = HEAD + 6 * p + 2 * len(moving)

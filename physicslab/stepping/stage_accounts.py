@@ -111,16 +111,16 @@ class StageAccounts:
         The middle of the substep comes ``later`` seconds after that of the kick.
         """
         bodies, physics, velocity = state.bodies, state.physics, state.table(Velocity)
-        position, inverse = state.table(Transform)["position"], inverse_in(state)
+        position, (mass, inertia) = state.table(Transform)["position"], inverse_in(state)
         if state.has_forces:
             work.book_kick(
-                position, bodies.force, bodies.torque, state.table(Mass)["mass"], *inverse,
+                position, bodies.force, bodies.torque, state.table(Mass)["mass"], mass, inertia,
                 bodies.sub_integrated, self.gravity.x, self.gravity.y, self.other, h, state.account.sums,
             )  # fmt: skip
         if physics.linear_damping > 0.0 or physics.angular_damping > 0.0:
             work.book_damping(
-                position, velocity["linear"], velocity["angular"], bodies.force, bodies.torque, *inverse,
-                bodies.sub_integrated, physics.linear_damping, physics.angular_damping, h, later,
+                position, velocity["linear"], velocity["angular"], bodies.force, bodies.torque, mass,
+                inertia, bodies.sub_integrated, physics.linear_damping, physics.angular_damping, h, later,
                 state.account.sums,
             )  # fmt: skip
 

@@ -20,7 +20,8 @@ from physicslab.contacts.arguments import (
     speculative_margin,
 )
 from physicslab.contacts.islands import all_asleep
-from physicslab.kernels.arguments import PlanTuple, SoftnessTuple
+from physicslab.kernels import Plain
+from physicslab.kernels.arguments import Plan, Softness
 from physicslab.kernels.broad import grid, leaving, near_pairs
 from physicslab.kernels.broad.fat_boxes import fat_boxes
 from physicslab.kernels.loading import direct_entry, working_ns
@@ -180,7 +181,7 @@ class Substeps:
         )  # fmt: skip
         return factor
 
-    def _plan(self, state: State, span: Span, made: int, first: int) -> PlanTuple:
+    def _plan(self, state: State, span: Span, made: int, first: int) -> Plain[Plan]:
         """Return the numbers that the loop goes by after ``made`` steps."""
         simulation = state.simulation
         return (
@@ -188,7 +189,7 @@ class Substeps:
             span.rested, first, simulation.dt / simulation.substeps, span.finer,
         )  # fmt: skip
 
-    def _softness(self, state: State) -> SoftnessTuple:
+    def _softness(self, state: State) -> Plain[Softness]:
         """Return the spring of contacts."""
         return (0.0, 0.0, 0.0) if self._resolve is None else self._resolve.softness(state)
 

@@ -4,7 +4,8 @@ from types import TracebackType
 
 from physicslab.contacts.arguments import motion_of
 from physicslab.contacts.islands import wake_all
-from physicslab.kernels.arguments import MotionTuple
+from physicslab.kernels import Plain
+from physicslab.kernels.arguments import Motion
 from physicslab.state.state import State
 
 
@@ -21,7 +22,7 @@ class StepTransaction:
 
     __slots__ = ("_motion", "_state")
 
-    def __init__(self, state: State, motion: MotionTuple) -> None:
+    def __init__(self, state: State, motion: Plain[Motion]) -> None:
         self._state, self._motion = state, motion
 
     def __enter__(self) -> None:

@@ -66,10 +66,6 @@ class CoulombSystem(ForceSystem):
         """Return that of the largest sum of forces on a charge."""
         return self._law(state).rounding_floor(state)
 
-    def depends_on_velocity(self, state: State) -> bool:
-        """Return False: it depends on places alone."""
-        return False
-
     def why_singular(self, state: State) -> str | None:
         """Return that charges may come close."""
         return sentence("charges_close")

@@ -78,10 +78,6 @@ class MoleculeSystem(ForceSystem):
         force = 24.0 * table["depth"][rows] / table["distance"][rows] * state.bodies.inverse_mass[rows]
         return ROUNDING * float(force.max(initial=0.0))
 
-    def depends_on_velocity(self, state: State) -> bool:
-        """Return False: it depends on places alone."""
-        return False
-
     def why_singular(self, state: State) -> str | None:
         """Return that molecules collide."""
         return sentence("molecules_collide")

@@ -1,7 +1,8 @@
 """Impulses at contacts."""
 
 from physicslab.contacts.arguments import do_stage
-from physicslab.kernels.arguments import SoftnessTuple
+from physicslab.kernels import Plain
+from physicslab.kernels.arguments import Softness
 from physicslab.kernels.solver import soft
 from physicslab.state.state import State
 from physicslab.systems.broad_phase import nothing_to_touch
@@ -38,7 +39,7 @@ class ResolveSystem(System):
         state.joints.beside_contacts = reason is None
         return reason
 
-    def softness(self, state: State) -> SoftnessTuple:
+    def softness(self, state: State) -> Plain[Softness]:
         """Return the contact spring for the substeps of the coming step.
 
         Overlap is corrected as fast [1/s] in shorter substeps as in the configured ones, by a spring that is

@@ -7,9 +7,9 @@ from physicslab.components import Charge, Mass, Shape, Transform, Velocity
 from physicslab.contacts.arguments import do_stage, near_in
 from physicslab.contacts.islands import check_edits, fall_asleep, keep_places, wake, wake_all
 from physicslab.ecs.sentences import sentence
-from physicslab.kernels import motion, near_counts
+from physicslab.kernels import Plain, motion, near_counts
 from physicslab.kernels.accounts import GRAVITY
-from physicslab.kernels.arguments import InverseTuple
+from physicslab.kernels.arguments import Inverse
 from physicslab.kernels.sleep import edits, islands
 from physicslab.kernels.solver import soft, work
 from physicslab.state.sleep import Sleep
@@ -163,7 +163,7 @@ class SleepSystem(System):
 
 
 def _find_among(
-    state: State, pairs: NDArray[np.int64], touching: NDArray[np.int64], inverse: InverseTuple, h: float, *,
+    state: State, pairs: NDArray[np.int64], touching: NDArray[np.int64], inverse: Plain[Inverse], h: float, *,
     first: bool,
 ) -> int:  # fmt: skip
     """Find or refresh the points of some of the pairs; return how many of them touch."""

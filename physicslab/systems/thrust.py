@@ -62,10 +62,6 @@ class ThrustSystem(ForceSystem):
         """Whether any swings."""
         return bool((state.table(Thrust)["frequency"][state.batch(*self.needs).rows] > 0.0).any())
 
-    def depends_on_velocity(self, state: State) -> bool:
-        """Return False: places, angles and the time are all that it depends on."""
-        return False
-
     def needs_origin(self, state: State) -> bool:
         """Return False: it is the same everywhere."""
         return False

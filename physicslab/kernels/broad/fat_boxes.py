@@ -6,8 +6,8 @@ and velocities, and not on when pairs were last listed.
 
 import math
 
-from physicslab.kernels import Numbers, Vectors, inlined, kernel
-from physicslab.kernels.arguments import Motion, MotionTuple
+from physicslab.kernels import Numbers, Plain, Vectors, inlined, kernel
+from physicslab.kernels.arguments import Motion
 from physicslab.kernels.geometry.contact import CACHE_TOLERANCE, CACHE_TURN_TOLERANCE, WIDE_TOLERANCE
 from physicslab.kernels.geometry.pair import CONTACT_MARGIN
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents, named_shapes
@@ -59,7 +59,7 @@ def left(
 
 @kernel
 def still_holds(
-    plain_motion: MotionTuple, plain_shapes: ShapesTuple, fat: Vectors, h: float, speculative_margin: float
+    plain_motion: Plain[Motion], plain_shapes: ShapesTuple, fat: Vectors, h: float, speculative_margin: float
 ) -> bool:
     """Whether whatever each body may have points with in a time h meets the fat box made for it.
 
@@ -137,8 +137,8 @@ def fatten(
 
 @kernel
 def fat_boxes(
-    plain_motion: MotionTuple, plain_shapes: ShapesTuple, inverse_mass: Numbers, fat: Vectors, boxes: Vectors,
-    h: float, hit_share: float, speculative_margin: float,
+    plain_motion: Plain[Motion], plain_shapes: ShapesTuple, inverse_mass: Numbers, fat: Vectors,
+    boxes: Vectors, h: float, hit_share: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Make each body's fat box, as :func:`fatten` describes."""
     motion, shapes = Motion(*plain_motion), named_shapes(plain_shapes)

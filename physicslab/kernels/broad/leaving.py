@@ -13,6 +13,7 @@ import numpy as np
 from physicslab.kernels import (
     Flags,
     Numbers,
+    Plain,
     Rows,
     Vectors,
     allocating_kernel,
@@ -20,7 +21,7 @@ from physicslab.kernels import (
     inlined,
     kernel,
 )
-from physicslab.kernels.arguments import Motion, MotionTuple, Near, NearTuple, named_near
+from physicslab.kernels.arguments import Motion, Near, named_near
 from physicslab.kernels.broad.fat_boxes import HIT_SHARE, fatten, left, usual_speed
 from physicslab.kernels.broad.grid import cell_at
 from physicslab.kernels.broad.near_pairs import beside, distance_to_activate, make_blank
@@ -203,7 +204,7 @@ def _list_leaver(
 
 @kernel
 def add_pairs(
-    plain_near: NearTuple, plain_motion: MotionTuple, plain_shapes: ShapesTuple, inverse_mass: Numbers,
+    plain_near: Plain[Near], plain_motion: Plain[Motion], plain_shapes: ShapesTuple, inverse_mass: Numbers,
     fat: Vectors, boxes: Vectors, moved: Flags, already: int, bounded: bool, bounds: Numbers,
     first: Rows, body: Rows, home_x: Rows, home_y: Rows, found: tuple[int, int, float],
     h: float, ahead: float, speculative_margin: float,

@@ -10,18 +10,9 @@ two pairs with one body meet at one time the order would decide: the motion ends
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, kernel
+from physicslab.kernels import Numbers, Plain, Rows, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels.accounts import IMPACTS
-from physicslab.kernels.arguments import (
-    Bounds,
-    BoundsTuple,
-    Inverse,
-    InverseTuple,
-    Materials,
-    MaterialsTuple,
-    Motion,
-    MotionTuple,
-)
+from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of
 from physicslab.kernels.events.encounter import bend_of, gap_of, meeting_of, time_apart, touch_pair
 from physicslab.kernels.events.path import advance_to, begin, place, seen_from
@@ -262,8 +253,8 @@ def _take_sample(motion: Motion, moving: Rows, sample: Numbers) -> None:
 @kernel
 def run_events(
     manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, apart: Rows,
-    due: Vectors, impact_position: Vectors, motion: MotionTuple, shapes: ShapesTuple,
-    materials: MaterialsTuple, inverse: InverseTuple, bounds: BoundsTuple,
+    due: Vectors, impact_position: Vectors, motion: Plain[Motion], shapes: ShapesTuple,
+    materials: Plain[Materials], inverse: Plain[Inverse], bounds: Plain[Bounds],
     account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int,
     moving: Rows, first_due: int, stride: int, samples: Vectors,
 ) -> tuple[int, int, int, float]:  # fmt: skip

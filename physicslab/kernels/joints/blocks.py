@@ -86,13 +86,6 @@ class Joints(NamedTuple):
     matrix: Vectors
 
 
-JointsTuple = tuple[
-    Rows, Rows, Rows, Vectors, Vectors, Vectors, Numbers, Rows, Numbers, Numbers, Numbers, Numbers, Numbers,
-    Tables, Tables, Rows, Rows, Tables, Tables, Rows, Tables, Rows, Vectors, Vectors, Vectors,
-]  # fmt: skip
-"""The same, without names."""
-
-
 @always_inlined
 def _assemble(joints: Joints, k: int, inverse: Inverse) -> None:
     """Write the diagonal of A at an active node, and the entries below it."""

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from physicslab.kernels import Vectors, inlined, inlined_by_numba
+from physicslab.kernels import Vectors, inlined
 from physicslab.kernels.rigid.features import Points
 
 OPEN, STICKS, SLIDES_ON, SLIDES_BACK = 0, 1, 2, 3
@@ -27,15 +27,6 @@ class Equations(NamedTuple):
     matrix: Vectors
     order: Points
     tableau: Vectors
-
-
-EquationsTuple = tuple[Points, Vectors, Vectors, Vectors, Vectors, Points, Vectors]
-
-
-@inlined_by_numba
-def named_equations(plain: EquationsTuple) -> Equations:
-    """Give names to a tuple."""
-    return Equations(plain[0], plain[1], plain[2], plain[3], plain[4], plain[5], plain[6])
 
 
 @inlined

@@ -17,14 +17,7 @@ from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.budget import book_contacts, book_speeds
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED
 from physicslab.kernels.rigid.constraints import apply, find_loads, measure_all, project
-from physicslab.kernels.rigid.equations import (
-    OPEN,
-    SLIDES_BACK,
-    SLIDES_ON,
-    STICKS,
-    UNKNOWN,
-    Equations,
-)
+from physicslab.kernels.rigid.equations import OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import Points, RigidScene
 from physicslab.kernels.rigid.impacts import approaches
 from physicslab.kernels.rigid.jammed import stop_sliding

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from physicslab.kernels import Numbers, Vectors, always_inlined, inlined, inlined_by_numba
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.ode.dop853_tableau import ESTIMATE_3, ESTIMATE_5, LAST, WEIGHTS
 from physicslab.kernels.rigid.constraints import constrained_acceleration
 from physicslab.kernels.rigid.equations import Equations
@@ -43,15 +43,6 @@ class Stages(NamedTuple):
     q: Numbers
     v: Numbers
     acceleration: Numbers
-
-
-StagesTuple = tuple[Vectors, Vectors, Numbers, Numbers, Numbers]
-
-
-@inlined_by_numba
-def named_stages(plain: StagesTuple) -> Stages:
-    """Give names to a tuple."""
-    return Stages(plain[0], plain[1], plain[2], plain[3], plain[4])
 
 
 @always_inlined

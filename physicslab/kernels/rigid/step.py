@@ -4,13 +4,22 @@ import math
 import sys
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined, inlined_by_numba, kernel
+from physicslab.kernels import (
+    Numbers,
+    Plain,
+    Rows,
+    Vectors,
+    always_inlined,
+    inlined,
+    inlined_by_numba,
+    kernel,
+)
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, OVERLAP, PX, PY
 from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid import features as F
-from physicslab.kernels.rigid.equations import UNKNOWN, Equations, EquationsTuple, named_equations
+from physicslab.kernels.rigid.equations import UNKNOWN, Equations
 from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, named_scene
 from physicslab.kernels.rigid.impacts import resolve_simultaneous_impacts
 from physicslab.kernels.rigid.motion import (
@@ -23,7 +32,7 @@ from physicslab.kernels.rigid.motion import (
     begin_motion,
     touch,
 )
-from physicslab.kernels.rigid.smooth_segment import Stages, StagesTuple, named_stages
+from physicslab.kernels.rigid.smooth_segment import Stages
 from physicslab.kernels.rigid.time_stepping import drive, kick, move, separate, take_work
 from physicslab.kernels.rigid.touching import length_of
 
@@ -92,8 +101,9 @@ class Course(NamedTuple):
 
 
 RoomTuple = tuple[
-    EquationsTuple, EquationsTuple, StagesTuple, Points, Vectors, Vectors, Points, Vectors, Numbers, Rows
-]
+    Plain[Equations], Plain[Equations], Plain[Stages], Points, Vectors, Vectors, Points, Vectors, Numbers,
+    Rows,
+]  # fmt: skip
 
 
 @inlined_by_numba
@@ -102,7 +112,7 @@ def named_course(
 ) -> Course:
     """Give names to tuples."""
     return Course(
-        named_scene(scene), named_equations(room[0]), named_equations(room[1]), named_stages(room[2]),
+        named_scene(scene), Equations(*room[0]), Equations(*room[1]), Stages(*room[2]),
         room[3], room[4], room[5], room[6], room[7], room[8], q, v, entities, log, account, room[9],
     )  # fmt: skip
 

@@ -9,23 +9,11 @@ then compared with that of the light body, before the impulses have grown to it.
 
 import math
 
-from physicslab.kernels import Numbers, Vectors, inlined, kernel
+from physicslab.kernels import Numbers, Plain, Vectors, inlined, kernel
 from physicslab.kernels import wide_layout as L
-from physicslab.kernels.arguments import (
-    Inverse,
-    InverseTuple,
-    Motion,
-    MotionTuple,
-    Near,
-    NearTuple,
-    Plan,
-    PlanTuple,
-    Softness,
-    SoftnessTuple,
-    named_near,
-)
+from physicslab.kernels.arguments import Inverse, Motion, Near, Plan, Softness, named_near
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents, named_shapes
-from physicslab.kernels.joints.blocks import ENDS, FIRST, TERM, TERMS, Joints, JointsTuple
+from physicslab.kernels.joints.blocks import ENDS, FIRST, TERM, TERMS, Joints
 from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, RECORDED
 from physicslab.kernels.records import Manifold
 from physicslab.kernels.solver.impulse import HEAVY_RATIO, MAX_SUBSTEP_FACTOR, MAX_SWEEPS, sweeps_of
@@ -236,8 +224,8 @@ def factor_for(
 
 @kernel
 def needed_factor(
-    near: NearTuple, joints: JointsTuple, motion: MotionTuple, shapes: ShapesTuple, inverse: InverseTuple,
-    force: Vectors, plan: PlanTuple, softness: SoftnessTuple, impulse_dt: float,
+    near: Plain[Near], joints: Plain[Joints], motion: Plain[Motion], shapes: ShapesTuple,
+    inverse: Plain[Inverse], force: Vectors, plan: Plain[Plan], softness: Plain[Softness], impulse_dt: float,
 ) -> int:  # fmt: skip
     """Return the factor for the next step (:func:`factor_for`)."""
     return factor_for(

@@ -4,10 +4,9 @@ Ten boxes that lie on each other take nine tenths of the time for which a step i
 compiled in a twentieth of the time of :func:`physicslab.kernels.solver.soft.advance`.
 """
 
-from physicslab.kernels import Rows, kernel
-from physicslab.kernels.arguments import Contacts, Inverse, InverseTuple, Motion, MotionTuple
+from physicslab.kernels import Plain, kernel
+from physicslab.kernels.arguments import Contacts, Inverse, Motion
 from physicslab.kernels.python_fallback import native_for
-from physicslab.kernels.records import Manifolds, Points
 from physicslab.kernels.solver.sweep import sweep
 from physicslab.kernels.wide.solve import SoftConstraint
 
@@ -15,8 +14,8 @@ from physicslab.kernels.wide.solve import SoftConstraint
 @native_for(sweep)
 @kernel
 def sweep_contacts(
-    contacts: tuple[Manifolds, Points, Rows, int], motion: MotionTuple, inverse: InverseTuple,
-    soft: tuple[float, float, float, float, float], backward: bool, booked: bool,
+    contacts: Plain[Contacts], motion: Plain[Motion], inverse: Plain[Inverse],
+    soft: Plain[SoftConstraint], backward: bool, booked: bool,
 ) -> tuple[bool, float, float]:  # fmt: skip
     """Return what :func:`physicslab.kernels.solver.sweep.sweep` does."""
     return sweep(

@@ -5,36 +5,24 @@ It goes through the stages of a substep in the order in which it is given them
 list pairs, to wake bodies, or at a stage where systems act that no kernel computes.
 """
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined, kernel
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, BALANCE, BEFORE, ENERGY, PX, PY, book
 from physicslab.kernels.arguments import (
     Acting,
     ActingTuple,
     Bounds,
-    BoundsTuple,
     Course,
-    CourseTuple,
     Gravity,
-    GravityTuple,
     Inverse,
-    InverseTuple,
     Log,
     Materials,
-    MaterialsTuple,
     Motion,
-    MotionTuple,
     Near,
-    NearTuple,
     Packed,
-    PackedTuple,
     Plan,
-    PlanTuple,
     Sleepers,
-    SleepersTuple,
     Softness,
-    SoftnessTuple,
     Springs,
-    SpringsTuple,
     named_acting,
     named_near,
 )
@@ -43,7 +31,7 @@ from physicslab.kernels.energy import moments_of_mass, motion_totals
 from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
-from physicslab.kernels.joints.blocks import Joints, JointsTuple
+from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
 from physicslab.kernels.near_counts import ACTIVE, LEFT, OUTSIDE, WIDE_COUNT
 from physicslab.kernels.ode.damped_flow import flow_forces
@@ -342,12 +330,12 @@ def _advance(
 
 @kernel
 def advance(
-    steps: int, substep: int, part: int, plan: PlanTuple, course: CourseTuple, cause: int,
-    motion: MotionTuple, kept: Numbers, shapes: ShapesTuple, materials: MaterialsTuple,
-    inverse: InverseTuple, sub_integrated: Flags, acting: ActingTuple, gravity: GravityTuple,
-    packed: PackedTuple, springs: SpringsTuple, sleepers: SleepersTuple, damping: tuple[float, float],
-    fat: Vectors, bounds: BoundsTuple, near: NearTuple, joints: JointsTuple, opened: Rows,
-    softness: SoftnessTuple, impulse_dt: float, impacts: Impacts, cost: Rows,
+    steps: int, substep: int, part: int, plan: Plain[Plan], course: Plain[Course], cause: int,
+    motion: Plain[Motion], kept: Numbers, shapes: ShapesTuple, materials: Plain[Materials],
+    inverse: Plain[Inverse], sub_integrated: Flags, acting: ActingTuple, gravity: Plain[Gravity],
+    packed: Plain[Packed], springs: Plain[Springs], sleepers: Plain[Sleepers], damping: tuple[float, float],
+    fat: Vectors, bounds: Plain[Bounds], near: Plain[Near], joints: Plain[Joints], opened: Rows,
+    softness: Plain[Softness], impulse_dt: float, impacts: Impacts, cost: Rows,
 ) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
     """Advance by ``steps`` steps, beginning at a part of a substep.
 

@@ -2,18 +2,8 @@
 
 import numpy as np
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.arguments import (
-    Inverse,
-    InverseTuple,
-    Materials,
-    MaterialsTuple,
-    Motion,
-    MotionTuple,
-    Near,
-    NearTuple,
-    named_near,
-)
+from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined, kernel
+from physicslab.kernels.arguments import Inverse, Materials, Motion, Near, named_near
 from physicslab.kernels.broad.near_pairs import sort_scalar
 from physicslab.kernels.geometry.contact import note_pose, slides_on
 from physicslab.kernels.geometry.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
@@ -264,9 +254,9 @@ def add_to_blocks(
 
 @kernel
 def add_constraints(
-    plain_near: NearTuple, opened: Rows, sleeping: Rows, inactive: Flags, asleep: Flags,
-    plain_motion: MotionTuple, plain_shapes: ShapesTuple, plain_materials: MaterialsTuple,
-    plain_inverse: InverseTuple, h: float,
+    plain_near: Plain[Near], opened: Rows, sleeping: Rows, inactive: Flags, asleep: Flags,
+    plain_motion: Plain[Motion], plain_shapes: ShapesTuple, plain_materials: Plain[Materials],
+    plain_inverse: Plain[Inverse], h: float,
 ) -> int:  # fmt: skip
     """Put steady contacts into blocks; return what must be done first if that is not possible.
 

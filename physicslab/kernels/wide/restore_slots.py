@@ -4,14 +4,9 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined, kernel
 from physicslab.kernels import wide_layout as L
-from physicslab.kernels.arguments import (
-    Inverse,
-    InverseTuple,
-    Materials,
-    MaterialsTuple,
-)
+from physicslab.kernels.arguments import Inverse, Materials
 from physicslab.kernels.geometry.contact import effective_masses
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.records import Manifold, Manifolds, Point, Points
@@ -125,8 +120,8 @@ def _may_hold(slots: L.Slots, slot: int, manifold: Manifold, shapes: Shapes, inv
 
 @kernel
 def restore_slots(
-    plain: L.SlotsTuple, manifolds: Manifolds, points: Points, pairs: int, plain_shapes: ShapesTuple,
-    plain_materials: MaterialsTuple, plain_inverse: InverseTuple,
+    plain: Plain[L.Slots], manifolds: Manifolds, points: Points, pairs: int, plain_shapes: ShapesTuple,
+    plain_materials: Plain[Materials], plain_inverse: Plain[Inverse],
 ) -> tuple[int, int]:  # fmt: skip
     """Put the pairs whose records name a slot back there; return how many blocks and slots there are.
 
@@ -191,8 +186,8 @@ def outdated(
 
 @kernel
 def update_slots(
-    plain: L.SlotsTuple, blocks: int, changed: Flags, manifolds: Manifolds, points: Points,
-    plain_shapes: ShapesTuple, plain_materials: MaterialsTuple, plain_inverse: InverseTuple,
+    plain: Plain[L.Slots], blocks: int, changed: Flags, manifolds: Manifolds, points: Points,
+    plain_shapes: ShapesTuple, plain_materials: Plain[Materials], plain_inverse: Plain[Inverse],
 ) -> None:  # fmt: skip
     """Fill the slots of the ``changed`` bodies again, with their impulses, masses and materials of now."""
     slots, shapes, materials = L.Slots(*plain), named_shapes(plain_shapes), Materials(*plain_materials)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from physicslab.kernels import Flags, Rows, allocating, allocating_kernel, inlined, kernel
+from physicslab.kernels import Flags, Plain, Rows, allocating, allocating_kernel, inlined, kernel
 from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import Acting, Inverse, Motion, Near
 from physicslab.kernels.constraint.pair import point_state, velocity_of
@@ -58,7 +58,7 @@ def store_slot(slots: L.Slots, slot: int, manifolds: Manifolds, points: Points) 
 
 
 @kernel
-def store(plain: L.SlotsTuple, blocks: int, manifolds: Manifolds, points: Points) -> None:
+def store(plain: Plain[L.Slots], blocks: int, manifolds: Manifolds, points: Points) -> None:
     """Write what every slot holds into the records of its pair; the slots stay in use."""
     slots = L.Slots(*plain)
     for slot in range(blocks * L.WIDE):
@@ -90,7 +90,7 @@ def list_scalar(
 
 
 @kernel
-def release(plain: L.SlotsTuple, blocks: int, manifolds: Manifolds, points: Points, asleep: Flags) -> int:
+def release(plain: Plain[L.Slots], blocks: int, manifolds: Manifolds, points: Points, asleep: Flags) -> int:
     """Write the slots of sleeping bodies to their records and empty them; return how many."""
     slots, released = L.Slots(*plain), 0
     for slot in range(blocks * L.WIDE):
@@ -101,7 +101,7 @@ def release(plain: L.SlotsTuple, blocks: int, manifolds: Manifolds, points: Poin
 
 
 @allocating_kernel
-def follow_pairs(plain: L.SlotsTuple, blocks: int, manifolds: Manifolds, pairs: int) -> int:
+def follow_pairs(plain: Plain[L.Slots], blocks: int, manifolds: Manifolds, pairs: int) -> int:
     """Find the new numbers of the slots' pairs after a broad phase; return how many slots are in use.
 
     A slot whose pair is not near any more is emptied.

@@ -1,13 +1,10 @@
 """Every problem, in one explicit list; and reference problems that the engine cannot compute, and why."""
 
 from physicslab.lab.accuracy.andrews import ANDREWS
-from physicslab.lab.accuracy.fields import FIELDS
-from physicslab.lab.accuracy.friction import FRICTION
-from physicslab.lab.accuracy.impacts import IMPACTS
-from physicslab.lab.accuracy.joints import JOINED
-from physicslab.lab.accuracy.limits import LIMITED
-from physicslab.lab.accuracy.planets import ATTRACTED
+from physicslab.lab.accuracy.forces import ATTRACTED, FIELDS
+from physicslab.lab.accuracy.joints import JOINED, LIMITED
 from physicslab.lab.accuracy.points import POINTS
+from physicslab.lab.accuracy.touching import FRICTION, IMPACTS
 from physicslab.lab.case import Catalogue
 
 PROBLEMS = Catalogue((*POINTS, *FIELDS, *JOINED, ANDREWS, *LIMITED, *ATTRACTED, *IMPACTS, *FRICTION))

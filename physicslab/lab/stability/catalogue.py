@@ -3,13 +3,11 @@
 from collections.abc import Hashable, Sequence
 
 from physicslab.lab.case import Catalogue
-from physicslab.lab.stability.assemblies import ASSEMBLIES
 from physicslab.lab.stability.case import StabilityCase, run_case
 from physicslab.lab.stability.contacts import SQUEEZED, STANDING
-from physicslab.lab.stability.fields import FIELDS
+from physicslab.lab.stability.forces import ATTRACTION, CHAINS, FIELDS
 from physicslab.lab.stability.impacts import IMPACTS
-from physicslab.lab.stability.joints import JOINTS
-from physicslab.lab.stability.many_bodies import ATTRACTION, CHAINS
+from physicslab.lab.stability.joints import ASSEMBLIES, JOINTS
 from physicslab.lab.stability.ranges import RANGES
 from physicslab.lab.stability.shapes import SHAPES
 from physicslab.lab.stability.springs import SPRINGS

@@ -1,8 +1,8 @@
-"""Joints: heavy loads at their ends, motors and pulleys at their stops, and such as contradict each other."""
+"""Joints: heavy loads at their ends, motors and pulleys at stops, contradictions; ragdolls."""
 
 import math
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -11,9 +11,9 @@ from physicslab.components import Gear, Mass, Pin, Pulley, Rod, Shape, Slot, Tra
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.diagnostics.joints import joint_states
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.stability.case import StabilityCase
+from physicslab.lab.stability.case import StabilityCase, part_of
 from physicslab.lab.worlds import energy_change, floor, largest, open_space
-from physicslab.prefabs import box, circle
+from physicslab.prefabs import box, circle, container, ragdoll
 from physicslab.world import World
 
 _LINK = 0.5
@@ -252,5 +252,43 @@ JOINTS = (
             right="it comes to rest", figure="speed at last", measure=partial(_contradicted, contacts),
         )
         for contacts in ("soft", "rigid")
+    ),
+)  # fmt: skip
+
+
+_DOLLS = 6
+
+
+def ragdoll_heap(count: int) -> World:
+    """Return ragdolls of 71 kg that lie over each other and fall into a pit of 4 m."""
+    world = open_space()
+    container(world, width=4.0, height=3.0)
+    for n in range(count):
+        ragdoll(world, (0.3 * (n % 3 - 1), 1.0 + 1.4 * n), angle=1.5 if n % 2 else -1.5)
+    return world
+
+
+@cache  # two cases look at one run
+def _heap() -> tuple[float, float]:
+    """Return the largest gap of a heap of ragdolls [m], and the mean speed of its parts at last [m/s]."""
+    world = ragdoll_heap(_DOLLS)
+    world.run(seconds=8.0)
+    speed = world.table(Velocity)["linear"][world.batch(Transform, Velocity).rows]
+    widest = max(joint.largest_stretch for joint in joint_states(world))
+    return widest, math.sqrt(float(np.mean(np.sum(speed * speed, axis=1))))
+
+
+_ragdolls = partial(
+    StabilityCase, group="joints", title=f"heap of {_DOLLS} ragdolls of 10 parts that fall up to 8 m, 8 s"
+)
+
+ASSEMBLIES = (
+    _ragdolls(
+        name="ragdolls_gap", unit="m", right="they stay together", figure="largest gap", limit=0.02,
+        measure=partial(part_of, 0, _heap),
+    ),
+    _ragdolls(
+        name="ragdolls_rest", unit="m/s", right="they come to rest", figure="mean speed at last", limit=0.1,
+        measure=partial(part_of, 1, _heap),
     ),
 )  # fmt: skip

@@ -23,7 +23,7 @@ from physicslab.view.controls.polygons import MOST, is_stroke, simplified
 from physicslab.view.controls.pouring import as_many_as_wanted
 from physicslab.view.window.edits import Recipe
 from physicslab.view.window.ends import brought, local_point
-from physicslab.view.window.placing import outlines_of, put_down, refused_place, snapped_point
+from physicslab.view.window.placing import outlines_of, put_down, refused_place, snapped_point, way_aside
 from physicslab.view.window.sketch import Grip
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -295,7 +295,7 @@ def _build(
     if not places:
         return False
     try:
-        places = _put_down(world, drawn, places)
+        places = places if checked else _put_down(world, drawn, places, window)
         refused = "" if checked else refused_place(world, _outlines(drawn, places, window.recipe))
         made = [] if refused else _commands(drawn, places, window, given)
     except InvalidValue as error:
@@ -315,8 +315,12 @@ def _build(
     return True
 
 
-def _put_down(world: World, drawn: Drawn, places: Sequence[Vector2]) -> Sequence[Vector2]:
-    return put_down(world, places, each=drawn.measure is DOMINOES) if drawn.stands else places
+def _put_down(world: World, drawn: Drawn, places: Sequence[Vector2], window: Window) -> Sequence[Vector2]:
+    """Return points [m] so that what is made of them stands, or lies beside what it was drawn against."""
+    if drawn.stands:
+        places = put_down(world, places, each=drawn.measure is DOMINOES)
+    aside = way_aside(world, window.camera, _outlines(drawn, places, window.recipe))
+    return [place + aside for place in places] if aside else places
 
 
 def _commands(
@@ -393,7 +397,7 @@ def ghost(world: World, drawn: Drawn, window: Window) -> tuple[Outlines, bool] |
     else:
         places = _clicked(drawn, window, window.target)
     try:
-        outlines = _outlines(drawn, _put_down(world, drawn, places), window.recipe)
+        outlines = _outlines(drawn, _put_down(world, drawn, places, window), window.recipe)
     except ValueError:  # larger than anything may be, or not a shape yet
         return None
     return outlines, not refused_place(world, outlines)

@@ -18,12 +18,14 @@ from physicslab.components import (
 from physicslab.diagnostics.period import gives_way
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2
+from physicslab.history import Group, Spawn
 from physicslab.state.attached import local_point as in_frame
 from physicslab.state.joints import Joint
 from physicslab.view.canvas.quantities import quantity
 from physicslab.view.controls.drawing import Drawn, join
 from physicslab.view.controls.picking import bodies_at
 from physicslab.view.window.ends import local_point, spring_between
+from physicslab.view.window.placing import meetings
 from physicslab.view.window.sketch import Grip
 from physicslab.view.window.window import Action, Window
 from physicslab.world import World
@@ -213,17 +215,35 @@ _LISTED = {
 def attachments(world: World, entities: Sequence[int]) -> dict[str, tuple[str, Action]]:
     """Return how the selection can be joined: the words of a line, its tip, and what it does.
 
-    Nothing of it is joined if none of it can move.
+    Nothing of it is joined if none of it can move; more than two are welded where they meet.
     """
     can_move = any(world.has(entity, Velocity) for entity in entities)
-    if len(entities) > 2 or not can_move or not all(world.has(entity, Transform) for entity in entities):
+    if not can_move or not all(world.has(entity, Transform) for entity in entities):
         return {}
     chosen = tuple(entities)
+    if len(chosen) > 2:
+        _, words, tip = _LISTED["weld"]
+        return {words: (tip, partial(_weld_all, bodies=chosen))}
     return {
         words[len(chosen) - 1]: (words[2], partial(_join_selected, bodies=chosen, name=name))
         for name, words in _LISTED.items()
         if words[len(chosen) - 1]
     }
+
+
+def _weld_all(world: World, window: Window, bodies: Sequence[int]) -> None:
+    """Weld bodies where two of them meet, as one edit."""
+    shaped = [body for body in bodies if world.has(body, Shape)]
+    welds = [
+        Spawn([made])
+        for (a, b), place in meetings(world, shaped, _BESIDE / window.camera.scale).items()
+        for made in (Weld(a, b, anchor_a=in_frame(world, a, place), anchor_b=in_frame(world, b, place)),)
+        if not _stuck(world, "weld", a, b)
+    ]
+    if welds:
+        window.edits.do(Group(f"made {len(welds)} welds", welds))
+    else:
+        window.notify("No weld: none of them meets another", 5.0, failed=True)
 
 
 def _join_selected(world: World, window: Window, bodies: Sequence[int], name: str) -> None:

@@ -58,6 +58,6 @@ ICONS = {
     "more": "\uf141", "brush": "\uf1fc", "wall": "\uf00a", "dominoes": "\uf7a5", "stack": "\uf5fd",
     "pyramid": "\uf6fc", "heap": "\uf1ce", "pit": "\uf01c",
     "binary": "\uf753", "play": "\uf04b", "pause": "\uf04c", "step": "\uf051", "back": "\uf048",
-    "restart": "\uf2f9", "undo": "\uf0e2", "redo": "\uf01e",
+    "restart": "\uf2f9", "undo": "\uf0e2", "redo": "\uf01e", "aim": "\uf05b",
 }  # fmt: skip
 """Each icon by its name; most names are those of tools."""

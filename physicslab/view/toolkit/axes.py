@@ -1,4 +1,4 @@
-"""The axes of a plot in the language of the window."""
+"""The axes of a plot in the language of the window, and the room within them."""
 
 import math
 from collections.abc import Iterator
@@ -66,3 +66,9 @@ def _powers(low: float, high: float) -> Iterator[tuple[float, str]]:
     """
     for power in range(math.ceil(math.log10(low)), math.floor(math.log10(high)) + 1):
         yield 10.0**power, f"{10.0**power:g}"
+
+
+def plot_rect() -> tuple[int, int, int, int]:
+    """Return the left, the top, the width and the height of the plot that is built, within its axes [px]."""
+    corner, size = implot.get_plot_pos(), implot.get_plot_size()
+    return round(corner.x), round(corner.y), round(size.x), round(size.y)

@@ -41,15 +41,26 @@ class Ui(Windows):
     # ---- words ---------------------------------------------------------------------------------------------
 
     def text(self, words: str, colour: Colour | None = None, *, wrapped: bool = False) -> None:
-        """Write words in a colour of the theme, broken to the panel's width if ``wrapped``."""
+        """Write words in a colour of the theme, broken to the panel's width if ``wrapped``.
+
+        Powers in a line are small figures, all at one height: fonts lack some of the raised.
+        """
         words = self.said(words)
         self.words.append(words)
         imgui.push_style_color(imgui.Col_.text, packed(colour or self.theme.text))
         if wrapped:
             imgui.push_text_wrap_pos(0.0)
-        imgui.text_unformatted(_with_units(words) if wrapped else words)
-        if wrapped:
+            imgui.text_unformatted(_with_units(words))
             imgui.pop_text_wrap_pos()
+        else:
+            imgui.begin_group()
+            for n, (part, raised) in enumerate(raised_parts(words)):
+                if n:
+                    imgui.same_line(0.0, 0.0)
+                imgui.push_font(None, imgui.get_font_size() * (RAISED_SIZE if raised else 1.0))
+                imgui.text_unformatted(part)
+                imgui.pop_font()
+            imgui.end_group()
         imgui.pop_style_color()
 
     def faint(self, words: str, *, wrapped: bool = True) -> None:
@@ -90,7 +101,7 @@ class Ui(Windows):
             imgui.new_line()
             room = imgui.get_content_region_avail().x - wide
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + max(room, 0.0))
-        self._figure(value, colour if lesser else None)
+        self.text(value, colour if lesser else None)
 
     def _figure_width(self, words: str) -> float:
         """Return how wide a figure is [px]."""
@@ -100,23 +111,6 @@ class Ui(Windows):
             wide += imgui.calc_text_size(part).x
             imgui.pop_font()
         return wide
-
-    def _figure(self, words: str, colour: Colour | None) -> None:
-        """Write a figure whose powers are small figures, all at one height: fonts lack some of the raised."""
-        parts = raised_parts(words)
-        if len(parts) == 1:
-            self.text(words, colour)
-            return
-        self.words.append(words)
-        place, paper = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
-        paint = packed(colour or self.theme.text)
-        left = place.x
-        for part, raised in parts:
-            imgui.push_font(None, imgui.get_font_size() * (RAISED_SIZE if raised else 1.0))
-            paper.add_text(ImVec2(left, place.y), paint, part)
-            left += imgui.calc_text_size(part).x
-            imgui.pop_font()
-        imgui.dummy(ImVec2(left - place.x, imgui.get_text_line_height()))
 
     def tip(self, words: str) -> None:
         """Show words beside the cursor while it rests on what was drawn last."""

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,10 @@ from physicslab.world import World
 
 _ALLOWED = 1e-3
 """Overlap [m] that is no obstacle: what is put down on a floor by eye."""
+_BY_EYE = 9.0
+"""Overlap [px] by which something that is put down by eye is moved aside: it was to lie against the other."""
+_SIDES = 4
+"""How many bodies it is moved away from, one after the other."""
 _FOOT = 0.5
 """How far from what is below the foot of something may be put down to stand on it [m]."""
 _BEYOND = "there is no room beyond the walls"
@@ -42,6 +47,48 @@ def refused_place(world: World, wanted: Outlines) -> str:
             if overlap(wanted, n, others, int(other))[0] > _ALLOWED:
                 return "there is no room here"
     return ""
+
+
+def way_aside(world: World, camera: Camera, wanted: Outlines) -> Vector2:
+    """Return the way [m] on which something leaves what it overlaps by a few pixels; zero if it cannot."""
+    others, most = outlines_of(world, solid_rows(world)), _BY_EYE / camera.scale
+    gone = _way_inside(world, wanted)
+    for _ in range(_SIDES):
+        moved = wanted.moved(gone)
+        found = [
+            overlap(moved, n, others, int(other))
+            for n in range(len(moved.place))
+            for other in overlapping(moved, n, others)
+        ]
+        depth, way = max(found, key=lambda pair: pair[0], default=(0.0, np.zeros(2)))
+        if depth <= _ALLOWED or gone.magnitude > most:
+            break
+        gone -= Vector2(*(way * depth).tolist())
+    return gone if gone.magnitude <= most else Vector2()
+
+
+def _way_inside(world: World, shapes: Outlines) -> Vector2:
+    """Return the way [m] from beyond the walls of the world to within them."""
+    bounds = world.physics.bounds
+    if bounds is None or not len(shapes.place):
+        return Vector2()
+    low, high = (shapes.place - shapes.reach).min(axis=0), (shapes.place + shapes.reach).max(axis=0)
+    way = np.maximum(np.array(bounds[:2]) - low, 0.0) - np.maximum(high - np.array(bounds[2:]), 0.0)
+    return Vector2(*way.tolist())
+
+
+def meetings(world: World, entities: Sequence[int], reach: float) -> dict[tuple[int, int], Vector2]:
+    """Return where pairs of bodies meet, or are not farther apart than a length [m]: in the middle there."""
+    world.synchronise()
+    shapes = outlines_of(world, world.entity_index.rows_of(np.array(entities, np.int64)))
+    low, high = shapes.place - shapes.reach, shapes.place + shapes.reach
+    return {
+        (entities[n], entities[m]): Vector2(
+            *(0.5 * (np.maximum(low[n], low[m]) + np.minimum(high[n], high[m]))).tolist()
+        )
+        for n, m in combinations(range(len(entities)), 2)
+        if overlap(shapes, n, shapes, m)[0] >= -reach and not (shapes.line[n] or shapes.line[m])
+    }
 
 
 def refused_change(world: World, entity: int, kind: type[Component], name: str, value: object) -> str:

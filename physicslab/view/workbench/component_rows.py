@@ -19,6 +19,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.history import AddComponent, Command, SetField
 from physicslab.state.joint_rows import KINDS
 from physicslab.view.canvas.quantities import ROUNDING, without_rounding, without_turns
+from physicslab.view.controls.tool import ICONS
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.changing import change_fields, refused_command, set_end
 from physicslab.view.window.context import Picking
@@ -30,6 +31,8 @@ from physicslab.world import World
 _VARIOUS = "various"
 _LESSER = ("inertia", "fixed_rotation", "colour", "collide", "breaks", "breaks_torque")
 """Fields that have no row where few figures are wanted."""
+_AIM = 2.4
+"""Width of the button beside a list of bodies, in heights of the text."""
 _MAX_LISTED = 60
 """How many entities a list shows; others are clicked in the world."""
 
@@ -175,11 +178,11 @@ class ComponentRows:
         if kind in KINDS and not world.has(entity, Transform):
             none = "a fixed point"
         self.numbers.label(ui, key, _label(spec), spec)
-        room = imgui.get_content_region_avail().x - 3.6 * ui.size
+        room = imgui.get_content_region_avail().x - _AIM * ui.size
         now = none if end is None else world.label(end)
         picked = ui.choice(key, end, lambda: _ends(world, entity, none), width=room, shown=now)
         imgui.same_line()
-        if ui.button(f"{key} click", "Click the body in the world", shown="Click"):
+        if ui.button(f"{key} click", "Click the body in the world", shown=ICONS["aim"]):
             window.picking = Picking(entity, kind, spec.name)
             window.notify("Click the body; empty space for none", 6.0)
         if picked != end:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from physicslab.history import SetSimulation
 from physicslab.view.canvas.quantities import round_quantity
 from physicslab.view.controls import file_actions, saving
-from physicslab.view.toolkit.axes import finish_axes
+from physicslab.view.toolkit.axes import finish_axes, plot_rect
 from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lab_process import ErrorStudy, Sample
@@ -28,6 +28,8 @@ _HEIGHT = 26.0
 """The largest height of both, in heights of the text."""
 _WORDS = 12.0
 """Height of all that is above and below them, in heights of the text."""
+_LEAST = 10.0
+"""The least height of a plot, and of the table below it, in heights of the text: the window is scrolled."""
 _LEGEND = 16.0
 """The height in heights of the text from which on a plot has room for a legend."""
 _NEAR = 0.7
@@ -57,27 +59,43 @@ def _build_result(ui: Ui, window: Window) -> None:
     room = 0.9 * window.framing.room()[2]
     beside = room >= (_TABLE + _PLOT[0]) * size
     wide = (_TABLE + _PLOT[1]) * size
-    wide = min(room, wide) if beside else min(max(room, 0.7 * width), 0.9 * width)
+    wide = min(room, wide) if beside else min(max(room, _TABLE * size), 0.9 * width)
     high = min(0.9 * height - _WORDS * size, _HEIGHT * size)
+    least = _LEAST * size
+    is_low = not beside and high < 2.0 * least
     with ui.floating(_TITLE, window.framing.middle, window.closing_of("error_study.shown")):
-        with ui.wrapping(wide):
-            ui.faint(
-                f"How far bodies are off after {study.seconds:g} s: each mark is one run, left is fast, low "
-                f"is right. Compared with {study.reference}; there is no known answer. A click on a mark, or "
-                "on a name in the table, runs the scene by it.",
-                wrapped=False,
-            )
-            if study.chaotic:
-                ui.text(_chaos(study), ui.theme.paused)
-        _build_plot(ui, study, window, (wide - _TABLE * size, high) if beside else (wide, 0.55 * high))
+        if not is_low:
+            _build_words(ui, study, wide)
+        plot = (wide - _TABLE * size, high) if beside else (wide, max(0.55 * high, least))
+        _build_plot(ui, study, window, plot)
         if beside:
             imgui.same_line()
-        _build_table(ui, study, window, (_TABLE * size, high) if beside else (wide, 0.45 * high))
-        if ui.button("Close"):
-            study.shown = False
-        imgui.same_line()
-        save, tip = saving.save_table, "Write the table to a file"
-        ui.button("CSV of all runs", tip, save, "errors", study.csv, shown="CSV")
+        if is_low:  # what is not in sight is scrolled to
+            _build_buttons(ui, study)
+            _build_words(ui, study, wide)
+        _build_table(ui, study, window, (_TABLE * size, high) if beside else (wide, max(0.45 * high, least)))
+        if not is_low:
+            _build_buttons(ui, study)
+
+
+def _build_buttons(ui: Ui, study: ErrorStudy) -> None:
+    if ui.button("Close"):
+        study.shown = False
+    imgui.same_line()
+    save, tip = saving.save_table, "Write the table to a file"
+    ui.button("CSV of all runs", tip, save, "errors", study.csv, shown="CSV")
+
+
+def _build_words(ui: Ui, study: ErrorStudy, wide: float) -> None:
+    with ui.wrapping(wide):
+        ui.faint(
+            f"How far bodies are off after {study.seconds:g} s: each mark is one run, left is fast, low "
+            f"is right. Compared with {study.reference}; there is no known answer. A click on a mark, or "
+            "on a name in the table, runs the scene by it.",
+            wrapped=False,
+        )
+        if study.chaotic:
+            ui.text(_chaos(study), ui.theme.paused)
 
 
 def _chaos(study: ErrorStudy) -> str:
@@ -128,6 +146,7 @@ def _build_plot(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, fl
         spec.flags, spec.line_color = implot.InfLinesFlags_.horizontal, as_vector(ui.theme.faint)
         implot.plot_inf_lines(ui.said("one rounding at the start"), np.array([study.rounding]), spec)
     _build_marks(ui, study, window)
+    ui.places["Plot of errors"] = plot_rect()
     implot.end_plot()
 
 

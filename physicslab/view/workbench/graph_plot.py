@@ -12,7 +12,7 @@ from physicslab.diagnostics.scales import scales_of
 from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import ROUNDING, written_unit
 from physicslab.view.controls import dashboard_actions
-from physicslab.view.toolkit.axes import finish_axes
+from physicslab.view.toolkit.axes import finish_axes, plot_rect
 from physicslab.view.toolkit.style import as_vector, packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.toolkit.windows import widget_label
@@ -61,7 +61,7 @@ class GraphPlot:
         self._draw_lines(ui, world, graph, window, axis_of)
         self._draw_moments(ui, world, window, graph, axis_of)
         hovered = self._follow_mouse(window, graph)
-        ui.places.setdefault(f"Plot of graph {graph.number}", _plot_rect())
+        ui.places.setdefault(f"Plot of graph {graph.number}", plot_rect())
         implot.end_plot()
         return hovered
 
@@ -300,8 +300,3 @@ def _look(colour: Colour, opacity: float, weight: float) -> implot.Spec:
     spec = implot.Spec()
     spec.line_color, spec.line_weight = as_vector(colour, opacity), weight
     return spec
-
-
-def _plot_rect() -> tuple[int, int, int, int]:
-    corner, size = implot.get_plot_pos(), implot.get_plot_size()
-    return round(corner.x), round(corner.y), round(size.x), round(size.y)

@@ -245,7 +245,9 @@ class Hud:
             messages = banners.lay_out_messages(words, on, width - size)
             bottom = min(bottom, bar[1])
         said = tuple(text for text, _ in words), left, width, bottom
-        if messages and said != self._said:
+        if not messages:
+            self._said = None  # the same words, later, are placed where there is room then
+        elif said != self._said:
             self._said, wide = said, max(message.width for message in messages)
             high, aside = sum(message.height + size for message in messages), (wide + size) // 2
             sides = middle, left + aside, min(left + width, bar[0]) - aside

@@ -230,7 +230,7 @@ _YIELDING = ("protractor", "note", "rope", "gate", "polygon", "block", "ruler")
 def palette_width(ui: Ui) -> float:
     """Return how wide the tools are with their names [px]."""
     widest = max(ui.width(_words(ui, tool)) for tool in PALETTE)
-    return widest + imgui.get_style().frame_padding.x + 2.0 * NARROW
+    return widest + 2.0 * imgui.get_style().frame_padding.x + 2.0 * NARROW
 
 
 def build_palette(ui: Ui, rect: Rect, window: Window) -> None:

@@ -1,8 +1,7 @@
 """Every contact case, in one explicit list."""
 
-from physicslab.lab.accuracy.contacts.sliding import ROLLING, SLIDING
+from physicslab.lab.accuracy.contacts.sliding import ROLLING, SLIDING, THRESHOLDS
 from physicslab.lab.accuracy.contacts.striking import ALIKE, STRIKING
-from physicslab.lab.accuracy.contacts.thresholds import THRESHOLDS
 from physicslab.lab.case import Catalogue
 
 CONTACTS = Catalogue((*SLIDING, *ROLLING, *THRESHOLDS, *STRIKING, *ALIKE))
