@@ -171,11 +171,8 @@ class GraphPanels:
         ui.rule()
         with ui.menu("Listen", f"listen to graph {graph.number}") as is_open:
             for key in graph.keys if is_open else ():
-                tip = (
-                    "The line as a tone: the higher it is, the higher the tone; a tick where it crosses zero"
-                )
                 name = graph_readings.line_name(graph, key, window)
-                ui.item(f"Listen: {name}", dashboard_actions.listen, key, shown=name, tip=tip)
+                ui.item(f"Listen: {name}", dashboard_actions.listen, key, shown=name, tip=_LISTEN)
         ui.item("Save as a table (CSV)", dashboard_actions.save_table, graph)
         if ui.item("Save as a picture (PNG)"):
             dashboard.picture_of = graph.entity
