@@ -8,7 +8,7 @@ from typing import NamedTuple
 from physicslab.components.lengths import extent
 from physicslab.components.vertices import centred, plain, why_no_chain, why_not_convex, why_off_centre
 from physicslab.ecs.component import Component, InvalidValue, Number, Points, component, field
-from physicslab.ecs.fields import LENGTH_LIMIT
+from physicslab.ecs.fields import LENGTH_LIMIT, POINTS
 from physicslab.ecs.vector import Vector2
 
 
@@ -125,15 +125,25 @@ class Shape(Component):
 
         It is a loop where the last vertex is the first one.
         """
-        return Shape("chain", vertices=[Vector2(*vertex) for vertex in vertices])
+        return Shape("chain", vertices=vertices)
 
     @staticmethod
     def polygon(vertices: Sequence[Vector2 | tuple[float, float]], radius: float = 0.0) -> Shape:
         """Return a convex polygon of 3 to 8 vertices [m], counter-clockwise, rounded by a radius [m].
 
         They are shifted so that its centre of mass is at the origin, as those of a Shape are.
+
+        Raises
+        ------
+        InvalidValue
+            If they are not those of such a polygon: where they are, before they are shifted.
         """
-        return Shape("polygon", radius=radius, vertices=centred(vertices, radius))
+        fields = {spec.name: spec for spec in Shape.FIELDS}
+        given = POINTS.value_of(fields["vertices"].check(vertices))
+        rounding = fields["radius"].check(radius)
+        if (refused := why_not_convex(given, *KINDS["polygon"].own)) is not None:
+            raise InvalidValue("Shape", "vertices", plain(given), refused)
+        return Shape("polygon", radius=rounding, vertices=centred(given, rounding))
 
     def validate(self) -> None:
         """Check that the sizes are those of the kind and above zero, and that vertices are a polygon."""

@@ -73,8 +73,7 @@ def record(
     replay = _Replay(world)
     return Run(
         samples.times[: samples.count], samples.motion[: samples.count],
-        tuple(names[entity] for entity in moving), found, table, account,
-        lambda run: replay.sums(run), lambda run: replay.page(run),
+        tuple(names[entity] for entity in moving), found, table, account, replay.sums, replay.page,
     )  # fmt: skip
 
 
@@ -254,13 +253,20 @@ class _Replay:
         self._view = world.view
         self._made: World | None = None
 
-    def _instants(self, run: Run) -> Iterator[World]:
-        """Yield the copy at each instant."""
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what goes to another process: the copy itself, as worlds do."""
+        return {"_name": self._name, "_made": self._copy()}
+
+    def _copy(self) -> World:
         if self._made is None:
             self._made = World(systems=[system.fresh() for system in self._systems])
             self._frame.fill(self._made)
             self._made.view = self._view
-        world = self._made
+        return self._made
+
+    def _instants(self, run: Run) -> Iterator[World]:
+        """Yield the copy at each instant."""
+        world = self._copy()
         transform, velocity = world.table(Transform), world.table(Velocity)
         rows = world.batch(Transform, Velocity).rows
         for time, bodies in zip(run.times.tolist(), run.motion, strict=True):
