@@ -12,7 +12,7 @@ import pytest
 from desk import empty_world
 
 from physicslab.cli import main
-from physicslab.components import Mass, Spring, Transform, Velocity
+from physicslab.components import Mass, Pin, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.ecs.config import SimulationConfig
 from physicslab.files.scene import load_scene, write_scene
@@ -210,6 +210,20 @@ def test_momentum_has_all_digits_where_it_is_kept_and_positions_have_none() -> N
 
     found = trust(load, 20.0)
     assert found.digits < 2.0 and found.momentum > 12.0
+
+
+def test_what_only_turns_has_all_digits_of_its_momentum() -> None:
+    """A wheel on a brake: roundings move its centre by 1e-17 m, and that is no error of a momentum of 0."""
+
+    def load() -> World:
+        world = empty_world()
+        wheel = circle(world, (0.3, 0.1), radius=0.5, mass=2.0, name="wheel")
+        world.component(wheel, Velocity).angular = 8.0
+        world.spawn(Pin(b="wheel", anchor_a=(0.3, 0.1), motor_speed=0.0, max_torque=1.5))
+        return world
+
+    found = trust(load, 1.0)
+    assert found.digits > 14.0 and found.momentum > 14.0 and found.angular_momentum > 14.0
 
 
 def test_digits_until_earlier_moments_are_more_and_the_last_are_those_of_the_end() -> None:

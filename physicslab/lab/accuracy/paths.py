@@ -46,7 +46,8 @@ class Path:
     momentum : array of floats
         That of the whole world [kg m/s] (k, 2).
     momentum_scale : array of floats
-        The largest sum of the sizes of the momenta of bodies since the start [kg m/s] (k,).
+        The largest sum of the sizes of the momenta of bodies since the start, or what it would be if each
+        had moved by its size since then [kg m/s] (k,).
     angular, angular_scale : arrays of floats
         The same of the angular momentum about the origin [kg m^2/s] (k,).
     speeds, spins : arrays of floats
@@ -139,6 +140,11 @@ def run_path(
         np.maximum.accumulate(scale)[1:]
         for scale in (energy_scale, momentum_scale, angular_scale, speeds, spins)
     )
+    sizes, elapsed = sizes_of(world, bodies), np.array(moments)
+    weighed = np.isin(rows, world.batch(Transform, Velocity, Mass).rows)
+    masses = np.where(weighed, world.table(Mass)["mass"][rows], 0.0)
+    momentum_scale = np.maximum(momentum_scale, masses @ sizes / elapsed)
+    angular_scale = np.maximum(angular_scale, masses @ sizes**2 / elapsed)
     return Path(
         states[1:], energy[1:], energy_scale, momentum[1:], momentum_scale, angular[1:], angular_scale,
         speeds, spins, overlaps[1:],
@@ -189,7 +195,7 @@ def sizes_of(world: World, bodies: Sequence[str]) -> NDArray[np.float64]:
 
     To that belong the points at which springs and joints hold bodies: a pendulum is as large as its rod.
     """
-    half, radius = lengths_of(world.table(Shape), np.array(rows_of(world, bodies)))
+    half, radius = lengths_of(world.table(Shape), np.array(rows_of(world, bodies), np.int64))
     sizes = radius + np.hypot(half[:, 0], half[:, 1])
     places = _places(world)
     whole = float(np.abs(places - places.mean(axis=0)).max(initial=0.0)) or 1.0
