@@ -11,7 +11,7 @@ import json
 
 import pytest
 from crowds import crowd
-from hypothesis import assume, example, given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from physicslab.components import Transform, Velocity
@@ -47,8 +47,6 @@ def goes_on(seed: int, steps: int, contacts: str) -> None:
     assert again.plan.kept == world.plan.kept
 
 
-UNLISTED = 3456, 1
-"""A scene and steps where it does not, yet: an impact sends a body on to one not listed as near it."""
 THOROUGH = settings().max_examples > 40
 
 
@@ -61,15 +59,9 @@ THOROUGH = settings().max_examples > 40
 @example(705758920, 1).via("a deep overlap without an impulse, which exact collisions leave to contacts")
 @example(226807876, 40).via("an approach noted at a point that had been lost and found since")
 @example(36669189, 1).via("a box that turned fast, whose pair with a wall was not listed")
+@example(3456, 1).via("a body that is hit meets one that was not near it before, in one substep")
 def test_a_scene_goes_on_from_a_file_with_the_same_bits(contacts: str, seed: int, steps: int) -> None:
-    assume((seed, steps) != UNLISTED)
     goes_on(seed, steps, contacts)
-
-
-@pytest.mark.xfail(strict=True, reason="an impact may send a body on to one that is not listed as near")
-def test_what_an_impact_sends_on_meets_the_same_bodies_after_loading() -> None:
-    """In one substep b26 is hit, and then hits b4: a pair that is only in the older of two lists."""
-    goes_on(*UNLISTED, "auto")
 
 
 def test_a_scene_of_about_64_goes_on_from_a_file_after_a_removal() -> None:

@@ -32,7 +32,7 @@ def activate(
     """Call the inner function of that name."""
     return near_pairs.activate(
         proximity, activation_distance, far, manifolds, points, count, scalar, scalar_count, entities,
-        position, linear, h, margin,
+        position, linear, h, margin, np.empty(far, np.int64),
     )  # fmt: skip
 
 

@@ -84,3 +84,23 @@ def test_a_square_that_is_spun_up_by_its_corner_stays_before_the_wall() -> None:
         world.step()
         assert world.component(flier, Transform).position.x < 0.0
     assert world.collisions > 0
+
+
+def test_what_is_hit_by_a_fast_one_passes_nothing_in_the_same_substep() -> None:
+    """It is listed as near the wall only once it has been hit, and then is past it within the substep."""
+    config = SimulationConfig(contacts="soft", collisions="step", integrator="leapfrog")
+    draw = random.Random(1)
+    for _ in range(60):
+        world = World(physics=PhysicsConfig(gravity_mode="none"), simulation=config)
+        speed, to_wall, e = draw.uniform(50.0, 300.0), draw.uniform(0.1, 0.9), draw.choice((0.5, 1.0))
+        surface = Surface(restitution=e, friction=0.0)
+        circle(
+            world, (-draw.uniform(0.26, 8.0), 0.0), mass=100.0, radius=0.2, velocity=(speed, 0.0), **surface
+        )
+        hit = circle(world, (0.0, 0.0), mass=1.0, radius=0.05, **surface)
+        box(world, (to_wall, 0.0), width=0.02, height=4.0, static=True, **surface)
+        energy = measure_energy(world).total
+        for _ in range(20):
+            world.step()
+            assert world.component(hit, Transform).position.x < to_wall
+        assert measure_energy(world).total <= energy * (1.0 + 1e-12)

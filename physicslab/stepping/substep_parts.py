@@ -154,6 +154,9 @@ class SubstepParts:
         if self.compiled and not others:
             self._part(part, share)
             self._count(systems)
+            if stage is Stage.IMPACT:
+                self._part(soft.PAIRS_AGAIN, share)
+                self._part(soft.LATER_IMPACTS, share)
             if stage is Stage.CONTACT and not state.event_driven:
                 self._part(soft.WIDEN, share)
             if stage is Stage.CONTACT and self._sleeps:

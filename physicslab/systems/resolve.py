@@ -52,6 +52,7 @@ class ResolveSystem(System):
     def resolve_impacts(self, state: State, h: float) -> None:
         """Bounce the pairs that meet within the substep."""
         state.collisions += do_stage(state, soft.IMPACTS, h)
+        state.collisions += do_stage(state, soft.LATER_IMPACTS, h)
 
     @at(Stage.SOLVE)
     def solve(self, state: State, h: float) -> None:

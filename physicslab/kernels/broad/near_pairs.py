@@ -214,16 +214,16 @@ def activate(
     proximity: Couples, activation_distance: Numbers, proximity_count: int, manifolds: Manifolds,
     points: Points, count: int,
     scalar: Rows, scalar_count: int, entities: Rows, position: Vectors, linear: Vectors, h: float,
-    speculative_margin: float,
+    speculative_margin: float, near: Rows,
 ) -> tuple[int, int, int]:  # fmt: skip
     """Give records to the proximity pairs that may touch within ``h`` seconds from now or before.
 
     Returns how many pairs have no record, have one, and are scalar. New records are appended, and their
     numbers put into ``scalar`` in the order of rows, so that the time of activation makes no difference.
+    In ``near`` is room for the numbers of all proximity pairs.
     """
     if proximity_count == 0:
         return proximity_count, count, scalar_count
-    near = np.empty(proximity_count, np.int64)
     came = 0
     # Flat, with unsigned indices: else every index is multiplied by a stride and tested for its sign.
     places, velocities = position.reshape(position.size), linear.reshape(linear.size)

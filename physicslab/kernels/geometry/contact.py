@@ -17,6 +17,7 @@ from physicslab.kernels.geometry.pair import (
     touch_with_circle,
 )
 from physicslab.kernels.geometry.shapes import Shapes, has_own_way, is_chain, segment_of
+from physicslab.kernels.near_counts import ACTIVE, SCALAR
 from physicslab.kernels.records import Manifold, Point, Points
 
 ACTIVATION_RATIO = 1.02
@@ -262,6 +263,24 @@ def _put_last(touching: Rows, found: int, held: int, count: int) -> int:
     for k in range(at_end):
         touching[found + k] = touching[held + k]
     return found + at_end
+
+
+@inlined
+def list_touching(near: Near, inverse: Inverse) -> None:
+    """List the scalar pairs with points again, in the order of :func:`find_contacts`."""
+    count, found = near.counts[SCALAR], 0
+    held = count
+    for number in range(count):
+        p = near.scalar[number]
+        manifold = near.manifolds[p]
+        if manifold.count > 0:
+            if inverse.mass[manifold.a] > 0.0 and inverse.mass[manifold.b] > 0.0:
+                near.touching[found] = p
+                found += 1
+            else:
+                held -= 1
+                near.touching[held] = p
+    near.counts[ACTIVE] = _put_last(near.touching, found, held, count)
 
 
 @inlined

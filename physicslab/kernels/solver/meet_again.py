@@ -3,6 +3,9 @@
 The sweeps of a substep go by the velocities from before its impacts. A body that an impact throws back, or
 spins up, may come to another wall within the same substep, or to the same one with its next corner. So pairs
 of such bodies are looked at again, the earliest meeting of each body first, until none meets any more.
+
+An impact may throw a body out of its fat box, towards bodies that are not listed as near: pairs are then
+listed again first, so that which ones meet goes by places and velocities alone.
 """
 
 import math
@@ -10,12 +13,15 @@ from typing import NamedTuple
 
 from physicslab.kernels import Vectors, inlined
 from physicslab.kernels.arguments import Acting, Inverse, Log, Materials, Motion, Near
+from physicslab.kernels.broad.fat_boxes import all_inside
+from physicslab.kernels.broad.near_pairs import activate, sort_scalar
 from physicslab.kernels.constraint.pair import ContactFrame, point_velocity, velocity_of
+from physicslab.kernels.geometry.contact import list_touching
 from physicslab.kernels.geometry.outline import Way, kept_outline, on_segment
 from physicslab.kernels.geometry.pair import sweep_any
 from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.geometry.sweep import is_swift
-from physicslab.kernels.near_counts import LOGGED, SCALAR
+from physicslab.kernels.near_counts import ACTIVE, LOGGED, PROXIMITY, RECORDED, ROUND, SCALAR, UNORDERED
 from physicslab.kernels.records import Manifold
 from physicslab.kernels.solver.impact import ImpactWindow, resolve_at
 
@@ -37,6 +43,18 @@ def any_swift(moments: Vectors) -> bool:
     for i in range(len(moments)):
         latest = max(latest, moments[i, SINCE])
     return latest > -math.inf
+
+
+@inlined
+def is_outdated(
+    near: Near, motion: Motion, shapes: Shapes, fat: Vectors, h: float, speculative_margin: float
+) -> bool:
+    """Whether pairs are to be listed again before what is still swift meets others.
+
+    Not where no fat boxes are given: a system of one's own lists pairs, or acts between the impacts.
+    """
+    given = near.counts[ROUND] > 0 and fat.shape[1] > 0
+    return given and not all_inside(motion, shapes, fat, h, speculative_margin)
 
 
 class Meeting(NamedTuple):
@@ -111,44 +129,91 @@ def _note_meetings(
 
 
 @inlined
+def _list_near(near: Near, motion: Motion, h: float, speculative_margin: float) -> None:
+    """Give records to the pairs that bodies which have had an impact may make at their velocities of now."""
+    counts = near.counts
+    counts[PROXIMITY], counts[RECORDED], counts[SCALAR] = activate(
+        near.proximity, near.activation_distance, counts[PROXIMITY], near.manifolds, near.points,
+        counts[RECORDED], near.scalar, counts[SCALAR], near.entities, motion.position, motion.linear, h,
+        speculative_margin, near.touching[counts[ACTIVE] :],
+    )  # fmt: skip
+
+
+@inlined
+def _bounce_first(
+    near: Near, motion: Motion, materials: Materials, inverse: Inverse, acting: Acting, log: Log,
+    elastic: bool, forced: bool,
+) -> int:  # fmt: skip
+    """Bounce those noted pairs that are the first to meet for both bodies; return how many impacts it was."""
+    moments, noted, impacts = near.moments, near.noted, 0
+    for number in range(near.counts[SCALAR]):
+        p = near.scalar[number]
+        manifold, t = near.manifolds[p], noted[2 * p, 0]
+        a, b = manifold.a, manifold.b
+        if t == math.inf or t > min(moments[a, NEXT], moments[b, NEXT]):
+            continue
+        at = ContactFrame(
+            noted[2 * p, 1], noted[2 * p, 2], noted[2 * p + 1, 0], noted[2 * p + 1, 1],
+            noted[2 * p + 1, 2], noted[2 * p + 1, 3],
+        )  # fmt: skip
+        e = min(materials.restitution[a], materials.restitution[b]) if elastic else 0.0
+        mu = math.sqrt(materials.friction[a] * materials.friction[b])
+        manifold.restitution, manifold.friction = e, mu
+        impacts += resolve_at(
+            manifold, near.points[2 * p], at, t, motion, inverse, acting, forced, log,
+            near.counts[LOGGED] + impacts,
+        )  # fmt: skip
+        for row in (a, b):
+            if inverse.mass[row] > 0.0:
+                moments[row, SINCE], moments[row, NEXT] = t, -math.inf  # no second one in this round
+    return impacts
+
+
+@inlined
+def _leave_to_solver(near: Near) -> None:
+    """Let the solver not push along normals of other moments."""
+    moments = near.moments
+    for number in range(near.counts[SCALAR]):
+        p = near.scalar[number]
+        manifold = near.manifolds[p]
+        if manifold.swept == 1 and max(moments[manifold.a, SINCE], moments[manifold.b, SINCE]) > -math.inf:
+            near.points[2 * p].ahead = near.points[2 * p + 1].ahead = 1
+
+
+@inlined
 def meet_again(
     near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, acting: Acting,
-    log: Log, h: float, window: ImpactWindow,
+    fat: Vectors, log: Log, h: float, window: ImpactWindow, speculative_margin: float,
 ) -> int:  # fmt: skip
-    """Bounce what meets another time in the substep after an impact; return how many impacts there were."""
-    moments, noted, impacts = near.moments, near.noted, 0
-    for rounds in range(_ROUNDS):
-        if not _note_meetings(near, motion, shapes, inverse, h, window.end, rounds < _OUTLINES):
-            break
-        for number in range(near.counts[SCALAR]):
-            p = near.scalar[number]
-            manifold, t = near.manifolds[p], noted[2 * p, 0]
-            a, b = manifold.a, manifold.b
-            if t == math.inf or t > min(moments[a, NEXT], moments[b, NEXT]):
-                continue
-            at = ContactFrame(
-                noted[2 * p, 1], noted[2 * p, 2], noted[2 * p + 1, 0], noted[2 * p + 1, 1],
-                noted[2 * p + 1, 2], noted[2 * p + 1, 3],
-            )  # fmt: skip
-            e = min(materials.restitution[a], materials.restitution[b]) if rounds < _ELASTIC else 0.0
-            mu = math.sqrt(materials.friction[a] * materials.friction[b])
-            manifold.restitution, manifold.friction = e, mu
-            impacts += resolve_at(
-                manifold, near.points[2 * p], at, t, motion, inverse, acting, window.start < 0.0, log,
-                near.counts[LOGGED] + impacts,
-            )  # fmt: skip
-            for row in (a, b):
-                if inverse.mass[row] > 0.0:
-                    moments[row, SINCE], moments[row, NEXT] = t, -math.inf  # no second one in this round
-    if impacts > 0:  # the solver must not push along normals of other moments
-        for number in range(near.counts[SCALAR]):
-            p = near.scalar[number]
-            manifold = near.manifolds[p]
-            if (
-                manifold.swept == 1
-                and max(moments[manifold.a, SINCE], moments[manifold.b, SINCE]) > -math.inf
-            ):
-                near.points[2 * p].ahead = near.points[2 * p + 1].ahead = 1
-    for i in range(len(moments)):
-        moments[i, SINCE] = -math.inf
+    """Bounce what meets another time in the substep after an impact; return how many impacts there were.
+
+    It ends after the last round, and ``ROUND`` is 0 then, or before the one to which pairs are to be listed
+    again, since an impact has thrown a body out of its fat box.
+    """
+    counts, moments, impacts = near.counts, near.moments, 0
+    if counts[UNORDERED] != 0:
+        sort_scalar(near.manifolds, near.scalar, counts[SCALAR], len(motion.angle))
+        counts[UNORDERED] = 0
+    list_touching(near, inverse)
+    while counts[ROUND] > 0:
+        _list_near(near, motion, h, speculative_margin)
+        rounds = counts[ROUND] - 1
+        more = rounds < _ROUNDS and _note_meetings(
+            near, motion, shapes, inverse, h, window.end, rounds < _OUTLINES
+        )
+        if more:
+            came = _bounce_first(
+                near, motion, materials, inverse, acting, log, rounds < _ELASTIC, window.start < 0.0
+            )
+            impacts += came
+            counts[LOGGED] += came if len(log.impacts) > 0 else 0
+            counts[ROUND] += 1
+            if is_outdated(near, motion, shapes, fat, h, speculative_margin):
+                break
+        else:
+            if rounds > 0:
+                _leave_to_solver(near)
+            counts[ROUND] = 0
+            for i in range(len(moments)):
+                moments[i, SINCE] = -math.inf
     return impacts

@@ -33,13 +33,20 @@ from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
-from physicslab.kernels.near_counts import ACTIVE, LEFT, OUTSIDE, WIDE_COUNT
+from physicslab.kernels.near_counts import ACTIVE, LEFT, OUTSIDE, ROUND, WIDE_COUNT
 from physicslab.kernels.ode.damped_flow import flow_forces
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.edits import find_pushed
 from physicslab.kernels.sleep.islands import count_rest, find_touched
 from physicslab.kernels.solver.finer import factor_for
-from physicslab.kernels.solver.stages import find_touching, press, relax, resolve_all_impacts
+from physicslab.kernels.solver.meet_again import is_outdated
+from physicslab.kernels.solver.stages import (
+    find_touching,
+    press,
+    relax,
+    resolve_all_impacts,
+    resolve_later_impacts,
+)
 from physicslab.kernels.solver.work import book_damping, book_gravity, book_kick, note_flow
 from physicslab.kernels.ticks import charge, ticks
 from physicslab.kernels.wide.graph_colour import ADDED, MIN_WIDE, SPARSE, add_to_blocks
@@ -53,14 +60,15 @@ again; so many bodies touch that more blocks may be needed; the last step left a
 sleeping body is touched or pushed; at the end of a step, an island may fall asleep, or a body was beyond the
 bounds, or the next step needs another number of substeps."""
 (
-    HOOK, DRIFT, SPRINGS, UNIFORM, PACKED, KICK, PAIRS, FIND, WIDEN, WAKE, IMPACTS, PREDICT, SOLVE, RELAX,
-    OVERLAP,
-) = range(15)  # fmt: skip
+    HOOK, DRIFT, SPRINGS, UNIFORM, PACKED, KICK, PAIRS, FIND, WIDEN, WAKE, IMPACTS, PAIRS_AGAIN,
+    LATER_IMPACTS, PREDICT, SOLVE, RELAX, OVERLAP,
+) = range(17)  # fmt: skip
 """The parts of a substep: what is Python's; bodies move; those on springs do, or Python moves them; uniform
 forces, or compiled ones, are added up, and kick; whether the near pairs are still all that are near; where
 bodies touch; steady contacts get into blocks, once a step; whether sleeping bodies are to be woken; impacts;
-velocities are predicted; the impulses of contacts, and those after bodies have moved; what is Python's if
-these have moved bodies apart."""
+whether the near pairs still are all after these, and what they have left swift meets others; velocities are
+predicted; the impulses of contacts, and those after bodies have moved; what is Python's if these have moved
+bodies apart."""
 SHARE, DRIFTED, LATER = range(3)
 """Where in ``Course.times`` these are."""
 COSTS, STEPS = 8, 7
@@ -275,6 +283,20 @@ def _advance(
                 )  # fmt: skip
                 bounced += came
                 weighed = weighed and came == 0
+                now = charge(cost, RESOLVE, now)
+            elif what == PAIRS_AGAIN:
+                if is_outdated(near, motion, shapes, fat, span, gravity.margin):
+                    why = PAIRS_STALE
+            elif what == LATER_IMPACTS:
+                moment = plan.time + done * plan.dt + (substep + course.middle) * h
+                came = resolve_later_impacts(
+                    near, motion, shapes, materials, inverse, acting, fat, Log(impacts, moment, account),
+                    span, course.start * span, course.end * span, gravity.margin,
+                )  # fmt: skip
+                bounced += came
+                weighed = weighed and came == 0
+                if counts[ROUND] > 0:
+                    part -= 2  # back to the pairs
                 now = charge(cost, RESOLVE, now)
             elif what == PREDICT:
                 predict(

@@ -2,7 +2,7 @@
 
 import math
 
-from physicslab.kernels import always_inlined, inlined_by_numba
+from physicslab.kernels import Vectors, always_inlined, inlined_by_numba
 from physicslab.kernels.arguments import (
     Acting,
     Bounds,
@@ -26,6 +26,7 @@ from physicslab.kernels.near_counts import (
     LOWERED,
     PROXIMITY,
     RECORDED,
+    ROUND,
     SCALAR,
     UNORDERED,
     WIDE_COUNT,
@@ -78,6 +79,7 @@ def find_touching(
     counts[PROXIMITY], counts[RECORDED], counts[SCALAR] = activate(
         near.proximity, near.activation_distance, counts[PROXIMITY], manifolds, points, counts[RECORDED],
         scalar, counts[SCALAR], near.entities, motion.position, motion.linear, h, speculative_margin,
+        near.touching,
     )  # fmt: skip
     counts[ACTIVE] = find_contacts(
         near, counts[SCALAR], motion, shapes, materials, inverse, bounds, first, h, start, speculative_margin
@@ -91,7 +93,7 @@ def resolve_all_impacts(
 ) -> int:  # fmt: skip
     """Bounce what meets between ``start`` and ``end`` [s] from now; return how many impacts there were.
 
-    Wide contacts that this wakes take part.
+    Wide contacts that this wakes take part. ``ROUND`` is 1 where a body is still swift after one.
     """
     counts, impacts = near.counts, 0
     counts[LEFT] = 0
@@ -113,11 +115,23 @@ def resolve_all_impacts(
             break
         counts[WIDE_COUNT] -= counts[ACTIVE] - before
         counts[UNORDERED] = 1
-    if impacts > 0 and any_swift(near.moments):
-        came = meet_again(near, motion, shapes, materials, inverse, acting, log, h, window)
-        impacts += came
-        counts[LOGGED] += came if len(log.impacts) > 0 else 0
-        measure_again(_contacts(near), motion)
+    counts[ROUND] = 1 if impacts > 0 and any_swift(near.moments) else 0
+    return impacts
+
+
+@always_inlined
+def resolve_later_impacts(
+    near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, acting: Acting,
+    fat: Vectors, log: Log, h: float, start: float, end: float, speculative_margin: float,
+) -> int:  # fmt: skip
+    """Bounce what is still swift after those impacts, until pairs must be listed again for it."""
+    if near.counts[ROUND] == 0:
+        return 0
+    window = ImpactWindow(start, end, start)
+    impacts = meet_again(
+        near, motion, shapes, materials, inverse, acting, fat, log, h, window, speculative_margin
+    )
+    measure_again(_contacts(near), motion)
     return impacts
 
 
