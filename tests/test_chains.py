@@ -17,6 +17,7 @@ from physicslab import SceneError, World, load_scene, save_scene
 from physicslab.components import Mass, Shape, Transform, Velocity
 from physicslab.components.vertices import regular
 from physicslab.diagnostics.energy import measure_account, measure_energy
+from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
@@ -121,6 +122,17 @@ def test_it_is_solid_on_its_left_alone() -> None:
         ball = put(world, "ball", 0.0)
         world.run(seconds=1.0)
         assert (world.component(ball, Transform).position.y > 0.19) == stays
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_who_comes_from_the_solid_side_is_told_of_the_order_of_vertices(turned: bool) -> None:
+    world = World()
+    vertices = [(-3.0, 1.0), (-1.0, 0.3), (1.0, 0.0), (3.0, 0.5)]
+    world.spawn(Transform(), Shape.chain(vertices[::-1] if turned else vertices))
+    circle(world, (-1.5, 1.0), radius=0.15, velocity=(0.5, 0.0))
+    world.run(seconds=1.0)
+    told = [warning for warning in find_warnings(world) if "vertices of a chain" in str(warning)]
+    assert len(told) == (0 if turned else 1)
 
 
 def test_corners_ends_and_valleys_hold_what_rests_there() -> None:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from physicslab.components import Shape, Transform, Velocity
+from physicslab.components.shape import CHAIN
 from physicslab.diagnostics.contact_warnings import (
     RIGID_LIMIT,
     ContactGraph,
@@ -91,7 +92,9 @@ def _finished_otherwise(world: World) -> Iterator[ModelWarning]:
         return
     if rigid.left_to_soft:
         what, count = sentence("left_to_soft"), float(rigid.left_to_soft)
-        yield ModelWarning(None, what, count, "", 0.0, "", because=rigid.why_soft)
+        behind = getattr(rigid.why_soft, "code", "") == "overlap" and _has_chain(world)
+        setting = sentence("chain_turned") if behind else ""
+        yield ModelWarning(None, what, count, "", 0.0, setting, because=rigid.why_soft)
     if rigid.by_impulses:
         what, count = sentence("by_impulses"), rigid.by_impulses
         lost = measure_account(world).energy["numerical"]
@@ -100,6 +103,11 @@ def _finished_otherwise(world: World) -> Iterator[ModelWarning]:
     if rigid.energy_added:
         what = sentence("moved_apart")
         yield ModelWarning(None, what, rigid.energy_added, "J", 0.0, "")
+
+
+def _has_chain(world: World) -> bool:
+    """Whether there is a chain: bodies that come from its solid side overlap it at once."""
+    return bool((world.table(Shape)["kind"][world.batch(Shape).rows] == CHAIN).any())
 
 
 def _contact_model(world: World) -> Iterator[ModelWarning]:

@@ -174,6 +174,7 @@ SENTENCES = {
     "far_away": "is so far from the origin that its contacts cannot be resolved",
     "pressed_in": "is pressed into another body deeper than contacts can hold",
     "unlike_masses": "masses that differ less",
+    "chain_turned": "vertices of a chain in the other order, if bodies come from its left, which is solid,",
     "no_overlap_at_start": "bodies that do not overlap at the start",
     "or_smaller_dt": "{setting}, or a smaller simulation.dt",
     "mass_ratio": "carries a body so much heavier that contacts cannot hold it (mass ratio)",
