@@ -104,12 +104,9 @@ def bench(parser: ArgumentParser) -> None:
     parser.add_argument("--peers", action="store_true", help=peers)
     built = "time Box2D 3 in C as well, compiled with cc, or CC, from this checkout of it (3.2 or later)"
     parser.add_argument("--box2d", metavar="DIR", type=Path, help=built)
-    random = "time N random scenes instead; list the slowest and what they have in common"
+    random = "time N random scenes instead; list what the slowest share"
     parser.add_argument("--random", metavar="N", type=positive_count, help=random)
-    alike = (
-        "time whole runs of the scenes, others also in steps so short that they overlap no deeper and hold "
-        "joints as well, as --random does"
-    )
+    alike = "time whole runs, others also in steps so short that they are as right; --random does so too"
     parser.add_argument("--like-quality", action="store_true", help=alike)
     words = "their series (0); S:K begins at its K-th"
     parser.add_argument("--seed", metavar="S", type=series, default=(0, 0), help=words)

@@ -14,5 +14,5 @@ from physicslab.state.contents import Contents
     tags=("solid bodies",),
 )
 def drop(world: Contents) -> None:
-    box(world, (0, -0.5), width=2000, height=1, static=True, restitution=0.8, friction=0.6, name="floor")
+    box(world, (0, -0.5), width=20, height=1, static=True, restitution=0.8, friction=0.6, name="floor")
     circle(world, (-3, 4), radius=0.25, velocity=(1, 0), restitution=0.8, friction=0.6, name="ball")

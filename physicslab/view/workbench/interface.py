@@ -43,7 +43,7 @@ from physicslab.world import World
 # ---- the layout: the world first, panels around it ---------------------------------------------------------
 
 
-_PALETTE, _SIDE, _TRANSPORT = 7.3, 16.8, 3.0
+_PALETTE, _SIDE, _TRANSPORT = 7.3, 16.7, 3.0
 """Widths of the palette and the side panel, height of the transport, in heights of the text."""
 _WIDE = 44.0
 """Width of the world's room from which on windows stand at its sides, not below, in heights of the text."""
