@@ -131,7 +131,8 @@ def resolve_later_impacts(
     impacts = meet_again(
         near, motion, shapes, materials, inverse, acting, fat, log, h, window, speculative_margin
     )
-    measure_again(_contacts(near), motion)
+    if near.counts[ROUND] == 0:  # once: each time it rounds
+        measure_again(_contacts(near), motion)
     return impacts
 
 
