@@ -127,6 +127,7 @@ WRONG = [
     ("open: height = 1 m to 20 m", "open: height = 6 m to 20 m", "with height = 5 m in between"),
     ("open: height = 1 m to 20 m", "open: height = 1 kg to 20 kg", "another unit does not fit"),
     ("\"height\"]", "\"pul\"]", "'pul' is no unit and no parameter; must be one of height, gravity"),
+    ("let: height = 5 m", "let: height = five", "'five' is no unit, and there are no parameters here"),
     ("tools: hand", "tools: hammer",
      "line 15: scene: tools = \"hammer, ruler\": \"hammer\": must be some of hand"),
     ("show: arrows", "show: ghosts", "line 16: scene: show"),

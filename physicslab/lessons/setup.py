@@ -48,6 +48,8 @@ class Parameters:
         """Return the value of a parameter; refuse a name that is no unit either."""
         if name in self.values or "." in name or is_known(name):
             return self.values.get(name)
+        if not self.values:
+            raise InvalidText(f"'{name}' is no unit, and there are no parameters here")
         raise InvalidText(f"'{name}' is no unit and no parameter; must be one of {_listed(self.values)}")
 
     def called(self, name: str, arguments: list[ast.expr], whole: Expression) -> Quantity | None:

@@ -24,6 +24,8 @@ RIGHT, WRONG, RUN = "\uf00c", "\uf00d", "\uf04b"
 
 _NUMBER = 4.2
 """Least width of a column, in heights of the text."""
+_SMALLEST = 0.75
+"""Least size of the table's text, as a share of the usual."""
 _COUNTS = 1e6
 """Whole numbers below this are written with all their figures."""
 
@@ -43,9 +45,14 @@ def build_compare(ui: Ui, lesson: OpenLesson, part: Compare, rows_of: Rows) -> N
     predicted = _predicted(lesson, part)
     flags = imgui.TableFlags_.row_bg | imgui.TableFlags_.sizing_stretch_prop
     heads = ("", *(["predicted"] if predicted else []), "theory", "measured", "gap")
+    wide = [max(1.15 * imgui.calc_text_size(ui.said(head)).x, _NUMBER * ui.size) for head in heads[1:]]
+    room = imgui.get_content_region_avail().x - 2.0 * len(heads) * imgui.get_style().cell_padding.x
+    least = _NUMBER * ui.size
+    smaller = max(_SMALLEST, min(1.0, room / (least + sum(wide))))  # else words break within
+    imgui.push_font(None, smaller * imgui.get_font_size())
     if imgui.begin_table(f"rows of {part.name}", len(heads), flags):
-        wide = [max(1.15 * imgui.calc_text_size(ui.said(head)).x, _NUMBER * ui.size) for head in heads[1:]]
-        first = max(imgui.get_content_region_avail().x - sum(wide), _NUMBER * ui.size)
+        wide = [smaller * width for width in wide]
+        first = max(room - sum(wide), smaller * least)
         for head, width in zip(heads, (first, *wide), strict=True):
             imgui.table_setup_column(head, imgui.TableColumnFlags_.width_stretch, width)
         imgui.table_next_row()
@@ -55,6 +62,7 @@ def build_compare(ui: Ui, lesson: OpenLesson, part: Compare, rows_of: Rows) -> N
         for n, (case, row) in enumerate(zip(cases, rows, strict=True), start=1):
             _build_row(ui, lesson, part, n, case, row, predicted, wide[0])
         imgui.end_table()
+    imgui.pop_font()
     found = [(n, row) for n, row in enumerate(rows, start=1) if isinstance(row, Row)]
     if not part.along and len(found) > 1:
         plot_compared(ui, part, found, predicted)

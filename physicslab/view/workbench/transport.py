@@ -32,17 +32,12 @@ def build_transport(ui: Ui, rect: Rect, world: World, window: Window) -> None:
         pace, size, icons = window.pace, ui.size, ICONS
         height = _HEIGHT * size
         imgui.set_cursor_pos_y(max(0.5 * (rect[3] - height), 0.0))
-        play = ("Play", "play") if pace.paused else ("Pause", "pause")
+        run = ("Play", "Let time run (Space)", "play")
+        play, why, icon = run if pace.paused else ("Pause", "Stop time (Space)", "pause")
         for label, tip, action, shown, width in (
             ("Restart", "Restart this scene (Ctrl+R)", file_actions.restart, icons["restart"], _NARROW),
             ("Step back", "Pause, and go back by one step (B)", actions.step_back, icons["back"], _NARROW),
-            (
-                play[0],
-                f"{play[0]} (Space)",
-                actions.toggle_pause,
-                f"{icons[play[1]]}  {ui.said(play[0])}",
-                _WIDE,
-            ),
+            (play, why, actions.toggle_pause, f"{icons[icon]}  {ui.said(play)}", _WIDE),
             (
                 "Step",
                 "Pause, and make one step (.)",
