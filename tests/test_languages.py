@@ -187,6 +187,7 @@ def test_a_finished_sentence_is_said_in_another_language_with_what_is_in_its_gap
     )
     assert german.reword("new box") == german.reword("New box") == "Neuer Kasten"
     assert german.reword("pause") == german.reword("Pause") == "Pause"
+    assert [german.reword(words) for words in ("sticks", "slips")] == ["haftet", "rutscht"]
     taken = "Taken: friction 1 J, impacts 37.4 J, damping 2 J, resting contacts 3 J"
     assert german.reword(taken) == (
         "Abgeführt: Reibung 1 J, Stöße 37,4 J, Dämpfung 2 J, ruhende Kontakte 3 J"
