@@ -14,12 +14,16 @@ from recording import RecordingCanvas
 
 from physicslab import cli
 from physicslab.components import Transform, Velocity
-from physicslab.desktop import compiling
+from physicslab.desktop import app, compiling
 from physicslab.desktop.app import open_window
+from physicslab.desktop.progress import draw_loading
 from physicslab.desktop.sandbox import Sandbox
+from physicslab.ecs.config import WindowConfig
 from physicslab.files.scene import SceneError, load_scene
 from physicslab.prefabs import box, circle
 from physicslab.systems.system import Stage, System, at
+from physicslab.theme import DARK, Theme
+from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.display import Display
 from physicslab.view.window.window import Window
 from physicslab.world import World
@@ -292,3 +296,28 @@ def test_the_package_alone_imports_neither_numba_nor_pygame() -> None:
     code = "import sys, physicslab; print(sorted({'numba', 'numpy', 'pygame'} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
+
+
+@pytest.mark.parametrize(
+    "content", ['{"language": "de", "colours": "projector"}', '{"language": "de"', "[1]"]
+)
+def test_what_is_said_while_it_loads_is_in_the_chosen_language(
+    content: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "preferences.json"
+    path.write_text(content)
+    said: list[tuple[str, str]] = []
+
+    def load(canvas: Canvas, theme: Theme, remark: str) -> None:
+        draw_loading(canvas, theme, remark)
+        said.append((theme.name, canvas.language.reword("Loading, 3 s")))
+
+    monkeypatch.setattr(app, "preferences_path", lambda: path)
+    monkeypatch.setattr(app, "draw_loading", load)
+    monkeypatch.setattr(app, "_import", lambda module: time.sleep(0.1))
+    with Display.open(WindowConfig(), "test") as display:
+        assert app._load(display, "physicslab.desktop.session_window")
+    chosen = content.endswith("}")
+    words = "Wird geladen, 3 s" if chosen else "Loading, 3 s"
+    assert set(said) == {("projector" if chosen else DARK.name, words)}
+    assert path.read_text() == content, "a file that cannot be read is put aside where it can be said"

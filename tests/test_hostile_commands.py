@@ -13,7 +13,8 @@ import pytest
 from deadline import deadline
 from forked import ForkedProgram
 
-from physicslab.files.scene import FILE_LIMIT, SceneError, load_scene
+from physicslab.files.plain import FILE_LIMIT
+from physicslab.files.scene import SceneError, load_scene
 
 MAIN = Path(__file__).parents[1] / "main.py"
 WARNINGS = {"SDL_VIDEODRIVER": "dummy", "PYTHONWARNINGS": "error"}

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from physicslab.files.scene import BRACKET_LIMIT, FILE_LIMIT, SceneError, load_scene
+from physicslab.files.plain import FILE_LIMIT
+from physicslab.files.scene import BRACKET_LIMIT, SceneError, load_scene
 
 START, END = b'{"format": "physicslab-scene/1", ', b"}"
 MEMORY = 1_500_000_000

@@ -1,12 +1,16 @@
 """Keyboards of other systems and scripts: what keys count as, what they write, what menus call them."""
 
+from unittest.mock import patch
+
 import pygame
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from imgui_bundle import ImVec2, imgui
 
+from physicslab.languages import language
 from physicslab.languages.language import Language
+from physicslab.view.canvas import keyboard
 from physicslab.view.canvas.keyboard import usual_event
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.toolkit.toolkit import Toolkit
@@ -47,7 +51,8 @@ def test_keys_with_names_of_their_own_stay(key: int, place: int) -> None:
 
 @given(MODS, st.characters())
 def test_on_other_systems_held_keys_stay_but_for_alt_gr(mod: int, printed: str) -> None:
-    found = usual_event(pressed(pygame.K_8, mod=mod, printed=printed), on_mac=False).mod
+    with patch.object(keyboard, "ON_MAC", False):
+        found = usual_event(pressed(pygame.K_8, mod=mod, printed=printed)).mod
     both = mod & pygame.KMOD_CTRL and mod & pygame.KMOD_ALT
     if both and printed.isprintable():
         assert found == mod & ~(pygame.KMOD_CTRL | pygame.KMOD_ALT)
@@ -57,7 +62,8 @@ def test_on_other_systems_held_keys_stay_but_for_alt_gr(mod: int, printed: str) 
 
 @given(MODS)
 def test_on_macos_cmd_is_ctrl(mod: int) -> None:
-    found = usual_event(pressed(pygame.K_s, mod=mod), on_mac=True).mod
+    with patch.object(keyboard, "ON_MAC", True):
+        found = usual_event(pressed(pygame.K_s, mod=mod)).mod
     assert bool(found & pygame.KMOD_CTRL) == bool(mod & (pygame.KMOD_CTRL | pygame.KMOD_META))
     assert not found & pygame.KMOD_META
     others = ~(pygame.KMOD_CTRL | pygame.KMOD_META)
@@ -66,12 +72,16 @@ def test_on_macos_cmd_is_ctrl(mod: int) -> None:
 
 def test_events_of_the_mouse_and_of_text_are_not_touched() -> None:
     for event in (pygame.Event(pygame.TEXTINPUT, text="ф"), pygame.Event(pygame.MOUSEMOTION, pos=(1, 2))):
-        assert usual_event(event, on_mac=True) is event
+        with patch.object(keyboard, "ON_MAC", True):
+            assert usual_event(event) is event
 
 
 @pytest.mark.parametrize("code", ["en", "de"])
 def test_on_macos_every_text_calls_ctrl_cmd(code: str) -> None:
-    own, mac = Language(code, on_mac=False), Language(code, on_mac=True)
+    with patch.object(language, "ON_MAC", False):
+        own = Language(code)
+    with patch.object(language, "ON_MAC", True):
+        mac = Language(code)
     usual = "Strg" if code == "de" else "Ctrl"
     said = [mac.reword(control.label) for control in CONTROLS if control.label.startswith("Ctrl")]
     assert len(said) > 15 and all(label.startswith("Cmd+") for label in said)
@@ -87,7 +97,8 @@ def test_fields_of_panels_hear_ctrl_on_each_system(on_mac: bool) -> None:
     io = imgui.get_io()
     io.config_mac_osx_behaviors = on_mac
     held = pygame.KMOD_LMETA if on_mac else pygame.KMOD_LCTRL
-    event = usual_event(pressed(pygame.K_c, pygame.KSCAN_C, held), on_mac=on_mac)
+    with patch.object(keyboard, "ON_MAC", on_mac):
+        event = usual_event(pressed(pygame.K_c, pygame.KSCAN_C, held))
     toolkit.walked = True  # keys are for panels
     assert toolkit.take(event)
     imgui.get_io().display_size = ImVec2(100.0, 100.0)

@@ -10,6 +10,7 @@ import pygame
 import pytest
 from desk import bits, empty_world
 
+from physicslab.ecs.config import WindowConfig
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import circle
 from physicslab.theme import DARK
@@ -25,13 +26,13 @@ def test_a_file_and_a_stream_get_the_same_picture(tmp_path: Path) -> None:
     assert stream.getvalue().startswith(b"\x89PNG")
 
 
-def test_it_has_the_requested_size_and_shows_the_world(tmp_path: Path) -> None:
+def test_it_has_the_size_of_the_window_and_shows_the_world(tmp_path: Path) -> None:
     world = empty_world()
     circle(world, (1000, -500), radius=3)
-    save_png(world, tmp_path / "picture.png", size=(320, 200))
+    save_png(world, tmp_path / "picture.png")
     picture = pygame.image.load(tmp_path / "picture.png")
-    assert picture.get_size() == (320, 200)
-    seen = {tuple(one) for one in pygame.surfarray.array3d(picture)[100:220, 40:160].reshape(-1, 3).tolist()}
+    assert picture.get_size() == WindowConfig().size
+    seen = {tuple(one) for one in pygame.surfarray.array3d(picture)[540:740, 260:460].reshape(-1, 3).tolist()}
     assert len(seen & set(DARK.bodies)) == 1, "the rim of the one body"
 
 

@@ -13,7 +13,7 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.prefabs import box, circle
 from physicslab.systems.standard import standard_systems
 
-TOLD = "no law determines"
+TOLD = "leave open how more than two share"
 
 
 def empty(*, gravity: bool = False, **simulation: object) -> World:

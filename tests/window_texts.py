@@ -65,9 +65,9 @@ def constants() -> frozenset[str]:
 
 @cache
 def written() -> dict[str, str]:
-    """Return the texts that the view writes or has in tables, each with where it is."""
+    """Return the texts that the window writes or has in tables, each with where it is."""
     found: dict[str, str] = {}
-    for path in sorted((PACKAGE / "view").rglob("*.py")):
+    for path in sorted(path for part in ("desktop", "view") for path in (PACKAGE / part).rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and getattr(node.func, "attr", "") in WRITING:
                 words = {keyword.arg: keyword.value for keyword in node.keywords}

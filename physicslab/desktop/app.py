@@ -2,13 +2,21 @@
 
 import threading
 import time
+from contextlib import suppress
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from physicslab.desktop.appearance import (
+    UNREADABLE,
+    chosen_language,
+    chosen_theme,
+    preferences_path,
+    read_preferences,
+)
 from physicslab.desktop.garbage import loading
 from physicslab.desktop.progress import PAUSE, draw_loading
 from physicslab.ecs.config import WindowConfig
-from physicslab.theme import DARK
+from physicslab.languages.language import language
 from physicslab.view.canvas.display import Display, NoScreen, wants_to_leave
 
 if TYPE_CHECKING:
@@ -51,7 +59,11 @@ def _load(display: Display, module: str) -> bool:
     for some milliseconds each, which an empty window does not show. The window is drawn where it changes.
     """
     thread = threading.Thread(target=_import, args=(module,), daemon=True)
-    start, drawn = time.perf_counter(), None
+    found: dict[str, Any] = {}
+    with suppress(*UNREADABLE):  # it is said where the window can say it
+        found = read_preferences(preferences_path())
+    display.canvas.language = language(chosen_language(found))
+    theme, start, drawn = chosen_theme(found), time.perf_counter(), None
     while drawn is None or thread.is_alive():
         seconds = time.perf_counter() - start
         remark = f"Loading, {int(seconds)} s" if seconds > _PATIENCE else ""
@@ -59,7 +71,7 @@ def _load(display: Display, module: str) -> bool:
             if drawn is None:
                 thread.start()
             drawn = remark, display.canvas.size
-            draw_loading(display.canvas, DARK, remark)
+            draw_loading(display.canvas, theme, remark)
             display.show()
         if wants_to_leave():
             return False

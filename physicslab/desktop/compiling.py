@@ -125,6 +125,8 @@ class Compiling:
     ----------
     display : Display
         Where it is shown how far it is.
+    theme : Theme
+        The colours of that.
 
     Attributes
     ----------
@@ -132,7 +134,7 @@ class Compiling:
         The object that finds whether the scene that is shown may be interpreted.
     """
 
-    def __init__(self, display: Display) -> None:
+    def __init__(self, display: Display, theme: Theme = DARK) -> None:
         self.scenes = SmallScenes()
         self._display = display
         self._warmup = None if is_warm() or interpreter.is_forced() else Warmup()
@@ -140,7 +142,7 @@ class Compiling:
         self._started = False
         self._coming: Any = None
         self._frames = 0
-        self._theme: Theme = DARK
+        self._theme = theme
         self._drawn: Hashable = None
 
     def __enter__(self) -> Compiling:
@@ -227,11 +229,11 @@ class Compiling:
         if wanted == self._drawn:
             return
         self._drawn = wanted
-        share, so_far = progress.share, f"{progress.done} of {progress.total} parts"
+        share, done, total = progress.share, progress.done, progress.total
         if self._frames:
-            draw_waiting(canvas, self._theme, share, f"{so_far}, {seconds} s")
+            draw_waiting(canvas, self._theme, share, f"{done} of {total} parts, {seconds} s")
         else:
-            draw_progress(canvas, self._theme, share, so_far)
+            draw_progress(canvas, self._theme, share, f"{done} of {total} parts")
         self._display.show()
 
     def advance(self, theme: Theme, bottom: int | None = None) -> None:

@@ -3,14 +3,10 @@
 import json
 import os
 from pathlib import Path
-from typing import Any
 
+from physicslab.desktop.appearance import UNREADABLE, chosen_language, chosen_theme, read_preferences
 from physicslab.ecs.text import printable
-from physicslab.files.checks import SceneError
 from physicslab.files.replace import rename_over, replace_file
-from physicslab.files.scene import read_bytes
-from physicslab.languages.catalogue import languages
-from physicslab.theme import THEMES
 from physicslab.view.canvas.drawable_text import encodable
 from physicslab.view.controls.choosing_keys import read_choice
 from physicslab.view.window.desk import LEVELS
@@ -21,7 +17,6 @@ _MIN_SCALE, _MAX_SCALE = 0.5, 3.0
 """The sizes of text that are taken from a file, as shares of the usual."""
 _MAX_ARRANGEMENT = 100_000
 """Characters that are taken of where panels are."""
-_MAX_BYTES = 1_000_000
 _UNREADABLE = ".unreadable"
 """Suffix for a file that could not be read, so that it does not stand in the way again."""
 
@@ -32,17 +27,13 @@ def load_preferences(path: Path, window: Window) -> None:
     A file that cannot be read is put aside, and the window says so.
     """
     try:
-        found: Any = json.loads(
-            read_bytes(path, path.name, _MAX_BYTES, "a file of preferences").decode("utf-8")
-        )
-        if not isinstance(found, dict):
-            raise ValueError("it holds no object")
+        found = read_preferences(path)
     except FileNotFoundError:
         return
-    except (OSError, SceneError, ValueError, RecursionError) as error:
+    except UNREADABLE as error:
         _put_aside(path, window, error)
         return
-    window.theme = next((theme for theme in THEMES if theme.name == found.get("colours")), window.theme)
+    window.theme, window.language = chosen_theme(found), chosen_language(found)
     scale, level, panels = found.get("text"), found.get("level"), found.get("panels")
     if isinstance(scale, int | float) and _MIN_SCALE <= scale <= _MAX_SCALE:
         window.text_scale = float(scale)
@@ -51,7 +42,6 @@ def load_preferences(path: Path, window: Window) -> None:
     window.welcomed = found.get("welcomed") is True
     window.reduced_motion = found.get("reduced motion") is True
     window.sounds.on = found.get("sound") is True
-    window.language = next((code for code in languages() if code == found.get("language")), window.language)
     window.keys.chosen, wrong = read_choice(found.get("keys", {}))
     if wrong:
         window.notify(f"Preferences: {printable(wrong)}. The usual key is taken", 8.0, failed=True)

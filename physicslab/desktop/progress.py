@@ -34,8 +34,8 @@ def draw_waiting(canvas: Canvas, theme: Theme, share: float, remark: str) -> Non
     panel = min(_WIDTH, width - 40)
     left, top, middle = (width - panel) // 2, height // 2 - 60, width // 2
     canvas.panel((left, top, panel, 120), theme.panel, theme.outline)
-    words = "Paused: this part is still being compiled."
-    canvas.text(words, (middle, top + 16), TextStyle(16, theme.text), "centre")
+    title = TextStyle(16, theme.text)
+    canvas.text("Paused: this part is still being compiled.", (middle, top + 16), title, "centre")
     _draw_bar(canvas, theme, left + 30, top + 52, panel - 60, share)
     canvas.text(remark, (middle, top + 80), TextStyle(14, theme.faint), "centre")
 
@@ -56,9 +56,8 @@ def draw_progress(canvas: Canvas, theme: Theme, share: float, remark: str) -> No
     bar = min(_WIDTH, width - 80)
     left, top, middle = (width - bar) // 2, height // 2, width // 2
     draw_loading(canvas, theme, "")
-    first = "First start: compiling the physics for this computer."
-    canvas.text(first, (middle, top - 50), TextStyle(16, theme.text), "centre")
+    title, faint = TextStyle(16, theme.text), TextStyle(14, theme.faint)
+    canvas.text("First start: compiling the physics for this computer.", (middle, top - 50), title, "centre")
     _draw_bar(canvas, theme, left, top, bar, share)
-    canvas.text(remark, (middle, top + 28), TextStyle(14, theme.faint), "centre")
-    again = "This is done once and kept. Esc quits."
-    canvas.text(again, (middle, top + 56), TextStyle(14, theme.faint), "centre")
+    canvas.text(remark, (middle, top + 28), faint, "centre")
+    canvas.text("This is done once and kept. Esc quits.", (middle, top + 56), faint, "centre")

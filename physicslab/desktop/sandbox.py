@@ -219,7 +219,11 @@ class Sandbox:
             return
         self.show(world)
         if edited:
-            window.notify(f"{window.notice} - Ctrl+Z at its start brings back what was edited before", 6.0)
+            said = window.notice
+            what = said if isinstance(said, Sentence) else Sentence(said)
+            window.notify(
+                Sentence("{what} - Ctrl+Z at its start brings back what was edited before", what=what), 6.0
+            )
 
     def _show_again(self, left: Left) -> None:
         """Show a scene that was shown before, as it was."""

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Any
 
+from physicslab.desktop.appearance import preferences_path
 from physicslab.desktop.autosave import Autosave
 from physicslab.desktop.compiling import Compiling, Left
 from physicslab.desktop.garbage import loading
@@ -91,7 +92,6 @@ class Termination:
 
 FIRST_SCENE = "sandbox"
 """The scene that is opened where none is named, and that stands behind a lesson."""
-_PREFERENCES = "preferences.json"
 _STILL = 0.5
 """Time [s] between two frames where nothing moves and nothing is done: a laptop lives on its battery."""
 _TITLE_LIMIT = 200
@@ -119,7 +119,7 @@ def run_window(display: Display, config: WindowConfig, scene: str | World, *, we
     window.scenes.source = source
     session, abandoned = _begin_session(window)
     with suppress(OSError):
-        load_preferences(session_folder().with_name(_PREFERENCES), window)
+        load_preferences(preferences_path(), window)
     offered = window.shows_cards = welcomes and not window.welcomed
     if source is not None:
         window.scenes.note(source, stamp)
@@ -129,7 +129,7 @@ def run_window(display: Display, config: WindowConfig, scene: str | World, *, we
     try:
         with Termination(ask_to_leave) as termination:
             try:
-                with Compiling(display) as compiling:
+                with Compiling(display, window.theme) as compiling:
                     window.has_kernels = partial(getattr, compiling, "finished")
                     with loading():
                         # Time spent waiting for a kernel is no time that steps took.
@@ -154,7 +154,7 @@ def run_window(display: Display, config: WindowConfig, scene: str | World, *, we
         window.scenes.recovery.leave()
         window.welcomed = window.welcomed or (offered and not window.shows_cards)
         with suppress(OSError):  # a window without preferences is the usual one
-            save_preferences(session_folder().with_name(_PREFERENCES), window)
+            save_preferences(preferences_path(), window)
     if session is not None and termination.signal:
         session.release()
     elif autosave is not None and session is not None:

@@ -225,8 +225,8 @@ SENTENCES = {
         "contacts are soft; a stack that barely stands may fall, and contacts are off by about so much"
     ),
     "undetermined": (
-        "meet at one moment, and no law determines which impulses act together and which in turn: "
-        "the outcome is one of several (moments)"
+        "collide at one moment: momentum, restitution and friction leave open how more than two share the "
+        "impulse; here all act at once, and a tiny difference in time may change the outcome (moments)"
     ),
     "light_to_turn": "turns too easily for its joints to be solved with all digits (mass * arm^2 / inertia)",
     "idle_joint": "joins what no force moves, and does nothing",

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from physicslab.files.scene import SceneError, is_step, open_plain
+from physicslab.files.plain import open_plain
+from physicslab.files.scene import SceneError, is_step
 
 _MARK = b"physicslab-scene/"
 """The beginning of the format of a scene file."""

@@ -6,16 +6,16 @@ import json
 import math
 import os
 import re
-import stat
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened, suggestion
 from physicslab.files.checks import JsonObject, SceneError
 from physicslab.files.json_text import json_bytes
+from physicslab.files.plain import read_bytes
 from physicslab.files.reader import check_scene, read_scene
 from physicslab.files.replace import create_file, replace_file
 from physicslab.files.writer import write_scene
@@ -23,12 +23,10 @@ from physicslab.scenes import SCENES
 from physicslab.world import World
 
 __all__ = [
-    "SceneError", "load_scene", "open_plain", "parse_json", "read_bytes", "read_scene", "read_text",
-    "save_scene", "scene_bytes", "write_scene",
+    "SceneError", "load_scene", "parse_json", "read_scene", "read_text", "save_scene", "scene_bytes",
+    "write_scene",
 ]  # fmt: skip
 
-FILE_LIMIT = 100 * 2**20
-"""Bytes that a scene file may have."""
 BRACKET_LIMIT = 1_000_000
 """Objects and lists that a scene file may hold, 125,000 bodies: reading them takes up to 1.1 GB of memory."""
 VALUE_LIMIT = 8_000_000
@@ -189,39 +187,6 @@ def read_content(path: str | os.PathLike[str], source: str) -> bytes:
         raise
     except ValueError as error:  # a null character or half a surrogate pair in the name
         raise SceneError(f"{source}: is no file name: {error}") from error
-
-
-def read_bytes(
-    path: str | os.PathLike[str], source: str, limit: int = FILE_LIMIT, what: str = "a scene file"
-) -> bytes:
-    """Read a plain file, and never more of it than ``limit``: what is opened may grow, or have no end.
-
-    ``source`` is what messages call it, and ``what`` what it should be.
-
-    Raises
-    ------
-    SceneError
-        If it is no plain file, or larger.
-    OSError
-        If it cannot be read.
-    """
-    with open_plain(path, source, what) as file:
-        content = file.read(limit + 1)
-    if len(content) > limit:
-        raise SceneError(f"{source}: is too large: {what} must have at most {limit:,} bytes")
-    return content
-
-
-def open_plain(path: str | os.PathLike[str], source: str, what: str = "a scene file") -> BinaryIO:
-    """Open a plain file to read: a pipe without a writer would wait for ever. Errors: :func:`read_bytes`."""
-    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    if os.path.isdir(path):  # Windows would say "permission denied"
-        raise SceneError(f"{source}: is a directory, not {what}")
-    descriptor = os.open(path, flags)
-    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-        os.close(descriptor)
-        raise SceneError(f"{source}: is a pipe or a device; {what} must be a plain file")
-    return os.fdopen(descriptor, "rb")
 
 
 def parse_json(text: str, source: str) -> object:

@@ -9,6 +9,8 @@ from gettext import NullTranslations
 from physicslab.languages.catalogue import SOURCE, sources, translations
 from physicslab.languages.sentence import Sentence
 
+ON_MAC = sys.platform == "darwin"
+"""Whether texts are for macOS, where Ctrl is Cmd."""
 _POINT = re.compile(r"(?<![\w.])(\d+)\.(\d+(?:e[+-]?\d+)?)(?!\w|\.\w)")
 """A number with a decimal point, which is no part of a name."""
 _BETWEEN = re.compile(r"(?<=\d), (?=[-\u2212]?\d)")
@@ -34,16 +36,12 @@ class Language:
         As ``"de"``.
     catalogue : gettext.NullTranslations, optional
         Its translations; those of ``CODE.po`` where absent.
-    on_mac : bool
-        Whether its texts are for macOS, where Ctrl is Cmd.
     """
 
-    def __init__(
-        self, code: str, catalogue: NullTranslations | None = None, *, on_mac: bool = sys.platform == "darwin"
-    ) -> None:
+    def __init__(self, code: str, catalogue: NullTranslations | None = None) -> None:
         self.code = code
         own = translations(code) if catalogue is None else catalogue
-        self._catalogue = _MacTexts(own) if on_mac else own
+        self._catalogue = _MacTexts(own) if ON_MAC else own
         self._mark = self.say(".")
         self._sentences = _sentences(code)
         self._reworded = lru_cache(_KEPT)(self._found)

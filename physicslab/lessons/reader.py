@@ -11,8 +11,9 @@ from physicslab.diagnostics.figures import FUNCTIONS
 from physicslab.ecs.quantity_text import Expression, InvalidText, is_known
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import SceneError, shown
+from physicslab.files.plain import read_bytes
 from physicslab.files.reader import FORMAT as SCENE_FORMAT
-from physicslab.files.scene import load_scene, parse_json, read_bytes, write_scene
+from physicslab.files.scene import load_scene, parse_json, write_scene
 from physicslab.lessons.blocks import KEYS, Block, Entry, LessonError, read_case, read_document
 from physicslab.lessons.lesson import DEPTHS, HEADING, Lesson, Part, Prose, Step
 from physicslab.lessons.parts import CITED, PartMaker

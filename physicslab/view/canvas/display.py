@@ -18,7 +18,7 @@ import pygame
 
 from physicslab.ecs.config import WindowConfig
 from physicslab.files.replace import create_file
-from physicslab.theme import DARK, Theme
+from physicslab.theme import DARK
 from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 
@@ -51,7 +51,7 @@ class Display:
 
     @classmethod
     @contextmanager
-    def open(cls, config: WindowConfig, title: str, theme: Theme = DARK) -> Iterator[Display]:
+    def open(cls, config: WindowConfig, title: str) -> Iterator[Display]:
         """Open a window for the length of a ``with`` block.
 
         Raises
@@ -65,7 +65,7 @@ class Display:
             pygame.display.init()  # not pygame.init(): sound is not needed, and complains where there is none
             _check_visible()
             pygame.font.init()
-            pygame.display.set_icon(_icon(theme))
+            pygame.display.set_icon(_icon())
             density = _dpi() / _USUAL_DPI
             size = [round(density * side) for side in config.size]
             surface = pygame.display.set_mode(size, pygame.RESIZABLE)
@@ -75,7 +75,7 @@ class Display:
         try:
             pygame.display.set_caption(drawable(title))
             _limit(config.least_size)
-            surface.fill(theme.background)
+            surface.fill(DARK.background)
             pygame.display.flip()  # at once, so that no black rectangle greets the user
             yield cls(PygameCanvas(surface), config.fps, density)
         finally:
@@ -193,15 +193,15 @@ def _limit(size: tuple[int, int]) -> None:
         pygame.Window.from_display_module().minimum_size = size
 
 
-def _icon(theme: Theme) -> pygame.Surface:
+def _icon() -> pygame.Surface:
     """Return the program's icon: a ball that hits a box. Nothing needs to be compiled for it."""
     large = pygame.Surface((256, 256), pygame.SRCALPHA, 32)
-    pygame.draw.rect(large, theme.background, large.get_rect(), border_radius=56)
-    ball, box, *_ = theme.bodies
-    for colour, width in ((theme.fill(ball), 0), (ball, 16)):
+    pygame.draw.rect(large, DARK.background, large.get_rect(), border_radius=56)
+    ball, box, *_ = DARK.bodies
+    for colour, width in ((DARK.fill(ball), 0), (ball, 16)):
         pygame.draw.circle(large, colour, (92, 124), 56, width)
     pygame.draw.line(large, ball, (92, 124), (124, 90), 16)
-    for colour, width in ((theme.fill(box), 0), (box, 16)):
+    for colour, width in ((DARK.fill(box), 0), (box, 16)):
         pygame.draw.rect(large, colour, pygame.Rect(150, 92, 72, 88), width)
-    pygame.draw.line(large, theme.static, (36, 196), (220, 196), 16)
+    pygame.draw.line(large, DARK.static, (36, 196), (220, 196), 16)
     return pygame.transform.smoothscale(large, (64, 64))

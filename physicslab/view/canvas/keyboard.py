@@ -17,7 +17,7 @@ _LARGEST = 0x10FFFF
 """Keys above it print nothing, and have numbers of SDL's own."""
 
 
-def usual_event(event: pygame.Event, *, on_mac: bool = ON_MAC) -> pygame.Event:
+def usual_event(event: pygame.Event) -> pygame.Event:
     """Return an event of a key as all else reads it; any other event as it is.
 
     Letters of other scripts, as Cyrillic and Greek, become the Latin one in their place; what they print
@@ -27,20 +27,20 @@ def usual_event(event: pygame.Event, *, on_mac: bool = ON_MAC) -> pygame.Event:
     if event.type not in (pygame.KEYDOWN, pygame.KEYUP):
         return event
     own = getattr(event, "mod", 0)
-    mod = _held(own, getattr(event, "unicode", ""), on_mac)
+    mod = _held(own, getattr(event, "unicode", ""))
     key = _latin(event.key, getattr(event, "scancode", 0))
     if (key, mod) == (event.key, own):
         return event
     return pygame.Event(event.type, {**event.dict, "key": key, "mod": mod})
 
 
-def held_keys(*, on_mac: bool = ON_MAC) -> int:
+def held_keys() -> int:
     """Return which keys are held beside others now, as ``KMOD_`` bits."""
-    return _held(pygame.key.get_mods(), "", on_mac)
+    return _held(pygame.key.get_mods(), "")
 
 
-def _held(mod: int, printed: str, on_mac: bool) -> int:
-    if on_mac and mod & pygame.KMOD_META:
+def _held(mod: int, printed: str) -> int:
+    if ON_MAC and mod & pygame.KMOD_META:
         mod = mod & ~pygame.KMOD_META | pygame.KMOD_LCTRL
     is_alt_gr = mod & pygame.KMOD_CTRL and mod & pygame.KMOD_ALT and printed.isprintable() and printed
     return mod & ~_ALT_GR if is_alt_gr else mod

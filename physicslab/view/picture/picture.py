@@ -45,12 +45,7 @@ def picture_of(
     return surface
 
 
-def save_png(
-    world: World,
-    path_or_stream: str | os.PathLike[str] | BinaryIO,
-    size: tuple[int, int] = _WINDOW.size,
-    theme: Theme = DARK,
-) -> None:
+def save_png(world: World, path_or_stream: str | os.PathLike[str] | BinaryIO) -> None:
     """Write a PNG of the world as it is now, all of it fitted into the picture.
 
     Parameters
@@ -59,17 +54,13 @@ def save_png(
         It is not changed.
     path_or_stream : path or binary stream
         Where to write. A file at that path is replaced.
-    size : tuple of two ints
-        Width and height [px].
-    theme : Theme
-        The colours.
 
     Raises
     ------
     OSError
         If the file cannot be written.
     """
-    surface = picture_of(world, size, theme, extent_of(world))
+    surface = picture_of(world, _WINDOW.size, extent=extent_of(world))
     if isinstance(path_or_stream, str | os.PathLike):
         with open(path_or_stream, "wb") as stream:
             pygame.image.save(surface, stream, "picture.png")
