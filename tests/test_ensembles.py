@@ -303,7 +303,9 @@ def test_parts_of_another_sweep_are_not_taken(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_serial_threads_and_processes_have_the_same_bits() -> None:
-    arguments: dict[str, Any] = dict(samples=300, measure={"y": "ball.y", "f": height_at_end}, seconds=1.0)
+    arguments: dict[str, Any] = dict(
+        samples=np.int64(300), measure={"y": "ball.y", "f": height_at_end}, seconds=1.0
+    )
     serial = ensemble("drop", DRAWN, executor="serial", **arguments)
     for kind in ("threads", "processes"):
         other = ensemble("drop", DRAWN, executor=kind, workers=2, **arguments)
@@ -362,6 +364,9 @@ REFUSED: tuple[tuple[Any, dict[str, Any], str], ...] = (
     ),
     ({M: [1]}, {"out": "there/is/none.csv"}, "cannot be written"),
     ({M: [1]}, {"out": "x.txt"}, "must end in .npz, .csv, .parquet"),
+    ({M: [1]}, {"measure": {3: "ball.y"}}, "a dict of them by their names"),
+    ({M: [1]}, {"executor": 3}, "executor 3: must be one of processes, threads, serial, or an Executor"),
+    ({M: ("uniform", 1, 2)}, {"samples": np.int64(0)}, "must be a whole number >= 1"),
     ({M: [1]}, {"executor": "process"}, "must be one of processes, threads, serial, or an Executor"),
 )
 

@@ -104,8 +104,8 @@ def ensemble(
         replicas=replicas, jitter=jitter,
     )  # fmt: skip
     if workers is not None:
-        check_whole("workers", workers, 1)
-    if isinstance(executor, str) and executor not in KINDS:
+        workers = check_whole("workers", workers, 1)
+    if executor not in KINDS and not isinstance(executor, Executor):
         raise SceneError(f"executor {shown(executor)}: must be one of {', '.join(KINDS)}, or an Executor")
     with _told(progress, len(task.space)) as tell:
         return run_task(task, Workers(executor, workers), None if out is None else Path(out), tell)
@@ -135,7 +135,8 @@ def task_of(
     world = scene if isinstance(scene, World) else load_scene(scene)
     document = json_bytes(write_scene(world))
     measures = measure if isinstance(measure, Mapping) else {_name_of(measure): measure}
-    if not measures or not all(isinstance(one, str) or callable(one) for one in measures.values()):
+    takes = all(isinstance(one, str) or callable(one) for one in measures.values())
+    if not (measures and takes and all(isinstance(name, str) for name in measures)):
         words = "must be an expression, a function of the world, or a dict of them by their names"
         raise SceneError(f"measure {shown(measure)}: {words}")
     trial = load_scene(write_scene(world))
