@@ -45,8 +45,8 @@ _MAX_SWEEPS = 32
 """Largest number of sweeps over the impacts of a substep; those left are treated as inelastic."""
 
 A, B, LEFT_TO_SOLVER, SWEPT = range(4)
-"""What is noted of a pair while impacts are resolved: its bodies; whether its impulses are the solver's; and
-whether its point is one of a later moment in the substep."""
+"""Notes of a pair while impacts are resolved: its bodies; whether its impulses are the solver's; and whether
+its point is one of a later moment in the substep."""
 
 
 class ImpactWindow(NamedTuple):
