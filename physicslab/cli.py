@@ -10,7 +10,7 @@ import physicslab
 from physicslab.commands import FAILED, USAGE, CommandError, command, require_window
 from physicslab.commands.parsers import WindowParser, completion, manual, parser_of
 from physicslab.commands.usage import COMMANDS
-from physicslab.ecs.text import printable, shortened
+from physicslab.ecs.text import printable, shortened, suggestion
 from physicslab.scenes import SCENES
 
 _LINE_LIMIT = 4_000
@@ -65,7 +65,12 @@ def _dispatch(arguments: list[str]) -> int:
         name, *rest = arguments
         parsed = parser_of(name).parse_args(rest)  # help and bad usage end here, before physics is imported
         return command(name).execute(parsed)
-    given = WindowParser(_version()).parse_args(arguments)
+    parser = WindowParser(_version())
+    given, more = parser.parse_known_args(arguments)
+    if more:
+        likely = suggestion(given.scene or "", COMMANDS)
+        misspelt = f"{given.scene}: is no command{likely}"
+        parser.error(misspelt if likely else f"unrecognized arguments: {' '.join(more)}")
     if given.print_completion is not None or given.print_manual:
         print(manual(_version()) if given.print_manual else completion(given.print_completion), end="")
         return 0

@@ -199,6 +199,7 @@ def test_scenes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
     } in listed  # fmt: skip
 
 
+MASS = "ball.Mass.mass"
 USAGE = [
     (["run"], "the following arguments are required: SCENE"),
     (["run", "drop", "--dt", "0"], "argument --dt: '0': must be a finite number > 0 s"),
@@ -235,6 +236,15 @@ USAGE = [
     (["newtons_crade"], 'did you mean "newtons_cradle"?'),
     (["nowhere.json"], "nowhere.json: no such file"),
     (["drop", "--fast"], "unrecognized arguments: --fast"),
+    (["swep", "drop"], 'swep: is no command; did you mean "sweep"?'),
+    (
+        ["sweep", "drop", "--vary", f"{MASS}=1:2:2", "--set", f"{MASS}=3", "--measure", "time"],
+        '--set: entity "ball": Mass.mass: is varied too; a field must be set or varied',
+    ),
+    (
+        ["export", "drop", "--html", "x", "--vary", f"{MASS}=1:2:2", "--set", f"{MASS}=3"],
+        '--set: entity "ball": Mass.mass: is varied too; a field must be set or varied',
+    ),
     (["bench", "pilez"], '"pilez": is no scene; did you mean "pile"'),
     (["stability", "springz"], '"springz": is no case; did you mean "springs"?'),
     (

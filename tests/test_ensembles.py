@@ -2,6 +2,7 @@
 
 import csv
 import itertools
+import os
 import re
 import sys
 from collections.abc import Mapping
@@ -302,7 +303,9 @@ def test_parts_of_another_sweep_are_not_taken(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_serial_threads_and_processes_have_the_same_bits() -> None:
-    arguments: dict[str, Any] = dict(samples=300, measure={"y": "ball.y", "f": height_at_end}, seconds=1.0)
+    arguments: dict[str, Any] = dict(
+        samples=np.int64(300), measure={"y": "ball.y", "f": height_at_end}, seconds=1.0
+    )
     serial = ensemble("drop", DRAWN, executor="serial", **arguments)
     for kind in ("threads", "processes"):
         other = ensemble("drop", DRAWN, executor=kind, workers=2, **arguments)
@@ -332,6 +335,8 @@ REFUSED: tuple[tuple[Any, dict[str, Any], str], ...] = (
     ({"ball.Mass.mass": ["2 m"]}, {}, "'2 m' is in m; this is in kg"),
     ({"ball.Mass.mass": []}, {}, "must be at least one value"),
     ({"ball.Velocity.linear": [1]}, {}, "must be a part of it, .x or .y"),
+    ({"ball.Velocity.linear.z": [1]}, {}, "Velocity.linear: must be a part of it, .x or .y; it has no .z"),
+    ({"ball.Velocity.linear[2]": [1]}, {}, "Velocity.linear: must be a part of it, .x or .y; it has no .2"),
     ({"ball.Mass.mass": ("uniform", 2, 1)}, {"samples": 3}, "must have two numbers a < b"),
     ({"ball.Mass.mass": ("uniform", 1, 2)}, {}, "samples: must be given"),
     ({"ball.Mass.mass": [1, 2]}, {"samples": 3}, "samples: no field is drawn at random"),
@@ -346,6 +351,7 @@ REFUSED: tuple[tuple[Any, dict[str, Any], str], ...] = (
     ({M: [1]}, {"measure": "ball.x)"}, "'ball.x)' is no number: a \"(\" is missing"),
     ({M: [1]}, {"measure": "ball.x + ball.vx"}, "m and m s^-1 cannot be added"),
     ({M: [1]}, {"measure": "__import__(ball.x)"}, "'__import__' is no function"),
+    ({M: [1]}, {"measure": "at(1 kg, ball.x)"}, "the time is in kg; must be in s"),
     ({M: [1]}, {"measure": "first_impact.q"}, "an impact has time, x, y, speed, energy_lost"),
     ({M: [1]}, {"measure": {"f": lambda world: 1.0}}, "a function of a module"),
     ({M: [1]}, {"measure": {M: "ball.x"}}, "is the name of another column"),
@@ -358,6 +364,9 @@ REFUSED: tuple[tuple[Any, dict[str, Any], str], ...] = (
     ),
     ({M: [1]}, {"out": "there/is/none.csv"}, "cannot be written"),
     ({M: [1]}, {"out": "x.txt"}, "must end in .npz, .csv, .parquet"),
+    ({M: [1]}, {"measure": {3: "ball.y"}}, "a dict of them by their names"),
+    ({M: [1]}, {"executor": 3}, "executor 3: must be one of processes, threads, serial, or an Executor"),
+    ({M: ("uniform", 1, 2)}, {"samples": np.int64(0)}, "must be a whole number >= 1"),
     ({M: [1]}, {"executor": "process"}, "must be one of processes, threads, serial, or an Executor"),
 )
 
@@ -370,3 +379,19 @@ def test_what_cannot_be_is_refused_by_name_before_anything_begins(
     with pytest.raises(SceneError) as refused:
         ensemble("drop", space, **arguments)
     assert line in str(refused.value) and "\n" not in str(refused.value)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs named pipes")
+def test_where_no_file_or_parts_can_be_is_refused_before_a_row_is_made(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.npz")
+    (tmp_path / "file.npz.parts").touch()
+    for name, why in (
+        ("pipe.npz", "must be a plain file"),
+        ("file.npz", "cannot be written: there is no directory"),
+    ):
+        with pytest.raises(SceneError, match=why):
+            ensemble("drop", {M: [1]}, measure=_never, steps=1, executor="serial", out=tmp_path / name)
+
+
+def _never(world: Any) -> float:
+    raise AssertionError("a row was made")

@@ -169,6 +169,28 @@ def test_killed_at_random_moments_it_comes_to_the_same_bytes(tmp_path: Path) -> 
         out.unlink()  # or the next sweep would find it finished
 
 
+@pytest.mark.slow
+@pytest.mark.skipif(
+    not hasattr(os, "killpg"), reason="needs groups of processes, to which a terminal signals"
+)
+def test_ctrl_c_at_random_moments_says_one_line_and_the_rest_comes_to_the_same_bytes(tmp_path: Path) -> None:
+    whole, out, rng = tmp_path / "whole.npz", tmp_path / "interrupted.npz", random.Random(2)
+    subprocess.run(command("--out", str(whole), "--workers", "1"), check=True, timeout=900)
+    for _ in range(int(os.environ.get("PHYSICSLAB_KILLS", "6"))):
+        process = subprocess.Popen(
+            command("--out", str(out), "--workers", "2"), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+            text=True, start_new_session=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+        )  # fmt: skip
+        time.sleep(rng.uniform(1.0, 5.0))
+        os.killpg(process.pid, signal.SIGINT)
+        said = process.communicate(timeout=60)[1]
+        assert (process.returncode, said) == (130, "physicslab: interrupted\n") or not process.returncode
+        out.unlink(missing_ok=True)  # or the next sweep would find it finished
+    subprocess.run(command("--out", str(out), "--workers", "2"), check=True, timeout=900)
+    assert kept(whole) == kept(out) and not (tmp_path / "interrupted.npz.parts").exists()
+
+
 def test_all_processes_start_with_the_first_row() -> None:
     task = task_of("drop", {"ball.Mass.mass": [1.0, 2.0, 3.0]}, measure="ball.y", steps=2)
     with Workers("processes", 2) as workers:

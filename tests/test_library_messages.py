@@ -24,6 +24,7 @@ from physicslab import (
     World,
     circle,
     load_scene,
+    pendulum,
     save_scene,
 )
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
@@ -111,6 +112,7 @@ WRONG: dict[str, tuple[Callable[[World], object], type[Exception], str]] = {
     "stride": (lambda world: world.stepping(steps=3, stride=0), InvalidValue, "stepping.stride = 0"),
     "record": (lambda world: world.record(1, 0.1), TypeError, "give every=... or until=... by name"),  # type: ignore[arg-type]
     "condition": (lambda world: world.record(1, until=3), InvalidValue, "as 'ball.x >= 8 m' is one"),  # type: ignore[arg-type]
+    "angle": (lambda world: pendulum(world, (0, 0), angle="3 m"), InvalidValue, "Transform.angle = '3 m'"),  # type: ignore[arg-type]
     "no quantity": (lambda world: world.record(1, until="bal.x > 3"), InvalidValue, "one of ball, world"),
 }  # fmt: skip
 
@@ -136,8 +138,9 @@ def test_an_id_is_taken_wherever_an_entity_is(world: World, tmp_path: Path) -> N
     assert world.discard("ball", Shape) is not None and world.label("ball") == "ball"
     save_scene(world, os.fsencode(tmp_path / "b.json"))
     assert load_scene(os.fsencode(tmp_path / "b.json")).has("ball", Mass)
+    assert "ball" in world and 1 in world and "bell" not in world and 2 not in world and [*world] == [1]
     world.remove("ball")
-    assert not world.entities()
+    assert not world.entities() and "ball" not in world
 
 
 def test_a_world_without_a_list_has_what_it_needs_and_one_with_a_list_just_that(

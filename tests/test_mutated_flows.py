@@ -267,7 +267,7 @@ def beside_a_floor(*parts: Any, damping: float = 0.0) -> World:
 def test_beside_contacts_what_is_wrong_between_them_is_an_error(method: str, kind: str) -> None:
     def make() -> World:
         damping = 0.3 if method == "damped" else 0.0
-        return beside_a_floor(*([Drag(0.2)] if method == "dop853" else []), damping=damping)
+        return beside_a_floor(*([Drag(0.2, 0.1)] if method == "dop853" else []), damping=damping)
 
     flow, full = spring_flow, damped_flow
     changes: dict[tuple[str, str], tuple[Change, ...]] = {

@@ -143,11 +143,19 @@ def with_damping(world: World) -> None:
     world.physics = replace(world.physics, linear_damping=0.1)
 
 
+def with_square_drag(world: World) -> None:
+    world.add(2, Drag(quadratic=0.1))
+
+
+def with_turning_damped(world: World) -> None:
+    world.physics = replace(world.physics, angular_damping=0.1)
+
+
 def with_planets(world: World) -> None:
     world.physics = PhysicsConfig(gravity_mode="planet", G=1e-3)
 
 
-@pytest.mark.parametrize("change", [with_drag, with_damping, with_planets])
+@pytest.mark.parametrize("change", [with_square_drag, with_turning_damped, with_planets])
 def test_what_is_no_linear_spring_is_followed_as_before(change: Callable[[World], None]) -> None:
     world = chain()
     assert follows(world) and world.plan.split_forces is SPRING_SPLITTING
@@ -249,7 +257,14 @@ def with_both(world: World) -> None:
     world.spawn(Spring(11, 5, (0.02, 0.03), (0.0, 0.05), rest_length=1.5, stiffness=40.0, damping=0.3))
 
 
-@pytest.mark.parametrize("change", [with_damper, with_anchor, with_both])
+def with_all(world: World) -> None:
+    with_both(world)
+    with_drag(world)
+    world.add(4, Drag(linear=0.3))
+    with_damping(world)
+
+
+@pytest.mark.parametrize("change", [with_damper, with_anchor, with_both, with_drag, with_damping, with_all])
 def test_dampers_and_what_turns_bodies_are_followed_as_well(change: Callable[[World], None]) -> None:
     def build() -> World:
         world = chain(height=50.0)
@@ -269,12 +284,14 @@ def test_dampers_and_what_turns_bodies_are_followed_as_well(change: Callable[[Wo
     assert abs(account.momentum["numerical"]) < 1e-12 and abs(account.angular_momentum["numerical"]) < 1e-7
 
 
-def test_with_a_damper_and_an_arm_the_order_is_four() -> None:
+@pytest.mark.parametrize("drag", [0.0, 3.0])
+def test_with_a_damper_and_an_arm_the_order_is_four(drag: float) -> None:
     def at_end(substeps: int) -> Any:
         world = far_floor(open_space())
         world.simulation = replace(world.simulation, dt=0.5, substeps=substeps)
         bob = box(world, (1.2, 0.0), width=0.2, height=0.1, mass=1.0, angular_velocity=1.0)
         world.add(bob, Spring(anchor_a=(0.1, 0.05), rest_length=1.0, stiffness=40.0, damping=2.0))
+        world.add(bob, Drag(linear=drag))
         with patch.object(spring_flow, "_SERIES", 1e-15):
             assert split_of(world)._steps == 1 and follows(world)
         world.run(seconds=1.0)
@@ -283,6 +300,25 @@ def test_with_a_damper_and_an_arm_the_order_is_four() -> None:
     exact = at_end(256)
     coarse, fine = (np.abs(at_end(substeps) - exact).max() for substeps in (32, 64))
     assert math.log2(coarse / fine) == pytest.approx(4, abs=0.2)
+
+
+@pytest.mark.parametrize(("drag", "damping"), [(0.6, 0.0), (0.0, 0.3), (0.4, 0.1)])
+def test_an_oscillator_in_drag_is_followed_to_the_formula(drag: float, damping: float) -> None:
+    """By x = e^(-rate t / 2) (cos w t + rate / 2 w sin w t), for drag, damping of all motion, and both."""
+    world = far_floor(open_space(gravity=None))
+    world.physics = replace(world.physics, linear_damping=damping)
+    ball = circle(world, (1.0, 0.0), radius=0.1, mass=2.0)
+    world.add(ball, Drag(linear=drag))
+    world.add(ball, Spring(rest_length=0.0, stiffness=50.0))
+    assert follows(world)
+    rate = 0.5 * drag + damping
+    swing = math.sqrt(25.0 - 0.25 * rate * rate)
+    world.run(seconds=2.0)
+    expected = math.exp(-rate) * (math.cos(2.0 * swing) + 0.5 * rate / swing * math.sin(2.0 * swing))
+    assert place(world, ball).x == pytest.approx(expected, abs=3e-8)
+    account = measure_account(world)
+    assert abs(account.energy["numerical"]) < 1e-6 and account.energy["damping"] < -5.0
+    assert account.momentum["damping"].x == pytest.approx(-2.0 * rate * (expected - 1.0), abs=1e-7)
 
 
 @pytest.mark.parametrize(("linear", "quadratic"), [(2.0, 0.0), (0.0, 1.5)])
@@ -348,6 +384,7 @@ def held_up() -> World:
     post = world.spawn(Transform((0.0, 2.0), 0.3), name="post")
     world.spawn(Spring(post, 2, (0.1, 0.2), rest_length=1.0, stiffness=50.0), name="rope")
     world.spawn(Spring(11, None, anchor_b=(2.0, 2.0), rest_length=1.0, stiffness=50.0))
+    world.add(5, Drag(linear=0.2))
     return world
 
 
@@ -383,10 +420,17 @@ def edit_damper(world: World) -> None:
     world.component(world.entity("rope"), Spring).damping = 0.5
 
 
+def edit_drag(world: World) -> None:
+    world.component(5, Drag).linear = 0.3
+
+
 @pytest.mark.parametrize(
     "edit",
-    [edit_gravity, edit_spring, edit_anchor, edit_post, edit_angle, edit_place, edit_mass, edit_damper],
-)
+    [
+        edit_gravity, edit_spring, edit_anchor, edit_post, edit_angle, edit_place, edit_mass, edit_damper,
+        edit_drag, with_damping,
+    ],
+)  # fmt: skip
 def test_an_edit_acts_as_in_a_world_that_begins_with_it(edit: Callable[[World], None]) -> None:
     world = held_up()
     world.run(steps=5)

@@ -137,7 +137,7 @@ def make_page(arguments: Namespace) -> None:
     output = Output("--html", arguments.html)
     check_output(output, arguments)
     world = opened(arguments)
-    varied = variations(world, arguments.vary)
+    varied = variations(world, arguments.vary, arguments.set)
     tasks = [{"set": [*arguments.set, *texts]} for texts in combinations(varied)]
     _check_size(world, len(tasks), arguments)
     shared = {key: getattr(arguments, key) for key in ("scene", "seconds", "every", "at_most")}

@@ -12,7 +12,7 @@ from physicslab.commands.arguments import SAMPLE_FORM
 from physicslab.commands.opening import check_seconds, name_of, opened
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
-from physicslab.commands.variations import vary
+from physicslab.commands.variations import refuse_set, vary
 from physicslab.ecs.text import printable, shortened
 from physicslab.ensembles.cluster import Dask
 from physicslab.ensembles.map_picture import map_grids
@@ -98,6 +98,7 @@ def _space(world: World, arguments: Namespace) -> dict[str, Any]:
             )
         _once(space, path.strip(), "--sample")
         space[path.strip()] = parts
+    refuse_set(world, arguments.set, space)
     if not space:
         raise CommandError("--vary: must be given, or --sample: what differs from run to run")
     return space

@@ -1,7 +1,7 @@
 """Fields of a scene that differ from run to run: ``--vary ball.Velocity.linear.x=1:5:9``."""
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,7 @@ from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.ecs.vector import Vector2
 from physicslab.export.page import Varied, field_words
 from physicslab.files.checks import SceneError, shown
-from physicslab.files.places import Place, find_place
+from physicslab.files.places import Place, entity_names, find_place, read_path
 from physicslab.world import World
 
 
@@ -40,8 +40,8 @@ class Variation:
         return f"{self.place.field}={text}"
 
 
-def variations(world: World, texts: Sequence[str]) -> list[Variation]:
-    """Return what is varied, each text ``ID.Component.field=START:STOP:COUNT``.
+def variations(world: World, texts: Sequence[str], assigned: Sequence[str]) -> list[Variation]:
+    """Return what is varied, each text ``ID.Component.field=START:STOP:COUNT``; ``assigned`` is of ``--set``.
 
     Raises
     ------
@@ -54,6 +54,7 @@ def variations(world: World, texts: Sequence[str]) -> list[Variation]:
     for one, other in itertools.combinations(varied, 2):
         if one.place.path == other.place.path:
             raise CommandError(f"{one.place.words}: is varied twice; two sliders must be of two quantities")
+    refuse_set(world, assigned, [one.place.path for one in varied])
     return varied
 
 
@@ -85,6 +86,16 @@ def vary(world: World, text: str, most: int) -> tuple[Place, tuple[float, ...]]:
         except InvalidValue as error:
             raise SceneError(f"{place.words} = {shown(span)}: {value!r}: must be {error.allowed}") from error
     return place, values
+
+
+def refuse_set(world: World, texts: Sequence[str], varied: Container[str]) -> None:
+    """Refuse what ``--set`` gives to a field that differs from run to run, but the other part of a vector."""
+    names = entity_names(world)
+    for text in texts:
+        name, kind, spec, _ = read_path(world, names, text, "--set", "VALUE")
+        place = Place(name, names.get(name, 0), kind, spec, "", "--set")
+        if place.field in varied:
+            raise CommandError(f"{place.words}: is varied too; a field must be set or varied")
 
 
 def _values(place: Place, span: str, most: int) -> tuple[float, ...]:

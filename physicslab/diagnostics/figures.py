@@ -23,6 +23,7 @@ from physicslab.ecs.quantity_text import (
     Scope,
     Undefined,
     dotted,
+    in_words,
 )
 from physicslab.world import World
 
@@ -272,7 +273,10 @@ def _slope(of: Figures, expression: Expression) -> Quantity:
 
 
 def _at(of: Figures, time: Expression, expression: Expression) -> Quantity:
-    return expression.value(of.at(time.value(of).value))
+    when = time.value(of)
+    if when.has_unit and when.dimension != _SECOND.dimension:
+        raise InvalidText(f"'{time.text}': the time is in {in_words(when.dimension)}; must be in s")
+    return expression.value(of.at(when.value))
 
 
 def _when(of: Figures, condition: Expression, number: Expression | None = None) -> Quantity:

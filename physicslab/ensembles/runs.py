@@ -14,7 +14,7 @@ import numpy as np
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ensembles.measures import Measure, Measures
 from physicslab.ensembles.result import EnsembleResult, check_format
-from physicslab.ensembles.sink import Sink
+from physicslab.ensembles.sink import Sink, parts_folder
 from physicslab.ensembles.space import Given, check_whole, space_of
 from physicslab.ensembles.task import Task
 from physicslab.ensembles.workers import KINDS, Workers
@@ -104,8 +104,8 @@ def ensemble(
         replicas=replicas, jitter=jitter,
     )  # fmt: skip
     if workers is not None:
-        check_whole("workers", workers, 1)
-    if isinstance(executor, str) and executor not in KINDS:
+        workers = check_whole("workers", workers, 1)
+    if executor not in KINDS and not isinstance(executor, Executor):
         raise SceneError(f"executor {shown(executor)}: must be one of {', '.join(KINDS)}, or an Executor")
     with _told(progress, len(task.space)) as tell:
         return run_task(task, Workers(executor, workers), None if out is None else Path(out), tell)
@@ -135,7 +135,8 @@ def task_of(
     world = scene if isinstance(scene, World) else load_scene(scene)
     document = json_bytes(write_scene(world))
     measures = measure if isinstance(measure, Mapping) else {_name_of(measure): measure}
-    if not measures or not all(isinstance(one, str) or callable(one) for one in measures.values()):
+    takes = all(isinstance(one, str) or callable(one) for one in measures.values())
+    if not (measures and takes and all(isinstance(name, str) for name in measures)):
         words = "must be an expression, a function of the world, or a dict of them by their names"
         raise SceneError(f"measure {shown(measure)}: {words}")
     trial = load_scene(write_scene(world))
@@ -178,11 +179,7 @@ def run_task(
         If the results cannot be written.
     """
     if out is not None:
-        check_format(out)
-        try:
-            check_writable(out)
-        except (OSError, ValueError) as error:
-            raise SceneError(f"out {out}: cannot be written: {reason_of(error)}") from error
+        _check_out(out)
     sink = Sink(task, out)
     done, rows = 0, len(task.space)
     try:
@@ -199,6 +196,18 @@ def run_task(
     columns, failures = _joined(task, sink)
     sink.write(columns, failures)
     return EnsembleResult(columns, failures, task, sink.found)
+
+
+def _check_out(out: Path) -> None:
+    """Refuse a file to which the results cannot go, or beside which their parts cannot."""
+    check_format(out)
+    if out.exists() and not out.is_dir() and not out.is_file():
+        raise SceneError(f"out {out}: is a pipe or a device; must be a plain file, which is read again")
+    for path in (out, parts_folder(out)):
+        try:
+            check_writable(path / "part" if path != out and os.path.lexists(path) else out)
+        except (OSError, ValueError) as error:
+            raise SceneError(f"out {path}: cannot be written: {reason_of(error)}") from error
 
 
 def _joined(task: Task, sink: Sink) -> tuple[dict[str, Any], dict[int, str]]:

@@ -74,7 +74,7 @@ class Sink:
 
     def __init__(self, task: Task, out: Path | None) -> None:
         self._task, self._out = task, out
-        self._folder = None if out is None else out.with_name(out.name + _PARTS)
+        self._folder = None if out is None else parts_folder(out)
         self._rows = len(task.space)
         self.is_whole = self._holds_all()
         self._open: dict[int, Part] = {}
@@ -211,6 +211,11 @@ class Sink:
         )  # fmt: skip
         replace_file(self._path(number), content.getvalue())
         part.written = time.monotonic()
+
+
+def parts_folder(out: Path) -> Path:
+    """Return the folder that holds the parts of a file until it is whole."""
+    return out.with_name(out.name + _PARTS)
 
 
 def _read(path: Path) -> dict[str, NDArray[Any]] | None:

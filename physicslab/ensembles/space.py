@@ -152,8 +152,7 @@ def space_of(
     for path in paths:
         if paths.count(path) > 1:
             raise SceneError(f"space: {path}: is given twice; a field must be given once")
-    check_whole("seed", seed, 0)
-    check_whole("replicas", replicas, 1)
+    seed, replicas = check_whole("seed", seed, 0), check_whole("replicas", replicas, 1)
     axes = _with_jitter(world, names, axes, replicas, jitter)
     if sum(axis.law == "sobol" for axis in axes) > DIMENSIONS:
         raise SceneError(f"space: a sobol sequence must have at most {DIMENSIONS} fields")
@@ -275,7 +274,7 @@ def _samples(axes: Sequence[Axis], samples: int | None) -> int:
         raise SceneError(f'space: ("rows", ...) must all have as many values: {words}')
     drawn = any(axis.law in _LAWS for axis in axes)
     if samples is not None:
-        check_whole("samples", samples, 1)
+        samples = check_whole("samples", samples, 1)
     if lengths:
         length = next(iter(lengths.values()))
         if samples not in (None, length):
@@ -289,7 +288,8 @@ def _samples(axes: Sequence[Axis], samples: int | None) -> int:
     return samples or 1
 
 
-def check_whole(name: str, value: object, least: int) -> None:
-    """Refuse what is no whole number, or one below the least."""
-    if not isinstance(value, int) or isinstance(value, bool) or value < least:
+def check_whole(name: str, value: object, least: int) -> int:
+    """Return a whole number, of numpy's or not; refuse what is none, or one below the least."""
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or value < least:
         raise SceneError(f"{name} = {shown(value)}: must be a whole number >= {least}")
+    return int(value)

@@ -8,7 +8,7 @@ import os
 import queue
 from collections import deque
 from collections.abc import Callable, Iterator
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from physicslab.ensembles.task import Block, Task, ready, work
-from physicslab.lab.jobs import end_with_parent
+from physicslab.lab.jobs import Processes
 
 KINDS = ("processes", "threads", "serial")
 """Workers that are started here."""
@@ -85,6 +85,8 @@ class Workers:
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         for future in [*self._flying]:
             future.cancel()
+        if kind is not None and isinstance(self._own, Processes):
+            self._own.abandon()
         self._stop(wait=kind is None)
 
     def blocks(self, task: Task, missing: Iterator[tuple[int, int]]) -> Iterator[Block]:
@@ -162,11 +164,10 @@ class Workers:
                 self._own = Serial()
             elif self._kind == "threads":
                 self._own = ThreadPoolExecutor(count)
-            else:  # a fork would share threads of the compiled code: each worker imports for itself
+            else:
                 if getattr(multiprocessing.current_process(), "_inheriting", False):
                     raise SystemExit(_UNGUARDED)  # the one that has started this process says why
-                context = multiprocessing.get_context("spawn")
-                self._own = ProcessPoolExecutor(count, context, initializer=end_with_parent)
+                self._own = Processes(count)
         return self._own
 
     def _stop(self, *, wait: bool) -> None:

@@ -17,7 +17,7 @@ type Section = type[PhysicsConfig] | type[SimulationConfig]
 SECTIONS: dict[str, Section] = {"physics": PhysicsConfig, "simulation": SimulationConfig}
 """The laws of a world, and how it is stepped, by what scene files call them."""
 _FORM = "ID.Component.field"
-_PART = re.compile(r"(?P<whole>.+?)(?:\.(?P<letter>[xy])|\[(?P<number>[01])\])")
+_PART = re.compile(r"(?P<whole>.+?)(?:\.(?P<letter>[xyz])|\[(?P<number>\d+)\])")
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,14 +126,16 @@ def find_place(
         If there is no such field.
     """
     part = _PART.fullmatch(path.strip())
-    letter = "" if part is None else part["letter"] or "xy"[int(part["number"])]
+    letter = (
+        "" if part is None else part["letter"] or {"0": "x", "1": "y"}.get(part["number"], part["number"])
+    )
     whole = path if part is None else part["whole"]
     names = entity_names(world) if names is None else names
     name, kind, spec, _ = read_path(world, names, f"{whole}={value}", option, value)
     found = Place(name, names.get(name, 0), kind, spec, letter, option)
-    if letter and spec.kind != "vector":
-        allowed = f"must be a number, or a part of a vector; it has no .{letter}"
-        raise SceneError(f"{found.words}{_given(value)}: {allowed}")
+    if letter and (spec.kind != "vector" or letter not in "xy"):
+        allowed = "a number, or a part of a vector" if spec.kind != "vector" else "a part of it, .x or .y"
+        raise SceneError(f"{found.words}{_given(value)}: must be {allowed}; it has no .{letter}")
     return found
 
 

@@ -3,6 +3,7 @@
 import gc
 import multiprocessing
 import os
+import signal
 import threading
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -14,6 +15,8 @@ type Job[Result] = Generator[float, None, Result]
 
 _WORTH_A_PROCESS = 8
 """As many cases take longer than a process needs to start."""
+_HAS_MASKS = hasattr(signal, "pthread_sigmask")
+"""Whether signals can be held back, as everywhere but on Windows."""
 
 
 def run_jobs[Result](jobs: Iterable[tuple[float, Job[Result]]]) -> Iterator[float | Result]:
@@ -90,20 +93,49 @@ def in_processes[Result](
         with Warmup() as warmup:
             while not warmup.finished:
                 warmup.poll(0.1)
-    # A fork would share threads of the compiled code: each worker imports for itself.
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, context, initializer=end_with_parent) as pool:
+    with Processes(workers) as pool:
         futures = {name: future for run in runs for future in [pool.submit(_each, work, run)] for name in run}
         try:
             yield from _in_order(futures, names)
-        except BaseException:  # else the end of the block waits: a process that is left ends with a traceback
-            pool.shutdown(wait=False, cancel_futures=True)
+        except BaseException:  # else the end of the block waits
+            pool.abandon()
             raise
 
 
-def end_with_parent() -> None:
-    """Let this process end when the one that began it does, which may be killed."""
+class Processes(ProcessPoolExecutor):
+    """Processes that end without a word with the one that began them, killed as it may be, or by Ctrl+C.
+
+    A fork would share threads of the compiled code: each imports for itself. Until it has, Ctrl+C waits, else
+    Python would write where in an import it was.
+    """
+
+    def __init__(self, count: int) -> None:
+        super().__init__(count, multiprocessing.get_context("spawn"), initializer=_begin)
+
+    def submit[**P, T](self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Hand over work, for which a process may be started."""
+        if not _HAS_MASKS:
+            return super().submit(fn, *args, **kwargs)
+        held = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))  # a process inherits it
+        try:
+            return super().submit(fn, *args, **kwargs)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, held)
+
+    def abandon(self) -> None:
+        """End all processes at once, in the midst of their work."""
+        processes = [*(self._processes or {}).values()]
+        self.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.terminate()
+
+
+def _begin() -> None:
+    """Begin the life of a process that others have started."""
     threading.Thread(target=_follow_parent, name="parent", daemon=True).start()
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    if _HAS_MASKS:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT,))
 
 
 def _follow_parent() -> None:

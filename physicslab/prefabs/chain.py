@@ -1,6 +1,6 @@
 """Hanging things: chains of balls on springs, pendulums on rods or springs."""
 
-from physicslab.components import Rod, Spring
+from physicslab.components import Rod, Spring, Transform
 from physicslab.ecs.vector import Vector2
 from physicslab.prefabs.body import Pair, circle
 from physicslab.state.contents import Contents
@@ -92,6 +92,7 @@ def pendulum(
     """
     if stiffness is None and damping:
         raise ValueError(f"damping = {damping!r}: needs a stiffness, for a spring in place of the rod")
+    length, angle = Spring(rest_length=length).rest_length, Transform(angle=angle).angle  # texts have units
     hanging = Vector2(0.0, -length).rotated(angle)
     bob = circle(
         world, Vector2(*anchor) + hanging,

@@ -2,6 +2,7 @@
 
 import itertools
 import weakref
+from collections.abc import Iterator
 from typing import Any, Self
 
 import esper
@@ -155,10 +156,8 @@ class Entities:
     def has(self, entity: int | str, component: type[Any]) -> bool:
         """Whether an entity exists and has a component."""
         with self.active():
-            number = self._holder(entity) if isinstance(entity, str) else entity
-            if number is None or not esper.entity_exists(number):
-                return False
-            return esper.has_component(number, _checked(component))
+            number = self._number(entity)
+            return number is not None and esper.has_component(number, _checked(component))
 
     def components(self, entity: int | str) -> tuple[Any, ...]:
         """Return all components of an entity."""
@@ -186,6 +185,14 @@ class Entities:
         """Return the entity with this id, or raise ``KeyError``."""
         return self.entity(name)
 
+    def __contains__(self, entity: int | str) -> bool:
+        """Whether there is an entity of this number or id."""
+        with self.active():
+            return self._number(entity) is not None
+
+    def __iter__(self) -> Iterator[int]:
+        return iter(self.entities())
+
     def label(self, entity: int | str) -> str:
         """Return the entity's id if it has one, else what it is and its number: ``circle 3``."""
         with self.active():
@@ -207,6 +214,12 @@ class Entities:
             allowed = f"an id of its own; entity {self._holder(component.id)} has this one"
             raise InvalidValue("Name", "id", component.id, allowed)
         self._names.add(component.id)
+
+    def _number(self, entity: int | str) -> int | None:
+        """Return the number of an entity, if it is there."""
+        if isinstance(entity, str):
+            return self._holder(entity)
+        return entity if esper.entity_exists(entity) else None
 
     def _holder(self, name: str) -> int | None:
         """Return the entity with this id, if there is one."""

@@ -21,7 +21,7 @@ from physicslab.state.state import State
 from physicslab.stepping.forces import fastest_rate
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.split_forces import depends_on_velocity_in_python, sub_integrated_rows
-from physicslab.stepping.spring_flow import springs_of, why_no_spring_flow
+from physicslab.stepping.spring_flow import fastest_of_springs, why_no_spring_flow
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.spring import SpringSystem
@@ -168,13 +168,8 @@ def method_beside_contacts(state: State, schedule: Schedule, obstacle: str) -> S
 
 def _steps_of_springs(state: State, forces: Sequence[ForceSystem], h: float) -> int:
     """Return the number of steps of a time h that spring_splitting needs; drag alone has its own."""
-    needed = 1
-    for springs in springs_of(forces):
-        swings, decays = (float(bound.max(initial=0.0)) for bound in springs.bounds(state))
-        needed = max(
-            needed, _steps(swings, h, _RESOLVED_BESIDE_CONTACTS), _steps(decays, h, _DAMPED_BESIDE_CONTACTS)
-        )
-    return needed
+    swings, decays = fastest_of_springs(state, forces)
+    return max(_steps(swings, h, _RESOLVED_BESIDE_CONTACTS), _steps(decays, h, _DAMPED_BESIDE_CONTACTS))
 
 
 def tolerance_for(state: State, forces: Sequence[ForceSystem]) -> float:

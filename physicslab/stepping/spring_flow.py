@@ -35,11 +35,28 @@ def why_no_spring_flow(state: State, forces: Sequence[ForceSystem]) -> str | Non
             return sentence("acts", system=force.name)
     if physics.gravity_mode == "planet":
         return sentence("planets")
-    if physics.linear_damping or physics.angular_damping:
+    if physics.angular_damping:
         return sentence("motion_damped")
-    if state.table(Drag).present[np.concatenate((a, b))].any():
+    if state.table(Drag)["quadratic"][np.concatenate((a, b))].any():
         return sentence("drag_held")
     return None
+
+
+def _drag_per_mass(state: State, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return how fast linear drag and damping slow rows (n,) [1/s]; 0 for what nothing moves."""
+    inverse = state.bodies.inverse_mass[rows]
+    damped = np.where(inverse > 0.0, state.physics.linear_damping, 0.0)
+    return state.table(Drag)["linear"][rows] * inverse + damped
+
+
+def fastest_of_springs(state: State, forces: Sequence[ForceSystem]) -> tuple[float, float]:
+    """Return the fastest rates [1/s] at which springs swing, and at which what they hold is slowed."""
+    bounds = [force.bounds(state) for force in forces if isinstance(force, SpringSystem)]
+    swings, decays = (max((float(one[i].max(initial=0.0)) for one in bounds), default=0.0) for i in (0, 1))
+    _, a, b = spring_ends(state)
+    held = np.concatenate((a, b))
+    held = held[state.table(Velocity).present[held]]
+    return swings, decays + float(_drag_per_mass(state, held).max(initial=0.0))
 
 
 def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], movable: NDArray[np.bool_]) -> NDArray[np.int64]:
@@ -64,11 +81,6 @@ def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], movable: NDArray[np.b
         for end in held:
             free[end] = block + 1
     return np.array([[*block, *[-1] * (WIDE - len(block))] for block in blocks], np.int64).ravel()
-
-
-def springs_of(forces: Sequence[ForceSystem]) -> list[SpringSystem]:
-    """Return the systems of springs among forces."""
-    return [force for force in forces if isinstance(force, SpringSystem)]
 
 
 def _terms(rate: float, h: float) -> NDArray[np.int64]:
@@ -133,24 +145,28 @@ class SpringFlow:
             DRIFTS,
             KICKS,
         ]
-        if turns or damped:
+        slowed = np.flatnonzero(_drag_per_mass(state, moving) > 0.0)
+        full = turns or damped or bool(len(slowed))
+        if full:
             parts += [turned, np.zeros(len(moving) + 4 * p), np.ones(p), np.zeros(5 * p), spring["damping"]]
             parts += [np.zeros((3 + MOST_TERMS) * len(order)), *_arms(state, rows, order, slots, len(moving))]
             parts += [np.zeros(4 * len(order))]
+        slowing = _drag_per_mass(state, moving)[slowed] / inverse[slowed]
+        parts += [slowing, np.zeros(2 * MOST_TERMS * len(slowed))]
         by_mass = bodies.inverse_mass[alone]
-        parts += [drag["linear"][alone] * by_mass, drag["quadratic"][alone] * by_mass, _reciprocal(by_mass)]
-        sizes = len(moving), p, len(order), len(DRIFTS), turns or damped, turns
-        decays = max((float(one.bounds(state)[1].max()) for one in springs_of(forces)), default=0.0)
+        parts += [_drag_per_mass(state, alone), drag["quadratic"][alone] * by_mass, _reciprocal(by_mass)]
+        sizes = len(moving), p, len(order), len(DRIFTS), full, turns
+        _, decays = fastest_of_springs(state, forces)
         half = 0.5 * state.simulation.dt / state.simulation.substeps
         dampers = [2 * np.flatnonzero(used & np.isin(end, ends)) + at_b for at_b, end in enumerate(slots)]
         whole = [
-            np.array((*sizes, len(alone), len(ends))),
+            np.array((*sizes, len(alone), len(ends), len(slowed))),
             moving,
             *slots,
             ends,
             *(dampers if damped else ()),
         ]
-        whole += [_terms(decays, half / steps), alone]
+        whole += [_terms(decays, half / steps), slowed, alone]
         self.changes_with_speed = bool(drag["quadratic"][alone].any())
         self.arrays: Plain[Springs] = np.concatenate(parts), np.concatenate(whole).astype(np.int64)
         self.arrays[0][LONGEST] = half / steps

@@ -361,8 +361,8 @@ def find_contacts(
                 if not circular:
                     note_pose(manifold, way.dx, way.dy, 0.0, 0.0)
                 manifold.found = AS_FOUND if manifold.count > 0 and manifold.swept == 0 else 0
-                if circular and manifold.count == 0:
-                    manifold.found = 2
+            if polygons > 0 and manifold.count == 0:
+                manifold.found = 2  # how far they are apart is known, however fast they are
         if manifold.count > 0:
             if first or known == _OUTDATED:
                 effective_masses(manifold, near.points, p, inverse)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from physicslab.kernels import Numbers, Vectors, inlined
 from physicslab.kernels.geometry.cores import FACE, Touch
 from physicslab.kernels.geometry.manifold import LEVEL, Corner, box_box, circle_box, circle_circle
-from physicslab.kernels.geometry.outline import Outline, Way, corner, swing_of, turned
+from physicslab.kernels.geometry.outline import Outline, Way, corner, is_segment, swing_of, turned
 from physicslab.kernels.geometry.segment import touch_outlines
 from physicslab.kernels.geometry.sweep import (
     MISS,
@@ -270,6 +270,16 @@ def _put_points(
 
 
 @inlined
+def _stays_apart(found: Touch, way: Way, swing: float, start: float, a: Outline, b: Outline) -> bool:
+    """Whether two convex shapes stay apart along the normal of now, from ``start`` until a substep later."""
+    if is_segment(a) or is_segment(b):
+        return False
+    opens, least = found.nx * way.ux + found.ny * way.uy, _JUST_MEETING * 2.0 * min(a.thin, b.thin)
+    end = 1.0 + start
+    return bool(found.gap + start * (opens + swing) > least and found.gap + end * (opens - swing) > least)
+
+
+@inlined
 def touch_rounded(
     manifold: Manifold, one: Point, two: Point, way: Way, turn_a: float, turn_b: float, start: float,
     speculative_margin: float, a: Outline, b: Outline, pool: Vectors,
@@ -292,7 +302,7 @@ def touch_rounded(
     if found.gap > near and not ((fast or swift) and found.gap <= travel + speculative_margin):
         return
     place, share, t = way, 0.0, MISS
-    if fast:
+    if fast and not _stays_apart(found, way, swing, start, a, b):
         t = sweep_outlines(way, turn_a, turn_b, start, a, b, pool)
         if t <= 1.0:
             meeting, met_a, met_b = pose_at(way, turn_a, turn_b, a, b, start + t)

@@ -4,8 +4,9 @@ It is the splitting of :mod:`physicslab.kernels.ode.spring_flow`, whose kicks ar
 velocities while all places stay: it is linear in them, and followed by its Taylor series. The splitting is
 symmetric, so that it is of order 4 for these kicks as well. Springs are taken eight at a time, as there.
 
-Dampers take the integral of their power over the same series. Bodies that only drag and gravity act
-on are followed each by itself (:mod:`physicslab.kernels.ode.drag_flow`).
+Dampers take the integral of their power over the same series, and so does drag by the speed of what springs
+hold. Bodies that only drag and gravity act on are followed each by itself
+(:mod:`physicslab.kernels.ode.drag_flow`).
 """
 
 import math
@@ -86,6 +87,31 @@ class Full(NamedTuple):
     arm_b: Numbers
     turned_a: Numbers
     turned_b: Numbers
+
+
+class Slowed(NamedTuple):
+    """Which places of :class:`Places` drag slows (d,), and by how much [kg/s].
+
+    Then the velocities at the start of a kick and their derivatives of each order (MOST_TERMS * d, 2).
+    """
+
+    places: Rows
+    drag: Numbers
+    rates: Vectors
+
+
+@inlined_by_numba
+def _slowed(springs: Springs) -> Slowed:
+    """Return the arrays of what springs hold and drag slows, which stand before those of drag alone."""
+    numbers, whole = springs
+    d, alone = whole[8], whole[6]
+    last = len(numbers) - 3 * alone
+    rates = last - 2 * MOST_TERMS * d
+    return Slowed(
+        whole[len(whole) - alone - d : len(whole) - alone],
+        numbers[rates - d : rates],
+        numbers[rates:last].reshape(MOST_TERMS * d, 2),
+    )
 
 
 @inlined_by_numba
@@ -173,8 +199,20 @@ def _pull_ends(places: Places, links: Links, full: Full, turns: bool, at: int, f
 
 
 @inlined
-def _evaluate(places: Places, links: Links, full: Full, turns: bool, followed: float) -> bool:
-    """Compute the pull of all springs and dampers; return whether each spring is long enough."""
+def _slow(places: Places, slowed: Slowed, velocity: Vectors, term: int) -> None:
+    """Add drag by velocities, or by their derivative of an order, and note these."""
+    d = len(slowed.places)
+    for k in range(d):
+        i = slowed.places[k]
+        x, y = velocity[i, 0], velocity[i, 1]
+        slowed.rates[term * d + k, 0], slowed.rates[term * d + k, 1] = x, y
+        places.pull[i, 0] -= slowed.drag[k] * x
+        places.pull[i, 1] -= slowed.drag[k] * y
+
+
+@inlined
+def _evaluate(places: Places, links: Links, full: Full, slowed: Slowed, turns: bool, followed: float) -> bool:
+    """Compute the pull of springs, dampers and drag; return whether each spring is long enough."""
     short = 0
     for at in range(0, len(links.a), WIDE):
         dx, dy = _apart(places, links, full, turns, at)
@@ -191,12 +229,13 @@ def _evaluate(places: Places, links: Links, full: Full, turns: bool, followed: f
         pull = tension + take(full.damping, at) * opening
         _pull_ends(places, links, full, turns, at, pull * nx, pull * ny)
         short |= mask_bits(length < followed * take(links.shortest, at))
+    _slow(places, slowed, places.speed, 0)
     return short == 0
 
 
 @inlined
-def _resist(places: Places, links: Links, full: Full, term: int, turns: bool) -> None:
-    """Compute the pull of dampers for ``full.rate``, the derivative of velocities of an order."""
+def _resist(places: Places, links: Links, full: Full, slowed: Slowed, term: int, turns: bool) -> None:
+    """Compute the pull of dampers and drag for ``full.rate``, the derivative of velocities of an order."""
     n = len(links.a)
     for at in range(0, n, WIDE):
         ux, uy = _opening(full.rate, full.spin_rate, links, full, turns, at)
@@ -205,6 +244,7 @@ def _resist(places: Places, links: Links, full: Full, term: int, turns: bool) ->
         put(full.opening, term * n + at, opening)
         pull = take(full.damping, at) * opening
         _pull_ends(places, links, full, turns, at, pull * nx, pull * ny)
+    _slow(places, slowed, full.rate, term)
 
 
 @inlined
@@ -237,9 +277,13 @@ def _change(places: Places, full: Full, first: bool, share: float, turns: bool) 
 
 
 @inlined
-def _dissipated(links: Links, full: Full, span: float, terms: int) -> float:
-    """Return what dampers take in a kick [J]: the integral of c r^2, r being the series of how they open."""
+def _dissipated(links: Links, full: Full, slowed: Slowed, span: float, terms: int) -> float:
+    """Return what dampers and drag take in a kick [J]: the integral of c r^2.
+
+    r is the series of how a damper opens, or of a velocity.
+    """
     n, taken, first = len(links.a), everywhere(0.0), 1.0  # span^j / j!
+    d, dragged, rates = len(slowed.places), 0.0, slowed.rates
     for j in range(terms):
         second = first
         for k in range(j, terms):
@@ -248,8 +292,28 @@ def _dissipated(links: Links, full: Full, span: float, terms: int) -> float:
             for at in range(0, n, WIDE):
                 product = take(full.opening, j * n + at) * take(full.opening, k * n + at)
                 taken = taken + share * take(full.damping, at) * product
+            for i in range(d):
+                one, two = j * d + i, k * d + i
+                product = rates[one, 0] * rates[two, 0] + rates[one, 1] * rates[two, 1]
+                dragged += share * slowed.drag[i] * product
         first *= span / (j + 1)
-    return sum_of(taken)
+    return sum_of(taken) + dragged
+
+
+@inlined
+def _book_drag(places: Places, slowed: Slowed, span: float, terms: int, given: Numbers) -> None:
+    """Book the impulses of drag in a kick: of each place the integral of its velocity, by the series."""
+    d = len(slowed.places)
+    for k in range(d):
+        i, x, y, share = slowed.places[k], 0.0, 0.0, span
+        for term in range(terms):
+            x += share * slowed.rates[term * d + k, 0]
+            y += share * slowed.rates[term * d + k, 1]
+            share *= span / (term + 2)
+        x, y = -slowed.drag[k] * x, -slowed.drag[k] * y
+        given[BY_DAMPERS] += x
+        given[BY_DAMPERS + 1] += y
+        given[BY_DAMPERS + 2] += places.place[i, 0] * y - places.place[i, 1] * x
 
 
 @inlined
@@ -289,19 +353,20 @@ def _book(
 
 @inlined
 def _kick(
-    places: Places, links: Links, full: Full, span: float, terms: int, turns: bool, ends: Rows, held: Rows,
-    given: Numbers,
+    places: Places, links: Links, full: Full, slowed: Slowed, span: float, terms: int, turns: bool,
+    ends: Rows, held: Rows, given: Numbers,
 ) -> None:  # fmt: skip
     """Change velocities by what acts for ``span`` seconds at these places, of which the pull is computed."""
     share = span
     _change(places, full, True, share, turns)
     for term in range(1, terms):
         share *= span / (term + 1)
-        _resist(places, links, full, term, turns)
+        _resist(places, links, full, slowed, term, turns)
         _change(places, full, False, share, turns)
     _book(places, links, full, span, ends, held, turns, given)
     if terms > 1:  # else nothing is damped
-        given[DISSIPATED] += _dissipated(links, full, span, terms)
+        given[DISSIPATED] += _dissipated(links, full, slowed, span, terms)
+        _book_drag(places, slowed, span, terms, given)
 
 
 @inlined
@@ -330,8 +395,8 @@ def _follows(places: Places, links: Links, full: Full, turns: bool, h: float) ->
 
 @inlined
 def _advance(
-    places: Places, links: Links, full: Full, drifts: Numbers, kicks: Numbers, h: float, steps: int,
-    followed: float, terms: Rows, turns: bool, ends: Rows, held: Rows, given: Numbers,
+    places: Places, links: Links, full: Full, slowed: Slowed, drifts: Numbers, kicks: Numbers, h: float,
+    steps: int, followed: float, terms: Rows, turns: bool, ends: Rows, held: Rows, given: Numbers,
 ) -> int:  # fmt: skip
     """Advance what was gathered, as :func:`flow_forces` does."""
     for i in range(len(places.pull)):
@@ -343,9 +408,11 @@ def _advance(
     for _ in range(steps):
         for stage in range(len(kicks)):
             evaluations += 1
-            if not _evaluate(places, links, full, turns, followed):
+            if not _evaluate(places, links, full, slowed, turns, followed):
                 return TURNS_FAST
-            _kick(places, links, full, kicks[stage] * h, terms[stage], turns, ends, held, given)
+            _kick(
+                places, links, full, slowed, kicks[stage] * h, terms[stage], turns, ends, held, given
+            )  # fmt: skip
             if stage < len(drifts):
                 _drift(places, full, drifts[stage] * h, turns)
         torque, torque_rate = book_gravity(places, h, torque, torque_rate, given)
@@ -380,8 +447,9 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
         made = flow_springs(motion, springs, span, account)
     else:
         places, links, ends, given, drifts, kicks, at = named(springs)
-        full, terms = _full(numbers, at, m, p, n), whole[last - alone - s - 1 : last - alone]
-        held = whole[SIZES + m + 2 * n + whole[7] : last - alone - s - 1]
+        full, slowed, dragged = _full(numbers, at, m, p, n), _slowed(springs), last - alone - whole[8]
+        terms = whole[dragged - s - 1 : dragged]
+        held = whole[SIZES + m + 2 * n + whole[7] : dragged - s - 1]
         steps, finer, made = steps_of(springs, span), 1, TURNS_FAST
         while made < 0 and finer <= FINEST:
             gather(places, motion)
@@ -389,7 +457,7 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
             for i in range(len(given)):
                 given[i] = 0.0
             made = _advance(
-                places, links, full, drifts, kicks, span / (finer * steps), finer * steps,
+                places, links, full, slowed, drifts, kicks, span / (finer * steps), finer * steps,
                 still_followed(finer), terms, turns, ends, held, given,
             )  # fmt: skip
             finer *= 2

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Vectors, always_inlined, inlined
+from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import IMPACTS
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Log, Motion
 from physicslab.kernels.constraint.impact_law import (
@@ -43,6 +43,10 @@ from physicslab.kernels.solver.impulse import follow_drift
 
 _MAX_SWEEPS = 32
 """Largest number of sweeps over the impacts of a substep; those left are treated as inelastic."""
+
+A, B, LEFT_TO_SOLVER, SWEPT = range(4)
+"""Notes of a pair while impacts are resolved: its bodies; whether its impulses are the solver's; and whether
+its point is one of a later moment in the substep."""
 
 
 class ImpactWindow(NamedTuple):
@@ -303,18 +307,35 @@ def _forced(
     return pull, 1e-9 * speed + 2.0 * pressed
 
 
+@inlined
+def _list_rows(contacts: Contacts, noted: Vectors, changed: Numbers) -> None:
+    """Note the bodies of all pairs side by side, and that none of them has had an impact."""
+    for i in range(len(changed)):
+        changed[i] = -1.0
+    for k in range(contacts.number):
+        manifold = contacts.manifolds[contacts.touching[k]]
+        noted[2 * k, A], noted[2 * k, B] = float(manifold.a), float(manifold.b)
+
+
 @always_inlined
 def _resolve_once(
     contacts: Contacts, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
-    logged: int, h: float, window: ImpactWindow, moments: Vectors, again: bool,
+    logged: int, h: float, window: ImpactWindow, moments: Vectors, noted: Vectors, changed: Numbers,
+    sweep: int,
 ) -> tuple[int, int, int, int, bool]:  # fmt: skip
-    """Resolve the pairs one after the other; inelastic ones are resolved once, and not ``again``.
+    """Resolve the pairs one after the other; inelastic ones are resolved once, in the first ``sweep``.
 
+    Pairs of which no body has had an impact since the sweep before are as they were, and passed over.
     Returns how many bounced, how many are left to the solver, how many obeyed Stronge's law, how many had
     their restitution lowered, and whether any may bounce again.
     """
-    bounced, left, energetic, lowered, elastic = 0, 0, 0, 0, False
+    bounced, left, energetic, lowered, elastic, again = 0, 0, 0, 0, sweep > 0, sweep > 0
     for k in range(contacts.number):
+        a, b = int(noted[2 * k, A]), int(noted[2 * k, B])
+        if again and max(changed[a], changed[b]) < sweep - 1 and noted[2 * k, SWEPT] == 0.0:
+            left += int(noted[2 * k, LEFT_TO_SOLVER])
+            continue
+        noted[2 * k, LEFT_TO_SOLVER], noted[2 * k, SWEPT] = 1.0, 0.0
         p = contacts.touching[k]
         manifold = contacts.manifolds[p]
         if again and manifold.restitution == 0.0:
@@ -322,12 +343,13 @@ def _resolve_once(
             continue
         elastic = elastic or manifold.restitution > 0.0
         # Most pairs rest: these are handled here without a call.
-        a, b = manifold.a, manifold.b
         one, two = contacts.points[2 * p], contacts.points[2 * p + 1]
-        found_by_sweep = manifold.swept == 1 and one.feature >= FACE
-        if again and found_by_sweep and max(moments[a, 0], moments[b, 0]) > -math.inf:  # it is swept again
-            one.ahead = two.ahead = 1
-            continue
+        if manifold.swept == 1 and one.feature >= FACE:
+            noted[2 * k, SWEPT] = 1.0
+            if again and max(moments[a, 0], moments[b, 0]) > -math.inf:  # it is swept again
+                one.ahead = two.ahead = 1
+                noted[2 * k, LEFT_TO_SOLVER] = 0.0
+                continue
         one.ahead = two.ahead = 0
         v = velocity_of(motion.linear, motion.angular, a, b)
         v1, v2 = point_state(frame_of(manifold, one), v).v, 0.0
@@ -336,7 +358,9 @@ def _resolve_once(
             v2 = point_state(frame_of(manifold, two), v).v
             overlap, loaded = overlap or two.separation < 0.0, loaded or two.normal_impulse > 0.0
         if v1 >= 0.0 and v2 >= 0.0:
-            left += 1 if acting.any or overlap or loaded else 0
+            solved = 1 if acting.any or overlap or loaded else 0
+            noted[2 * k, LEFT_TO_SOLVER] = float(solved)
+            left += solved
             continue
         load = one.normal_impulse / one.normal_mass
         if manifold.count == 2:
@@ -349,6 +373,7 @@ def _resolve_once(
             pull = 0.0
         if manifold.swept == 2:
             one.ahead = two.ahead = 1
+            noted[2 * k, LEFT_TO_SOLVER] = 0.0
             continue
         t1, t2 = _meeting_times(manifold, one, two, motion, Approach(v1, v2, pull, resting_speed), window)
         if abs(t1) < math.inf or abs(t2) < math.inf:
@@ -356,18 +381,23 @@ def _resolve_once(
                 manifold, one, two, motion, shapes, inverse, acting, t1, t2, h, window.start < 0.0, moments,
                 log, logged + bounced,
             )  # fmt: skip
+            for row in (a, b):
+                if met and (inverse.mass[row] > 0.0 or inverse.inertia[row] > 0.0):
+                    changed[row] = float(sweep)
             bounced += 1 if met else 0
             manifold.impact_count += 1 if met else 0
             energetic += 1 if law == ENERGETIC else 0
             lowered += 1 if law == LOWERED else 0
-        left += 1 - (min(one.ahead, two.ahead) if manifold.count == 2 else one.ahead)
+        solved = 1 - (min(one.ahead, two.ahead) if manifold.count == 2 else one.ahead)
+        noted[2 * k, LEFT_TO_SOLVER] = float(solved)
+        left += solved
     return bounced, left, energetic, lowered, elastic
 
 
 @always_inlined
 def resolve_impacts(
     contacts: Contacts, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log,
-    logged: int, h: float, window: ImpactWindow, moments: Vectors,
+    logged: int, h: float, window: ImpactWindow, moments: Vectors, noted: Vectors, changed: Numbers,
 ) -> tuple[int, int, int, int]:  # fmt: skip
     """Bounce the pairs that meet in this substep, each at its own time.
 
@@ -380,16 +410,18 @@ def resolve_impacts(
     are in resting contact, which the solver handles. Pairs are resolved one after the other, in order, until
     none meets any more; inelastic ones only once, for the solver removes what is left of their approach.
 
-    In ``moments`` it is noted when swift bodies did (:mod:`physicslab.kernels.solver.meet_again`). Impacts
-    go into ``log``, unless it has no length, from number ``logged`` on. Returns how many there were,
-    how many pairs are left to the solver, and how many impacts obeyed Stronge's law, or had their restitution
-    lowered, as Newton's would have made energy.
+    In ``moments`` it is noted when swift bodies did (:mod:`physicslab.kernels.solver.meet_again`); ``noted``
+    (points, 4) and ``changed`` (rows,) are room. Impacts go into ``log``, unless it has no length, from
+    number ``logged`` on. Returns how many there were, how many pairs are left to the solver, and how many
+    impacts obeyed Stronge's law, or had their restitution lowered, as Newton's would have made energy.
     """
     impacts, left, energetic, lowered = 0, contacts.number, 0, 0
+    _list_rows(contacts, noted, changed)
     for sweep in range(_MAX_SWEEPS):
         bounced, left, stronge, less, elastic = _resolve_once(
-            contacts, motion, shapes, inverse, acting, log, logged + impacts, h, window, moments, sweep > 0
-        )
+            contacts, motion, shapes, inverse, acting, log, logged + impacts, h, window, moments, noted,
+            changed, sweep,
+        )  # fmt: skip
         impacts += bounced
         energetic += stronge
         lowered += less

@@ -101,8 +101,9 @@ def resolve_all_impacts(
     window = ImpactWindow(start, end, start - 2.0 * (end - start) if acting.any else -math.inf)
     while counts[ACTIVE] > 0:
         came, counts[LEFT], energetic, lowered = resolve_impacts(
-            _contacts(near), motion, shapes, inverse, acting, log, counts[LOGGED], h, window, near.moments
-        )
+            _contacts(near), motion, shapes, inverse, acting, log, counts[LOGGED], h, window, near.moments,
+            near.noted, near.angular_before,
+        )  # fmt: skip
         impacts += came
         counts[ENERGETIC] += energetic
         counts[LOWERED] += lowered
