@@ -16,6 +16,7 @@ from physicslab import InvalidValue, PhysicsConfig, Run, World, circle, load_sce
 from physicslab.components import Drag, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.scenes import SCENES
+from physicslab.stepping.rigid_motion import RigidMotion
 
 EXACT = ("drop", "bounces", "stack", "newtons_cradle", "pyramid", "pile", "gas", "ragdoll")
 """Scenes whose motion has the same bits however it is divided."""
@@ -50,6 +51,25 @@ def test_an_instant_is_the_state_after_its_steps(name: str) -> None:
             assert np.array_equal(run.motion[number, :, 0:2], position)
         assert run.motion[number, :, 0:2] == pytest.approx(position, abs=1e-9)
         assert run.times[number] == pytest.approx(other.time, abs=1e-13)
+
+
+@pytest.mark.parametrize("every", [None, 0.05])
+def test_what_rests_is_recorded_without_steps_of_it(
+    every: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    world, other = load_scene("stack"), load_scene("stack")
+    rest, rested = RigidMotion.rest, 0
+
+    def counted(motion: RigidMotion, h: float) -> None:
+        nonlocal rested
+        rested += 1
+        rest(motion, h)
+
+    monkeypatch.setattr(RigidMotion, "rest", counted)
+    run = world.record(2.0, every=every)
+    assert rested > 100 and run.times == pytest.approx(np.linspace(0.0, 2.0, len(run.times)))
+    other.run(seconds=2.0)
+    assert bits(world) == bits(other) and (run.motion[-20:] == run.motion[-1]).all()
 
 
 @pytest.mark.parametrize(("seconds", "every"), [(0.305, None), (0.3, 0.04), (0.30001, 0.1), (0.001, 1.0)])

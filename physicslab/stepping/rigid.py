@@ -119,9 +119,12 @@ class Rigid:
         rests = figures is not None and figures == self._resting
         while made < steps:
             if rests:
-                self._motion.rest(h)
-                made += 1
-                continue
+                for _ in range(steps - made):
+                    self._motion.rest(h)
+                if state.samples is not None:
+                    self._sample(state.samples, state.time + made * h, (steps - made) * h)
+                made = steps
+                break
             step = self._step(scene, state, state.time + made * h, h, parts)
             if step.by_impulses and self._gives_up:
                 if made:
@@ -151,26 +154,26 @@ class Rigid:
         return Advance(made, parts)
 
     def _figures(self, state: State, h: float, steps: int | None = None) -> tuple[object, ...] | None:
-        """Return all that a step of ``h`` seconds depends on; ``None`` if it may on more, or samples are due.
+        """Return all that a step of ``h`` seconds depends on; ``None`` if it may on more.
 
         ``steps`` is how many are made by then, by default as many as now: contacts are as this stepper has
         left them.
         """
         ode = self._ode
-        if state.samples is not None or ode.laws is None:
+        if ode.laws is None:
             return None
         motion = ode.q[: ode.layout.clock].tobytes(), ode.v[: ode.layout.clock].tobytes()
         return *motion, ode.laws, self._made_of, h, state.steps if steps is None else steps
 
-    def _sample(self, samples: Samples, time: float, h: float) -> None:
-        """Take a sample of the packed state after a step of ``h`` s from a time [s] on, if one is due."""
-        places, after = samples.due(time, h)
+    def _sample(self, samples: Samples, time: float, span: float) -> None:
+        """Take the samples that are due within ``span`` s from a time [s] on, all of the packed state."""
+        places, after = samples.due(time, span)
         if not len(places):
             return
-        into, n = samples.put(places, time + after)[-1], len(self._ode.layout.moving)
+        into, n = samples.put(places, time + after), len(self._ode.layout.moving)
         for packed, first in ((self._ode.q, 0), (self._ode.v, 3)):
-            into[:, first : first + 2] = packed[: 2 * n].reshape(n, 2)[samples.rows]
-            into[:, first + 2] = packed[2 * n : 3 * n][samples.rows]
+            into[:, :, first : first + 2] = packed[: 2 * n].reshape(n, 2)[samples.rows]
+            into[:, :, first + 2] = packed[2 * n : 3 * n][samples.rows]
 
     def _step(self, scene: tuple[Any, ...], state: State, at: float, h: float, parts: int) -> MadeStep:
         """Make a step from time ``at`` in parts; where one cannot be made, all is as before the step."""
