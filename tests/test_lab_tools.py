@@ -1,12 +1,15 @@
 """The tools of the lab in the window: handles, time line, undo, free-body diagrams."""
 
 import math
+import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pygame
 import pytest
-from desk import FRAME, Desk, bits, click, click_at, empty_world, fill, tap, write
+from desk import FRAME, Desk, bits, click, click_at, empty_world, fill, sized, tap, write
+from imgui_bundle import imgui
 from random_edits import state_hash
 
 from physicslab.components import Held, Mass, Shape, Transform, Velocity
@@ -24,7 +27,7 @@ from physicslab.scenes import SCENES
 from physicslab.view.controls import actions, file_actions, saving
 from physicslab.view.picture.bodies import body_rows
 from physicslab.view.picture.extent import _reach
-from physicslab.view.workbench.number_field import shown_vector_part
+from physicslab.view.toolkit.ui import Ui
 from physicslab.world import World
 
 CTRL = pygame.KMOD_LCTRL
@@ -418,9 +421,30 @@ def test_an_untouched_view_follows_the_room_that_text_of_another_size_leaves() -
         assert left <= desk.pixel(x, y)[0] <= left + width
 
 
-def test_numbers_of_vectors_are_short_enough_for_their_fields() -> None:
-    shown = [shown_vector_part(value) for value in (-0.690123, -0.01234, 12.3456, -1234.4, 2.0, 12345.0)]
-    assert shown == ["-0.69", "-0.012", "12.35", "-1234", "2", "1.23e+04"]
+@pytest.mark.parametrize(("size", "text"), [((1280, 720), 1.0), ((800, 600), 1.5), ((640, 480), 1.75)])
+@pytest.mark.parametrize("number", [-1.5e-5, -1.234567e-12, -123456.7, -0.01234567, 98765432.1])
+def test_numbers_are_short_enough_for_their_fields(
+    number: float, size: tuple[int, int], text: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    desk = sized(size, empty_world(gravity_mode="none"), text)
+    mass = abs(number)
+    body = circle(desk.world, (number, -number), radius=0.5, mass=mass, velocity=(number, -number))
+    desk.window.level, desk.window.pace.paused = "engineer", True
+    desk.window.selection.take(body)
+    shown: list[str] = []
+    field = Ui.field
+
+    def watched(ui: Ui, label: str, text: str, width: float = -1.0, **options: Any) -> tuple[str, bool]:
+        if width > 0.0 and re.fullmatch(r"-?[\d.]+(e-?\d+)?|≈0", text):
+            shown.append(text)
+            room = width - 2.0 * imgui.get_style().frame_padding.x
+            assert imgui.calc_text_size(text).x <= room, f"{label}: {text}"
+        return field(ui, label, text, width, **options)
+
+    monkeypatch.setattr(Ui, "field", watched)
+    desk.frames(3)
+    found = [float(one.replace("≈", "")) for one in shown]
+    assert any(one == pytest.approx(number, rel=0.5) for one in found)
 
 
 def test_an_edited_scene_that_another_one_replaced_comes_back_with_its_history() -> None:

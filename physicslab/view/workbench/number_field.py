@@ -25,12 +25,12 @@ _FINER, _COARSER = 0.1, 10.0
 _ONLY_MOUSE = imgui.ItemFlags_.no_nav | imgui.ItemFlags_.no_tab_stop
 _FIGURES = 6
 """Figures to which a number is shown where there is room."""
-_PART = 6
-"""Characters that the field of a part of a vector has room for."""
-_NARROW = 4.2
-"""Width of a field that has room for that, in heights of the text."""
-_SMALL = 1e-3
-"""One figure may be enough for smaller numbers than this."""
+_PART_FIGURES = 4
+"""Figures to which a part of a vector is shown."""
+_LEAST = "0.0"
+"""Two fields in one line have room for at least this."""
+_TINY, _ABOUT_ZERO = 1e-3, "\N{ALMOST EQUAL TO}0"
+"""Smaller numbers for which there is no room are shown as about zero."""
 _VARIOUS = "various"
 """The text of a field for several bodies whose numbers differ."""
 _LARGEST_ANGLE = 1e5
@@ -50,21 +50,11 @@ type CommitPart = Callable[[int, float], None]
 def shown_number(value: float, figures: int = _FIGURES) -> str:
     """Return a number as a field shows it: so many figures, and no more than it has.
 
-    >>> shown_number(0.1 + 0.2), shown_number(-0.0), shown_number(1234567.0), shown_number(2.0)
-    ('0.3', '0', '1.23457e+06', '2')
+    >>> shown_number(0.1 + 0.2), shown_number(-0.0), shown_number(1234567.0), shown_number(1.5e-5)
+    ('0.3', '0', '1.23457e6', '1.5e-5')
     """
-    return f"{value + 0.0:.{figures}g}"
-
-
-def shown_vector_part(value: float) -> str:
-    """Return a number as half a field shows it: to four figures, or to fewer where it is longer than that.
-
-    >>> shown_vector_part(0.123456), shown_vector_part(-0.123456), shown_vector_part(-5.06e-12)
-    ('0.1235', '-0.123', '-5e-12')
-    """
-    fewest = 1 if abs(value) < _SMALL else 2
-    shorter = (shown_number(value, figures) for figures in range(4, fewest - 1, -1))
-    return next((text for text in shorter if len(text) <= _PART), shown_number(value, 3))
+    figures_shown, _, power = f"{value + 0.0:.{figures}g}".partition("e")
+    return f"{figures_shown}e{int(power)}" if power else figures_shown
 
 
 @dataclass(slots=True)
@@ -154,21 +144,28 @@ class NumberFields:
     def pair_row(
         self, ui: Ui, key: str, words: str, parts: Sequence[tuple[str, Field, float | None, Commit]]
     ) -> None:
-        """Build the row of two numbers: of each its field's key, its description, it, and where it goes."""
-        self.label(ui, key, words, parts[0][1])
+        """Build the row of two numbers: of each its field's key, its description, it, and where it goes.
+
+        In a narrow panel they stand one below the other.
+        """
         units = [_unit_shown(spec, None) for _, spec, _, _ in parts]
         units = units[-1:] if units[0] == units[-1] else units
-        gap = imgui.get_style().item_spacing.x
-        taken = sum(_width(ui, unit) for unit in units) + gap
-        room = 0.5 * (imgui.get_content_region_avail().x - taken)
+        self.label(ui, key, words, parts[0][1], is_short=len(units) > 1)
+        left, available = imgui.get_cursor_pos_x(), imgui.get_content_region_avail().x
+        taken = sum(_width(ui, unit) for unit in units) + imgui.get_style().item_spacing.x
+        room = 0.5 * (available - taken)
+        is_stacked = _room_in(room) < imgui.calc_text_size(_LEAST).x
         refusals = []
         for n, (name, spec, value, commit) in enumerate(parts):
-            if n:
+            unit = units[min(n, len(units) - 1)]
+            if is_stacked:
+                imgui.set_cursor_pos_x(left)
+                room = available - _width(ui, unit)
+            elif n:
                 imgui.same_line()
             refusals.append(self.build(ui, name, value, spec, room, commit))
-            if n == 0 and len(units) > 1:
-                _finish(ui, units[0], "")
-        _finish(ui, units[-1], next(filter(None, refusals), ""))
+            if n or len(units) > 1 or is_stacked:
+                _finish(ui, unit, next(filter(None, refusals), "") if n else "")
 
     def build(
         self, ui: Ui, key: str, value: float | str | None, spec: Field, width: float, commit: Commit,
@@ -220,13 +217,14 @@ class NumberFields:
 
     def label(
         self, ui: Ui, key: str, words: str, spec: Field, value: float | None = None,
-        commit: Commit | None = None,
+        commit: Commit | None = None, *, is_short: bool = False,
     ) -> None:  # fmt: skip
-        """Build the label of a row, and stay in its line.
+        """Build the label of a row, and stay in its line; a short one takes no more room than it has words.
 
         Dragging the label of a number to the side changes it, Shift finer, Ctrl coarser.
         """
         width, corner = self.share * imgui.get_content_region_avail().x, imgui.get_cursor_screen_pos()
+        width = min(width, imgui.calc_text_size(ui.said(words)).x) if is_short else width
         imgui.push_item_flag(_ONLY_MOUSE, True)
         imgui.invisible_button(ui.held(f"drag {key}"), ImVec2(width, imgui.get_frame_height()))
         imgui.pop_item_flag()
@@ -266,14 +264,19 @@ def _shown(value: float | str | None, spec: Field, width: float) -> str:
     """Return a value as it stands in a field: a number to as many figures as the field has room for [px]."""
     if value is None:
         return _VARIOUS
-    room = width - 2.0 * imgui.get_style().frame_padding.x
+    room = _room_in(width)
     if isinstance(value, str):
         is_span = spec.kind in ("number", "whole", "vector") and imgui.calc_text_size(value).x > room
         return _VARIOUS if is_span else value
-    if spec.kind == "vector" or width < _NARROW * imgui.get_font_size():
-        return shown_vector_part(value)
-    texts = [shown_number(value, figures) for figures in range(_FIGURES, 1, -1)]
-    return next((text for text in texts if imgui.calc_text_size(text).x <= room), texts[-1])
+    most = _PART_FIGURES if spec.kind == "vector" else _FIGURES
+    texts = [shown_number(value, figures) for figures in range(most, 0, -1)]
+    fitting = (text for text in texts if imgui.calc_text_size(text).x <= room)
+    return next(fitting, _ABOUT_ZERO if abs(value) < _TINY else texts[-1])
+
+
+def _room_in(width: float) -> float:
+    """Return how wide the text of a field can be that is so wide [px]."""
+    return float(width - 2.0 * imgui.get_style().frame_padding.x)
 
 
 def _as_field(text: str, spec: Field) -> float | str | list[tuple[float, float]] | None:
