@@ -1,5 +1,6 @@
 """``physicslab export``: what a page holds, how it is framed and coloured, and what is refused."""
 
+import base64
 import html
 import json
 import re
@@ -19,12 +20,17 @@ from physicslab.components import Drag, Mass, Shape, Spring, Trail, Transform, V
 from physicslab.components.colour import rgb_of
 from physicslab.ecs.config import PhysicsConfig
 from physicslab.export.look import style
-from physicslab.export.packing import pack, unpacked_bytes
+from physicslab.export.packing import pack
 from physicslab.export.parts import springs_of
 from physicslab.export.recording import RunRecorder, frame_run
 from physicslab.prefabs import gas
 from physicslab.systems.standard import standard_systems
 from physicslab.theme import contrast
+
+
+def unpacked_bytes(text: str) -> bytes:
+    """Return the bytes that a text holds: RFC 1924, with a comma for ``<``, as the page reads it."""
+    return base64.b85decode(text.replace(",", "<"))
 
 
 def unpack(text: str, rows: int) -> NDArray[np.float32]:

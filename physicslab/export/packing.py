@@ -34,11 +34,6 @@ def pack(values: NDArray[np.float32]) -> str:
     return base64.b85encode(columns).decode("ascii").translate(_SAFE)
 
 
-def unpacked_bytes(text: str) -> bytes:
-    """Return the bytes that a text of :func:`pack` holds."""
-    return base64.b85decode(text.translate(_SAFE))
-
-
 def _packed(column: NDArray[np.float32]) -> bytes:
     bits = column.view(np.int32)
     rest = bits ^ ((bits >> 31) & 0x7FFFFFFF)

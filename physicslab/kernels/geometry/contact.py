@@ -254,6 +254,18 @@ def touch(
         touch_with_circle(manifold, one, way, turn, start, speculative_margin, other, body, shapes.pool)
 
 
+@always_inlined
+def _list_pair(
+    touching: Rows, p: int, manifold: Manifold, inverse: Inverse, found: int, held: int
+) -> tuple[int, int]:  # fmt: skip
+    """Write pair ``p`` after the ``found`` ones, or before those from ``held`` on if one body is fixed."""
+    if inverse.mass[manifold.a] > 0.0 and inverse.mass[manifold.b] > 0.0:
+        touching[found] = p
+        return found + 1, held
+    touching[held - 1] = p
+    return found, held - 1
+
+
 @inlined
 def _put_last(touching: Rows, found: int, held: int, count: int) -> int:
     """Put the pairs from ``held`` on, which were written from the end, after those found; return how many."""
@@ -274,12 +286,7 @@ def list_touching(near: Near, inverse: Inverse) -> None:
         p = near.scalar[number]
         manifold = near.manifolds[p]
         if manifold.count > 0:
-            if inverse.mass[manifold.a] > 0.0 and inverse.mass[manifold.b] > 0.0:
-                near.touching[found] = p
-                found += 1
-            else:
-                held -= 1
-                near.touching[held] = p
+            found, held = _list_pair(near.touching, p, manifold, inverse, found, held)
     near.counts[ACTIVE] = _put_last(near.touching, found, held, count)
 
 
@@ -368,12 +375,7 @@ def find_contacts(
                 effective_masses(manifold, near.points, p, inverse)
             if first or not had_points:
                 mix(manifold, materials, bounds)
-            if inverse.mass[a] > 0.0 and inverse.mass[b] > 0.0:
-                touching[found] = p
-                found += 1
-            else:
-                held -= 1
-                touching[held] = p
+            found, held = _list_pair(touching, p, manifold, inverse, found, held)
         elif had_points:
             forget_points(one, two)
     return _put_last(touching, found, held, count)
