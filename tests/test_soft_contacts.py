@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -219,3 +220,18 @@ def test_two_boxes_that_fall_on_each_other_go_alike_mirrored_and_in_another_orde
         angles = [side * world.component(one, Transform).angle for one in boxes]
         found.append([(side * place(world, one).x, place(world, one).y) for one in boxes] + [tuple(angles)])
     assert np.abs(np.subtract(found[0], found[1])).max() < 1e-11
+
+
+@pytest.mark.parametrize("iterations", [None, 4, 8, 32, 64])
+def test_the_swaying_of_a_tower_decays_however_often_it_is_swept(iterations: int | None) -> None:
+    """Sweeps hardly reach it, and a contact spring stiffer than they carry feeds it."""
+    world = laboratory(1 / 60)
+    world.simulation = replace(world.simulation, iterations=iterations)
+    box(world, (0, -0.5), width=20, height=1, static=True)
+    for i in range(12):
+        box(world, (0, 0.1 + 0.2 * i), width=0.32, height=0.2, velocity=(0.02 * (i / 12) ** 2, 0))
+    speeds = []
+    for _ in range(120):
+        world.run(steps=5)
+        speeds.append(float(np.abs(world.table(Velocity)["linear"]).max()))
+    assert max(speeds[-12:]) < 0.5 * max(speeds[12:24])

@@ -202,6 +202,19 @@ def _share_off(contacts: str, count: int, width: float, height: float, seconds: 
     return max(way.magnitude for way in moved) / height
 
 
+def _swaying(count: int) -> float:
+    """Return the largest speed of a pushed tower in its 20th second, as a share of that in its 3rd."""
+    world = open_space(gravity=9.81, contacts="soft")
+    floor(world)
+    for i, one in enumerate(stack(world, count, width=0.32, height=0.2)):
+        world.component(one, Velocity).linear = (0.02 * (i / count) ** 2, 0.0)
+    speeds = []
+    for _ in range(240):
+        world.run(steps=5)
+        speeds.append(_fastest(world))
+    return max(speeds[-12:]) / max(speeds[24:36])
+
+
 _case = partial(StabilityCase, group="stacks", unit="m")
 _stands = partial(
     _case, right="it stands: no box is off by half its width after 10 s", figure="farthest from its place",
@@ -239,6 +252,14 @@ STANDING = (
         )
         for count, size in _TOWERS
         for contacts, model in MODELS.items()
+    ),
+    *(
+        StabilityCase(
+            name=f"sway_{count}", group="towers", limit=1.0,
+            title=f"{count} boxes of 32 by 20 cm, pushed", right="the tower sways less, not more",
+            figure="largest speed in the 20th second, of that in the 3rd", measure=partial(_swaying, count),
+        )
+        for count in (8, 12, 20)
     ),
     *(
         StabilityCase(
