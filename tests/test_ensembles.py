@@ -81,6 +81,7 @@ def test_twins_differ_from_the_first_by_the_jitter() -> None:
 SWEPT = (
     ("drop", {E: [0.0, 0.5, 0.9], "ball.Velocity.linear[0]": [0.0, 1.0, -2.0]}),
     ("drop", {"ball.Transform.position.y": [0.25, 4.0], "physics.gravity.y": [-9.81, 0.0, -1.0]}),
+    ("drop", {"physics.linear_damping": [0.0, 0.5], "physics.gravity.x": [0.0, 2.0]}),
     ("drop", {"simulation.substeps": [1, 3], "ball.Shape.radius": [0.1, "30 cm"]}),
     ("drop", {"ball.Mass.inertia": [0.1, 1.0], "simulation.contacts": ["soft", "rigid"]}),
 )
@@ -116,7 +117,7 @@ def _numbers(world: World) -> list[str]:
 )
 def test_rows_of_other_scenes_have_the_bits_of_fresh_worlds(scene: str) -> None:
     world = load_scene(scene)
-    for path in _numbers(world)[:6]:
+    for path in ["physics.gravity.x", "physics.linear_damping", *_numbers(world)[:6]]:
         task = task_of(scene, {path: [0.2, 0.9]}, measure="numerical", seconds=0.5)
         result = ensemble(scene, {path: [0.2, 0.9]}, measure="numerical", seconds=0.5, executor="serial")
         assert not result.failures, (path, result.failures)
@@ -134,7 +135,17 @@ def test_rows_of_several_islands_have_the_bits_of_fresh_worlds_and_keep_their_is
     for name, x in (("a", 0.0), ("b", 0.3), ("c", 30.0), ("d", 33.0)):
         box(world, (x, 1.5 if name == "b" else 0.5), width=1, height=1, mass=1, name=name)
     measures = {f"{name}.{axis}": f"{name}.{axis}" for name in "abcd" for axis in "xy"}
-    space = {"c.Velocity.linear.x": [0.0, 1.0, -40.0, 0.5], "b.Material.restitution": [0.0, 0.5]}
+    space: dict[str, Any] = {
+        "c.Velocity.linear.x": [0.0, 1.0, -40.0, 0.5],
+        "b.Material.restitution": [0.0, 0.5],
+    }
+    laws = {"physics.gravity.y": [-9.0, 0.0], "physics.linear_damping": [0.0, 0.5, 0.0]}
+    for row, found_y in enumerate(
+        ensemble(world, laws, measure="b.y", seconds=0.5, executor="serial").columns["b.y"]
+    ):
+        other = task_of(world, laws, measure="b.y", seconds=0.5).world(row)
+        other.run(seconds=0.5)
+        assert found_y == other.component("b", Transform).position.y
     task = task_of(world, space, measure=measures, seconds=0.5)
     runner, parts = Runner(task), []
     for row in range(8):

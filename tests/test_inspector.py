@@ -21,6 +21,7 @@ from desk import (
     fill,
     middle_of,
     point,
+    sized,
     tap,
     write,
 )  # fmt: skip
@@ -334,6 +335,31 @@ def test_every_label_of_a_number_can_be_dragged(key: str) -> None:
 
 
 # ---- several, and components -----------------------------------------------------------------------------
+
+
+def test_several_get_each_its_own_number_from_left_to_right() -> None:
+    world = empty_world()
+    right, left = (box(world, (x, 0.5), name=f"cart at {x}") for x in (2.0, -2.0))
+    desk = sized((1280, 720), world)
+    desk.window.pace.paused = True
+    desk.window.selection.entities = (right, left)
+    desk.frames(SETTLED)
+    fill(desk, "Mass.mass", "1; 2500 g")
+    fill(desk, "Velocity.linear.x", "2; -1")
+    fill(desk, "Transform.angle", "0; 90")
+    fill(desk, "Material.friction", "0")
+    found = [[held(desk, e, key) for e in (left, right)] for key in ("Mass.mass", "Velocity.linear.x")]
+    assert found == [[1.0, 2.5], [2.0, -1.0]]
+    assert held(desk, right, "Transform.angle") == pytest.approx(math.pi / 2)
+    assert [held(desk, e, "Material.friction") for e in (left, right)] == [0.0, 0.0]
+    entries = len(desk.sandbox.history.entries)
+    for wrong, words in (("1; 2; 3", "must be one number, or 2"), ("1; 0", "must be"), ("1; x", "x")):
+        fill(desk, "Mass.mass", wrong)
+        assert any(words in said for said in desk.ui.words), wrong
+        assert [held(desk, e, "Mass.mass") for e in (left, right)] == [1.0, 2.5]
+    assert len(desk.sandbox.history.entries) == entries
+    tap(desk, "z", pygame.KMOD_CTRL)
+    assert held(desk, left, "Material.friction") != 0.0, "an edit each"
 
 
 def test_several_have_the_fields_that_all_of_them_have() -> None:

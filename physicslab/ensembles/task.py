@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Material, Shape, Velocity
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened
 from physicslab.ensembles.measures import Measure, Measures
@@ -25,7 +26,7 @@ from physicslab.ensembles.rollout import Rollout
 from physicslab.ensembles.space import Space, Values
 from physicslab.files.assignments import put
 from physicslab.files.checks import SceneError, shown
-from physicslab.files.places import SECTIONS, Place, entity_names, find_place
+from physicslab.files.places import Place, entity_names, find_place
 from physicslab.files.reader import read_scene
 from physicslab.kernels.keys import sources_key
 from physicslab.kernels.tiers import compile_first
@@ -160,22 +161,20 @@ class Runner:
         self._places = places_of(world, task.space)
         kinds = {place.kind for place in self._places.values()}
         self._in_place = all(map(_is_plain, self._places.values()))
-        self._handles = (
-            [world.component(place.entity, place.kind) for place in self._places.values()]
-            if self._in_place
-            else []
-        )
+        self._handles = self._found_handles() if self._in_place else []
         self._changes = world.entity_index.changes
         self._plan = world.plan
         self._alone = is_one(world, world.schedule)
+        laws = PhysicsConfig in kinds
         running, read = set(world.schedule.running), self._measures.read_at_end
         self._asked = [
             (system, system in running)
             for system in world.schedule.systems
-            if any(kind in kinds and kind.__name__ not in _SETTLED for kind in system.needs)
+            if laws or any(kind in kinds and kind.__name__ not in _SETTLED for kind in system.needs)
         ]
         self._rollout: Rollout | None = None
-        if self._in_place and self._alone and self._places and read is not None and task.until is None:
+        rolls = self._in_place and self._alone and not laws and task.until is None
+        if rolls and self._places and read is not None:
             self._rollout = Rollout(world, self._places, read, self._chooses_the_same)
 
     def block(self, first: int, last: int) -> Block:
@@ -238,10 +237,13 @@ class Runner:
         world = self._world
         world.reset()
         if self._changes != world.entity_index.changes:
-            self._handles = [world.component(place.entity, place.kind) for place in self._places.values()]
+            self._handles = self._found_handles()
             self._changes = world.entity_index.changes
         for place, handle, value in zip(self._places.values(), self._handles, row, strict=True):
             try:
+                if handle is None:
+                    place.write(world, value)
+                    continue
                 whole = value
                 if place.part:
                     held = getattr(handle, place.spec.name)
@@ -261,6 +263,13 @@ class Runner:
         if not self._alone:
             world.stale = world.entity_index.motion_edited = True
         return not self._alone
+
+    def _found_handles(self) -> list[Any]:
+        """Return the components of which fields differ, ``None`` for the laws."""
+        return [
+            None if place.kind is PhysicsConfig else self._world.component(place.entity, place.kind)
+            for place in self._places.values()
+        ]
 
     def _chooses_the_same(self) -> bool:
         """Whether the same systems and the same method would be chosen for the values of now."""
@@ -289,7 +298,7 @@ def _is_plain(place: Place) -> bool:
     """Whether a field can have another value in a world that stays as it is otherwise."""
     spec = place.spec
     return (
-        place.kind not in SECTIONS.values()
+        place.kind is not SimulationConfig
         and spec.kind in ("number", "vector")
         and not (spec.fixed or spec.derived)
     )

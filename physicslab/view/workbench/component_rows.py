@@ -137,12 +137,23 @@ class ComponentRows:
         self.numbers.pair_row(self.ui, words, words, parts)
 
     def _commit(self, kind: Kind, spec: Field, new: object) -> None:
-        """Give a number to all that is selected, or raise ``InvalidValue``."""
-        if new is not None:
-            spec.check(new)
-        for entity in self.window.selection.entities:  # some fields depend on others: a radius is above 0
-            kind(**(self.world.component(entity, kind).given() | {spec.name: new}))
-        self._set(kind, spec, new)
+        """Give a number to all that is selected, or to each its own, or raise ``InvalidValue``."""
+        given = self._for_each(new)
+        for entity, one in given.items():
+            if one is not None:
+                spec.check(one)
+            # Some fields depend on others: a radius is above 0.
+            kind(**(self.world.component(entity, kind).given() | {spec.name: one}))
+        self._change(kind, spec, given.__getitem__)
+
+    def _for_each(self, new: object) -> dict[int, Any]:
+        """Return what each of the selection gets: of several numbers its own, from left to right."""
+        chosen, table = self.window.selection.entities, self.world.table(Transform)
+        if not isinstance(new, tuple):
+            return dict.fromkeys(chosen, new)
+        rows = self.world.entity_index.rows_of(np.array(chosen, np.int64))
+        order = np.argsort(table["position"][rows, 0], kind="stable")
+        return {chosen[n]: one for n, one in zip(order.tolist(), new, strict=True)}
 
     def _in_degrees(self, spec: Field) -> bool:
         return spec.unit == "rad" and self.window.level != "Engineer"
@@ -154,18 +165,26 @@ class ComponentRows:
             return
         degrees = without_turns(math.degrees(now)) if isinstance(now, float) else now
 
-        def commit_degrees(new: float | None) -> None:
-            commit(None if new is None else math.radians(new))
+        def commit_degrees(new: float | tuple[float, ...] | None) -> None:
+            if isinstance(new, tuple):
+                commit(tuple(map(math.radians, new)))
+            else:
+                commit(None if new is None else math.radians(new))
 
         self.numbers.row(self.ui, key, _label(spec), replace(spec, unit="deg"), degrees, commit_degrees)
 
     def _vector(self, kind: Kind, spec: Field, key: str, now: tuple[Any, Any]) -> None:
-        def commit(axis: int, new: float) -> None:
-            spec.check((new, new))
+        def commit(axis: int, new: float | tuple[float, ...]) -> None:
+            given = self._for_each(new)
+            for one in given.values():
+                spec.check((one, one))
 
             def moved(entity: int) -> Vector2:
-                vector = getattr(self.window.edits.world.component(entity, kind), spec.name)
-                return Vector2(new, vector.y) if axis == 0 else Vector2(vector.x, new)
+                vector, own = (
+                    getattr(self.window.edits.world.component(entity, kind), spec.name),
+                    given[entity],
+                )
+                return Vector2(own, vector.y) if axis == 0 else Vector2(vector.x, own)
 
             self._change(kind, spec, moved)
 

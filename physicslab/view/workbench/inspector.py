@@ -213,9 +213,9 @@ def build_inspector(ui: Ui, numbers: NumberFields, world: World, window: Window)
     chosen, is_brief = window.selection.entities, window.level == "Explore"
     world.synchronise()
     first, is_one = chosen[-1], len(chosen) == 1
-    numbers.share = _LABELS
+    numbers.share, numbers.selected = _LABELS, len(chosen)
     ui.heading(world.label(first) if is_one else f"{len(chosen)} selected")
-    words = _kind(world, first) if is_one else "Changes go to all of them"
+    words = _kind(world, first) if is_one else "One number for all, or one for each from left to right: 1; 2"
     ui.same_line_if_room(words)
     ui.faint(words)
     if is_one:

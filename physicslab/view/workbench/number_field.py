@@ -41,10 +41,12 @@ _HALF_TURN = 180.0
 _LINES_SHOWN = 4
 """Lines of a longer text that a field shows at one time."""
 
+BETWEEN = ";"
+"""Separates numbers for several bodies."""
 ABSENT = "none"
 """How a number is ``derived`` that may be absent, as a limit; writing this takes it away."""
 type Commit = Callable[[Any], None]
-type CommitPart = Callable[[int, float], None]
+type CommitPart = Callable[[int, Any], None]
 
 
 def shown_number(value: float, figures: int = _FIGURES) -> str:
@@ -82,10 +84,13 @@ class NumberFields:
     ----------
     share : float
         Share of the panel's width that labels take.
+    selected : int
+        To how many bodies the numbers go; so many may be written in a field, as ``1; 2``.
     """
 
     def __init__(self) -> None:
         self.share = _SHARE
+        self.selected = 1
         self._for: object = None
         self._drafts: dict[str, _Draft] = {}
         self._edited: _Target | None = None
@@ -198,7 +203,7 @@ class NumberFields:
         if edited is None or draft is None or draft.text == edited.shown:
             return ""  # the number may have more figures than the field shows
         try:
-            edited.commit(_as_field(draft.text, edited.spec))
+            edited.commit(_as_field(draft.text, edited.spec, self.selected))
         except InvalidText as error:
             draft.refusal = str(error)
         except InvalidValue as error:
@@ -279,7 +284,9 @@ def _room_in(width: float) -> float:
     return float(width - 2.0 * imgui.get_style().frame_padding.x)
 
 
-def _as_field(text: str, spec: Field) -> float | str | list[tuple[float, float]] | None:
+def _as_field(
+    text: str, spec: Field, selected: int
+) -> float | str | list[tuple[float, float]] | tuple[float, ...] | None:
     """Return what was written as a field takes it; raise ``InvalidText`` where it cannot be read."""
     if spec.derived == ABSENT and text.strip().lower() == ABSENT:
         return None
@@ -287,6 +294,15 @@ def _as_field(text: str, spec: Field) -> float | str | list[tuple[float, float]]
         return text
     if spec.kind == "points":
         return evaluate_points(text, spec.unit)
+    if selected > 1 and BETWEEN in text:
+        values = tuple(_number(part, spec) for part in text.split(BETWEEN))
+        if len(values) != selected:
+            raise InvalidText(f"must be one number, or {selected}: one for each from left to right")
+        return values
+    return _number(text, spec)
+
+
+def _number(text: str, spec: Field) -> float:
     value = evaluate(text, spec.unit)
     return round(value) if spec.kind == "whole" and value == round(value) else value
 
