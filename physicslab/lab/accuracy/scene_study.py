@@ -24,7 +24,7 @@ from physicslab.stepping.method import tolerance_for
 from physicslab.world import World
 
 ESTIMATE = "an estimate: there is no reference, runs are compared with each other"
-"""The default length of a run of a scene [s]."""
+"""The kind of result that a scene without a known answer has."""
 _ESTIMATE_SHARE, _HORIZON_SHARE = 0.3, 0.4
 """Rough shares of the work of a study that are done after the estimate, and after the horizon."""
 _HORIZON_TIMES = 6.0

@@ -16,14 +16,16 @@ from physicslab.world import World
 
 _OVERLAP, _LARGEST = 0.06, 0.25
 """Deepest overlap that counts as right at the end, and at any time [m]."""
+_STEPS, _BOARDS = 30, 6
+"""How many steps the stairs have, and boards the zigzag."""
 
 
-def stairs(count: int, steps: int = 30) -> World:
+def stairs(count: int) -> World:
     """Return discs and boxes in turn that fall on stairs and bounce down them into a container."""
     world, random = soft_space(), np.random.default_rng(11)
-    for n in range(steps):
+    for n in range(_STEPS):
         box(world, (n * 1.0, -0.5 * n - 5.0), width=1.0, height=10.0, static=True, friction=0.4)
-    container(world, (steps + 9.0, -0.5 * steps - 6.0), width=20.0, height=12.0)
+    container(world, (_STEPS + 9.0, -0.5 * _STEPS - 6.0), width=20.0, height=12.0)
     for n in range(count):
         place = (1.0 + n % 40 * 0.6, 4.0 + n // 40 * 0.6)
         size = float(random.uniform(0.15, 0.4))
@@ -69,11 +71,11 @@ def hail(count: int) -> World:
     return world
 
 
-def zigzag(count: int, boards: int = 6) -> World:
+def zigzag(count: int) -> World:
     """Return boxes that slide down boards which lead from side to side."""
     world, random = soft_space(), np.random.default_rng(13)
-    container(world, (0.0, -3.5 * boards - 6.0), width=16.0, height=6.0)
-    for n in range(boards):
+    container(world, (0.0, -3.5 * _BOARDS - 6.0), width=16.0, height=6.0)
+    for n in range(_BOARDS):
         side = 1.0 if n % 2 else -1.0
         board = (1.5 * side, -3.5 * n)
         box(world, board, width=13.0, height=0.4, angle=0.35 * side, static=True, friction=0.2)
