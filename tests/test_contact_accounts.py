@@ -13,6 +13,7 @@ from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.diagnostics.energy import Accounts, measure_account
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
+from physicslab.lab.bench.random_scenes import random_scene
 from physicslab.state.state import State
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import Stage, System, at
@@ -230,3 +231,26 @@ def test_a_crowd_books_what_a_box_by_itself_does() -> None:
     assert budgets[1]["friction"] < -0.4999
     assert budgets[0] == pytest.approx(budgets[1], rel=0.01, abs=1e-6)
     assert budgets[0]["friction"] == pytest.approx(budgets[1]["friction"], rel=5e-6)
+
+
+def test_a_pile_at_rest_books_nothing() -> None:
+    """Friction at walls is booked beside what gravity does, before what it would give is refused."""
+    pile = random_scene(601, 39)[0].build()  # capsules that wedge between walls, most contacts in blocks
+    pile.run(steps=1500)
+    before = measure_account(pile)
+    pile.run(seconds=1.0)
+    booked = measure_account(pile).after(before).energy
+    assert max(map(abs, booked.values())) < 1e-8, booked
+
+
+@pytest.mark.parametrize("integrator", ["leapfrog", "symplectic_euler"])
+def test_a_box_at_rest_books_nothing(integrator: str) -> None:
+    resting = world()
+    resting.simulation = replace(resting.simulation, integrator=integrator, sleeping=False)
+    floor(resting)
+    box(resting, 0.0, 0.25)
+    resting.run(seconds=5.0)
+    before = measure_account(resting)
+    resting.run(seconds=1.0)
+    booked = measure_account(resting).after(before).energy
+    assert max(map(abs, booked.values())) < 1e-12, booked

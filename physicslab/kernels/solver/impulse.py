@@ -3,7 +3,6 @@
 import math
 
 from physicslab.kernels import Rows, always_inlined, inlined, kernel
-from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION
 from physicslab.kernels.arguments import Acting, Contacts, Inverse, Motion, Near, Softness
 from physicslab.kernels.constraint.pair import (
     after_impulse_at,
@@ -140,15 +139,16 @@ def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
 @always_inlined
 def relax(
     contacts: Contacts, near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting,
-    h: float, sweeps: int,
-) -> None:  # fmt: skip
+    h: float, half: float, sweeps: int,
+) -> tuple[float, float]:  # fmt: skip
     """Go through all contacts without correction, so that pushing bodies apart leaves no velocity behind.
 
-    ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call. The work
-    of the impulses of that is booked, and of those found here: each by the mean velocity of before and after
-    all of them, or in a crowd, which has too many points to look at again, of before and after itself.
+    ``h`` is the time that bodies have moved since :func:`solve`, and the time until its next call, ``half``
+    that of half a substep. Returns the work of normal and of tangential impulses [J], of those found there
+    and here: each by the mean velocity of before and after all of them, or in a crowd, which has too many
+    points to look at again, of before and after itself.
     """
-    pressed, friction_work = book_solved(contacts, near, motion, inverse, acting, h)
+    pressed, friction_work = book_solved(contacts, near, motion, inverse, acting, h, half)
     crowd = near.counts[WIDE_COUNT] > 0
     if crowd:
         take_means(near, motion)
@@ -178,11 +178,7 @@ def relax(
         book_momentum(joints, motion, inverse, near.account, False)
     if not crowd:
         pressed, friction_work = pressed + push, friction_work + rub
-    # Friction gives no energy: where sliding turns round within a substep, or friction holds a body that is
-    # pushed out of an overlap, the mean speed is not that at which it acts.
-    taken = min(friction_work, 0.0)
-    near.account[CONTACT, ENERGY] += pressed + (friction_work - taken)
-    near.account[FRICTION, ENERGY] += taken
+    return pressed, friction_work
 
 
 @kernel

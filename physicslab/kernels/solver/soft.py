@@ -312,7 +312,8 @@ def _advance(
                 if part + 1 < len(course.parts) and course.parts[part + 1] == OVERLAP:
                     for i in range(len(angle)):
                         packed.state[2, 2 * i], packed.state[2, 2 * i + 1] = position[i, 0], position[i, 1]
-                relax(near, joints, motion, inverse, acting, softness, span, plan.iterations)
+                half = 0.5 * impulse_dt
+                relax(near, joints, motion, inverse, acting, softness, span, half, plan.iterations)
                 weighed = False
                 now = charge(cost, RESOLVE, now)
             elif what == HOOK or _moved(motion, packed.state[2]):

@@ -36,7 +36,7 @@ from physicslab.kernels.solver.impact import ImpactWindow, measure_again, resolv
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.kernels.solver.meet_again import any_swift, meet_again
 from physicslab.kernels.solver.separate import any_deep, separate
-from physicslab.kernels.solver.work import book_slots, note_velocities
+from physicslab.kernels.solver.work import book_slots, book_work_of_contacts, note_velocities
 from physicslab.kernels.wide.refresh import refresh
 from physicslab.kernels.wide.slots import wake
 
@@ -163,7 +163,7 @@ def press(
     note_velocities(contacts, near, motion, inverse, acting, h)
     impulse.solve(contacts, near, joints, motion, inverse, acting, softness, h, scale, sweeps)
     if near.counts[WIDE_COUNT] > 0:
-        book_slots(near, motion, inverse, acting, h, True)
+        book_slots(near, motion, inverse, acting, 0.0, True)
     return h
 
 
@@ -176,15 +176,21 @@ def relax(
     acting: Acting,
     softness: Softness,
     h: float,
+    half: float,
     iterations: int,
 ) -> None:
-    """Remove the velocity that came from correcting errors, ``h`` seconds after :func:`press`."""
+    """Remove the velocity that came from correcting errors, ``h`` seconds after :func:`press`.
+
+    ``half`` is half of the substep [s]. The work of all impulses is booked.
+    """
     if near.counts[LEFT] + near.counts[WIDE_COUNT] + len(joints.impulse) == 0:
         return
     contacts = _solved(near)
     sweeps = impulse.sweeps_of(near, len(joints.impulse), iterations)
-    impulse.relax(contacts, near, joints, motion, inverse, acting, h, sweeps)
+    pressed, friction_work = impulse.relax(contacts, near, joints, motion, inverse, acting, h, half, sweeps)
     if near.counts[WIDE_COUNT] > 0:
-        book_slots(near, motion, inverse, acting, h, False)
+        push, rub = book_slots(near, motion, inverse, acting, half, False)
+        pressed, friction_work = pressed - push, friction_work - rub
+    book_work_of_contacts(near, pressed, friction_work)
     if any_deep(contacts, near):  # to count references to all these arrays takes as long as ten contacts
         separate(contacts, near, motion, inverse.mass, acting, softness.max_push * h)

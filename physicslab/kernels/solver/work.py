@@ -131,11 +131,12 @@ def _book_moved(
 
 @always_inlined
 def book_solved(
-    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float
-) -> tuple[float, float]:
+    contacts: Contacts, near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float, half: float
+) -> tuple[float, float]:  # fmt: skip
     """Return the work of normal and tangential impulses of scalar contacts [J] since velocities were noted.
 
-    Bodies have moved for ``h`` seconds since, half of the substep, which separations follow. What comes from
+    Bodies have moved for ``h`` seconds since, which separations follow; ``half`` of the substep [s] is how
+    long uniform forces acted on the mean of the noted velocities, and not on fixed bodies. What comes from
     outside is booked by :func:`book_relaxed`, at the places that bodies have now; that these impulses acted
     before is booked here.
     """
@@ -167,8 +168,8 @@ def book_solved(
                 ax, ay = _pull(a, b, inverse, acting)
                 pull, across = along_and_across(nx, ny, ax, ay)
                 push, rub = along_and_across(nx, ny, px, py)
-                pressed -= h * push * pull
-                friction_work -= h * rub * across
+                pressed -= half * push * pull
+                friction_work -= half * rub * across
             _book_moved(near, motion, inverse, a, b, x, y, px, py)
     return pressed, friction_work
 
@@ -255,14 +256,17 @@ def _slot_impulse(slots: L.Slots, at: int, point: int) -> tuple[float, float, fl
 
 
 @inlined
-def book_slots(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: float, solved: bool) -> None:
+def book_slots(
+    near: Near, motion: Motion, inverse: Inverse, acting: Acting, half: float, solved: bool
+) -> tuple[float, float]:
     """Book what comes from outside by wide contacts in a substep; where it is just ``solved``, note it.
 
-    Uniform forces, which have acted for ``h`` seconds, accelerate no more than these bodies against others.
     Noted are the impulses that then act, and the place of the body that they move: their moment is
-    that about where it was, and that of what they change by later about where it is then.
+    that about where it was, and that of what they change by later about where it is then. Returns, once that
+    is booked, the work of normal and of tangential impulses [J] that sweeps have booked too much:
+    :func:`book_solved` says what uniform forces do in ``half`` of the substep [s].
     """
-    given = Given(0.0, 0.0, 0.0)
+    given, pressed, friction_work = Given(0.0, 0.0, 0.0), 0.0, 0.0
     for slots in (near.discs, near.boxes):
         rows = L.rows_of(slots.kind)
         for k in range(near.counts[DISC_BLOCKS + slots.kind]):
@@ -280,21 +284,34 @@ def book_slots(near: Near, motion: Motion, inverse: Inverse, acting: Acting, h: 
                 moved, sign = (b, 1.0) if inverse.mass[a] == 0.0 else (a, -1.0)
                 here_x, here_y = sign * motion.position[moved, 0], sign * motion.position[moved, 1]
                 if solved:
-                    if acting.uniform:
-                        nx, ny = slots.data[at + L.NORMAL_X], slots.data[at + L.NORMAL_Y]
-                        ax, ay = _pull(a, b, inverse, acting)
-                        pull, across = along_and_across(nx, ny, ax, ay)
-                        push, rub = along_and_across(nx, ny, px, py)
-                        near.account[CONTACT, ENERGY] -= 0.5 * h * push * pull
-                        near.account[FRICTION, ENERGY] -= 0.5 * h * rub * across
                     noted[j, 0], noted[j, 1], noted[j, 2], noted[j, 3] = px, py, here_x, here_y
                     continue
                 given = _given(given, near, motion, inverse, a, b, px, py, turn_a, turn_b)
                 if inverse.mass[a] == 0.0 or inverse.mass[b] == 0.0:
                     x, y = here_x - noted[j, 2], here_y - noted[j, 3]
                     _book_moved(near, motion, inverse, a, b, x, y, noted[j, 0], noted[j, 1])
+                    if acting.uniform:
+                        nx, ny = slots.data[at + L.NORMAL_X], slots.data[at + L.NORMAL_Y]
+                        ax, ay = _pull(a, b, inverse, acting)
+                        pull, across = along_and_across(nx, ny, ax, ay)
+                        push, rub = along_and_across(nx, ny, noted[j, 0], noted[j, 1])
+                        pressed += half * push * pull
+                        friction_work += half * rub * across
     if not solved:
         _book_given(near, given)
+    return pressed, friction_work
+
+
+@inlined
+def book_work_of_contacts(near: Near, pressed: float, friction_work: float) -> None:
+    """Book the work of normal and of tangential impulses in a substep [J].
+
+    Friction gives no energy: where sliding turns round within a substep, or friction holds a body that is
+    pushed out of an overlap, the mean speed is not that at which it acts.
+    """
+    taken = min(friction_work, 0.0)
+    near.account[CONTACT, ENERGY] += pressed + (friction_work - taken)
+    near.account[FRICTION, ENERGY] += taken
 
 
 @inlined
