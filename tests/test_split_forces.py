@@ -53,11 +53,12 @@ def test_the_method_goes_by_the_stiffness_and_the_reason_says_so(stiffness: floa
     assert ("too fast to be followed" in world.plan.reason) == (method is IMPLICIT_MIDPOINT)
 
 
-def test_dampers_are_followed_by_the_same_splitting_and_drag_of_theirs_is_not() -> None:
+def test_dampers_and_linear_drag_are_followed_by_the_same_splitting_and_drag_by_the_square_is_not() -> None:
     world, bob = hung(50.0, damping=1.0)
+    world.add(bob, Drag(linear=0.1))
     world.synchronise()
     assert world.plan.split_forces is SPRING_SPLITTING
-    world.add(bob, Drag(linear=0.1))
+    world.component(bob, Drag).quadratic = 0.1
     world.synchronise()
     assert world.plan.split_forces is DOP853
 

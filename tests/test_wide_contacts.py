@@ -30,6 +30,7 @@ from physicslab.prefabs import (
     pyramid,
     regular_polygon,
 )
+from physicslab.state.shapes import REGISTER
 from physicslab.world import World
 
 
@@ -294,6 +295,21 @@ def test_other_vertices_of_the_same_extents_count_from_the_next_step() -> None:
     arms = np.where(used, world.contacts.points["arm_bx"].reshape(-1, 2)[: len(near)], -np.inf)
     for wedge, right in ((wedges[6], 0.6), (wedges[7], 0.3)):
         assert arms[near["entity_b"] == wedge].max() == pytest.approx(right, abs=1e-3)
+
+
+@pytest.mark.parametrize("contacts", ["soft", "rigid"])
+def test_vertices_that_are_new_in_this_process_count_whatever_room_there_is_for_them(contacts: str) -> None:
+    world = open_space(contacts=contacts)
+    floor(world)
+    wedge = polygon(world, (0.0, 0.2), [(-0.3, -0.2), (0.6, -0.2), (-0.3, 0.4)])
+    world.run(steps=5)
+    pool, shape, edits = REGISTER.pool, world.component(wedge, Shape), 0
+    while REGISTER.pool is pool:
+        edits += 1
+        share = 1.0 + 1e-9 * (edits + 1000 * (contacts == "soft"))
+        shape.vertices = [(-0.3, -0.2 * share), (0.6, -0.2 * share), (-0.3, 0.4 * share)]
+        world.step()
+        assert place(world, wedge).y == pytest.approx(0.2, abs=1e-3), edits
 
 
 def test_removing_a_body_lets_those_above_fall() -> None:

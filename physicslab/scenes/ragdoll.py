@@ -17,7 +17,7 @@ _STEPS, _WIDE, _HIGH = 6, 0.6, 0.35
     moment=0.9,
     teaches=("energy", "friction", "collisions"),
     tags=("joints", "solid bodies"),
-    simulation=SimulationConfig(contacts="soft", substeps=8),
+    simulation=SimulationConfig(contacts="soft", substeps=12),
 )
 def ragdoll(world: Contents) -> None:
     for n in range(_STEPS):
@@ -32,4 +32,4 @@ def ragdoll(world: Contents) -> None:
     colours = ("#56b4e9", "#f0c8a0", *("#56b4e9",) * 2, *("#f0c8a0",) * 2, *("#4a5a8a",) * 4)
     for part, colour in zip(parts, colours, strict=True):
         world.add(part, Colour(colour))
-        world.component(part, Velocity).linear = (3.0, 0.2)
+        world.component(part, Velocity).linear = (2.8, 0.2)

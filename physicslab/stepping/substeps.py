@@ -114,6 +114,7 @@ class Substeps:
         self._cost, self._forces = np.zeros(soft.COSTS, np.int64), made.forces
         self._h = 0.0
         self._columns: object = None
+        self._shapes: object = None  # which are others where vertices are new in this process
         springs = None if self.split is None else self.split.springs
         self._springs = (np.zeros(0), np.zeros(0, np.int64)) if springs is None else springs.arrays
         self._entry: Callable[..., Any] = soft.advance
@@ -243,9 +244,11 @@ class Substeps:
 
     def _arguments(self, state: State, h: float) -> tuple[Any, ...]:
         """Return the arguments of the loop; those that change only with structure or laws are kept."""
-        contacts, sleep, columns = state.contacts, state.sleep, state.checkpoint.columns
-        if self._columns is not columns or self._h != h:
-            self._columns, self._h, self._fixed = columns, h, self._fixed_arguments(state, h)
+        contacts, sleep = state.contacts, state.sleep
+        columns, shapes = state.checkpoint.columns, state.bodies.plain_shapes
+        if self._columns is not columns or self._shapes is not shapes or self._h != h:
+            self._columns, self._shapes, self._h = columns, shapes, h
+            self._fixed = self._fixed_arguments(state, h)
             self._entry = soft.advance  # which looks at the types of the arrays once
         else:
             self._entry = direct_entry(soft.advance)
