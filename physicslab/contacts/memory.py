@@ -12,6 +12,8 @@ from physicslab.state.contacts import Contacts
 
 _NO_ROWS = ("entity_a", "entity_b", "a", "b", "gap", "slot")
 _KEPT = tuple(name for name in MANIFOLD.names or () if name not in _NO_ROWS)
+_OF_BASE = ("base_x", "base_y", "base_angle_a", "base_angle_b", "base_sizes")
+"""Fields of the pose in which points were found."""
 _OF_POINT = tuple(name for name in POINT.names or () if name != "bend")
 """Fields of a point in a file; how a chain bends there is found again in each substep."""
 _WARM = ("feature", "normal_impulse", "tangent_impulse")
@@ -47,11 +49,13 @@ def kept_rows(contacts: Contacts) -> Iterator[list[float] | None]:
         if manifold["count"] <= 0:
             yield None
         elif manifold["found"] == 2 or _overlaps_deeply(contacts, p):
-            kept = [manifold[name].item() for name in _KEPT[1:]]
-            if manifold["found"] == AS_FOUND:  # a file's next step finds all points again
-                kept[_KEPT.index("found") - 1] = 0
+            kept = {name: manifold[name].item() for name in _KEPT[1:]}
+            if manifold["found"] != 2:  # a file's next step finds all points again, whatever these are
+                kept |= dict.fromkeys(_OF_BASE, 0.0) | {
+                    "found": 0 if kept["found"] == AS_FOUND else kept["found"]
+                }
             both = [contacts.points[j][name].item() for j in (2 * p, 2 * p + 1) for name in _OF_POINT]
-            yield [*pair, *kept, *both, *slot]
+            yield [*pair, *kept.values(), *both, *slot]
         else:
             warm = [contacts.points[j][name].item() for j in (2 * p, 2 * p + 1) for name in _WARM]
             ahead = int(contacts.points[2 * p]["ahead"] + 2 * contacts.points[2 * p + 1]["ahead"])
