@@ -60,6 +60,7 @@ THOROUGH = settings().max_examples > 40
 @example(226807876, 40).via("an approach noted at a point that had been lost and found since")
 @example(36669189, 1).via("a box that turned fast, whose pair with a wall was not listed")
 @example(3456, 1).via("a body that is hit meets one that was not near it before, in one substep")
+@example(4215201, 120).via("loads by normals of contacts in blocks, which records do not follow")
 @example(78572410, 1).via("pairs listed again between two rounds of impacts, in one of both worlds")
 def test_a_scene_goes_on_from_a_file_with_the_same_bits(contacts: str, seed: int, steps: int) -> None:
     goes_on(seed, steps, contacts)

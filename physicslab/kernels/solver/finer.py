@@ -62,12 +62,23 @@ def _hardest_press(near: Near, inverse_mass: Numbers) -> float:
 
 
 @inlined
-def _hold(held: Vectors, manifold: Manifold, force: Vectors, weak: float) -> None:
+def _normal_of(near: Near, manifold: Manifold) -> tuple[float, float]:
+    """Return the normal of a pair now: a slot's is newer than that of the record."""
+    if manifold.slot < 0:
+        return manifold.normal_x, manifold.normal_y
+    kind, slot = manifold.slot % 2, manifold.slot // 2
+    data = near.discs.data if kind == L.DISC else near.boxes.data
+    at = slot // L.WIDE * L.rows_of(kind) + slot % L.WIDE
+    return data[at + L.NORMAL_X], data[at + L.NORMAL_Y]
+
+
+@inlined
+def _hold(held: Vectors, manifold: Manifold, nx: float, ny: float, force: Vectors, weak: float) -> None:
     """Add how hard each body of a pair holds the other, of an effective mass of one over ``weak``."""
     a, b = manifold.a, manifold.b
     if weak > 0.0:
-        forwards = force[a, 0] * manifold.normal_x + force[a, 1] * manifold.normal_y
-        backwards = -force[b, 0] * manifold.normal_x - force[b, 1] * manifold.normal_y
+        forwards = force[a, 0] * nx + force[a, 1] * ny
+        backwards = -force[b, 0] * nx - force[b, 1] * ny
         held[a, 0] += max(0.0, forwards) / weak
         held[b, 0] += max(0.0, backwards) / weak
 
@@ -92,9 +103,10 @@ def _heaviest_load(near: Near, inverse_mass: Numbers, force: Vectors, sunk: floa
             if inverse_mass[heavy] > inverse_mass[light]:
                 heavy, light, sign = light, heavy, -1.0
             x, y, weak = force[heavy, 0], force[heavy, 1], inverse_mass[heavy] + inverse_mass[light]
-            press = sign * (x * manifold.normal_x + y * manifold.normal_y)
+            nx, ny = _normal_of(near, manifold)
+            press = sign * (x * nx + y * ny)
             if not shared:
-                _hold(held, manifold, force, weak)
+                _hold(held, manifold, nx, ny, force, weak)
             elif press > 0.0 and inverse_mass[light] > HEAVY_RATIO * inverse_mass[heavy] > 0.0:
                 press *= press / weak / held[heavy, 0]
                 if press * weak * sunk > _HARDLY_SUNK * manifold.size:
