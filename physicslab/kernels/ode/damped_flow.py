@@ -30,6 +30,7 @@ from physicslab.kernels.float64x8 import (
     take_vectors,
 )
 from physicslab.kernels.ode.drag_flow import fall_in_drag
+from physicslab.kernels.ode.held_drag import Slowed, book_drag, slow, slowed_in
 from physicslab.kernels.ode.spring_flow import (
     BY_DAMPERS,
     BY_HAND,
@@ -87,31 +88,6 @@ class Full(NamedTuple):
     arm_b: Numbers
     turned_a: Numbers
     turned_b: Numbers
-
-
-class Slowed(NamedTuple):
-    """Which places of :class:`Places` drag slows (d,), and by how much [kg/s].
-
-    Then the velocities at the start of a kick and their derivatives of each order (MOST_TERMS * d, 2).
-    """
-
-    places: Rows
-    drag: Numbers
-    rates: Vectors
-
-
-@inlined_by_numba
-def _slowed(springs: Springs) -> Slowed:
-    """Return the arrays of what springs hold and drag slows, which stand before those of drag alone."""
-    numbers, whole = springs
-    d, alone = whole[8], whole[6]
-    last = len(numbers) - 3 * alone
-    rates = last - 2 * MOST_TERMS * d
-    return Slowed(
-        whole[len(whole) - alone - d : len(whole) - alone],
-        numbers[rates - d : rates],
-        numbers[rates:last].reshape(MOST_TERMS * d, 2),
-    )
 
 
 @inlined_by_numba
@@ -199,18 +175,6 @@ def _pull_ends(places: Places, links: Links, full: Full, turns: bool, at: int, f
 
 
 @inlined
-def _slow(places: Places, slowed: Slowed, velocity: Vectors, term: int) -> None:
-    """Add drag by velocities, or by their derivative of an order, and note these."""
-    d = len(slowed.places)
-    for k in range(d):
-        i = slowed.places[k]
-        x, y = velocity[i, 0], velocity[i, 1]
-        slowed.rates[term * d + k, 0], slowed.rates[term * d + k, 1] = x, y
-        places.pull[i, 0] -= slowed.drag[k] * x
-        places.pull[i, 1] -= slowed.drag[k] * y
-
-
-@inlined
 def _evaluate(places: Places, links: Links, full: Full, slowed: Slowed, turns: bool, followed: float) -> bool:
     """Compute the pull of springs, dampers and drag; return whether each spring is long enough."""
     short = 0
@@ -229,7 +193,7 @@ def _evaluate(places: Places, links: Links, full: Full, slowed: Slowed, turns: b
         pull = tension + take(full.damping, at) * opening
         _pull_ends(places, links, full, turns, at, pull * nx, pull * ny)
         short |= mask_bits(length < followed * take(links.shortest, at))
-    _slow(places, slowed, places.speed, 0)
+    slow(places, slowed, places.speed, 0)
     return short == 0
 
 
@@ -244,7 +208,7 @@ def _resist(places: Places, links: Links, full: Full, slowed: Slowed, term: int,
         put(full.opening, term * n + at, opening)
         pull = take(full.damping, at) * opening
         _pull_ends(places, links, full, turns, at, pull * nx, pull * ny)
-    _slow(places, slowed, full.rate, term)
+    slow(places, slowed, full.rate, term)
 
 
 @inlined
@@ -301,22 +265,6 @@ def _dissipated(links: Links, full: Full, slowed: Slowed, span: float, terms: in
 
 
 @inlined
-def _book_drag(places: Places, slowed: Slowed, span: float, terms: int, given: Numbers) -> None:
-    """Book the impulses of drag in a kick: of each place the integral of its velocity, by the series."""
-    d = len(slowed.places)
-    for k in range(d):
-        i, x, y, share = slowed.places[k], 0.0, 0.0, span
-        for term in range(terms):
-            x += share * slowed.rates[term * d + k, 0]
-            y += share * slowed.rates[term * d + k, 1]
-            share *= span / (term + 2)
-        x, y = -slowed.drag[k] * x, -slowed.drag[k] * y
-        given[BY_DAMPERS] += x
-        given[BY_DAMPERS + 1] += y
-        given[BY_DAMPERS + 2] += places.place[i, 0] * y - places.place[i, 1] * x
-
-
-@inlined
 def _book(
     places: Places, links: Links, full: Full, span: float, ends: Rows, held: Rows, turns: bool,
     given: Numbers,
@@ -366,7 +314,7 @@ def _kick(
     _book(places, links, full, span, ends, held, turns, given)
     if terms > 1:  # else nothing is damped
         given[DISSIPATED] += _dissipated(links, full, slowed, span, terms)
-        _book_drag(places, slowed, span, terms, given)
+        book_drag(places, slowed, span, terms, given)
 
 
 @inlined
@@ -447,7 +395,7 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
         made = flow_springs(motion, springs, span, account)
     else:
         places, links, ends, given, drifts, kicks, at = named(springs)
-        full, slowed, dragged = _full(numbers, at, m, p, n), _slowed(springs), last - alone - whole[8]
+        full, slowed, dragged = _full(numbers, at, m, p, n), slowed_in(springs), last - alone - whole[8]
         terms = whole[dragged - s - 1 : dragged]
         held = whole[SIZES + m + 2 * n + whole[7] : dragged - s - 1]
         steps, finer, made = steps_of(springs, span), 1, TURNS_FAST

@@ -401,18 +401,17 @@ def resolve_impacts(
 ) -> tuple[int, int, int, int]:  # fmt: skip
     """Bounce the pairs that meet in this substep, each at its own time.
 
-    The ``window`` is that of the substep. An impact at the time t takes normal, arms and
-    speeds of that time, by :mod:`physicslab.kernels.constraint.impact_law`, and leaves the bodies where they
-    would be had they bounced then: that is exact for constant forces, and keeps energy (e = 1), momentum and
-    angular momentum.
+    The ``window`` is that of the substep. An impact at the time t takes normal, arms and speeds of that time,
+    by :mod:`physicslab.kernels.constraint.impact_law`, and leaves the bodies where they would be had they
+    bounced then: exact for constant forces, it keeps energy (e = 1), momentum and angular momentum.
 
     A pair approaches if it is faster than what presses it together can cause in two substeps: slower pairs
     are in resting contact, which the solver handles. Pairs are resolved one after the other, in order, until
     none meets any more; inelastic ones only once, for the solver removes what is left of their approach.
 
     In ``moments`` it is noted when swift bodies did (:mod:`physicslab.kernels.solver.meet_again`); ``noted``
-    (points, 4) and ``changed`` (rows,) are room. Impacts go into ``log``, unless it has no length, from
-    number ``logged`` on. Returns how many there were, how many pairs are left to the solver, and how many
+    (points, 4) and ``changed`` (rows,) are room. Impacts go into ``log``, from ``logged`` on.
+    Returns how many there were, how many pairs are left to the solver, and how many
     impacts obeyed Stronge's law, or had their restitution lowered, as Newton's would have made energy.
     """
     impacts, left, energetic, lowered = 0, contacts.number, 0, 0
