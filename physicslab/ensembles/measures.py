@@ -68,7 +68,23 @@ def parsed(text: str, ids: Iterable[str]) -> Expression:
     expression = Expression(text, _Canonical(known).visit(whole.node))
     for name in _quantities((expression,)):
         quantity_of(name, known)
+    _refuse_undefined(expression)
     return expression
+
+
+def _refuse_undefined(expression: Expression) -> None:
+    """Refuse parts that no run gives a value, as ``sqrt(-1)`` and ``ball.x/0``."""
+    for node in ast.walk(expression.node):
+        match node:
+            case ast.BinOp(op=ast.Div() as division, right=divisor):
+                node = ast.BinOp(ast.Constant(1), division, divisor)
+            case ast.BinOp() | ast.Call():
+                pass
+            case _:
+                continue
+        part = Expression(expression.text, node)
+        if not any(part.names()):
+            part.value()
 
 
 class _Canonical(ast.NodeTransformer):
