@@ -383,7 +383,7 @@ class Walk:
         self._begins = False
 
     def end(self, *, is_alone: bool) -> None:
-        """Give the keys back to the world after Esc, a line of a menu, or once the field that had them is gone.
+        """Give the keys back to the world after Esc, a line of a menu, or once what had them is gone.
 
         It is called after panels are built.
 
