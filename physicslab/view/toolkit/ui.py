@@ -399,7 +399,7 @@ class Ui(Windows):
             room = ImVec2(
                 width, lines * imgui.get_text_line_height() + 2.0 * imgui.get_style().frame_padding.y
             )
-            several = flags.auto_select_all | flags.ctrl_enter_for_new_line
+            several = flags.auto_select_all | flags.ctrl_enter_for_new_line | flags.word_wrap
             _, text = imgui.input_text_multiline(known, text, room, several)
         self.note(label, "text", text)
         if self.writes_at_once and imgui.is_item_focused():
