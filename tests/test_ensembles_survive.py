@@ -111,6 +111,20 @@ def test_a_scheduler_that_is_not_there_is_refused_in_one_line(address: str, why:
 
 
 @pytest.mark.cluster
+def test_a_scheduler_that_goes_away_is_told_in_one_line(tmp_path: Path) -> None:
+    import distributed
+
+    with scheduler(1) as address:
+        arguments = command("--out", str(tmp_path / "x.npz"), "--dask", address, "--samples", "1000000")
+        sweep = subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        with distributed.Client(address, timeout=60) as client:
+            while not client.call_stack():  # until a worker makes rows
+                time.sleep(0.1)
+    out, err = sweep.communicate(timeout=120)
+    assert sweep.returncode == 1 and not out and err.count("\n") == 1 and "the scheduler is gone" in err
+
+
+@pytest.mark.cluster
 def test_results_are_tables_of_pandas_xarray_and_parquet(tmp_path: Path) -> None:
     import pyarrow.parquet as parquet
 

@@ -3,6 +3,7 @@
 import sys
 from argparse import Namespace
 from collections.abc import Iterator
+from concurrent.futures import BrokenExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -129,7 +130,11 @@ def _workers(arguments: Namespace) -> Iterator[Workers]:
         yield Workers("processes", arguments.workers)
         return
     with Dask(arguments.dask) as cluster:
-        yield Workers(cluster, None)
+        try:
+            yield Workers(cluster, None)
+        except BrokenExecutor as error:
+            words = "the scheduler is gone; with --out, the same command goes on where this one has stopped"
+            raise CommandError(f"--dask {shown(arguments.dask)}: {words}", FAILED) from error
 
 
 def _open(task: Task, row: int) -> int:

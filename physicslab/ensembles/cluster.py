@@ -32,9 +32,8 @@ class Dask(Executor):
         except ImportError as error:
             words = "needs the package distributed: pip install 'physicslab[cluster]'"
             raise SceneError(f"--dask: {words}") from error
-        logging.getLogger("distributed").setLevel(
-            logging.CRITICAL
-        )  # it tells what is refused in one line here
+        for name in ("distributed", "distributed.client"):  # which tell what is said in one line here
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
             distributed.comm.resolve_address(address)  # of what is none, a client is left that cannot close
             self._client: Any = distributed.Client(address, timeout=_PATIENCE_S, set_as_default=False)

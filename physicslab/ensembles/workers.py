@@ -115,6 +115,8 @@ class Workers:
             piece, future = self._done.get()
             self._flying.discard(future)
             if future.cancelled():  # it waited in a pool that was given up
+                if isinstance(self._kind, Executor):
+                    raise BrokenExecutor("the executor has given up what was handed to it")
                 waiting.appendleft(piece)
                 continue
             error = future.exception()
