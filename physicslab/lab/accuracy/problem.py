@@ -94,7 +94,7 @@ class KnownCase(Case):
         Parameters
         ----------
         advances : sequence of callables, optional
-            What advances each world; its own steps where there are none.
+            Advance each world; by default its own steps.
         """
         largest, advances = 0.0, advances or [own_steps(world) for world in worlds]
         for i, t in enumerate(self.times):
