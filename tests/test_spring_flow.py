@@ -459,8 +459,8 @@ def test_the_bench_chains_take_few_evaluations_and_none_by_dop853() -> None:
 def with_fast_pair(stiffness: float, damping: float) -> World:
     """Return a chain on a floor, and far above two discs on a spring of their own."""
     world = chain()
-    ends = [circle(world, (x, 50.0), radius=0.1, mass=0.01, velocity=(0.1, 0.0)) for x in (-0.51, 0.5)]
-    world.spawn(Spring(*ends, rest_length=1.0, stiffness=stiffness, damping=damping))
+    a, b = (circle(world, (x, 50.0), radius=0.1, mass=0.01, velocity=(0.1, 0.0)) for x in (-0.51, 0.5))
+    world.spawn(Spring(a, b, rest_length=1.0, stiffness=stiffness, damping=damping))
     return world
 
 

@@ -72,7 +72,7 @@ class SplitPart:
     Attributes
     ----------
     springs : SpringFlow, optional
-        What does that.
+        Their flow within the loop.
     """
 
     def __init__(

@@ -55,8 +55,8 @@ def drag_per_mass(state: State, rows: NDArray[np.int64]) -> NDArray[np.float64]:
 def spring_groups(state: State, forces: Sequence[ForceSystem], rows: NDArray[np.bool_]) -> list[SpringGroup]:
     """Return the groups of the bodies and ends among ``rows``, the slowest first.
 
-    It depends on settings alone, on no place and no velocity. Bodies in drag alone take steps of their own:
-    it matters only whether they are too fast for any.
+    ``rows`` (rows,) tells which rows of the world these are. It depends on settings alone, on no place and no
+    velocity. Bodies in drag alone take steps of their own: it matters only whether they are too fast for any.
     """
     moves = state.table(Velocity).present
     _, a, b = spring_ends(state)

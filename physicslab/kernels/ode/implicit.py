@@ -8,7 +8,7 @@ from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_ke
 from physicslab.kernels.forces.budget import CLOCK, DAMPED
 from physicslab.kernels.forces.force_calls import Calls, accelerate_over
 from physicslab.kernels.ode.compensated import add
-from physicslab.kernels.ode.dop853 import largest
+from physicslab.kernels.ode.dop853 import all_finite, largest
 
 _MAX_ITERATIONS = 40
 _PARTS = 1024
@@ -169,7 +169,7 @@ def _newton(
         # Below this times epsilon, coordinates cannot resolve a difference.
         size = largest(x, n) + largest(q, len(inverse_mass)) / h
         if change <= 4.0 * _EPSILON * size or (change >= 0.5 * before and change <= 1e-10 * size):
-            return iteration, evaluations
+            return (iteration if all_finite(x, residual, n) else -1), evaluations
         if not math.isfinite(change):
             break
         before, far = change, n > len(inverse_mass) and change > _FAR * size
