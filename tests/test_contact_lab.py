@@ -200,7 +200,7 @@ def test_orders_are_those_of_the_errors_that_are_no_rounding() -> None:
 def curve_of(*errors: float | None) -> ContactCurve:
     rows = [ContactRow(2.0**-k / 60.0, error, 1e-3) for k, error in enumerate(errors)]
     order = fitted_order([row.dt for row in rows], [row.error for row in rows])
-    return ContactCurve(OWN[1], rows, order, Verdict.SHORT)
+    return ContactCurve(OWN[1], rows, order, verdict=Verdict.SHORT)
 
 
 def test_what_is_no_order_is_said() -> None:
@@ -222,7 +222,7 @@ def studied(name: str) -> ContactStudy:
 
 def test_sparsely_only_ours_are_run() -> None:
     found = studied("rest_1")
-    assert [curve.engine.name for curve in found.curves] == ["rigid", "soft"]
+    assert [curve.method.name for curve in found.curves] == ["rigid", "soft"]
     assert [len(curve.rows) for curve in found.curves] == [3, 3]
     assert found.curves[0].verdict is Verdict.EXCELLENT
     text = contact_text(found)

@@ -22,7 +22,7 @@ from physicslab.ensembles.sobol import DIMENSIONS, sobol
 from physicslab.ensembles.space import space_of
 from physicslab.ensembles.task import Runner
 from physicslab.files.places import entity_names
-from physicslab.prefabs import box
+from physicslab.prefabs import box, circle
 
 E, M = "ball.Material.restitution", "ball.Mass.mass"
 DRAWN: dict[str, Any] = {
@@ -172,6 +172,21 @@ def test_measures_are_expressions_of_a_run_and_functions_of_its_end() -> None:
     assert found["first"] == pytest.approx(np.sqrt(2 * 3.75 / 9.81), rel=1e-12)
     assert found["least"] == pytest.approx(-np.sqrt(2 * 9.81 * 3.75), abs=9.81 / 60)
     assert found["lost"] == pytest.approx(-9.81 * 3.75 * (1 - 0.7**2) - 1 / 6, rel=1e-9), "it leaves rolling"
+
+
+def test_ids_that_are_no_plain_words_are_written_as_they_are_or_in_quotes() -> None:
+    world = World()
+    for x, name in enumerate(("ball", "ball 2", "ball-3", "4", "a.b", "class", "salt and = pepper")):
+        circle(world, (x, 5), radius=0.1, name=name)
+    measure: dict[str, Any] = {
+        "plain": "2 ball.x + ball 2.x", "quoted": '"ball 2".position.x', "dashed": "ball-3.x - ball.x",
+        "number": "max(4.x)", "dotted": "a.b.x", "word": "class.x",
+    }  # fmt: skip
+    columns = ensemble(world, {"ball 2.Mass.mass": [2]}, measure=measure, steps=3, executor="serial").columns
+    assert [columns[name][0] for name in measure] == [1.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    for condition in ("ball 2.y < 4.9", 'ball 2.x > 0 and "salt and = pepper".y < 4.9 m'):
+        found = world.copy().record(1.0, until=condition).found
+        assert found == pytest.approx(np.sqrt(2 * 0.1 / 9.81), rel=1e-14)
 
 
 @pytest.mark.notebook
@@ -363,6 +378,12 @@ REFUSED: tuple[tuple[Any, dict[str, Any], str], ...] = (
     ({M: [1]}, {"measure": "ball.x + ball.vx"}, "m and m s^-1 cannot be added"),
     ({M: [1]}, {"measure": "__import__(ball.x)"}, "'__import__' is no function"),
     ({M: [1]}, {"measure": "at(1 kg, ball.x)"}, "the time is in kg; must be in s"),
+    ({M: [1]}, {"measure": "1/0"}, "measure \"1/0\": '1/0' is not finite"),
+    ({M: [1]}, {"measure": "ball.x/(2 - 2)"}, "is not finite"),
+    ({M: [1]}, {"measure": "max(ball.x + sqrt(-1))"}, "is no number"),
+    ({M: [1]}, {"measure": "bal.y"}, 'must begin with one of floor, ball, world; did you mean "ball"?'),
+    ({M: [1]}, {"measure": "'ball'.y"}, "is no number"),
+    ({M: [1]}, {"measure": '"ball.y'}, "is no number"),
     ({M: [1]}, {"measure": "first_impact.q"}, "an impact has time, x, y, speed, energy_lost"),
     ({M: [1]}, {"measure": {"f": lambda world: 1.0}}, "a function of a module"),
     ({M: [1]}, {"measure": {M: "ball.x"}}, "is the name of another column"),

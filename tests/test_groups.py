@@ -3,7 +3,7 @@
 import numpy as np
 import pygame
 import pytest
-from desk import Desk, empty_world
+from desk import SETTLED, Desk, empty_world
 from test_drawing import draw, words
 
 from physicslab.components import Shape, Transform
@@ -81,6 +81,29 @@ def test_as_many_discs_are_poured_as_were_typed_and_none_within_another(desk: De
     found = places(desk.world)
     assert len(found) == 500 and found[:, 1].min() >= -1.0 + 0.12
     pygame.display.quit()
+
+
+@pytest.mark.parametrize(
+    ("tool", "button", "typed", "made"),
+    [("brush", "left", "500", 500), ("dominoes", "left", "40", 40), ("circle", "right", "1 x 2", 1)],
+)
+def test_enter_while_the_button_is_held_makes_what_was_typed(
+    desk: Desk, tool: str, button: str, typed: str, made: int
+) -> None:
+    """Of 500 discs one was made, and a box that the right button drew became a circle of the tool in hand."""
+    desk.window.tool = tool
+    desk.press(-4.0, 0.5, button)
+    desk.move(-3.0, 0.6)
+    desk.frames()
+    for letter in typed:
+        pygame.event.post(pygame.Event(pygame.KEYDOWN, key=ord(letter), mod=0, unicode=letter, scancode=0))
+    desk.key("return")
+    desk.frames(SETTLED)
+    found = shapes(desk.world)
+    desk.release(-3.0, 0.6, button)
+    desk.frames(SETTLED)
+    assert len(found) == len(shapes(desk.world)) == made
+    assert {shape.kind for shape in found} == {"circle" if tool == "brush" else "box"}
 
 
 def test_too_many_are_not_made(desk: Desk) -> None:

@@ -120,6 +120,17 @@ def test_the_fields_of_what_is_selected_are_gone_through_and_changed(desk: Desk)
     assert desk.world.steps == steps + 1, "keys are the world's again"
 
 
+def test_keys_are_the_worlds_where_the_field_that_had_them_is_gone(desk: Desk) -> None:
+    circle(desk.world, (1, 2), radius=0.25)
+    keys(desk, "n", "return")
+    assert has_keys(desk)
+    tap(desk, "n", pygame.KMOD_LCTRL)
+    desk.frames(SETTLED)
+    assert not has_keys(desk)
+    keys(desk, "3")
+    assert desk.window.tool == "block"
+
+
 def test_buttons_and_boxes_of_the_inspector_are_reached_and_pressed(desk: Desk) -> None:
     ball = circle(desk.world, (0, 0))
     keys(desk, "n", "return")

@@ -111,6 +111,8 @@ WRONG: dict[str, tuple[Callable[[World], object], type[Exception], str]] = {
     "time below zero": (lambda world: world.run(seconds=-1), InvalidValue, "run.seconds = -1"),
     "stride": (lambda world: world.stepping(steps=3, stride=0), InvalidValue, "stepping.stride = 0"),
     "record": (lambda world: world.record(1, 0.1), TypeError, "give every=... or until=... by name"),  # type: ignore[arg-type]
+    "record, for how long": (lambda world: world.record(), TypeError, "World.record() missing 1"),  # type: ignore[call-arg]
+    "component, of which kind": (lambda world: world.component("ball"), TypeError, "World.component() m"),  # type: ignore[call-arg]
     "condition": (lambda world: world.record(1, until=3), InvalidValue, "as 'ball.x >= 8 m' is one"),  # type: ignore[arg-type]
     "angle": (lambda world: pendulum(world, (0, 0), angle="3 m"), InvalidValue, "Transform.angle = '3 m'"),  # type: ignore[arg-type]
     "no quantity": (lambda world: world.record(1, until="bal.x > 3"), InvalidValue, "one of ball, world"),

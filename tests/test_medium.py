@@ -22,7 +22,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.checks import SceneError
 from physicslab.integrators import INTEGRATORS
 from physicslab.kernels import Numbers, kernel
-from physicslab.kernels.forces import immersion
+from physicslab.kernels.forces import medium as media
 from physicslab.prefabs import box
 from physicslab.state.shapes import cores_of
 from physicslab.systems.medium import _outlines
@@ -59,8 +59,8 @@ def float_in(world: World, shape: Shape, y: float, mass: float, **how: Any) -> i
 @kernel
 def _immersed(numbers: Numbers, psi: float, gx: float, gy: float, size: float, whole: bool) -> None:
     """Immerse the first outline of ``numbers`` in the second; the sums are behind the room."""
-    immersion.immerse(
-        numbers, 0, immersion.OUTLINE, 2 * immersion.OUTLINE, 2 * immersion.OUTLINE + immersion.CUTS,
+    media.immerse(
+        numbers, 0, media.OUTLINE, 2 * media.OUTLINE, 2 * media.OUTLINE + media.CUTS,
         psi, gx, gy, size, whole,
     )  # fmt: skip
 
@@ -83,9 +83,9 @@ def outline(shape: Shape, at: tuple[float, float], angle: float) -> NDArray[np.f
 def sums_of(
     one: NDArray[np.float64], other: NDArray[np.float64], *, whole: bool = False
 ) -> NDArray[np.float64]:
-    numbers = np.concatenate((one, other, np.zeros(immersion.CUTS + immersion.SUMS)))
+    numbers = np.concatenate((one, other, np.zeros(media.CUTS + media.SUMS)))
     immersed(numbers, 0.0, 0.0, 0.0, 1.0, whole)
-    sums: NDArray[np.float64] = numbers[-immersion.SUMS :]
+    sums: NDArray[np.float64] = numbers[-media.SUMS :]
     return sums
 
 
@@ -161,12 +161,12 @@ def test_common_areas_are_those_of_fine_polygons(
     one, two = outline(a, (0.0, 0.0), angle), outline(b, (x, y), other)
     sums = sums_of(one, two)
     area, moment = clipped(polygon(one), polygon(two))
-    assert sums[immersion.AREA] == pytest.approx(area, abs=2e-2)
-    assert sums[[immersion.MX, immersion.MY]] == pytest.approx(moment, abs=4e-2)
+    assert sums[media.AREA] == pytest.approx(area, abs=2e-2)
+    assert sums[[media.MX, media.MY]] == pytest.approx(moment, abs=4e-2)
     # The same, seen from the other: each of four points at which outlines touch is as wrong as the root of
     # a rounding, of their size squared.
     rounding = 4.0 * 2.0**2 * math.sqrt(np.finfo(float).eps)
-    assert sums_of(two, one)[immersion.AREA] == pytest.approx(sums[immersion.AREA], abs=rounding)
+    assert sums_of(two, one)[media.AREA] == pytest.approx(sums[media.AREA], abs=rounding)
 
 
 @pytest.mark.parametrize(
@@ -178,8 +178,8 @@ def test_sides_that_coincide_count_once(
     size: tuple[float, float], at: tuple[float, float], area: float
 ) -> None:
     one, two = outline(Shape.box(1.6, 0.9), (0.0, 0.0), 0.0), outline(Shape.box(*size), at, 0.0)
-    assert sums_of(one, two)[immersion.AREA] == pytest.approx(area, abs=1e-12)
-    assert sums_of(two, one)[immersion.AREA] == pytest.approx(area, abs=1e-12)
+    assert sums_of(one, two)[media.AREA] == pytest.approx(area, abs=1e-12)
+    assert sums_of(two, one)[media.AREA] == pytest.approx(area, abs=1e-12)
 
 
 # ---- floating ----------------------------------------------------------------------------------------------
@@ -345,4 +345,4 @@ def test_a_medium_that_reaches_no_body_of_a_flow_is_packed_all_the_same() -> Non
         {"format": "physicslab-scene/1", "entities": [water, {"Transform": {"position": [3, 0]}}]}
     )
     none = np.zeros(0, np.int64)
-    assert _outlines(world, none).shape == (0, immersion.OUTLINE)
+    assert _outlines(world, none).shape == (0, media.OUTLINE)

@@ -138,10 +138,10 @@ def test_without_sources_it_gives_the_same_bits_and_keeps_kernels(
 
     ours = subprocess.run([sys.executable, "-m", "physicslab", *RUN], capture_output=True, check=True)
     assert json.loads(run(*RUN))["entities"] == json.loads(ours.stdout)["entities"]
-    assert run("kernels", "worker", stdin=f"{KERNEL}\n") == f"{KERNEL}\n"
+    assert run("kernels", "--worker", stdin=f"{KERNEL}\n") == f"{KERNEL}\n"
     (kept,) = (tmp_path / "kernels").glob("motion-*/*.nbc")
     before = kept.stat().st_mtime_ns
-    assert run("kernels", "worker", stdin=f"{KERNEL}\n") == f"{KERNEL}\n"
+    assert run("kernels", "--worker", stdin=f"{KERNEL}\n") == f"{KERNEL}\n"
     assert kept.stat().st_mtime_ns == before, "it is loaded, and not compiled again"
     assert "Wie weit" in run("lesson", "projectile", "--language", "de", "--json", "-")
     assert run("export", "drop", "--seconds", "0.1", "--html", "-").startswith("<!DOCTYPE html>")

@@ -213,7 +213,7 @@ def take_work(
 ) -> Any:  # fmt: skip
     """Let bodies that touch pay for a move from ``before``; return what they cannot pay, and all of it."""
     of = step.named_course(scene, room, q, v, entities, log, account)
-    _, count, _, _, _ = motion.touch(of.scene, of.equations, of.room, of.stages.acceleration, q, q, v, 0.0)
+    _, count, _, _, _ = motion.touch(of.scene, of.equations, of.room, of.stages.acceleration, q, v, 0.0)
     return time_stepping.take_work(of.scene, of.equations, count, of.stages, before, q, v, True)
 
 

@@ -13,7 +13,7 @@ from physicslab.files.replace import reason_of
 from physicslab.kernels import cache_directory
 from physicslab.kernels.archive import ArchiveError, pack, unpack
 from physicslab.kernels.keys import platform_key, use_processor
-from physicslab.kernels.warm import WORKER, Warmup, is_warm, load_all, mark_warm, work
+from physicslab.kernels.warm import Warmup, is_warm, load_all, mark_warm, work
 
 _LOOK_EVERY_S = 0.1
 _WARNING = (
@@ -23,7 +23,7 @@ _WARNING = (
 
 def execute(arguments: Namespace) -> int:
     """Compile all kernels, or write or read an archive of them."""
-    if arguments.action == WORKER:
+    if arguments.worker:
         return work()
     if (arguments.action is None) != (arguments.file is None):
         raise CommandError(f"kernels {arguments.action}: FILE is missing (see physicslab kernels --help)")

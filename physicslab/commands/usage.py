@@ -3,7 +3,7 @@
 Nothing here imports physics: help is written and bad usage is refused without waiting for it.
 """
 
-from argparse import ArgumentParser
+from argparse import SUPPRESS, ArgumentParser
 from collections.abc import Callable
 from pathlib import Path
 
@@ -189,13 +189,14 @@ def export(parser: ArgumentParser) -> None:
 def kernels(parser: ArgumentParser) -> None:
     """Compile the physics for this computer ahead of time, or share it with others of its kind."""
     parser.add_argument(
-        "action", nargs="?", choices=("export", "import", "worker"), metavar="{export,import}",
+        "action", nargs="?", choices=("export", "import"), metavar="ACTION",
         help="export: compile all and write them to FILE; import: take them from FILE in place of compiling; "
         "neither: compile all and keep them",
     )  # fmt: skip
     words = "with export: for any processor of the kind, in place of just this one; the same bits (native)"
     parser.add_argument("--cpu", choices=("native", "x86-64-v3", "x86-64-v2"), default="native", help=words)
     parser.add_argument("file", metavar="FILE", nargs="?", help="an archive of compiled kernels")
+    parser.add_argument("--worker", action="store_true", help=SUPPRESS)  # what Warmup starts
 
 
 def sweep(parser: ArgumentParser) -> None:

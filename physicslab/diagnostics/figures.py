@@ -10,7 +10,9 @@ import ast
 import bisect
 import itertools
 import math
+import re
 from collections.abc import Callable, Iterable, Sequence
+from keyword import iskeyword
 
 from physicslab.components.quantities import QUANTITIES, carrier_of, why_not_of
 from physicslab.diagnostics.quantities import Reading
@@ -25,10 +27,13 @@ from physicslab.ecs.quantity_text import (
     dotted,
     in_words,
 )
+from physicslab.ecs.text import suggestion
 from physicslab.world import World
 
 AROUND = 6
 """Samples that an interpolation goes through."""
+_LISTED = 20
+"""Names of entities that a refusal lists."""
 _HALVINGS = 60
 """How often an interval is halved in which a moment is."""
 _SECOND = Quantity(1.0, (0, 0, 1, 0), True)
@@ -36,6 +41,21 @@ COLLISIONS = "world.collisions"
 """The number of impacts since the run began."""
 _NAMES = {quantity.column.replace(" ", "_"): name for name, quantity in QUANTITIES.items()}
 """Quantities as expressions call them: ``vx``, ``kinetic``, ``energy``."""
+
+
+def quoted(text: str, ids: Iterable[str]) -> str:
+    """Return an expression or a condition with quotes around ids of entities that are no plain words.
+
+    >>> quoted("box 2.y < 2 box 10.y", ["box", "box 2", "box 10"])
+    '"box 2".y < 2 "box 10".y'
+    """
+    odd = sorted((one for one in ids if not _is_word(one)), key=len, reverse=True)
+    either = "|".join(map(re.escape, odd))
+    return re.sub(rf'(?<![\w."])({either})(?=\.[^\W\d])', r'"\1"', text) if odd else text
+
+
+def _is_word(name: str) -> bool:
+    return name.isidentifier() and not iskeyword(name)
 
 
 def quantity_of(name: str, ids: Iterable[str]) -> tuple[str | None, str]:
@@ -46,10 +66,13 @@ def quantity_of(name: str, ids: Iterable[str]) -> tuple[str | None, str]:
     InvalidText
         If there is none such; with the names that there are.
     """
-    entity, _, column = name.partition(".")
     known = [*ids, "world"]
-    if entity not in known:
-        raise InvalidText(f"'{name}' is no quantity: must begin with one of {', '.join(known)}")
+    entity = max((one for one in known if name.startswith(f"{one}.")), key=len, default="")
+    if not entity:
+        words = ", ".join(one if _is_word(one) else f'"{one}"' for one in known[:_LISTED])
+        more = (", ..." if len(known) > _LISTED else "") + suggestion(name.rpartition(".")[0] or name, known)
+        raise InvalidText(f"'{name}' is no quantity: must begin with one of {words}{more}")
+    column = name[len(entity) + 1 :]
     body = None if entity == "world" else 1
     if name != COLLISIONS and (column not in _NAMES or why_not_of(_NAMES[column], body) is not None):
         raise InvalidText(f"'{name}' is no quantity: {entity} has {', '.join(columns(body))}")
@@ -67,7 +90,7 @@ def columns(body: int | None) -> dict[str, str]:
 
 def unit_of(name: str) -> str:
     """Return the SI unit of ``ball.x``."""
-    return "1" if name == COLLISIONS else QUANTITIES[_NAMES[name.partition(".")[2]]].unit
+    return "1" if name == COLLISIONS else QUANTITIES[_NAMES[name.rpartition(".")[2]]].unit
 
 
 class Record:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.diagnostics.energy import measure_account, measure_energy
-from physicslab.diagnostics.figures import Figures, Record
+from physicslab.diagnostics.figures import Figures, Record, quoted
 from physicslab.diagnostics.impact_table import ImpactReader, impact_table
 from physicslab.diagnostics.run_report import body_names
 from physicslab.ecs.conditions import Condition
@@ -127,7 +127,7 @@ class _Watch:
         if not isinstance(until, str):
             raise InvalidValue("record", "until", until, "a condition, as 'ball.x >= 8 m' is one")
         try:
-            self._condition = Condition(until)
+            self._condition = Condition(quoted(until, map(world.label, world.entities())))
             self._names = [name for name in dict.fromkeys(self._condition.names()) if name != "time"]
             self._record = Record(world, self._names)
             self._record.add()

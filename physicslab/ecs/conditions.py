@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterator
 
 from physicslab.ecs.quantity_text import Expression, InvalidText, Quantity, Scope, same_dimension
 
+_OUTSIDE = r'(?=[^"]*(?:"[^"]*"[^"]*)*$)'
+"""Follows what is in no name in quotes."""
 _EQUAL = 1e-9
 """Share by which two quantities may differ that are called equal."""
 _SIGNS: dict[type[ast.cmpop], Callable[[float, float], bool]] = {
@@ -30,7 +32,7 @@ class Condition:
 
     def __init__(self, text: str) -> None:
         self.text = text
-        given = [] if text.strip() == "always" else re.split(r"\s+and\s+", text)
+        given = [] if text.strip() == "always" else re.split(rf"\s+and\s+{_OUTSIDE}", text)
         self._parts = [comparison(_python(part)) for part in given]
 
     def holds(self, scope: Scope) -> bool:
@@ -78,4 +80,4 @@ def _values(left: Expression, right: Expression, scope: Scope) -> tuple[float, f
 
 def _python(text: str) -> Expression:
     plain = text.replace("≤", "<=").replace("≥", ">=").replace("≠", "!=")
-    return Expression(re.sub(r"(?<![<>!=])=(?!=)", "==", plain))
+    return Expression(re.sub(rf"(?<![<>!=])=(?!=){_OUTSIDE}", "==", plain))

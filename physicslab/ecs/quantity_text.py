@@ -87,6 +87,8 @@ _UNCLEAR = (
 """Texts that can be read as different numbers."""
 _SPACED = re.compile(r"(?<=[A-Za-zµ°π0-9)])[ ·]+(?=[A-Za-zµ°π(])")
 
+_QUOTED = re.compile(r'"([^"]*)"')
+"""A name that is no plain word, as ``"box 2"`` in ``"box 2".y``."""
 _PAIR = re.compile(r"\s*\[(?P<x>[^],]+),(?P<y>[^],]+)\](?P<unit>[^][]*)")
 _POINTS = re.compile(r"\s*\[(?P<points>\s*(?:\[[^][]*\]\s*,?\s*)*)\](?P<unit>[^][]*)")
 
@@ -207,6 +209,8 @@ class Expression:
                 inner.add(node.value)
             if isinstance(node, ast.Name | ast.Attribute) and node not in inner:
                 name = dotted(node)
+                if not name:
+                    raise self._no_number()
                 if not is_known(name):
                     yield name
 
@@ -376,21 +380,28 @@ def _parsed(text: str) -> ast.expr:
         raise InvalidText("a number is needed")
     if len(text) > _DEPTH_LIMIT:
         raise InvalidText(f"'{shown}' is too long")
+    names = {f"quoted{number}_": name for number, name in enumerate(_QUOTED.findall(text))}
+    words = iter(names)
+    plain = _QUOTED.sub(lambda _: next(words), text.strip())
     for pattern, why in _UNCLEAR:
-        if pattern.search(text):
+        if pattern.search(plain):
             raise InvalidText(f"'{shown}' {why}")
-    prepared = re.sub(r"(?<=\d),(?=\d)", ".", text.strip())
+    prepared = re.sub(r"(?<=\d),(?=\d)", ".", plain)
     prepared = re.sub(r"[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda found: f"^{found.group().translate(_SUPERSCRIPTS)}", prepared)
     prepared = prepared.replace("°", " deg").replace("%", " percent").translate(_SIGNS)
     prepared = _SPACED.sub("*", _GLUED.sub(r"\1*", prepared)).replace("^", "**").replace("·", "*")
     prepared = re.sub(r"\b(\d+\.?\d*|\.\d+)\*[eE](?=[+-]?\d)", r"\1e", prepared)
     try:
         with warnings.catch_warnings(action="ignore"):  # of strange literals, for programmers
-            return ast.parse(prepared, mode="eval").body
+            tree = ast.parse(prepared, mode="eval").body
     except (SyntaxError, RecursionError, MemoryError, ValueError):
         unclosed = text.count("(") - text.count(")")
         why = f': a "{")" if unclosed > 0 else "("}" is missing' if unclosed else ""
         raise InvalidText(f"'{shown}' is no number{why}") from None
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Name):
+            node.id = names.get(node.id, node.id)
+    return tree
 
 
 def _arithmetic_geometric_mean(a: float, b: float) -> float:

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import ENERGY_CAUSES
-from physicslab.diagnostics.figures import COLLISIONS, FUNCTIONS, Figures, Record, quantity_of
+from physicslab.diagnostics.figures import COLLISIONS, FUNCTIONS, Figures, Record, quantity_of, quoted
 from physicslab.diagnostics.impact_table import read_impacts
 from physicslab.ecs.quantity_text import (
     Expression,
@@ -64,11 +64,27 @@ def parsed(text: str, ids: Iterable[str]) -> Expression:
         If it is no expression, or names what is not there.
     """
     known = [*ids]
-    whole = Expression(text)
+    whole = Expression(quoted(text, known))
     expression = Expression(text, _Canonical(known).visit(whole.node))
     for name in _quantities((expression,)):
         quantity_of(name, known)
+    _refuse_undefined(expression)
     return expression
+
+
+def _refuse_undefined(expression: Expression) -> None:
+    """Refuse parts that no run gives a value, as ``sqrt(-1)`` and ``ball.x/0``."""
+    for node in ast.walk(expression.node):
+        match node:
+            case ast.BinOp(op=ast.Div() as division, right=divisor):
+                node = ast.BinOp(ast.Constant(1), division, divisor)
+            case ast.BinOp() | ast.Call():
+                pass
+            case _:
+                continue
+        part = Expression(expression.text, node)
+        if not any(part.names()):
+            part.value()
 
 
 class _Canonical(ast.NodeTransformer):
@@ -98,11 +114,11 @@ class _Canonical(ast.NodeTransformer):
         which, _, column = name.partition(".")
         if which in _WHICH and which not in self._ids and column not in _IMPACTS:
             raise InvalidText(f"'{name}': an impact has {', '.join(_IMPACTS)}")
-        own = next((one for one in self._ids if name.startswith(f"{one}.")), None)
-        if own is not None:
+        own = max((one for one in self._ids if name.startswith(f"{one}.")), key=len, default="")
+        if own:
             column = name.removeprefix(f"{own}.")
             name = f"{own}.{_PARTS.get(column, column)}"
-        return ast.parse(name, mode="eval").body if name != dotted(node) else node
+        return ast.Name(name)
 
 
 class _Impacts:

@@ -54,12 +54,7 @@ class Varied:
     values: Sequence[float]
 
 
-def page(
-    world: World,
-    name: str,
-    runs: Sequence[Mapping[str, Any]],
-    varied: Sequence[Varied] = (),
-) -> bytes:
+def page(world: World, name: str, runs: Sequence[Mapping[str, Any]], varied: Sequence[Varied] = ()) -> bytes:
     """Return the page that plays what was recorded, in UTF-8.
 
     Parameters

@@ -20,12 +20,7 @@ from physicslab.ecs.config import (
 from physicslab.ecs.fields import Field
 from physicslab.files import checks
 from physicslab.files.entities import check_contacts, check_entities, check_ids, check_joints, check_rests
-from physicslab.files.numbers import (
-    check_numbers,
-    renumbered,
-    renumbered_islands,
-    renumbered_rows,
-)
+from physicslab.files.numbers import check_numbers, renumbered, renumbered_islands, renumbered_rows
 from physicslab.files.remainders import check_remainders
 from physicslab.integrators import SPLIT_METHODS
 from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR

@@ -19,8 +19,7 @@ BLANES_MOAN = Integrator(
     symplectic=True,
     source="Blanes & Moan, J. Comput. Appl. Math. 142 (2002) 313, table 3, order 6, 11 stages",
     flow=Splitting(
-        drifts=(*_DRIFTS, _DRIFT, *reversed(_DRIFTS)),
-        kicks=(*_KICKS, _KICK, _KICK, *reversed(_KICKS)),
+        drifts=(*_DRIFTS, _DRIFT, *reversed(_DRIFTS)), kicks=(*_KICKS, _KICK, _KICK, *reversed(_KICKS))
     ),
     positions_only=True,
     phase_share=8.08e-8,

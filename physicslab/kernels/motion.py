@@ -5,12 +5,7 @@ import sys
 
 from physicslab.kernels import Flags, Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.geometry.moments import inertia_of
-from physicslab.kernels.geometry.shapes import (
-    ShapesTuple,
-    SizesTuple,
-    derive_shape,
-    named_shapes,
-)
+from physicslab.kernels.geometry.shapes import ShapesTuple, SizesTuple, derive_shape, named_shapes
 from physicslab.kernels.records import Pairs
 
 FARTHEST = 1e300

@@ -32,8 +32,8 @@ _FIRST = (
     "raster", "triangles", "energy",
 )  # fmt: skip
 """Modules whose kernels almost every scene needs, compiled first: what moves it, then its picture."""
-WORKER = "worker"
-"""The argument of the command ``kernels`` that runs :func:`work`."""
+WORKER = "--worker"
+"""The option of the command ``kernels`` that runs :func:`work`."""
 _YIELDING = 15
 """How much higher the priority of a running scene is than that of the workers, as a Unix nice value."""
 

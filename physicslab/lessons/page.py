@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from physicslab.diagnostics.figures import Figures, quantity_of
-from physicslab.ecs.quantity_text import Expression, InvalidText, factor_of
+from physicslab.ecs.quantity_text import Expression, InvalidText, dotted, factor_of
 from physicslab.export.packing import pack
 from physicslab.export.page import fill_page, run_document
 from physicslab.export.recording import NotShown, RunRecorder
@@ -173,7 +173,7 @@ class _Page:
         """Return what a line of a graph is called, and the number of its body."""
         ids = {world.label(entity): entity for entity in world.entities()}
         try:
-            entity, name = quantity_of(expression.text, ids)
+            entity, name = quantity_of(dotted(expression.node), ids)
         except InvalidText:
             return formula(self.own, expression.text), None
         said = self.own.reword(name)

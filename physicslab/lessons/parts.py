@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 
-from physicslab.diagnostics.figures import FUNCTIONS, quantity_of
+from physicslab.diagnostics.figures import FUNCTIONS, quantity_of, quoted
 from physicslab.ecs.conditions import Condition
 from physicslab.ecs.quantity_text import Expression, InvalidText, factor_of, in_unit
 from physicslab.lessons.blocks import Block, Entry
@@ -204,7 +204,7 @@ class PartMaker:
     # ---- values, with the names that they may have ---------------------------------------------------------
 
     def _expression(self, block: Block, entry: Entry) -> Expression:
-        return block.read(entry, lambda text: self._known(Expression(text)))
+        return block.read(entry, lambda text: self._known(Expression(quoted(text, self._ids))))
 
     def _duration(self, block: Block, entry: Entry) -> Expression:
         """Return a time above zero, of numbers and parameters."""
@@ -216,7 +216,7 @@ class PartMaker:
         return found
 
     def _condition(self, block: Block, entry: Entry) -> Condition:
-        return block.read(entry, lambda text: self._known(Condition(text)))
+        return block.read(entry, lambda text: self._known(Condition(quoted(text, self._ids))))
 
     def _case(self, block: Block, entry: Entry) -> Case:
         case = block.case(entry)

@@ -182,9 +182,7 @@ def fixed_ends(
     return (), layout.place[rows[fixed]] if fixed.any() else None
 
 
-def spring_rates(
-    state: State,
-) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+def spring_rates(state: State) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
     """Return the entities of all springs (n,), and how fast each oscillates [rad/s] and is damped [1/s]."""
     rows, a, b = spring_ends(state)
     spring, inverse = state.table(Spring), state.bodies.inverse_mass

@@ -1,6 +1,7 @@
 """Figures of a world for people: its energy, its impacts, its motion in a run."""
 
 from importlib import import_module
+from types import FunctionType
 from typing import Any, Never, cast
 
 from numpy.typing import NDArray
@@ -19,6 +20,12 @@ class Facade(State):
     """A state with the measurements of it."""
 
     __slots__ = ()
+
+    def __init_subclass__(cls) -> None:
+        """Name what is inherited as the class's own: Python's refusals of arguments say it to people."""
+        for name in _SHOWN:
+            if isinstance(method := getattr(cls, name), FunctionType):
+                method.__qualname__ = f"{cls.__qualname__}.{name}"
 
     @property
     def energy(self) -> Energy:

@@ -8,8 +8,7 @@ from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.sentences import sentence
 from physicslab.ecs.vector import rotated
 from physicslab.kernels.accounts import DAMPING, FIELDS
-from physicslab.kernels.forces.immersion import OUTLINE
-from physicslab.kernels.forces.medium import NUMBERS, ROOM, medium
+from physicslab.kernels.forces.medium import NUMBERS, OUTLINE, ROOM, medium
 from physicslab.state.packed import PackedForce, StateLayout
 from physicslab.state.shapes import cores_of
 from physicslab.state.state import State

@@ -22,13 +22,7 @@ from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.ode.compensated import add
 from physicslab.kernels.python_fallback import endless
 from physicslab.kernels.records import Impacts, Manifolds, Points
-from physicslab.kernels.solver.impact_log import (
-    ImpactPoints,
-    Pose,
-    book_impact,
-    pair_of,
-    write_impact,
-)
+from physicslab.kernels.solver.impact_log import ImpactPoints, Pose, book_impact, pair_of, write_impact
 
 FIXED, BALLISTIC, KINEMATIC = range(3)
 """Modes of a row: fixed; moving freely; moving and not deflected."""

@@ -1,12 +1,7 @@
 """The impulse of an impact, as it changes two paths, with rounding compensated."""
 
 from physicslab.kernels import Numbers, Vectors, inlined
-from physicslab.kernels.constraint.impact_law import (
-    NEWTON,
-    ImpactImpulses,
-    point_response,
-    solve_impact,
-)
+from physicslab.kernels.constraint.impact_law import NEWTON, ImpactImpulses, point_response, solve_impact
 from physicslab.kernels.constraint.pair import (
     ContactFrame,
     PairInverseMass,

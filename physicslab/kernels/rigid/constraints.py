@@ -11,12 +11,7 @@ from physicslab.kernels.rigid.equations import CHANGE, FREE, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import RigidScene, rate_along
 from physicslab.kernels.rigid.joined import book_answer, lessen, measure_joints, pass_on
 from physicslab.kernels.rigid.joint_points import OWN, measure
-from physicslab.kernels.rigid.least_norm import (
-    REFINEMENTS,
-    begin_equations,
-    refine,
-    solve_equations,
-)
+from physicslab.kernels.rigid.least_norm import REFINEMENTS, begin_equations, refine, solve_equations
 
 
 @inlined

@@ -15,22 +15,15 @@ from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.budget import book_contacts, book_speeds
-from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED
+from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, find_loads, measure_all, project
-from physicslab.kernels.rigid.equations import OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
-from physicslab.kernels.rigid.features import Points, RigidScene
+from physicslab.kernels.rigid.equations import FREE, OPEN, SLIDES_BACK, SLIDES_ON, STICKS, UNKNOWN, Equations
+from physicslab.kernels.rigid.features import GIVEN, MU, PAIR, STATUS, VN, VT, Points, RigidScene
 from physicslab.kernels.rigid.impacts import approaches
-from physicslab.kernels.rigid.jammed import stop_sliding
 from physicslab.kernels.rigid.joined import book_answer
+from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.passing import longest_segment, share_of_ways
-from physicslab.kernels.rigid.segment_end import (
-    ALLOWED,
-    HOLDS,
-    PRESSES,
-    SLIDES,
-    locate_event,
-    note_start,
-)
+from physicslab.kernels.rigid.segment_end import ALLOWED, HOLDS, PRESSES, SLIDES, locate_event, note_start
 from physicslab.kernels.rigid.smooth_segment import (
     SHORT_LAST,
     Stages,
@@ -56,6 +49,8 @@ _SAME_MOMENT = 1e-9
 """Share of its load within which a point that sticks reaches the limit of friction with another one."""
 _BALANCED, _FITTED = 1e-11, 1e-8
 """Share of the loads of a body that forces which hold it may leave: of equations, and of pivots."""
+_NO_TIME = 0.01
+"""Largest speed that forces give in the moment of the impulses, as a share of that treated as zero."""
 _SHORTENINGS = 60
 """How often a segment is shortened for its error."""
 _SHORTEST = 1e-9
@@ -133,13 +128,13 @@ def _is_balanced(
 
 @inlined
 def touch(
-    of: RigidScene, equations: Equations, room: Equations, acceleration: Numbers, place: Numbers, q: Numbers,
-    v: Numbers, within: float,
+    of: RigidScene, equations: Equations, room: Equations, acceleration: Numbers, place: Numbers, v: Numbers,
+    within: float,
 ) -> tuple[int, int, float, float, bool]:  # fmt: skip
     """Find which points touch at ``place``, or are ``within`` a share of a size.
 
     Returns why the motion cannot go on (DONE if it can), how many points touch, the tolerance of speeds
-    [m/s], the deepest overlap as a share of a size, and whether any point approaches in (q, v).
+    [m/s], the deepest overlap as a share of a size, and whether any point approaches there.
     """
     accelerate(place, v, acceleration, of.inverse_mass, of.damping, of.calls)
     rest, least = rest_limits(of, acceleration, v)
@@ -256,3 +251,49 @@ def begin_motion(
         project(of, points, closed, q, v)
     begin_segment(of, points, closed, q, v, at)
     return DONE, closed, rest, False
+
+
+@always_inlined
+def stop_sliding(
+    scene: RigidScene, equations: Equations, count: int, changed: Points, q: Numbers, v: Numbers, rest: float
+) -> bool:
+    """Let impulses act at ``count`` closed points whose free rates are known; return whether any slides less.
+
+    No contact forces go on with the sliding, though nothing approaches: points that slide have their friction
+    given, and what they press may then press them the more (Painleve's paradox; piles that come to rest have
+    it often). Impulses keep all laws: those of a short step in the limit of no time (a tangential impact, or
+    an impact without collision; Genot & Brogliato, Eur. J. Mech. A/Solids 18 (1999) 653). In that limit no
+    body moves, so nothing overlaps.
+
+    The state of each point is found with the speeds that forces would give in a moment, the impulses without
+    these. The points of ``changed`` are forgotten.
+    """
+    points, measures, vectors, largest = equations.points, equations.measures, equations.vectors, 0.0
+    for i in range(2 * count):
+        largest = max(largest, abs(vectors[FREE, i]))
+    moment = _NO_TIME * rest / largest if largest > 0.0 else 0.0
+    for i in range(count):
+        points[i, GIVEN] = STICKS if measures[i, MU] > 0.0 else SLIDES_ON
+        vectors[FREE, 2 * i] = measures[i, VN] + moment * vectors[FREE, 2 * i]
+        vectors[FREE, 2 * i + 1] = measures[i, VT] + moment * vectors[FREE, 2 * i + 1]
+    found = solve_complementarity(equations, count, 0.0, True)
+    if found == NOT_FOUND:
+        return False
+    for i in range(count):
+        vectors[FREE, 2 * i], vectors[FREE, 2 * i + 1] = measures[i, VN], measures[i, VT]
+    if found == SETTLED:
+        solve_equations(equations, count, 1.0)
+    apply(scene, equations, count, v)
+    measure_all(scene, equations, count, q, v)
+    stopped: bool = changed[0, PAIR] >= 0
+    changed[0, PAIR] = -1
+    for i in range(count):
+        before, after = vectors[FREE, 2 * i + 1], measures[i, VT]
+        back = after if before < 0.0 else -after
+        stopped = stopped or (abs(before) > SLOW * rest and back >= -SLOW * rest)
+        # Impulses act along the mean of the speeds before and after.
+        points[i, STATUS], measures[i, VT] = SLIDES_ON, 0.5 * (before + after)
+    book_contacts(scene, equations, count, q, v, v)
+    if scene.joints[ROWS] > 0:
+        book_answer(scene, points, measures, vectors[UNKNOWN], count, q, v, v)
+    return stopped

@@ -265,7 +265,7 @@ def meet(
     counts, count, last = of.counts, 0, 0
     for _ in range(repeats):
         why, count, rest, _, approaching = touch(
-            of.scene, of.equations, of.room, of.stages.acceleration, place, of.q, of.v, 0.0
+            of.scene, of.equations, of.room, of.stages.acceleration, place, of.v, 0.0
         )
         if why != DONE or not approaching:
             return why, count, last
@@ -358,7 +358,7 @@ def _move_apart(of: Course, allowed: float, pay: bool) -> tuple[int, float]:
     rounding = _COORDINATE_ROUNDING * _largest(of, of.q) / smallest
     for _ in range(_SEPARATIONS):
         why, count, rest, deepest, _ = touch(
-            of.scene, of.equations, of.room, of.stages.acceleration, of.q, of.q, of.v, _NEAR * deepest
+            of.scene, of.equations, of.room, of.stages.acceleration, of.q, of.v, _NEAR * deepest
         )
         if why != DONE:
             return why, 0.0

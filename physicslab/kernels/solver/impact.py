@@ -32,14 +32,8 @@ from physicslab.kernels.geometry.impact_pose import is_known, meeting_at
 from physicslab.kernels.geometry.shapes import Shapes
 from physicslab.kernels.geometry.sweep import INNER_SHARE
 from physicslab.kernels.records import Manifold, Point
-from physicslab.kernels.solver.impact_log import (
-    ImpactPoints,
-    Pose,
-    book_impact,
-    pair_of,
-    write_impact,
-)
-from physicslab.kernels.solver.impulse import follow_drift
+from physicslab.kernels.solver.impact_log import ImpactPoints, Pose, book_impact, pair_of, write_impact
+from physicslab.kernels.solver.impulse import follow_drift, measure_again
 
 _MAX_SWEEPS = 32
 """Largest number of sweeps over the impacts of a substep; those left are treated as inelastic."""
@@ -198,7 +192,7 @@ def _note(
     before: PairVelocity[float], after: PairVelocity[float], motion: Motion, mass: PairInverseMass[float],
     t: float, law: int, log: Log, number: int,
 ) -> None:  # fmt: skip
-    """Book an impact that has taken place at the time t from now, and write it to the log.
+    """Book an impact that has taken place at the time t from now, and write it to the log if that has length.
 
     Until then bodies move with their ``old`` speeds; ``before`` and ``after`` are those of the moment.
     """
@@ -434,18 +428,3 @@ def resolve_impacts(
     if left == 0:
         follow_drift(contacts, motion, window.end)
     return impacts, left, energetic, lowered
-
-
-@inlined
-def measure_again(contacts: Contacts, motion: Motion) -> None:
-    """Bring separations up to date after impacts have moved bodies."""
-    position = motion.position
-    for k in range(contacts.number):
-        p = contacts.touching[k]
-        manifold = contacts.manifolds[p]
-        x = position[manifold.b, 0] - position[manifold.a, 0]
-        y = position[manifold.b, 1] - position[manifold.a, 1]
-        moved = (x - manifold.offset_x) * manifold.normal_x + (y - manifold.offset_y) * manifold.normal_y
-        for j in range(2 * p, 2 * p + manifold.count):
-            contacts.points[j].separation += moved
-        manifold.offset_x, manifold.offset_y = x, y

@@ -139,6 +139,21 @@ def follow_drift(contacts: Contacts, motion: Motion, h: float) -> None:
             point.separation += h * point_state(frame_of(manifold, point), v).v
 
 
+@inlined
+def measure_again(contacts: Contacts, motion: Motion) -> None:
+    """Bring separations up to date after impacts have moved bodies."""
+    position = motion.position
+    for k in range(contacts.number):
+        p = contacts.touching[k]
+        manifold = contacts.manifolds[p]
+        x = position[manifold.b, 0] - position[manifold.a, 0]
+        y = position[manifold.b, 1] - position[manifold.a, 1]
+        moved = (x - manifold.offset_x) * manifold.normal_x + (y - manifold.offset_y) * manifold.normal_y
+        for j in range(2 * p, 2 * p + manifold.count):
+            contacts.points[j].separation += moved
+        manifold.offset_x, manifold.offset_y = x, y
+
+
 @always_inlined
 def relax(
     contacts: Contacts, near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting,

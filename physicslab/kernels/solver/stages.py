@@ -32,8 +32,7 @@ from physicslab.kernels.near_counts import (
     WIDE_COUNT,
 )
 from physicslab.kernels.solver import impulse
-from physicslab.kernels.solver.impact import ImpactWindow, measure_again, resolve_impacts
-from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
+from physicslab.kernels.solver.impact import ImpactWindow, resolve_impacts
 from physicslab.kernels.solver.meet_again import any_swift, meet_again
 from physicslab.kernels.solver.separate import any_deep, separate
 from physicslab.kernels.solver.work import book_slots, book_work_of_contacts, note_velocities
@@ -133,17 +132,8 @@ def resolve_later_impacts(
         near, motion, shapes, materials, inverse, acting, fat, log, h, window, speculative_margin
     )
     if near.counts[ROUND] == 0:  # once: each time it rounds
-        measure_again(_contacts(near), motion)
+        impulse.measure_again(_contacts(near), motion)
     return impacts
-
-
-@always_inlined
-def _warm_start_scale(h: float, impulse_dt: float) -> float:
-    """Return the ratio of a substep to the time over which the points' impulses act.
-
-    It is limited: the impulses of a very short time are mostly rounding, which must not be magnified.
-    """
-    return h / max(impulse_dt, h / MAX_SUBSTEP_FACTOR) if impulse_dt > 0.0 else 1.0
 
 
 @always_inlined
@@ -157,7 +147,8 @@ def press(
     """
     if near.counts[LEFT] + near.counts[WIDE_COUNT] + len(joints.impulse) == 0:
         return impulse_dt
-    scale = _warm_start_scale(h, impulse_dt)
+    # Limited: the impulses of a very short time are mostly rounding, which must not be magnified.
+    scale = h / max(impulse_dt, h / impulse.MAX_SUBSTEP_FACTOR) if impulse_dt > 0.0 else 1.0
     sweeps = impulse.sweeps_of(near, len(joints.impulse), iterations)
     contacts = _solved(near)
     note_velocities(contacts, near, motion, inverse, acting, h)
@@ -169,16 +160,9 @@ def press(
 
 @always_inlined
 def relax(
-    near: Near,
-    joints: Joints,
-    motion: Motion,
-    inverse: Inverse,
-    acting: Acting,
-    softness: Softness,
-    h: float,
-    half: float,
-    iterations: int,
-) -> None:
+    near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
+    h: float, half: float, iterations: int,
+) -> None:  # fmt: skip
     """Remove the velocity that came from correcting errors, ``h`` seconds after :func:`press`.
 
     ``half`` is half of the substep [s]. The work of all impulses is booked.

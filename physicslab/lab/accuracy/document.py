@@ -8,7 +8,7 @@ from physicslab.lab.accuracy.contacts.study import ContactStudy
 from physicslab.lab.accuracy.figures import record
 from physicslab.lab.accuracy.honesty.study import QUANTITIES, HonestRow, share_of
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneStudy
-from physicslab.lab.accuracy.study import Curve, Study
+from physicslab.lab.accuracy.study import MethodCurve, Study
 from physicslab.lab.accuracy.trust import Trust, trust_report
 from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
 from physicslab.lab.document import lab_document, pick, plain
@@ -20,7 +20,7 @@ def document(
     """Return everything that was measured."""
     return lab_document(
         "accuracy",
-        peers=any(curve.rows and not curve.engine.own for study in contacts for curve in study.curves),
+        peers=any(curve.rows and not curve.method.own for study in contacts for curve in study.curves),
         problems=[_study(study) for study in studies],
         contacts=[_contacts(study) for study in contacts],
         scenes=[_scene(study) for study in scenes],
@@ -62,15 +62,15 @@ def _study(study: Study) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _curve(curve: Curve) -> dict[str, Any]:
+def _curve(curve: MethodCurve) -> dict[str, Any]:
     measured = {"order_measured": curve.order, "order_short": curve.short}
-    return pick(curve.integrator, "name", "title", "order") | measured | pick(curve, "refused", "rows")
+    return pick(curve.method, "name", "title", "order") | measured | pick(curve, "refused", "rows")
 
 
 def _contacts(study: ContactStudy) -> dict[str, Any]:
     case = study.case
     engines = [
-        pick(curve.engine, "name", "title")
+        pick(curve.method, "name", "title")
         | {"order_measured": curve.order}
         | pick(curve, "verdict", "refused", "rows")
         for curve in study.curves

@@ -85,7 +85,7 @@ def work_precision(*studies: Study) -> bytes:
 
 def method_styles(studies: Sequence[Study]) -> dict[str, _Style]:
     """Return the colour, marker and line of every method that is drawn, in the order of the legend."""
-    drawn = {curve.integrator.name: None for study in studies for curve in study.curves if curve.rows}
+    drawn = {curve.method.name: None for study in studies for curve in study.curves if curve.rows}
     further = [name for name in drawn if name not in _STYLES]
     styles = _STYLES | dict(zip(further, itertools.cycle(_FURTHER), strict=False))
     return {name: style for name, style in styles.items() if name in drawn}
@@ -151,7 +151,7 @@ def _problem_panel(
     axes.set_xlabel(label)
     for curve in study.curves:
         if curve.rows:
-            style, points = styles[curve.integrator.name], ((work(row), row.error) for row in curve.rows)
+            style, points = styles[curve.method.name], ((work(row), row.error) for row in curve.rows)
             _curve(axes, points, style, linewidth=1.4, markersize=9 if style[1] == "*" else 5)
     for row, mark in zip(study.chosen, _CHOSEN.values(), strict=False):
         if row.error is not None and work(row) > 0.0:
@@ -164,8 +164,7 @@ def _problem_panel(
         )  # fmt: skip
     if study.floor:
         axes.axhspan(_LOWEST, study.floor, color=_ROUNDING_COLOUR, zorder=0, linewidth=0)
-    rows = [*study.chosen, *(row for curve in study.curves for row in curve.rows)]
-    errors = [max(row.error, _LOWEST) for row in rows if row.error is not None]
+    errors = [max(row.error, _LOWEST) for row in study.rows if row.error is not None]
     low = min([*errors, study.problem.excellent])
     high = max([*(error for error in errors if error < 1e2), study.problem.good])
     axes.set_ylim(0.3 * low, 5.0 * high)
@@ -178,9 +177,9 @@ def _contact_panel(axes: Axes, study: ContactStudy, by: str, *, markersize: floa
     axes.axhline(study.case.wanted, **_LIMIT)
     for curve in study.curves:
         points = ((work(row), None if row.error is None else min(row.error, _HIGHEST)) for row in curve.rows)
-        order = 3 if curve.engine.own else 2
+        order = 3 if curve.method.own else 2
         look = {"linewidth": 1.3, "markersize": markersize, "clip_on": False, "zorder": order}
-        _curve(axes, points, _ENGINES[curve.engine.name], **look)
+        _curve(axes, points, _ENGINES[curve.method.name], **look)
     axes.set_ylim(_LOWEST, _HIGHEST)
     axes.set_yticks([10.0**power for power in range(-16, 1, 4)])
     axes.minorticks_off()
@@ -207,7 +206,7 @@ def _orders(axes: Axes, study: ContactStudy) -> None:
     drawn = [curve for curve in study.curves if curve.rows and curve.order is not None]
     look: dict[str, Any] = {"xycoords": "axes fraction", "fontsize": 8, "ha": "left", "va": "center"}
     for i, curve in enumerate(drawn):
-        place, colour = (0.27 + 0.17 * i, 0.36), _ENGINES[curve.engine.name][0]
+        place, colour = (0.27 + 0.17 * i, 0.36), _ENGINES[curve.method.name][0]
         axes.annotate(order_text(curve), place, color=colour, fontweight="bold", **look)
     if drawn:
         axes.annotate("order", (0.03, 0.36), color=_WORDS, **look)
@@ -217,7 +216,7 @@ def _handles(studies: Sequence[ContactStudy]) -> list[Line2D]:
     from matplotlib.lines import Line2D
 
     drawn: dict[str, ContactCurve] = {
-        curve.engine.name: curve for study in studies for curve in study.curves if curve.rows
+        curve.method.name: curve for study in studies for curve in study.curves if curve.rows
     }
-    handles = [_handle(drawn[name].engine.title, style) for name, style in _ENGINES.items() if name in drawn]
+    handles = [_handle(drawn[name].method.title, style) for name, style in _ENGINES.items() if name in drawn]
     return [*handles, Line2D([], [], label="wanted with rigid contacts", **_LIMIT)]

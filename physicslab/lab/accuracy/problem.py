@@ -43,6 +43,16 @@ class Ladder:
         return [first << rung for rung in range(self.rungs)]
 
 
+type Advance = Callable[[float], object]
+"""Advances one world to a time [s]."""
+
+
+def own_steps(world: World, dt: float = 0.0) -> Advance:
+    """Return what advances a world by its own steps, whose length it has already."""
+    world.synchronise()
+    return lambda t: world.run(seconds=t - world.time)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnownCase(Case):
     """A world whose motion is known.
@@ -78,12 +88,18 @@ class KnownCase(Case):
         builds = (self.build,) if self.variant is None else (self.build, self.variant)
         return tuple(build(simulation) for build in builds)
 
-    def finish(self, worlds: Sequence[World]) -> float:
-        """Run worlds through the times that are compared, and return the largest error."""
-        largest = 0.0
+    def finish(self, worlds: Sequence[World], advances: Sequence[Advance] = ()) -> float:
+        """Run worlds through the times that are compared, and return the largest error.
+
+        Parameters
+        ----------
+        advances : sequence of callables, optional
+            What advances each world; its own steps where there are none.
+        """
+        largest, advances = 0.0, advances or [own_steps(world) for world in worlds]
         for i, t in enumerate(self.times):
-            for world in worlds:
-                world.run(seconds=t - world.time)
+            for advance in advances:
+                advance(t)
             largest = float(np.maximum(largest, self.error(*worlds, i)))  # numpy's maximum keeps NaN
         return largest
 

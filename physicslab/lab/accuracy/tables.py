@@ -10,7 +10,7 @@ from physicslab.lab.accuracy.estimate import Departure
 from physicslab.lab.accuracy.honesty.study import FAMILIES, QUANTITIES, HonestRow, share_of
 from physicslab.lab.accuracy.measure import Row
 from physicslab.lab.accuracy.scene_study import ESTIMATE, SceneRow, SceneStudy
-from physicslab.lab.accuracy.study import Curve, Study
+from physicslab.lab.accuracy.study import MethodCurve, Study
 from physicslab.lab.accuracy.trust import Trust
 from physicslab.lab.accuracy.trust_rows import TrustRow, summarise
 from physicslab.lab.case import Verdict
@@ -57,8 +57,8 @@ def study_text(study: Study, *, whole: bool) -> str:
         heads = itertools.chain([_head(curve)], itertools.repeat(["", "", ""]))
         shown = curve.rows if whole or not curve.rows else [_best_row(curve.rows)]
         rows += [[*head, *_cells(row)] for head, row in zip(heads, shown, strict=False)]
-    refusals = ((curve.integrator.name, _reason(curve)) for curve in study.curves)
-    short = ((curve.integrator.name, curve.short) for curve in study.curves)
+    refusals = ((curve.method.name, _reason(curve)) for curve in study.curves)
+    short = ((curve.method.name, curve.short) for curve in study.curves)
     return "\n".join([
         *lines,
         _reported(rows),
@@ -69,18 +69,18 @@ def study_text(study: Study, *, whole: bool) -> str:
     ])  # fmt: skip
 
 
-def _head(curve: Curve) -> list[str]:
-    order = f"{curve.integrator.order:g}" + ("*" if curve.short else "")
-    return [curve.integrator.name, order, cell(curve.order, ".2f")]
+def _head(curve: MethodCurve) -> list[str]:
+    order = f"{curve.method.order:g}" + ("*" if curve.short else "")
+    return [curve.method.name, order, cell(curve.order, ".2f")]
 
 
 def _cells(row: Row) -> list[str]:
     return [text(row) for text in _COLUMNS.values()]
 
 
-def _reason(curve: Curve) -> str:
+def _reason(curve: MethodCurve) -> str:
     """Return why a method is refused, without its own name."""
-    return curve.refused.removeprefix(f"{curve.integrator.name} was asked for, ").removeprefix("and ")
+    return curve.refused.removeprefix(f"{curve.method.name} was asked for, ").removeprefix("and ")
 
 
 def _together(reasons: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
@@ -121,7 +121,7 @@ def contact_text(study: ContactStudy) -> str:
         f"  compared: {case.compared}",
         f"  error: {case.measure}; with rigid contacts {case.wanted:.0e} is wanted",
         table([head, *lines], words=(0, len(head) - 1), indent="  "),
-        *(f"  not {curve.engine.title}: {curve.refused}" for curve in study.curves if curve.refused),
+        *(f"  not {curve.method.title}: {curve.refused}" for curve in study.curves if curve.refused),
         *([_STAR] if starred else []),
         "",
     ])  # fmt: skip
@@ -133,7 +133,7 @@ def _contact_cells(curve: ContactCurve, count: int) -> _Cells:
     errors = [cell(row.error, ".1e") + star for row, star in zip(curve.rows, starred, strict=True)]
     costs = [f"{1e3 * row.cpu_s_per_s:.2g}" for row in (curve.rows[0], curve.rows[-1])]
     missing = [""] * (count - len(errors))
-    return (curve.engine.title, order_text(curve), *errors, *missing, *costs, str(curve.verdict or ""))
+    return (curve.method.title, order_text(curve), *errors, *missing, *costs, str(curve.verdict or ""))
 
 
 def order_text(curve: ContactCurve) -> str:
@@ -147,7 +147,7 @@ def contact_summary(studies: Sequence[ContactStudy]) -> str:
     """Return on how many cases rigid contacts are exact and soft ones converge, and the others."""
     lines = []
     for name, good in (("rigid", "within what is wanted"), ("soft", "of order 0.9 or within what is wanted")):
-        curves = [(s.case.name, c) for s in studies for c in s.curves if c.engine.name == name]
+        curves = [(s.case.name, c) for s in studies for c in s.curves if c.method.name == name]
         short = [(case, c) for case, c in curves if c.verdict in (Verdict.SHORT, Verdict.FAILED)]
         lines.append(f"{name} contacts: {len(curves) - len(short)} of {len(curves)} cases are {good}")
         for case, curve in short:
@@ -215,7 +215,7 @@ def _scene_cells(row: SceneRow) -> tuple[str, ...]:
 def summary_text(studies: Sequence[Study]) -> str:
     """Return the number of problems on which ``auto``, and any method, is excellent; and the others."""
     short = [study for study in studies if study.auto.verdict is not Verdict.EXCELLENT]
-    some = [study for study in studies if _is_excellent(study)]
+    some = [study for study in studies if any(row.verdict is Verdict.EXCELLENT for row in study.rows)]
     lines = [
         f"auto is excellent on {len(studies) - len(short)} of {len(studies)} problems, "
         f"some method on {len(some)}"
@@ -230,11 +230,6 @@ def summary_text(studies: Sequence[Study]) -> str:
     if touching and all(study.auto.integrator != "exact" for study in touching):
         lines.append("where bodies touch, contacts are found within steps: no impact is located in time")
     return "\n".join(lines)
-
-
-def _is_excellent(study: Study) -> bool:
-    rows = [*study.chosen, *(row for curve in study.curves for row in curve.rows)]
-    return any(row.verdict is Verdict.EXCELLENT for row in rows)
 
 
 def left_out_text() -> str:

@@ -8,7 +8,7 @@ is moved by far more: the rate at which both runs part is that at which any erro
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -29,7 +29,7 @@ _VARIANTS, _NUDGED = 0.6, 0.85
 """Shares of the work after which the variants are run, and after which the starts are that are moved."""
 BUDGET_S = 60.0
 """How long all other ways to compute a scene may take [s], or three times as long as the scene itself."""
-STEP_SAFETY = 2.0
+_STEP_SAFETY = 2.0
 """How many times as far as a variant in other steps a result may be off: both errors may be alike."""
 _WAYS = [variant for variant in VARIANTS if variant.name != "nudged"]
 """The variants that are compared: there are more starts that are moved by one rounding."""
@@ -157,9 +157,14 @@ def assess(
     if not estimate.paths and not nudges:
         return Trust(failure="no other way to compute it ends in time", left_out=left_out)
 
+    def estimates(compare: _Compare) -> _Errors:
+        """Return the estimates of a quantity's error at each moment (ways, moments, ...)."""
+        departures = {name: compare(path) for name, path in estimate.paths.items()}
+        return np.array(error_estimates(departures, [compare(path) for path in nudges]))
+
     def digits(compare: _Compare, scale: _Errors, least: _Errors | float = 0.0) -> _Errors:
         """Return the digits of a quantity at each moment, whose error is known to be so large at least."""
-        errors = np.maximum(_errors(compare, estimate.paths, nudges).max(axis=0), least)
+        errors = np.maximum(estimates(compare).max(axis=0), least)
         shares = np.maximum(errors / np.where(scale > 0.0, scale, 1.0), ROUNDING)
         found: _Errors = np.maximum(-np.log10(shares), 0.0)
         return found
@@ -180,10 +185,10 @@ def assess(
     horizon = yield from _horizon(estimate, seconds, deadline, left_out)
     places = each[0]
     worst = int(places[-1].argmin())
-    ways = _errors(partial(apart, 0), estimate.paths, nudges)[:, -1, worst]
+    ways = estimates(partial(apart, 0))[:, -1, worst]
     cause = int(np.append(ways, own.overlaps[-1, worst]).argmax())
     found = Trust(float(places[-1, worst]), bodies[worst], ways=[*estimate.paths], left_out=left_out)
-    found.cause = [*estimate.paths, _NUDGED_NAME, _OVERLAP_NAME][cause]
+    found.cause = [*estimate.paths, *([_NUDGED_NAME] if nudges else []), _OVERLAP_NAME][cause]
     found.energy, found.momentum, found.angular_momentum = (float(column[-1]) for column in whole)
     found.entities, found.velocities, found.angles, found.spins = (
         dict(zip(bodies, column[-1].tolist(), strict=True)) for column in each
@@ -246,12 +251,19 @@ def _horizon(estimate: Estimate, seconds: float, deadline: float, left_out: list
             return None
 
 
-def _errors(compare: _Compare, variants: dict[str, Path], nudges: Sequence[Path]) -> _Errors:
-    """Return what each way to compute it says of an error, at each moment (ways, moments, ...)."""
-    apart = [compare(path) * (STEP_SAFETY if name in _IN_STEPS else 1.0) for name, path in variants.items()]
-    squares = [compare(path) ** 2 for path in nudges]
-    rounding = NUDGE_SHARE * np.sqrt(np.mean(squares, axis=0)) if squares else np.zeros_like(apart[0])
-    return np.array([*apart, rounding])
+def error_estimates(departures: Mapping[str, Any], nudges: Sequence[Any]) -> list[Any]:
+    """Return the estimate of an error by each way to compute it, and last by rounding, if that was tried.
+
+    Parameters
+    ----------
+    departures : mapping of str to float or array
+        How far each variant is from the scene, by its name, in the unit of the error.
+    nudges : sequence of floats or arrays
+        How far starts that are moved by one rounding end from the scene.
+    """
+    found = [_STEP_SAFETY * apart if name in _IN_STEPS else apart for name, apart in departures.items()]
+    rounding = [NUDGE_SHARE * np.sqrt(sum(apart**2 for apart in nudges) / len(nudges))] if nudges else []
+    return found + rounding
 
 
 def trust_report(trust: Trust) -> dict[str, Any]:

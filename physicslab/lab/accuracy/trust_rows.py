@@ -1,7 +1,6 @@
 """How good estimates of errors are: beside the true errors, where answers are known."""
 
-import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -12,7 +11,7 @@ from physicslab.lab.accuracy import variants
 from physicslab.lab.accuracy.contacts.case import ContactCase
 from physicslab.lab.accuracy.contacts.study import OWN, ContactEngine
 from physicslab.lab.accuracy.problem import KnownCase, Problem, Setting
-from physicslab.lab.accuracy.trust import STEP_SAFETY
+from physicslab.lab.accuracy.trust import error_estimates
 from physicslab.lab.case import attempt
 from physicslab.lab.jobs import Job
 from physicslab.world import World
@@ -98,7 +97,7 @@ def assess_problem(problem: Problem) -> Job[TrustRow]:
     simulation = Setting("auto").simulation(problem)
     world = problem.build(simulation)
     world.synchronise()
-    return (yield from _assess(problem, world.plan.integrator.name, simulation))
+    return (yield from _assess(problem, world.plan.integrator.name, simulation, {}))
 
 
 def assess_contacts(case: ContactCase, engine: ContactEngine) -> Job[TrustRow]:
@@ -106,13 +105,12 @@ def assess_contacts(case: ContactCase, engine: ContactEngine) -> Job[TrustRow]:
 
     With soft contacts, rigid ones are another way to compute it.
     """
-    rigid = next(own for own in OWN if own.name == "rigid")
-    others = () if engine is rigid else (rigid.simulation(CONTACT_STEP),)
+    others = {own.name: own.simulation(CONTACT_STEP) for own in OWN if own.name == "rigid" != engine.name}
     return (yield from _assess(case, engine.title, engine.simulation(CONTACT_STEP), others))
 
 
 def _assess(
-    case: KnownCase, method: str, simulation: SimulationConfig, others: Sequence[SimulationConfig] = ()
+    case: KnownCase, method: str, simulation: SimulationConfig, others: Mapping[str, SimulationConfig]
 ) -> Job[TrustRow]:
     """Estimate an error by how much the case's figure changes where it is computed in other ways."""
     worlds, ready = case.worlds(simulation), case.worlds(simulation)
@@ -128,20 +126,17 @@ def _assess(
         found, _ = (None, "") if other is None else attempt(partial(case.finish, other))
         return 0.0 if found is None else abs(error - found)
 
-    known = [change(case.worlds(other)) for other in others]
+    known = {name: change(case.worlds(other)) for name, other in others.items()}
     ways = [variant for variant in variants.VARIANTS if variant.differs_in_step or variant.name == "tightest"]
     whole = len(ways) + variants.NUDGES + 1
     for n, variant in enumerate(ways):
-        known.append(
-            change(_variants(variant, documents, ready)) * (STEP_SAFETY if variant.differs_in_step else 1.0)
-        )
+        known[variant.name] = change(_variants(variant, documents, ready))
         yield (n + 1) / whole
-    squares = []
+    nudges = []
     for n in range(variants.NUDGES):
-        squares.append(change([read_scene(variants.nudged(document, n)) for document in documents]) ** 2)
+        nudges.append(change([read_scene(variants.nudged(document, n)) for document in documents]))
         yield (len(ways) + n + 1) / whole
-    known.append(variants.NUDGE_SHARE * math.sqrt(sum(squares) / variants.NUDGES))
-    return TrustRow(case, method, max(known), error)
+    return TrustRow(case, method, float(max(error_estimates(known, nudges))), error)
 
 
 def _variants(

@@ -14,7 +14,7 @@ from physicslab.view.canvas.drawable_text import drawable
 from physicslab.view.canvas.system_font import FAR, system_font
 
 _RAISED = re.compile("([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
-_PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "\N{MINUS SIGN}0123456789")
 RAISED_SIZE = 0.72
 """Height of raised figures, as a share of the line's."""
 _MAX_SURFACES = 512
@@ -86,7 +86,7 @@ def raised_parts(words: str) -> list[tuple[str, bool]]:
     """Return the parts of a line, and whether each is raised: those are written with plain figures.
 
     >>> raised_parts("2·10⁻⁶ J")
-    [('2·10', False), ('-6', True), (' J', False)]
+    [('2·10', False), ('\N{MINUS SIGN}6', True), (' J', False)]
     """
     if _RAISED.search(words) is None:
         return [(words, False)]

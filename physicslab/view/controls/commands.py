@@ -107,10 +107,7 @@ def find(text: str, among: list[Command], said: Language) -> list[Command]:
     for command in among:
         names, tips = _spellings(command.words, said), _spellings(command.tip, said)
         parts = [
-            max(
-                *(rate(word, name) for name in names),
-                *(_OF_TIP * _rate_whole(word, tip) for tip in tips),
-            )
+            max(*(rate(word, name) for name in names), *(_OF_TIP * _rate_whole(word, tip) for tip in tips))
             for word in wanted
         ]
         if all(parts):

@@ -53,8 +53,12 @@ def walk(world: World, window: Window) -> None:
 def enter(world: World, window: Window) -> None:
     """Go to the first field of the selection; without one, click with the tool at the cursor.
 
-    A tool that is dragged is pressed by one Enter and let go by the next.
+    A tool that is dragged is pressed by one Enter and let go by the next. While a button is held to draw, as
+    after typing numbers, Enter puts down the point of that drawing.
     """
+    if window.sketch.held and not window.presses_by_key:
+        _post(pygame.MOUSEBUTTONDOWN, _cursor(window), button=window.sketch.held)
+        return
     if window.selection.entities and not window.presses_by_key:
         window.keys_go_to = "fields"
         return

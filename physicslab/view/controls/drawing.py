@@ -20,7 +20,7 @@ from physicslab.history import Command, Group, Spawn
 from physicslab.view.controls.measure import DOMINOES, HANGING, LENGTH, Measure
 from physicslab.view.controls.picking import body_at
 from physicslab.view.controls.polygons import MOST, is_stroke, simplified
-from physicslab.view.controls.pouring import as_many_as_wanted
+from physicslab.view.controls.pouring import pour
 from physicslab.view.window.edits import Recipe
 from physicslab.view.window.ends import brought, local_point
 from physicslab.view.window.placing import outlines_of, put_down, refused_place, snapped_point, way_aside
@@ -188,6 +188,9 @@ def press(world: World, window: Window, drawn: Drawn, button: int = 0) -> None:
         sketch.name, sketch.spot = drawn.name, window.target
     if _is_refused(world, drawn, window):
         return
+    if drawn.pours and sketch.held:
+        release(world, window, drawn)
+        return
     sketch.held, place = button, _at_cursor(world, drawn, window)
     if window.snapping.active and drawn.ways:
         place = snapped_point(world, window.camera, window.place)
@@ -202,7 +205,8 @@ def release(world: World, window: Window, drawn: Drawn) -> None:
         return
     sketch.held = 0
     if drawn.pours:
-        places = as_many_as_wanted(world, window)
+        pour(world, window, 0.0)
+        places = sketch.stroke
         sketch.cancel()
         _build(world, window, drawn, places, checked=True)
     elif drawn.is_open and is_stroke(sketch.stroke) and not sketch.typed:
@@ -309,7 +313,7 @@ def _build(
     words = f"poured {len(places)} discs" if drawn.pours else f"made: {drawn.title.lower()}"
     window.edits.do(Group(words, made))
     if drawn.pours:
-        window.notify(f"{len(places)} discs")
+        window.notify(_number_of_discs(len(places)))
     if drawn.remark and world.physics.gravity_mode != "planet":
         window.notify(drawn.remark, 5.0)
     return True
@@ -414,12 +418,16 @@ def lines(world: World, drawn: Drawn, window: Window) -> list[tuple[Vector2, Vec
     return list(pairwise(places)) if drawn.is_open else list(zip(places[::2], places[1::2], strict=False))
 
 
+def _number_of_discs(count: int) -> str:
+    return "1 disc" if count == 1 else f"{count} discs"
+
+
 def reading(world: World, drawn: Drawn, window: Window) -> str:
     """Return what stands beside the cursor: the size of what is drawn, what is typed, or what to do next."""
     sketch = window.sketch
     begun = len(sketch.grips) if sketch.name == drawn.name else 0
     if drawn.pours and begun:
-        count = f"{len(sketch.stroke)} discs"
+        count = _number_of_discs(len(sketch.stroke))
         return f"{sketch.typed}_   {count}" if sketch.typed else count
     if is_stroke(sketch.stroke):
         return "Let go to close it"

@@ -3,18 +3,7 @@
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from physicslab.components import (
-    Gear,
-    Pin,
-    Pulley,
-    Rod,
-    Rope,
-    Shape,
-    Slot,
-    Transform,
-    Velocity,
-    Weld,
-)
+from physicslab.components import Gear, Pin, Pulley, Rod, Rope, Shape, Slot, Transform, Velocity, Weld
 from physicslab.diagnostics.period import gives_way
 from physicslab.ecs.component import Component
 from physicslab.ecs.vector import Vector2

@@ -27,19 +27,10 @@ def _typed_count(window: Window) -> int | None:
 
 
 def pour(world: World, window: Window, elapsed: float) -> None:
-    """Let more be poured while the button is held."""
-    sketch = window.sketch
-    sketch.stroke = _poured(world, window, min(len(sketch.stroke) + max(round(_RATE * elapsed), 1), MOST))
-
-
-def as_many_as_wanted(world: World, window: Window) -> list[Vector2]:
-    """Return the places of discs [m] that were poured: as many as were typed, if a number was."""
-    wanted = _typed_count(window)
-    return (
-        window.sketch.stroke or _poured(world, window, 1)
-        if wanted is None
-        else _poured(world, window, wanted)
-    )
+    """Let more be poured in an elapsed time [s]; where a number was typed, so many at once."""
+    more = max(round(_RATE * elapsed), 1) if elapsed else 0
+    wanted = _typed_count(window) or min(max(len(window.sketch.stroke) + more, 1), MOST)
+    window.sketch.stroke = _poured(world, window, wanted)
 
 
 def _poured(world: World, window: Window, wanted: int) -> list[Vector2]:

@@ -10,7 +10,7 @@ from physicslab.components import Shape, Transform, Velocity
 from physicslab.ecs.vector import Vector2
 from physicslab.state.shapes import lengths_of
 from physicslab.view.canvas.camera import Camera, Drawing
-from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle
+from physicslab.view.canvas.canvas import Canvas, Rect, TextStyle, overlap
 from physicslab.view.canvas.quantities import round_quantity
 from physicslab.view.picture.backdrop import grid_spacing
 from physicslab.world import World
@@ -57,26 +57,32 @@ _MAX_LINES = 400
 """In a picture with more lines than that, which would be a speck, none has."""
 
 
-def draw_axis_numbers(on: Drawing, room: Rect, right: int) -> int:
+def draw_axis_numbers(on: Drawing, room: Rect, right: int, windows: Sequence[Rect]) -> int:
     """Write the coordinates [m] of lines of the grid at the lower and the left edge of a room [px].
 
-    Those at the lower edge end before ``right`` [px], where the scale bar begins. Return how high they
-    are there [px].
+    Those at the lower edge end before ``right`` [px], where the scale bar begins; none is partly under one of
+    the ``windows``. Return how high they are there [px].
     """
     left, top, width, height = room
     step = _EVERY * grid_spacing(on.camera.scale)
     low, high = on.camera.to_world((left, top + height)), on.camera.to_world((left + width, top))
     style = TextStyle(max(on.size - 3, 9), on.theme.coordinate)
     text_height = on.canvas.text_size("0", style)[1]
+
+    def write(words: str, x: int, y: int) -> None:
+        extent = on.canvas.text_size(words, style)
+        if not any(overlap(window, (x, y, *extent)) for window in windows):
+            on.canvas.text(words, (x, y), style)
+
     for x in _multiples(low.x, high.x, step):
         place = round(on.camera.to_screen(Vector2(x, on.camera.centre.y))[0])
         words = _words(x, step)
         if left + on.size < place and place + on.canvas.text_size(words, style)[0] + on.size // 2 < right:
-            on.canvas.text(words, (place + 3, top + height - text_height - 2), style)
+            write(words, place + 3, top + height - text_height - 2)
     for y in _multiples(low.y, high.y, step):
         place = round(on.camera.to_screen(Vector2(on.camera.centre.x, y))[1])
         if top + 2 * text_height < place < top + height - 2 * text_height:
-            on.canvas.text(_words(y, step), (left + 4, place - text_height - 1), style)
+            write(_words(y, step), left + 4, place - text_height - 1)
     return text_height + 2
 
 

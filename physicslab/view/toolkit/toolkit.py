@@ -334,6 +334,7 @@ class Walk:
         self._toolkit = toolkit
         self._panel = ""
         self._begins = self._ends = self._from_field = False
+        self._without_mark = 0
 
     def begin(self, keys_go_to: str) -> None:
         """Let keys go to the menus, to the fields of the panel at the right, or to the next panel."""
@@ -382,14 +383,18 @@ class Walk:
         self._begins = False
 
     def end(self, *, is_alone: bool) -> None:
-        """Give the keys back to the world after Esc, or a line of a menu; after panels are built.
+        """Give the keys back to the world after Esc, a line of a menu, or once what had them is gone.
+
+        It is called after panels are built.
 
         Where the world ``is_alone`` in front and has them, their mark goes, and the tip of what it was on.
         """
-        toolkit, panel = self._toolkit, imgui.get_current_context().nav_window
-        in_menus = toolkit.walked and self._panel == _MENUS
+        toolkit, context = self._toolkit, imgui.get_current_context()
+        panel, in_menus = context.nav_window, toolkit.walked and self._panel == _MENUS
         left = in_menus and not toolkit.has_popup() and panel is not None and panel.name != _MENUS
-        if self._ends or left:
+        has_mark = not toolkit.walked or in_menus or context.nav_id_is_alive or toolkit.has_popup()
+        self._without_mark = 0 if has_mark else self._without_mark + 1
+        if self._ends or left or self._without_mark >= _SETTLING:  # it takes some frames to come to a panel
             imgui.set_window_focus()
             self._ends = self._from_field = toolkit.walked = False
         if is_alone and not toolkit.has_keys:

@@ -48,20 +48,35 @@ class Ui(Windows):
         words = self.said(words)
         self.words.append(words)
         imgui.push_style_color(imgui.Col_.text, packed(colour or self.theme.text))
-        if wrapped:
+        if wrapped and not any(raised for _, raised in raised_parts(words)):
             imgui.push_text_wrap_pos(0.0)
             imgui.text_unformatted(_with_units(words))
             imgui.pop_text_wrap_pos()
         else:
             imgui.begin_group()
-            for n, (part, raised) in enumerate(raised_parts(words)):
-                if n:
-                    imgui.same_line(0.0, 0.0)
-                imgui.push_font(None, imgui.get_font_size() * (RAISED_SIZE if raised else 1.0))
-                imgui.text_unformatted(part)
-                imgui.pop_font()
+            imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0.0, 0.0))
+            for line in self._broken(_with_units(words)) if wrapped else [words]:
+                self._line(line)
+            imgui.pop_style_var()
             imgui.end_group()
         imgui.pop_style_color()
+
+    def _line(self, words: str) -> None:
+        for n, (part, raised) in enumerate(raised_parts(words)):
+            if n:
+                imgui.same_line(0.0, 0.0)
+            imgui.push_font(None, imgui.get_font_size() * (RAISED_SIZE if raised else 1.0))
+            imgui.text_unformatted(part)
+            imgui.pop_font()
+
+    def _broken(self, words: str) -> list[str]:
+        """Return words in lines as wide as the panel, in which powers are small figures."""
+        room, lines = imgui.get_content_region_avail().x, [""]
+        for part in re.split("([ \n])", words):
+            if part == "\n" or (part.strip() and self._figure_width(lines[-1] + part) > room):
+                lines.append("")
+            lines[-1] = (lines[-1] + part).lstrip()
+        return lines
 
     def faint(self, words: str, *, wrapped: bool = True) -> None:
         """Write words that matter less."""
@@ -384,7 +399,7 @@ class Ui(Windows):
             room = ImVec2(
                 width, lines * imgui.get_text_line_height() + 2.0 * imgui.get_style().frame_padding.y
             )
-            several = flags.auto_select_all | flags.ctrl_enter_for_new_line
+            several = flags.auto_select_all | flags.ctrl_enter_for_new_line | flags.word_wrap
             _, text = imgui.input_text_multiline(known, text, room, several)
         self.note(label, "text", text)
         if self.writes_at_once and imgui.is_item_focused():

@@ -88,7 +88,7 @@ class Recovery:
             saved = time.localtime(self._left[0].path.stat().st_mtime)
         except (IndexError, OSError):
             return "Your last session is kept"
-        return f"Your last session is kept, as of {time.strftime('%d %b %H:%M', saved)}"
+        return f"Your last session is kept, as of {time.strftime('%Y-%m-%d %H:%M', saved)}"
 
     def restore(self) -> World:
         """Return the world of the session on offer.

@@ -11,7 +11,7 @@ from imgui_bundle import ImVec2, imgui
 from physicslab.components import Shape
 from physicslab.diagnostics.collision import Body, Collision
 from physicslab.ecs.vector import Vector2
-from physicslab.theme import Colour, Theme, mixed
+from physicslab.theme import Colour, Theme, contrast, mixed
 from physicslab.view.canvas.canvas import overlap
 from physicslab.view.canvas.quantities import quantity, without_rounding
 from physicslab.view.canvas.rim import rim_of
@@ -96,8 +96,11 @@ class Sketch:
             self.line(Vector2(x, high.y), Vector2(x + up, high.y - up), fill)
             x += 6.0
 
-    def words(self, place: Place, words: str, colour: Colour) -> None:
-        """Write words with their middle at a place, or near it where others are; all within the sketch."""
+    def words(self, place: Place, words: str, colour: Colour, on: Colour | None = None) -> None:
+        """Write words with their middle at a place, or near it where others are; all within the sketch.
+
+        ``on`` is a colour laid under them.
+        """
         words = self.ui.said(words)
         size = imgui.calc_text_size(words)
         x = min(max(place.x - 0.5 * size.x, 0.0), max(self.width - size.x, 0.0))
@@ -109,6 +112,10 @@ class Sketch:
             below = taken[1] + taken[3]
             y = below if below + size.y <= self.height else max(taken[1] - size.y, 0.0)
         self._words.append((x, y, size.x, size.y))
+        if on is not None:
+            self._paper.add_rect_filled(
+                self._at(Vector2(x, y)), self._at(Vector2(x, y) + Vector2(*size)), packed(on)
+            )
         self._paper.add_text(self._at(Vector2(x, y)), packed(colour), words)
         self.ui.words.append(words)
 
@@ -142,6 +149,8 @@ _ALIKE = 0.05
 """How far arrows may point away from one line, and be drawn beside each other."""
 _TINT = 0.5
 """Share of its own colour in a tint."""
+_FILL = 0.3
+"""Share of its colour in the inside of a body: arrows of the same colour and words are seen on it."""
 _SHORT = 2.0
 """Arrows shorter than that are not drawn [px]."""
 
@@ -207,8 +216,7 @@ def _extent(world: World, body: Body, seen: Collision) -> float:
 def _draw_body(
     paper: Sketch, world: World, body: Body, seen: Collision, at: Projection, scale: float, colour: Colour
 ) -> None:
-    theme = paper.ui.theme
-    fill = theme.fill(colour)
+    fill = mixed(paper.ui.theme.background, colour, _FILL)
     shape = world.component(body.entity, Shape) if body.entity and world.has(body.entity, Shape) else None
     if shape is None and body.entity == 0:
         n, t = (_down(way) * (paper.width + paper.height) for way in (seen.normal, seen.tangent))
@@ -381,18 +389,18 @@ def draw_energies(ui: Ui, world: World, seen: Collision, width: float) -> None:
                     continue
                 end = x + energy * across
                 paper.bar(Vector2(x, top), Vector2(end - 1.0, top + high), colour, hatched=hatched)
-                own = colour in (a_colour, b_colour) and not hatched
-                shade = theme.background if own else theme.text
-                _label_bar(paper, name, (x, end), top + 0.5 * high, shade)
+                on = theme.background if hatched else colour
+                _label_bar(paper, name, (x, end), top + 0.5 * high, on)
                 x = end
 
 
-def _label_bar(paper: Sketch, name: str, span: tuple[float, float], middle: float, colour: Colour) -> None:
-    """Write what a part of a bar is, in the longest of its names for which there is room."""
-    per_letter = 0.56 * paper.ui.size
+def _label_bar(paper: Sketch, name: str, span: tuple[float, float], middle: float, on: Colour) -> None:
+    """Write what a part of a bar is on its colour, in the longest of its names for which there is room."""
+    per_letter, theme = 0.56 * paper.ui.size, paper.ui.theme
+    colour = max((theme.text, theme.background), key=lambda one: contrast(one, on))
     for words in name.split("|"):
         if len(words) * per_letter < span[1] - span[0]:
-            paper.words(Vector2(0.5 * sum(span), middle), words, colour)
+            paper.words(Vector2(0.5 * sum(span), middle), words, colour, on)
             return
 
 

@@ -47,6 +47,7 @@ class FileBrowser:
             if opening.folder != self._folder:
                 imgui.set_keyboard_focus_here()
             entered = build_name(ui, "File to open", opening, _LIST + _PICTURE[0], close)
+            ui.gap(0.2)
             wide, high = ui.fitted((_LIST + _PICTURE[0]) * size, _HEIGHT * size)
             seen = None
             with ui.child("files", ImVec2(wide - (_PICTURE[0] + 1.0) * size, high)) as is_seen:

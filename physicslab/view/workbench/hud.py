@@ -149,7 +149,7 @@ class Hud:
         (left, top, width, height), size = room, on.size
         margin = round(0.6 * size)
         bar = draw_scale_bar(on, left + width, top + height - margin)
-        numbers = draw_axis_numbers(on, room, bar[0]) if window.grid else 0
+        numbers = draw_axis_numbers(on, room, bar[0], self._windows) if window.grid else 0
         taken = [bar, *self._draw_messages(world, bar, numbers)]
         bottom = min(rect[1] for rect in taken) - margin
         begin, wide, edge = self._free_strip(at_top=True)

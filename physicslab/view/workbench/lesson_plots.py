@@ -8,7 +8,7 @@ from imgui_bundle import ImVec2, imgui, implot
 from numpy.typing import NDArray
 
 from physicslab.diagnostics.figures import quantity_of
-from physicslab.ecs.quantity_text import Expression, InvalidText, evaluate, factor_of
+from physicslab.ecs.quantity_text import Expression, InvalidText, dotted, evaluate, factor_of
 from physicslab.languages.sentence import Sentence, proper
 from physicslab.lessons.check import Row, si_unit
 from physicslab.lessons.lesson import Compare, Question
@@ -142,11 +142,12 @@ def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predic
 
 def _plain(expression: Expression) -> str:
     """Return the words for an expression: of a quantity as the window calls it, and whose it is."""
-    owner = expression.text.partition(".")[0]
-    if owner == "time":
+    quantity = dotted(expression.node)
+    owner = quantity.rpartition(".")[0]
+    if quantity == "time":
         return Sentence("time")
     try:
-        entity, name = quantity_of(expression.text, [owner])
+        entity, name = quantity_of(quantity, [owner])
     except InvalidText:
         return expression.text
     own = Sentence(name)

@@ -82,6 +82,7 @@ class WorldView:
                 marks.draw_cursor(window.pointer, theme.accent, canvas)
             self._draw_joint(world, on)
         self._draw_sketch(world, on)
+        self._draw_prompt(world, on)
 
     def _draw_hand(self, world: World, on: Drawing) -> None:
         """Draw a band from what is held to the hand, and the velocity of a throw before it is let go."""
@@ -121,8 +122,8 @@ class WorldView:
         draw_impulses(world, window.overlays, written, replace(on, size=on.size - 2))
 
     def _draw_instruments(self, world: World, on: Drawing) -> None:
-        """Draw what measures, what is being placed of it, and beside the cursor what to do next."""
-        window, state, tool = self._window, self._window.measuring, TOOLS[self._window.tool]
+        """Draw what measures, and what is being placed of it."""
+        window, state = self._window, self._window.measuring
         preview = state.preview(spot_of(world, window)) if state.spots else None
         shown = [*instruments_of(world, state.overrides), *([] if preview is None else [preview])]
         if state.writing is not None:
@@ -131,6 +132,10 @@ class WorldView:
         state.rects = draw_instruments(world, shown, chosen, state.labels, covered, on)
         if state.hovered is not None:
             marks.draw_selection(world, (state.hovered,), on)
+
+    def _draw_prompt(self, world: World, on: Drawing) -> None:
+        """Write beside the cursor what the tool in hand is to be given next, or the size of what is drawn."""
+        window, state, tool = self._window, self._window.measuring, TOOLS[self._window.tool]
         idle = not (window.pointer_on_panel or window.filming.running)
         words = tool.prompts[min(len(state.spots), len(tool.prompts) - 1)] if tool.prompts else ""
         if window.sketch.name or not words:

@@ -3,23 +3,20 @@
 import math
 import statistics
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
 
-import numpy as np
-
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.contacts.case import ContactCase
+from physicslab.lab.accuracy.problem import Advance, own_steps
+from physicslab.lab.accuracy.study import Curve, climb
 from physicslab.lab.case import Verdict, attempt, cpu_time
 from physicslab.lab.jobs import Job
 from physicslab.lab.peers.mirrors import Box2D3Mirror, Box2DMirror, PymunkMirror
-from physicslab.lab.peers.peer import CannotBuild, Peer
+from physicslab.lab.peers.peer import Peer
 from physicslab.lab.worlds import steps_not_rigid
 from physicslab.world import World
-
-type Advance = Callable[[float], None]
-"""Advances one world by a time [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,26 +47,23 @@ def _simulation(contacts: str, collisions: str, dt: float) -> SimulationConfig:
     return SimulationConfig(dt=dt, contacts=contacts, collisions=collisions, sleeping=False)
 
 
-def _ours(world: World, dt: float) -> Advance:
-    world.synchronise()
-    return lambda seconds: world.run(seconds=seconds)
-
-
 def _theirs(peer: type[Peer], world: World, dt: float) -> Advance:
-    mirror = peer(world)
+    mirror, reached = peer(world), 0.0
 
-    def advance(seconds: float) -> None:
-        steps = round(seconds / dt)
-        mirror.run(seconds / steps, steps)
+    def advance(t: float) -> None:
+        nonlocal reached
+        steps = round((t - reached) / dt)
+        mirror.run((t - reached) / steps, steps)
         mirror.write_back()
+        reached = t
 
     return advance
 
 
 _SOFT = partial(_simulation, "soft", "step")
 OWN = (
-    ContactEngine("rigid", "rigid contacts", partial(_simulation, "rigid", "auto"), _ours, own=True),
-    ContactEngine("soft", "soft contacts", _SOFT, _ours, own=True),
+    ContactEngine("rigid", "rigid contacts", partial(_simulation, "rigid", "auto"), own_steps, own=True),
+    ContactEngine("soft", "soft contacts", _SOFT, own_steps, own=True),
 )
 """Ours."""
 ENGINES = (
@@ -121,35 +115,7 @@ class ContactRow:
     failure: str = ""
 
 
-@dataclass(slots=True)
-class ContactCurve:
-    """One engine on one case.
-
-    Attributes
-    ----------
-    engine : ContactEngine
-        Which.
-    rows : list of ContactRow
-        From the longest step to the shortest.
-    order : float, optional
-        The power of the step with which errors fall; ``None`` where they are rounding, or too few.
-    verdict : Verdict, optional
-        Verdict on our own engines only.
-    refused : str
-        Why there are no rows.
-    """
-
-    engine: ContactEngine
-    rows: list[ContactRow] = field(default_factory=list)
-    order: float | None = None
-    verdict: Verdict | None = None
-    refused: str = ""
-
-    @property
-    def largest(self) -> float | None:
-        """The largest error at any step; ``None`` where a run failed or there is none."""
-        errors = [row.error for row in self.rows]
-        return None if None in errors else max((e for e in errors if e is not None), default=None)
+ContactCurve = Curve[ContactEngine, ContactRow]
 
 
 @dataclass(slots=True)
@@ -183,34 +149,24 @@ def study_case(case: ContactCase, *, sparse: bool = False) -> Job[ContactStudy]:
     """
     engines = OWN if sparse else ENGINES
     steps = [2.0**-k / 60.0 for k in (_SPARSE if sparse else range(HALVINGS + 1))]
-    curves, whole = [], len(engines) * len(steps)
-    for n, engine in enumerate(engines):
-        curve = ContactCurve(engine)
-        curves.append(curve)
-        for k, dt in enumerate(steps):
-            try:
-                curve.rows.append(measure_row(case, engine, dt))
-            except (CannotBuild, ImportError) as error:
-                curve.refused = "not installed" if isinstance(error, ImportError) else str(error)
-                break
-            yield (n * len(steps) + k + 1) / whole
-            if curve.rows[-1].cpu_s_per_s * case.seconds > _ENDS_S:
-                break
-        curve.order = fitted_order([row.dt for row in curve.rows], [row.error for row in curve.rows])
+    plan = [(ContactCurve(engine), steps) for engine in engines]
+    yield from climb(plan, partial(measure_row, case), lambda row: row.cpu_s_per_s * case.seconds > _ENDS_S)
+    for curve, _ in plan:
+        curve.order = fitted_order([row.dt for row in curve.rows], curve.errors)
         curve.verdict = _verdict(case, curve)
-    return ContactStudy(case, curves)
+    return ContactStudy(case, [curve for curve, _ in plan])
 
 
 def _verdict(case: ContactCase, curve: ContactCurve) -> Verdict | None:
     """Return whether rigid contacts are within what is wanted at every step, and soft ones converge."""
-    if not curve.engine.own:
+    if not curve.method.own:
         return None
     if curve.largest is None:
         return Verdict.FAILED
     if curve.largest <= case.wanted:
         return Verdict.EXCELLENT
     converges = curve.order is not None and curve.order >= _SOFT_ORDER
-    return Verdict.GOOD if curve.engine.name == "soft" and converges else Verdict.SHORT
+    return Verdict.GOOD if curve.method.name == "soft" and converges else Verdict.SHORT
 
 
 def measure_row(case: ContactCase, engine: ContactEngine, dt: float) -> ContactRow:
@@ -233,24 +189,15 @@ def measure_row(case: ContactCase, engine: ContactEngine, dt: float) -> ContactR
 
 
 def _run(case: ContactCase, engine: ContactEngine, dt: float) -> ContactRow:
-    worlds = case.worlds(engine.simulation(dt))
-    advances = [engine.start(world, dt) for world in worlds]
+    worlds, spent = case.worlds(engine.simulation(dt)), [0.0]
+    advances = [partial(_clocked, spent, engine.start(world, dt)) for world in worlds]
     compiled = sum(world.compile_s for world in worlds)
-    row, spent, reached = ContactRow(dt, 0.0, 0.0), 0.0, 0.0
-    for i, t in enumerate(case.times):
-        for advance in advances:
-            cpu_s, (_, row.failure) = cpu_time(partial(attempt, partial(advance, t - reached)))
-            spent += cpu_s
-            if row.failure:
-                break
-        reached, error = t, None
-        if not row.failure:
-            error, row.failure = attempt(partial(case.error, *worlds, i))
-        row.error = None if error is None or row.error is None else float(np.maximum(row.error, error))
-        if row.failure:
-            break
-    else:
-        row.left_to_soft, row.by_impulses = steps_not_rigid(*worlds)
+    error, failure = attempt(partial(case.finish, worlds, advances))
     compiled = sum(world.compile_s for world in worlds) - compiled
-    row.cpu_s_per_s = max(0.0, spent - compiled) / reached / len(worlds)
-    return row
+    cost = max(0.0, sum(spent) - compiled) / case.seconds / len(worlds)
+    return ContactRow(dt, error, cost, *((0, 0) if failure else steps_not_rigid(*worlds)), failure)
+
+
+def _clocked(spent: list[float], advance: Advance, t: float) -> None:
+    """Advance a world to a time [s], and add the process time that this takes [s]."""
+    spent.append(cpu_time(partial(advance, t))[0])
