@@ -383,6 +383,8 @@ REFUSED: tuple[tuple[Any, dict[str, Any], str], ...] = (
     ({M: [1]}, {"measure": "max(ball.x + sqrt(-1))"}, "is no number"),
     ({M: [1]}, {"measure": "bal.y"}, 'must begin with one of floor, ball, world; did you mean "ball"?'),
     ({M: [1]}, {"measure": "'ball'.y"}, "is no number"),
+    ({M: [1]}, {"measure": "ball.y.real()"}, "is no function"),
+    ({M: [1]}, {"measure": "f(1).y()"}, "'f(1).y()' is no number"),
     ({M: [1]}, {"measure": '"ball.y'}, "is no number"),
     ({M: [1]}, {"measure": "first_impact.q"}, "an impact has time, x, y, speed, energy_lost"),
     ({M: [1]}, {"measure": {"f": lambda world: 1.0}}, "a function of a module"),

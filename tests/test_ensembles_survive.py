@@ -99,11 +99,15 @@ def test_a_cluster_makes_the_rows_that_one_process_makes(tmp_path: Path) -> None
 
 
 @pytest.mark.cluster
-def test_a_scheduler_that_is_not_there_is_refused_in_one_line(tmp_path: Path) -> None:
-    arguments = command("--out", str(tmp_path / "x.npz"), "--dask", "tcp://127.0.0.1:1")
+@pytest.mark.parametrize(
+    ("address", "why"),
+    [("tcp://127.0.0.1:1", "no scheduler answers there"), ("nonsense", "must be as tcp://host:8786")],
+)
+def test_a_scheduler_that_is_not_there_is_refused_in_one_line(address: str, why: str, tmp_path: Path) -> None:
+    arguments = command("--out", str(tmp_path / "x.npz"), "--dask", address)
     done = subprocess.run(arguments, capture_output=True, text=True, timeout=300)
     assert done.returncode == 2 and not done.stdout and not [*tmp_path.iterdir()]
-    assert done.stderr.count("\n") == 1 and "no scheduler answers there" in done.stderr
+    assert done.stderr.count("\n") == 1 and why in done.stderr
 
 
 @pytest.mark.cluster

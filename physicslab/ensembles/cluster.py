@@ -36,8 +36,11 @@ class Dask(Executor):
             logging.CRITICAL
         )  # it tells what is refused in one line here
         try:
+            distributed.comm.resolve_address(address)  # of what is none, a client is left that cannot close
             self._client: Any = distributed.Client(address, timeout=_PATIENCE_S, set_as_default=False)
-        except (OSError, ValueError, TimeoutError) as error:
+        except ValueError as error:
+            raise SceneError(f"--dask {shown(address)}: must be as tcp://host:8786") from error
+        except OSError as error:  # and TimeoutError
             raise SceneError(f"--dask {shown(address)}: no scheduler answers there") from error
         self._max_workers = sum(self._client.ncores().values())
         if not self._max_workers:

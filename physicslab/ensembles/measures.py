@@ -103,7 +103,7 @@ class _Canonical(ast.NodeTransformer):
         name = dotted(node.func)
         if len(node.args) == 1 and name in _EXTREMES:
             name = _EXTREMES[name]
-        if name not in FUNCTIONS and not is_known(name):
+        if name and name not in FUNCTIONS and not is_known(name):
             words = ", ".join(sorted({*FUNCTIONS, *_EXTREMES}))
             raise InvalidText(f"'{name}' is no function: of a run there are {words}")
         return ast.Call(ast.Name(name), [self.visit(argument) for argument in node.args], node.keywords)
