@@ -249,6 +249,21 @@ def _advance(
 
 
 @inlined_by_numba
+def flow_at(springs: Springs, number: int) -> Springs:
+    """Return the arrays of one of several flows; ``whole`` begins with where those of each begin and end."""
+    numbers, whole = springs
+    begin, low, end, high = 2 * number, 2 * number + 1, 2 * number + 2, 2 * number + 3
+    return Springs(numbers[whole[begin] : whole[end]], whole[whole[low] : whole[high]])
+
+
+@inlined_by_numba
+def rows_in(flow: Springs) -> tuple[Rows, Rows]:
+    """Return the rows of the world that a flow moves: those on springs, and those in drag alone."""
+    whole = flow.whole
+    return whole[SIZES : SIZES + whole[0]], whole[len(whole) - whole[6] :]
+
+
+@inlined_by_numba
 def named(springs: Springs) -> tuple[Places, Links, Rows, Numbers, Numbers, Numbers, int]:
     """Return places, links, ends, what is given, drifts, kicks, and where in the numbers there are others."""
     numbers, whole = springs
