@@ -1,6 +1,5 @@
 """Springs between the middles of bodies, beside contacts: packed for a flow of their own."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -65,19 +64,6 @@ def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], movable: NDArray[np.b
         for end in held:
             free[end] = block + 1
     return np.array([[*block, *[-1] * (WIDE - len(block))] for block in blocks], np.int64).ravel()
-
-
-def _terms(rate: float, h: float) -> NDArray[np.int64]:
-    """Return how many terms of its series each kick of a step takes, damped at a rate [1/s]."""
-    found, least = [], 1 if rate == 0.0 else 2  # with one the work of dampers would be of the order of h
-    for kick in KICKS:
-        phase, terms = abs(kick) * rate * h, least
-        rest = phase ** (least + 1) / math.factorial(least + 1)
-        while rest > _SERIES and terms < MOST_TERMS:
-            terms += 1
-            rest *= phase / (terms + 1)
-        found.append(terms)
-    return np.array(found, np.int64)
 
 
 class SpringFlow:
@@ -153,10 +139,10 @@ class SpringFlow:
             ends,
             *(dampers if damped else ()),
         ]
-        whole += [_terms(group.decay, step), slowed, alone]
+        whole += [slowed, alone]
         self.changes_with_speed = bool(drag["quadratic"][alone].any())
         self.arrays: Plain[Springs] = np.concatenate(parts), np.concatenate(whole).astype(np.int64)
-        self.arrays[0][LONGEST] = step
+        self.arrays[0][LONGEST : LONGEST + 3] = step, group.decay, _SERIES
         self._places = p
         self._physics: object = None
 

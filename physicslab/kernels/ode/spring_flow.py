@@ -35,11 +35,12 @@ SIZES = 9
 springs, drifts of the method; whether there are dampers or arms, and so more numbers behind
 (:mod:`physicslab.kernels.ode.damped_flow`); arms; how many bodies are in drag alone; how many ends springs do
 not move; how many of the bodies on springs drag slows. Then :attr:`Places.moving`, the springs' ends at A and
-B, and the ``ends`` that springs do not move; dampers at these; terms of the series of each kick; bodies on
-springs that drag slows; bodies in drag alone."""
-KNOWN, WEIGHT, _GIVEN, UNIFORM, LONGEST, HEAD = 0, 1, 3, 12, 14, 16
+B, and the ``ends`` that springs do not move; dampers at these; bodies on springs that drag
+slows; bodies in drag alone."""
+KNOWN, WEIGHT, _GIVEN, UNIFORM, LONGEST, DECAY, SERIES, HEAD = 0, 1, 3, 12, 14, 15, 16, 18
 """The numbers begin with: whether the pull is known (1,), the weight of all that moves on springs (2,) [N],
-what is given (GIVEN,), gravity (2,) [m/s^2], the longest step of the method [s]. Then those of
+what is given (GIVEN,), gravity (2,) [m/s^2], the longest step of the method [s], the fastest rate of decay
+[1/s], the share of a velocity that is left out of the series of a kick. Then those of
 :class:`Places` and of :class:`Links` in order, drifts and kicks, and what dampers and drag need."""
 
 
