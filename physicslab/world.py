@@ -318,6 +318,7 @@ class World(Facade):
         if self.in_step:
             return
         self.in_step = True  # a batch that is taken meanwhile follows nothing
+        self._behind = False
         try:
             if self.entity_index.synchronise() or self.stale:
                 self._adapt()

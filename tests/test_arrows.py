@@ -212,6 +212,8 @@ def test_a_gauge_is_round_and_does_not_flicker() -> None:
     gauge.follow(np.array([6000.0]), reach=1.0, time=600.0)
     gauge.follow(np.array([4.0]), reach=1.0, time=0.1)
     assert gauge.per_metre == 5.0, "begun again after a fall of ten minutes"
+    gauge.follow(np.zeros(0), reach=1.0, time=60.0)
+    assert gauge.per_metre == 5.0, "a scene with nothing in it has no scale of its own, 1e-5 m/s a metre"
 
 
 def test_rendering_with_overlays_changes_nothing() -> None:

@@ -288,6 +288,12 @@ def test_forces_on_a_body_on_a_pin_sum_up_to_its_acceleration() -> None:
     assert tuple(total) == pytest.approx(tuple(step.inertia), rel=1e-2)
 
 
+def test_the_force_of_a_joint_that_is_part_of_a_body_is_not_called_as_the_body() -> None:
+    world = load_scene("pendulum")
+    world.step()
+    assert [one.name for one in forces_on(world, world.entity("bob"))] == ["weight", "rod"]
+
+
 def test_a_light_bar_between_a_pin_and_a_heavy_one_costs_no_digits() -> None:
     world = chain(2, end=1e9)
     world.step()

@@ -23,6 +23,7 @@ from physicslab.ecs.config import PhysicsConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
+from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
 from physicslab.integrators.spring_splitting import DRIFTS, KICKS, SPRING_SPLITTING
 from physicslab.kernels.arguments import Motion, Springs
 from physicslab.kernels.interpreter import fallback_of
@@ -33,7 +34,7 @@ from physicslab.lab.worlds import floor, place
 from physicslab.prefabs import box, circle
 from physicslab.stepping import split_forces, spring_flow
 from physicslab.stepping.soft import Soft
-from physicslab.stepping.split_forces import SplitForces
+from physicslab.stepping.split_forces import SplitForces, SplitPart
 from physicslab.world import World
 
 open_space = partial(worlds.open_space, contacts="soft", collisions="step")
@@ -75,7 +76,7 @@ def split_of(world: World) -> SplitForces:
 
 def follows(world: World) -> bool:
     """Whether springs are moved by a flow of their own."""
-    return split_of(world).springs is not None
+    return all(part.springs is not None for part in split_of(world).parts)
 
 
 # ---- the method --------------------------------------------------------------------------------------------
@@ -83,7 +84,7 @@ def follows(world: World) -> bool:
 
 def error_after_one_second(substeps: int) -> float:
     world, bob = elastic_pendulum(substeps)
-    assert split_of(world)._steps == 1 and follows(world)
+    assert split_of(world).parts[0].springs is not None and split_of(world).parts[0].steps == 1
     world.run(seconds=1.0)
     at = place(world, bob)
     return math.hypot(at.x + 0.6462298902398042, at.y + 1.284530828135613)
@@ -216,13 +217,13 @@ def test_a_spring_that_turns_or_shortens_fast_takes_shorter_steps_then_dop853(
     build: Callable[[], World], by_it: bool
 ) -> None:
     followed: list[int] = []
-    follow = SplitForces._follow
+    follow = SplitPart._follow
 
-    def counted(self: SplitForces, *arguments: Any) -> int:
+    def counted(self: SplitPart, *arguments: Any) -> int:
         followed.append(1)
         return follow(self, *arguments)
 
-    with patch.object(split_forces.SplitForces, "_follow", counted):
+    with patch.object(split_forces.SplitPart, "_follow", counted):
         found = after(build, 0.5)
     assert 0 < len(followed) < 240 if by_it else not followed
     assert np.abs(found - after(build, 0.5, adaptive=True)).max() < 1e-5
@@ -241,9 +242,10 @@ def test_a_flow_that_cannot_be_made_changes_nothing() -> None:
     with world.active():
         split.begin(world)
         before = bits(world)
-        assert split.springs is not None
+        (part,) = split.parts
+        assert part.springs is not None
         flow = fallback_of(flow_springs)
-        found = flow(Motion(*motion_of(world)), Springs(*split.springs.arrays), 1e-3, world.account.table)
+        found = flow(Motion(*motion_of(world)), Springs(*part.springs.arrays), 1e-3, world.account.table)
     assert found == TURNS_FAST and not world.account.table.any()
     assert bits(world) == before
 
@@ -293,7 +295,7 @@ def test_with_a_damper_and_an_arm_the_order_is_four(drag: float) -> None:
         world.add(bob, Spring(anchor_a=(0.1, 0.05), rest_length=1.0, stiffness=40.0, damping=2.0))
         world.add(bob, Drag(linear=drag))
         with patch.object(spring_flow, "_SERIES", 1e-15):
-            assert split_of(world)._steps == 1 and follows(world)
+            assert split_of(world).parts[0].springs is not None and split_of(world).parts[0].steps == 1
         world.run(seconds=1.0)
         return np.array((*place(world, bob), world.component(bob, Transform).angle))
 
@@ -449,3 +451,64 @@ def test_the_bench_chains_take_few_evaluations_and_none_by_dop853() -> None:
     with patch.object(split_forces, "DOP853", None):
         world.run(steps=20)
     assert world.force_evaluations - before == 20 * (8 * 5 + 4)  # and one a substep for the contacts
+
+
+# ---- groups ------------------------------------------------------------------------------------------------
+
+
+def with_fast_pair(stiffness: float, damping: float) -> World:
+    """Return a chain on a floor, and far above two discs on a spring of their own."""
+    world = chain()
+    a, b = (circle(world, (x, 50.0), radius=0.1, mass=0.01, velocity=(0.1, 0.0)) for x in (-0.51, 0.5))
+    world.spawn(Spring(a, b, rest_length=1.0, stiffness=stiffness, damping=damping))
+    return world
+
+
+@pytest.mark.parametrize(("stiffness", "damping"), [(1e4, 0.0), (1e4, 0.5), (1.0, 2e3), (1e12, 0.0)])
+def test_a_fast_spring_changes_no_bit_of_what_slow_ones_do(stiffness: float, damping: float) -> None:
+    world, alone = with_fast_pair(stiffness, damping), chain()
+    rows = slice(1, 12)
+    for one in (world, alone):
+        one.run(seconds=0.5)
+    assert len(split_of(world).parts) == 2 and len(split_of(alone).parts) == 1
+    for kind, field in ((Transform, "position"), (Velocity, "linear")):
+        assert np.array_equal(world.table(kind)[field][rows], alone.table(kind)[field][rows])
+    account, without = measure_account(world), measure_account(alone)
+    stored = 0.5 * stiffness * 0.01**2  # 1e-6 J, and what it is rounded to
+    assert account.energy["numerical"] == pytest.approx(
+        without.energy["numerical"], abs=1e-6 + 1e-12 * stored
+    )
+    assert abs(account.momentum["numerical"]) < 1e-12
+
+
+@pytest.mark.parametrize("damping", [0.0, 2e3])
+def test_springs_too_fast_for_steps_leave_the_others_in_the_loop(damping: float) -> None:
+    world = with_fast_pair(1e12 if damping == 0.0 else 1.0, damping)
+    loop, other = split_of(world).parts
+    assert loop.springs is not None and other.springs is None
+    assert other.method is IMPLICIT_MIDPOINT is world.plan.beyond
+    assert "implicit_midpoint for the rest" in world.plan.reason
+    again = read_scene(write_scene(world))
+    for one in (world, again):
+        one.run(seconds=0.2)
+    assert bits(world) == bits(again)
+
+
+def test_a_fast_pair_is_where_it_is_by_itself() -> None:
+    """Two discs on a spring of 1e4 N/m swing by cos(w t), whatever the steps of others."""
+    world = with_fast_pair(1e4, 0.0)
+    world.physics = replace(world.physics, gravity=Vector2(0.0, 0.0))
+    world.run(seconds=0.2)
+    *_, left, right = world.batch(Velocity).entities.tolist()
+    apart = place(world, right).x - place(world, left).x
+    assert apart == pytest.approx(1.0 + 0.01 * math.cos(math.sqrt(2e6) * 0.2), abs=1e-6)
+
+
+def test_what_drag_brakes_from_any_speed_slows_by_the_formula() -> None:
+    """By v = v0 / (1 + c v0 t), from 1e9 m/s on: steps grow as it slows."""
+    world = far_floor(open_space(gravity=None))
+    ball = circle(world, (0.0, 0.0), radius=0.1, mass=1.0, velocity=(1e9, 0.0))
+    world.add(ball, Drag(quadratic=1.0))
+    world.run(seconds=1.0)
+    assert world.component(ball, Velocity).linear.x == pytest.approx(1e9 / (1.0 + 1e9), rel=1e-6)
+    assert place(world, ball).x == pytest.approx(math.log1p(1e9), rel=1e-6)

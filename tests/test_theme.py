@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pygame
 import pytest
-from desk import empty_world
+from desk import empty_world, sized
+from imgui_bundle import imgui
 
 import physicslab
 from physicslab.components.colour import rgb_of
@@ -105,6 +106,26 @@ def test_bodies_and_arrows_stand_out_from_the_background(theme: Theme) -> None:
 
 def test_no_two_arrows_are_distinguished_by_colour_alone() -> None:
     assert len({kind.head for kind in ARROWS}) == len(ARROWS)
+
+
+@pytest.mark.parametrize("theme", THEMES, ids=lambda theme: theme.name)
+def test_ticks_and_carets_are_seen_on_what_they_stand_on(theme: Theme) -> None:
+    """Dear ImGui has its own dark colours where none are given: a ticked box was black on the light theme."""
+    desk = sized((640, 480))
+    desk.window.theme = theme
+    desk.frames(2)
+    desk.sandbox.interface.toolkit.enter()
+    kinds = imgui.Col_
+    for kind, under in (
+        (kinds.check_mark, kinds.checkbox_selected_bg),
+        (kinds.input_text_cursor, kinds.frame_bg),
+    ):
+        of, on = (
+            (round(255 * one.x), round(255 * one.y), round(255 * one.z))
+            for one in (imgui.get_style().color_(kind), imgui.get_style().color_(under))
+        )
+        assert contrast(of, on) >= 3.0
+    assert imgui.get_style().color_(kinds.checkbox_selected_bg) == imgui.get_style().color_(kinds.frame_bg)
 
 
 def test_another_theme_is_one_record_away() -> None:

@@ -105,7 +105,10 @@ def test_what_is_read_while_a_world_is_built_is_followed_once() -> None:
     for n in range(20):
         last = world.spawn(Transform((n, 0.0)), Velocity(), Mass(2.0))
         assert world.component(first, Mass).mass == 1.0
+        assert world.component(last, Transform).position.x == n
     assert world.revision == followed
+    world.component(last, Transform).position = (0.0, 7.0)
+    assert world.table(Transform)["position"][-1, 1] == 7.0
     world.add(first, Shape.circle(2.0))
     assert world.component(first, Mass).inertia == 2.0
     assert world.component(last, Mass).mass == 2.0

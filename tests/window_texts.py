@@ -24,6 +24,7 @@ from physicslab.integrators import INTEGRATORS, SPLIT_METHODS
 from physicslab.languages.catalogue import sources
 from physicslab.languages.language import Language
 from physicslab.scenes import SCENES
+from physicslab.state.joint_rows import KINDS as JOINTS
 from physicslab.theme import THEMES
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.tools import TOOLS
@@ -92,7 +93,8 @@ def tables() -> dict[str, list[str]]:
         "player": player_texts(), "quantities": [*QUANTITIES, *KIND_OF_UNIT.values()],
         "levels": [*LEVELS, *LEVELS.values()],
         "methods": [one.title for one in (*INTEGRATORS.values(), *SPLIT_METHODS.values())],
-        "accounts": list(ACCOUNT_WORDS.values()), "forces": list(free_body._NAMES.values()),
+        "accounts": list(ACCOUNT_WORDS.values()),
+        "forces": [*free_body._NAMES.values(), *(kind.__name__.lower() for kind in JOINTS)],
         "reasons": list(SENTENCES.values()),
         "themes": [theme.name for theme in THEMES],
         "fields": [text for one in fields() for text in (_label(one), one.meaning)],

@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from physicslab.commands import FAILED, CommandError, require_window
-from physicslab.commands.arguments import POSES
 from physicslab.commands.measured_run import MeasuredRun
 from physicslab.commands.opening import check_output, check_seconds, name_of, opened
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
+from physicslab.commands.usage import POSES
 from physicslab.commands.variations import Variation, combinations, variations
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.text import printable, shortened

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from physicslab.commands import CommandError
-from physicslab.commands.arguments import STEP_LIMIT
 from physicslab.commands.output import Output
+from physicslab.commands.usage import STEP_LIMIT
 from physicslab.ecs.text import printable
 from physicslab.files.assignments import assign
 from physicslab.files.scene import load_scene

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from physicslab.commands import FAILED, CommandError, require, require_window
-from physicslab.commands.arguments import SAMPLE_FORM
 from physicslab.commands.opening import check_seconds, name_of, opened
 from physicslab.commands.output import Output
 from physicslab.commands.progress import Progress
+from physicslab.commands.usage import SAMPLE_FORM
 from physicslab.commands.variations import refuse_set, vary
 from physicslab.ecs.text import printable, shortened
 from physicslab.ensembles.cluster import Dask

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from physicslab.commands import CommandError
-from physicslab.commands.arguments import MOST_SLIDERS, MOST_VALUES, VARY_FORM
+from physicslab.commands.usage import MOST_SLIDERS, MOST_VALUES, VARY_FORM
 from physicslab.ecs.fields import InvalidValue
 from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.ecs.vector import Vector2

@@ -88,8 +88,8 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
     row = now.entity_index.row_of[entity]
     for number, pull in joint_figures.forces_on(now, row).items():
         joint = now.joints.joints[number]
-        name, at = world.label(joint.entity), _end(now, joint, row)
-        found.append(NamedForce(name, Vector2(*pull.tolist()), at, "field"))
+        at = _end(now, joint, row)
+        found.append(NamedForce(_joint_name(world, joint), Vector2(*pull.tolist()), at, "field"))
     for contact in contacts_of(now, entity):
         on_b = contact.b == entity
         other = world.label(contact.a if on_b else contact.b) if contact.a and contact.b else "the wall"
@@ -102,6 +102,12 @@ def forces_on(world: World, entity: int) -> tuple[NamedForce, ...]:
         found.append(NamedForce(f"friction, from {other}", sign * total_t * tangent, place, "friction"))
     largest = max((one.force.magnitude for one in found), default=0.0)
     return tuple(one for one in found if one.force.magnitude > _LEAST_SHARE * largest)
+
+
+def _joint_name(world: World, joint: Joint) -> str:
+    """Return the name of a joint in words; of one that is a component of a body, its kind: ``"rod"``."""
+    is_body = world.has(joint.entity, Transform)
+    return joint.kind.__name__.lower() if is_body else world.label(joint.entity)
 
 
 @dataclass(frozen=True, slots=True)

@@ -134,7 +134,9 @@ def step_warnings(world: World) -> Iterator[ModelWarning]:
     """
     followed = _fixed_steps(world)
     if followed is not None:
-        yield from _rates(world, *followed)
+        beyond = world.plan.beyond
+        whole = 0.5 * world.simulation.dt / world.plan.substeps
+        yield from _rates(world, *(followed if beyond is None else (beyond, whole)))
         yield from _phase(world, followed[0])
     yield from _order(world)
     yield from _cost(world)

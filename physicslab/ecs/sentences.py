@@ -87,6 +87,7 @@ SENTENCES = {
     "and_in_python": "{obstacle}, and the force of {system} has no compiled kernel",
     "velocity_in_python": "the force of {system} has no compiled kernel, and forces depend on velocities",
     "resolved_springs": "steps of omega h = {phase}, and {method} where springs turn fast",
+    "beyond": "{method} for the rest: {why}",
     "both": "{one}; {other}",
     "magnetic": "the magnetic field turns velocities exactly; steps of omega h = {phase}",
     "many_molecules": "many molecules; {steps} steps of omega h = {phase}",

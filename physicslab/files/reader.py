@@ -27,8 +27,8 @@ from physicslab.kernels.solver.impulse import MAX_SUBSTEP_FACTOR
 from physicslab.state.contents import LEVELS, SCENE_TEXTS, SHOWN, Desk, View
 from physicslab.state.joint_rows import KINDS
 from physicslab.state.remainders import Remainders
+from physicslab.stepping.forces import MAX_STEPS
 from physicslab.stepping.island import KeptIsland
-from physicslab.stepping.method import MAX_STEPS
 from physicslab.systems.standard import standard_systems
 from physicslab.world import World
 

@@ -41,15 +41,25 @@ class Entities:
         Whether a step is being made, or changes of structure are being followed: neither is begun meanwhile.
     """
 
-    __slots__ = ("__weakref__", "_names", "context", "entity_index", "in_step")
+    __slots__ = ("__weakref__", "_behind", "_index", "_names", "context", "in_step")
 
     def __init__(self) -> None:
-        self.entity_index, self.in_step = EntityIndex(), False
+        self._index, self.in_step = EntityIndex(), False
+        self._behind = False  # whether rows and tables lack what was read, and follow at the next look
         # Every id that was ever given here: only one of these can be in use, so a new one costs no search.
         self._names: set[str] = set()
         self.context = f"physicslab-{next(_numbers)}"
         self.activate()
         weakref.finalize(self, _forget, self.context)
+
+    @property
+    def entity_index(self) -> EntityIndex:
+        """Rows and tables of the entities, with those whose components were read since the last step."""
+        if self._behind and not self.in_step:
+            self._behind = False
+            with self.active():
+                self._follow()
+        return self._index
 
     # ---- contexts ------------------------------------------------------------------------------------------
 
@@ -146,11 +156,15 @@ class Entities:
         """
         with self.active():
             entity = self._found(entity)
-            if not self.entity_index.has_followed(entity):  # reading while n springs are made would take n^2
-                self._follow()
             found: C | None = esper.try_component(entity, _checked(component))
             if found is None:
                 raise KeyError(f"{self.label(entity)} has no {component.__name__}")
+            if not self._index.has_followed(entity):
+                # A component holds what it was given, and only derived values are the world's: following at
+                # once would take n^2 where n bodies are read as they are made.
+                self._behind = not (isinstance(found, Component) and any(s.derived for s in found.FIELDS))
+                if not self._behind:
+                    self._follow()
             return found
 
     def has(self, entity: int | str, component: type[Any]) -> bool:

@@ -1,6 +1,5 @@
 """Which method follows the forces of a world, in how many steps, and to which tolerance."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -15,13 +14,15 @@ from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
 from physicslab.integrators.leapfrog import LEAPFROG, LEAPFROG_WITH_SPLIT_FORCES
 from physicslab.integrators.rk4 import RK4
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
+from physicslab.languages.sentence import Sentence
 from physicslab.ode.closed_form import NoClosedForm, closed_form
 from physicslab.state.packed import spring_rates
 from physicslab.state.state import State
-from physicslab.stepping.forces import fastest_rate
+from physicslab.stepping.forces import MAX_STEPS, fastest_rate, steps_needed
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.split_forces import depends_on_velocity_in_python, sub_integrated_rows
-from physicslab.stepping.spring_flow import fastest_of_springs, why_no_spring_flow
+from physicslab.stepping.spring_flow import why_no_spring_flow
+from physicslab.stepping.spring_groups import spring_groups
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.schedule import Schedule
 from physicslab.systems.spring import SpringSystem
@@ -29,21 +30,12 @@ from physicslab.systems.system import ForceSystem
 
 _SAMPLED_LIMIT = 200
 """Number of attracting bodies from which sampling their forces takes longer than the accuracy is worth."""
-_WELL_RESOLVED = 0.5
-"""omega h of the steps of blanes_moan: above about 1 it does not reach its order."""
-_RESOLVED_BESIDE_CONTACTS = 0.26
-"""omega h of the steps of spring_splitting. Its phase is then right to 4e-10, and what it adds to the error
-of contacts within four substeps is 1e-5 of that (docs/decisions/springs-beside-contacts.md)."""
-_DAMPED_BESIDE_CONTACTS = 1.0
-"""The same for rates of decay, whose exponential function a kick has."""
 _CROWD, _RESOLVED_IN_CROWDS = 32, 0.2
 """Number of molecules from which on ``auto`` keeps their energy by leapfrog, and omega h of its steps: the
 energy of 1,000 that collide at once swings by 1e-4 of what is exchanged."""
 _MANY, _FEW_STEPS = 100, 2
 """Number of bodies from which on ``rk4`` follows forces by velocities beside contacts, if in so few steps:
 300 that float exchange 4e5 J with an error of 0.2 J, in a third of the time of ``dop853``."""
-MAX_STEPS = 1000
-"""Largest number of steps of a method that ``auto`` makes of a step of the world."""
 _STIFF = 1.0
 """omega dt of springs from which damped motion at the default tolerance costs more than anything can show."""
 _OF_STIFF = 1e-13
@@ -87,7 +79,7 @@ def best_method(state: State, schedule: Schedule) -> StepPlan:
     attractors = max((force.attractors for force in forces), default=0)
     planets = attractors > 1
     rate = fastest_rate(state, [force for force in forces if not force.attractors > 1])
-    needed, crowd = _steps(rate, h), max((force.crowd for force in forces), default=0)
+    needed, crowd = steps_needed(rate, h), max((force.crowd for force in forces), default=0)
     if needed > MAX_STEPS and not crowd:  # no rule that steps over it makes molecules bounce
         return StepPlan(IMPLICIT_MIDPOINT, _too_fast(rate), substeps, smooth=True)
     if planets and attractors >= _SAMPLED_LIMIT and state.physics.softening > 0.0:
@@ -95,7 +87,7 @@ def best_method(state: State, schedule: Schedule) -> StepPlan:
     if planets:
         return StepPlan(DOP853, sentence("step_follows", why=_why_singular(state, forces)), 1, smooth=True)
     if crowd >= _CROWD and not _depends_on_velocity(state, forces):
-        needed = _steps(rate, h, _RESOLVED_IN_CROWDS)
+        needed = steps_needed(rate, h, _RESOLVED_IN_CROWDS)
         how = sentence("molecules", count=crowd, steps=needed, phase=f"{rate * h / needed:.2g}")
         return StepPlan(LEAPFROG, how, needed, smooth=True)
     if _depends_on_velocity(state, forces):
@@ -121,7 +113,8 @@ def method_beside_contacts(state: State, schedule: Schedule, obstacle: str) -> S
     kicks = StepPlan(LEAPFROG, obstacle, substeps, smooth=False, obstacle=obstacle)
     forces = schedule.forces
     moved = schedule.find(IntegrateSystem) is not None
-    followed_rows = np.count_nonzero(sub_integrated_rows(state, forces))
+    rows = sub_integrated_rows(state, forces)
+    followed_rows = np.count_nonzero(rows)
     if not moved or not followed_rows:
         return kicks
     python = schedule.interpreted
@@ -133,21 +126,26 @@ def method_beside_contacts(state: State, schedule: Schedule, obstacle: str) -> S
     if attractors >= _SAMPLED_LIMIT and not turned:
         return kicks
     rate, half = fastest_rate(state, forces), 0.5 * state.simulation.dt / substeps
-    needed = _steps(rate, half)
-    if needed * 2 * substeps > MAX_STEPS:
-        method, needed, how = IMPLICIT_MIDPOINT, 1, _too_fast(rate)
+    needed = steps_needed(rate, half)
+    groups = spring_groups(state, forces, rows) if why_no_spring_flow(state, forces) is None else []
+    beyond = IMPLICIT_MIDPOINT if groups and not groups[-1].steps else None
+    if groups and groups[0].steps:
+        method, needed = SPRING_SPLITTING, max(group.steps for group in groups)
+        phase = max(group.rate * half / group.steps for group in groups if group.steps)
+        how = sentence("resolved_springs", phase=f"{phase:.2g}", method=DOP853.name)
+        if beyond is not None:
+            how = sentence("both", one=how, other=sentence("beyond", method=beyond.name, why=_too_fast(rate)))
+    elif groups or needed * 2 * substeps > MAX_STEPS:
+        method, needed, beyond, how = IMPLICIT_MIDPOINT, 1, None, _too_fast(rate)
     elif followed:
         method, how = RK4, sentence("velocity_in_python", system=python[0])
-    elif why_no_spring_flow(state, forces) is None:
-        method, needed = SPRING_SPLITTING, _steps_of_springs(state, forces, half)
-        how = sentence("resolved_springs", phase=f"{rate * half / needed:.2g}", method=DOP853.name)
     elif turned and not _depends_on_velocity(
         state, [force for force in forces if force.gyration(state) is None]
     ):
         method = BLANES_MOAN if attractors < _SAMPLED_LIMIT else LEAPFROG
         how = sentence("magnetic", phase=f"{rate * half / needed:.2g}")
     elif max(force.crowd for force in forces) >= _CROWD and not _depends_on_velocity(state, forces):
-        method, needed = LEAPFROG, _steps(rate, half, _RESOLVED_IN_CROWDS)
+        method, needed = LEAPFROG, steps_needed(rate, half, _RESOLVED_IN_CROWDS)
         how = sentence("many_molecules", steps=needed, phase=f"{rate * half / needed:.2g}")
     elif attractors > 1 or _depends_on_velocity(state, forces) or _why_singular(state, forces):
         method, how = DOP853, sentence("follows_motion")
@@ -162,14 +160,13 @@ def method_beside_contacts(state: State, schedule: Schedule, obstacle: str) -> S
     moved_by = sentence("charges_alone") if turned and not python else moved_by
     reason = sentence("beside_contacts", obstacle=obstacle, bodies=moved_by, method=method.name, how=how)
     return replace(
-        kicks, reason=reason, stages=LEAPFROG_WITH_SPLIT_FORCES, split_forces=method, split_steps=needed
+        kicks,
+        reason=reason,
+        stages=LEAPFROG_WITH_SPLIT_FORCES,
+        split_forces=method,
+        split_steps=needed,
+        beyond=beyond,
     )
-
-
-def _steps_of_springs(state: State, forces: Sequence[ForceSystem], h: float) -> int:
-    """Return the number of steps of a time h that spring_splitting needs; drag alone has its own."""
-    swings, decays = fastest_of_springs(state, forces)
-    return max(_steps(swings, h, _RESOLVED_BESIDE_CONTACTS), _steps(decays, h, _DAMPED_BESIDE_CONTACTS))
 
 
 def tolerance_for(state: State, forces: Sequence[ForceSystem]) -> float:
@@ -199,12 +196,6 @@ def _is_overdamped(state: State) -> bool:
     return bool(stiff.any() and (decay[stiff] >= 2.0 * _OVERDAMPED * rate[stiff]).all())
 
 
-def _steps(rate: float, h: float, resolved: float = _WELL_RESOLVED) -> int:
-    """Return the number of steps of a time h that a rate needs, up to a limit."""
-    phase = rate * h / resolved
-    return max(1, math.ceil(phase)) if phase <= MAX_STEPS else MAX_STEPS + 1
-
-
 def _why_singular(state: State, forces: Sequence[ForceSystem]) -> str | None:
     return next((why for force in forces if (why := force.why_singular(state)) is not None), None)
 
@@ -218,5 +209,5 @@ def _depends_on_velocity(state: State, forces: Sequence[ForceSystem]) -> bool:
     )
 
 
-def _too_fast(rate: float) -> str:
+def _too_fast(rate: float) -> Sentence:
     return sentence("too_fast", rate=f"{rate:.3g}")

@@ -163,7 +163,7 @@ def join(labels: Rows, pairs: Iterable[Iterable[int]]) -> Rows:
 
     def find(label: int) -> int:
         while parent[label] != label:
-            label = parent[label]
+            parent[label] = label = parent[parent[label]]
         return label
 
     for one, other in pairs:

@@ -46,7 +46,9 @@ class StepPlan:
     split_forces : Integrator, optional
         Method that moves bodies on springs and in drag between contacts; ``None`` where kicks do.
     split_steps : int
-        Its steps each half substep.
+        Its steps each half substep, at most.
+    beyond : Integrator, optional
+        Method that moves those of these bodies whose springs are too fast for it.
     """
 
     integrator: Integrator
@@ -62,6 +64,7 @@ class StepPlan:
     stages: Integrator = LEAPFROG
     split_forces: Integrator | None = None
     split_steps: int = 1
+    beyond: Integrator | None = None
 
     @property
     def kept(self) -> tuple[str, str, int]:

@@ -115,7 +115,8 @@ def resumed_plan(state: State, schedule: Schedule, kept: tuple[str, str, int]) -
         return plan
     reason = sentence("chosen_before", method=method)
     if plan.split_forces is not None and method in _FOLLOWING:
-        return replace(plan, split_forces=SPLIT_METHODS[method], split_steps=steps, reason=reason)
+        chosen, beyond = SPLIT_METHODS[method], plan.beyond if method == SPRING_SPLITTING.name else None
+        return replace(plan, split_forces=chosen, split_steps=steps, beyond=beyond, reason=reason)
     if plan.smooth and method in INTEGRATORS and (method in _FOLLOWING or method == LEAPFROG.name):
         return replace(plan, integrator=INTEGRATORS[method], substeps=steps, reason=reason)
     return plan

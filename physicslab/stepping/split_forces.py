@@ -8,14 +8,17 @@ from numpy.typing import NDArray
 from physicslab.components import Transform, Velocity
 from physicslab.integrators import Integrator, StepTooSmall
 from physicslab.integrators.dop853 import DOP853
+from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
-from physicslab.kernels import motion
+from physicslab.kernels import Plain, motion
+from physicslab.kernels.arguments import Springs
 from physicslab.kernels.solver import work
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 from physicslab.stepping.fastest_body import changes_fast
-from physicslab.stepping.spring_flow import SpringFlow, why_no_spring_flow
-from physicslab.systems.system import ForceSystem, Stage
+from physicslab.stepping.spring_flow import SpringFlow, put_together, why_no_spring_flow
+from physicslab.stepping.spring_groups import SpringGroup, spring_groups
+from physicslab.systems.system import ForceSystem
 
 _MAX_PREDICTABLE = 1.0
 """omega h up to which a force hardly changes within a substep, so that contacts get its prediction."""
@@ -54,6 +57,77 @@ def sub_integrated_rows(state: State, forces: Sequence[ForceSystem]) -> NDArray[
     return rows & state.table(Transform).present
 
 
+class SplitPart:
+    """Bodies that one method moves together between contacts.
+
+    Parameters
+    ----------
+    state, forces, method, steps
+        As of :class:`SplitForces`.
+    rows : bool array (rows,)
+        The bodies, and what holds them.
+    group : SpringGroup, optional
+        How fast springs are, where they are moved within the loop of substeps as long as none turns too fast.
+
+    Attributes
+    ----------
+    springs : SpringFlow, optional
+        Their flow within the loop.
+    """
+
+    def __init__(
+        self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int,
+        rows: NDArray[np.bool_], group: SpringGroup | None = None,
+    ) -> None:  # fmt: skip
+        self.method, self.steps = method, steps
+        self.ode = OdeSystem(state, forces, rows, kicked=method.kicks)
+        # Contacts are accurate to far fewer digits than free motion: more would only take time.
+        rounded = 1e3 * max((force.rounding for force in forces), default=0.0)
+        self.ode.tolerance = max(state.simulation.tolerance, _TOLERANCE, rounded)
+        self.springs = None if group is None else SpringFlow(state, forces, self.ode.layout, group)
+        if self.springs is None:
+            state.compile((*method.kernels, motion.predict, work.note_flow))
+
+    def begin(self, state: State) -> None:
+        """Take the present forces and masses; they are kept for a step."""
+        if self.springs is not None:
+            self.springs.begin(state)
+        else:
+            self.ode.gather(state)
+
+    def drift(self, state: State, h: float) -> None:
+        """Move the bodies for ``h`` seconds, and book it as their own."""
+        self._note_flow(state, 1.0, h)
+        state.force_evaluations += self._follow(state, h)
+        self._note_flow(state, -1.0, 0.0)
+
+    def _note_flow(self, state: State, sign: float, h: float) -> None:
+        """Take the flow from the velocities that contacts noted, so that each is booked as its own."""
+        bodies, velocity, contacts = state.bodies, state.table(Velocity), state.contacts
+        if len(contacts.angular_before) == len(bodies.unkicked):
+            work.note_flow(
+                contacts.linear_before, contacts.angular_before, velocity["linear"], velocity["angular"],
+                bodies.force, bodies.torque, bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
+                self.ode.layout.moving, bodies.unkicked, state.uniform_forces, sign, h,
+            )  # fmt: skip
+
+    def _follow(self, state: State, h: float) -> int:
+        """Advance by the method, or where springs turn too fast for its steps, by one that chooses them."""
+        ode, method, steps = self.ode, self.method, self.steps
+        if self.springs is None:
+            ode.gather_state(state)
+        else:
+            method, steps = DOP853, 1
+            state.compile(method.kernels)
+            ode.gather(state)
+        try:
+            made = method.flow(state, ode, h / steps, steps)
+        except StepTooSmall as error:
+            raise changes_fast(state, ode.forces, error) from error
+        ode.scatter(state, h)
+        return made
+
+
 class SplitForces:
     """Moves the bodies that springs and drag act on, under all forces, by a method that follows these.
 
@@ -72,41 +146,45 @@ class SplitForces:
     forces : sequence of ForceSystem
         The forces that act.
     method : Integrator
-        The method that moves them.
+        The method that moves them; springs that are too fast for ``spring_splitting`` have another.
     steps : int
-        Into how many steps of the method half a substep is divided.
+        Into how many steps of the method half a substep is divided, where that does not go by groups.
 
     Attributes
     ----------
-    springs : SpringFlow, optional
-        Springs that the loop of substeps moves by itself, as long as none turns too fast.
+    parts : list of SplitPart
+        Those that are moved together.
+    flows : Plain[Springs]
+        Springs that the loop of substeps moves by itself; empty where it moves none.
     """
 
     def __init__(self, state: State, forces: Sequence[ForceSystem], method: Integrator, steps: int) -> None:
-        self._method, self._steps = method, steps
         rows = sub_integrated_rows(state, forces)
-        self._ode = OdeSystem(state, forces, rows, kicked=method.kicks)
-        # Contacts are accurate to far fewer digits than free motion: more would only take time.
-        rounded = 1e3 * max((force.rounding for force in forces), default=0.0)
-        self._ode.tolerance = max(state.simulation.tolerance, _TOLERANCE, rounded)
         state.bodies.sub_integrated[:] = rows & state.table(Velocity).present
-        self._find_predictable(state)
-        self.springs: SpringFlow | None = None
         if method is SPRING_SPLITTING and why_no_spring_flow(state, forces) is None:
-            self.springs = SpringFlow(state, forces, self._ode.layout, steps)
+            self.parts = [
+                SplitPart(state, forces, method, group.steps, group.rows, group)
+                if group.steps
+                else SplitPart(state, forces, IMPLICIT_MIDPOINT, 1, group.rows)
+                for group in spring_groups(state, forces, rows)
+            ]
         else:
-            state.compile((*method.kernels, motion.predict, work.note_flow))
+            self.parts = [SplitPart(state, forces, method, steps, rows)]
+        flows = [part.springs for part in self.parts if part.springs is not None]
+        self.flows: Plain[Springs] = put_together(flows)
+        self._judges = len(flows) < len(self.parts) or any(flow.changes_with_speed for flow in flows)
+        self._find_predictable(state)
 
     def outdated(self, state: State) -> bool:
         """Whether a number was changed that the layout, or the choice of a method, depends on."""
-        return self._ode.outdated(state)
+        return self.parts[0].ode.outdated(state)
 
     def _find_predictable(self, state: State) -> None:
         """Find what is pulled gently at its present speed: a file must not need to remember that."""
         h = state.simulation.dt / state.simulation.substeps
         bodies = state.bodies
         predictable = bodies.sub_integrated & (bodies.inverse_mass > 0.0)
-        for force in self._ode.forces:
+        for force in self.parts[0].ode.forces:
             rates = force.rates(state)
             if rates is not None:
                 predictable &= rates * h <= _MAX_PREDICTABLE
@@ -114,50 +192,16 @@ class SplitForces:
 
     def begin(self, state: State) -> None:
         """Take the present forces and masses; they are kept for a step."""
-        if self.springs is not None:
-            self.springs.begin(state)
-            if self.springs.changes_with_speed:
-                self._find_predictable(state)
-            return
-        self._ode.gather(state)
-        self._find_predictable(state)
+        for part in self.parts:
+            part.begin(state)
+        if self._judges:
+            self._find_predictable(state)
 
-    def take_part(self, stage: Stage, state: State, h: float) -> None:
-        """Do the work of a stage of a substep, if there is any."""
-        if stage is Stage.DRIFT:
-            self._note_flow(state, 1.0, h)
-            state.force_evaluations += self._follow(state, h)
-            self._note_flow(state, -1.0, 0.0)
-        elif stage is Stage.PREDICT:
-            bodies, velocity = state.bodies, state.table(Velocity)
-            motion.predict(
-                velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
-                bodies.awake_inverse_mass, bodies.awake_inverse_inertia, bodies.sub_integrated,
-                bodies.unkicked, h,
-            )  # fmt: skip
-
-    def _note_flow(self, state: State, sign: float, h: float) -> None:
-        """Take the flow from the velocities that contacts noted, so that each is booked as its own."""
-        bodies, velocity, contacts = state.bodies, state.table(Velocity), state.contacts
-        if len(contacts.angular_before) == len(bodies.unkicked):
-            work.note_flow(
-                contacts.linear_before, contacts.angular_before, velocity["linear"], velocity["angular"],
-                bodies.force, bodies.torque, bodies.awake_inverse_mass, bodies.awake_inverse_inertia,
-                bodies.sub_integrated, bodies.unkicked, state.uniform_forces, sign, h,
-            )  # fmt: skip
-
-    def _follow(self, state: State, h: float) -> int:
-        """Advance by the method, or where springs turn too fast for its steps, by one that chooses them."""
-        ode, method, steps = self._ode, self._method, self._steps
-        if self.springs is None:
-            ode.gather_state(state)
-        else:
-            method, steps = DOP853, 1
-            state.compile(method.kernels)
-            ode.gather(state)
-        try:
-            made = method.flow(state, ode, h / steps, steps)
-        except StepTooSmall as error:
-            raise changes_fast(state, self._ode.forces, error) from error
-        ode.scatter(state, h)
-        return made
+    def predict(self, state: State, h: float) -> None:
+        """Change the velocities of predictable bodies by what forces make of them in ``h`` seconds."""
+        bodies, velocity = state.bodies, state.table(Velocity)
+        motion.predict(
+            velocity["linear"], velocity["angular"], bodies.force, bodies.torque,
+            bodies.awake_inverse_mass, bodies.awake_inverse_inertia, bodies.sub_integrated,
+            bodies.unkicked, h,
+        )  # fmt: skip

@@ -1,6 +1,5 @@
 """Springs between the middles of bodies, beside contacts: packed for a flow of their own."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,6 +15,7 @@ from physicslab.kernels.ode.spring_flow import HEAD, KNOWN, LONGEST, MOST_TERMS,
 from physicslab.kernels.wide_layout import WIDE
 from physicslab.state.packed import StateLayout, spring_ends, turned_anchors
 from physicslab.state.state import State
+from physicslab.stepping.spring_groups import SpringGroup, drag_per_mass
 from physicslab.systems.drag import DragSystem
 from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.spring import SpringSystem
@@ -42,23 +42,6 @@ def why_no_spring_flow(state: State, forces: Sequence[ForceSystem]) -> str | Non
     return None
 
 
-def _drag_per_mass(state: State, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return how fast linear drag and damping slow rows (n,) [1/s]; 0 for what nothing moves."""
-    inverse = state.bodies.inverse_mass[rows]
-    damped = np.where(inverse > 0.0, state.physics.linear_damping, 0.0)
-    return state.table(Drag)["linear"][rows] * inverse + damped
-
-
-def fastest_of_springs(state: State, forces: Sequence[ForceSystem]) -> tuple[float, float]:
-    """Return the fastest rates [1/s] at which springs swing, and at which what they hold is slowed."""
-    bounds = [force.bounds(state) for force in forces if isinstance(force, SpringSystem)]
-    swings, decays = (max((float(one[i].max(initial=0.0)) for one in bounds), default=0.0) for i in (0, 1))
-    _, a, b = spring_ends(state)
-    held = np.concatenate((a, b))
-    held = held[state.table(Velocity).present[held]]
-    return swings, decays + float(_drag_per_mass(state, held).max(initial=0.0))
-
-
 def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], movable: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Return the springs in blocks of eight (8 n,), -1 where there is none.
 
@@ -83,19 +66,6 @@ def _in_blocks(a: NDArray[np.int64], b: NDArray[np.int64], movable: NDArray[np.b
     return np.array([[*block, *[-1] * (WIDE - len(block))] for block in blocks], np.int64).ravel()
 
 
-def _terms(rate: float, h: float) -> NDArray[np.int64]:
-    """Return how many terms of its series each kick of a step takes, damped at a rate [1/s]."""
-    found, least = [], 1 if rate == 0.0 else 2  # with one the work of dampers would be of the order of h
-    for kick in KICKS:
-        phase, terms = abs(kick) * rate * h, least
-        rest = phase ** (least + 1) / math.factorial(least + 1)
-        while rest > _SERIES and terms < MOST_TERMS:
-            terms += 1
-            rest *= phase / (terms + 1)
-        found.append(terms)
-    return np.array(found, np.int64)
-
-
 class SpringFlow:
     """The springs and bodies of a world as :func:`flow_forces` takes them (kernels/ode/damped_flow.py).
 
@@ -107,8 +77,8 @@ class SpringFlow:
         The forces that act.
     layout : StateLayout
         Layout of the bodies that are moved.
-    steps : int
-        Into how many steps of the method half a substep is divided.
+    group : SpringGroup
+        How fast they are, and into how many steps of the method half a substep is divided.
 
     Attributes
     ----------
@@ -118,8 +88,12 @@ class SpringFlow:
         Whether drag slows a body faster if it is faster.
     """
 
-    def __init__(self, state: State, forces: Sequence[ForceSystem], layout: StateLayout, steps: int) -> None:
-        self._forces, (rows, a, b), bodies = tuple(forces), spring_ends(state), state.bodies
+    def __init__(
+        self, state: State, forces: Sequence[ForceSystem], layout: StateLayout, group: SpringGroup
+    ) -> None:
+        self._forces, bodies = tuple(forces), state.bodies
+        springs = np.stack(spring_ends(state))
+        rows, a, b = springs[:, (layout.place[springs[1:]] >= 0).all(axis=0)]
         held = np.isin(layout.moving, np.concatenate((a, b)))
         moving, alone = layout.moving[held], layout.moving[~held]
         self._moving, inverse, drag = moving, bodies.inverse_mass[moving], state.table(Drag)
@@ -145,19 +119,18 @@ class SpringFlow:
             DRIFTS,
             KICKS,
         ]
-        slowed = np.flatnonzero(_drag_per_mass(state, moving) > 0.0)
+        slowed = np.flatnonzero(drag_per_mass(state, moving) > 0.0)
         full = turns or damped or bool(len(slowed))
         if full:
             parts += [turned, np.zeros(len(moving) + 4 * p), np.ones(p), np.zeros(5 * p), spring["damping"]]
             parts += [np.zeros((3 + MOST_TERMS) * len(order)), *_arms(state, rows, order, slots, len(moving))]
             parts += [np.zeros(4 * len(order))]
-        slowing = _drag_per_mass(state, moving)[slowed] / inverse[slowed]
+        slowing = drag_per_mass(state, moving)[slowed] / inverse[slowed]
         parts += [slowing, np.zeros(2 * MOST_TERMS * len(slowed))]
         by_mass = bodies.inverse_mass[alone]
-        parts += [_drag_per_mass(state, alone), drag["quadratic"][alone] * by_mass, _reciprocal(by_mass)]
+        parts += [drag_per_mass(state, alone), drag["quadratic"][alone] * by_mass, _reciprocal(by_mass)]
         sizes = len(moving), p, len(order), len(DRIFTS), full, turns
-        _, decays = fastest_of_springs(state, forces)
-        half = 0.5 * state.simulation.dt / state.simulation.substeps
+        step = 0.5 * state.simulation.dt / state.simulation.substeps / group.steps
         dampers = [2 * np.flatnonzero(used & np.isin(end, ends)) + at_b for at_b, end in enumerate(slots)]
         whole = [
             np.array((*sizes, len(alone), len(ends), len(slowed))),
@@ -166,13 +139,11 @@ class SpringFlow:
             ends,
             *(dampers if damped else ()),
         ]
-        whole += [_terms(decays, half / steps), slowed, alone]
+        whole += [slowed, alone]
         self.changes_with_speed = bool(drag["quadratic"][alone].any())
         self.arrays: Plain[Springs] = np.concatenate(parts), np.concatenate(whole).astype(np.int64)
-        self.arrays[0][LONGEST] = half / steps
-        self._place = self.arrays[0][HEAD : HEAD + 2 * p].reshape(-1, 2)
-        first = HEAD + 6 * p + 2 * len(moving)
-        self._gravity, self._weight = self.arrays[0][first : first + 4 * len(moving)].reshape(2, -1)
+        self.arrays[0][LONGEST : LONGEST + 3] = step, group.decay, _SERIES
+        self._places = p
         self._physics: object = None
 
     def _ends(
@@ -202,24 +173,40 @@ class SpringFlow:
 
     def begin(self, state: State) -> None:
         """Take gravity, and where springs are attached to what does not move."""
+        numbers, first, end = self.arrays[0], len(self._moving), HEAD + 2 * self._places
         if self._physics is not state.physics:
             uniform = (force.uniform_acceleration(state) for force in self._forces)
             gravity = sum((g for g in uniform if g is not None), start=Vector2(0.0, 0.0))
             pulled = state.bodies.inverse_mass[self._moving] > 0.0
             mass = np.where(pulled, state.table(Mass)["mass"][self._moving], 0.0)
-            self._gravity[:] = np.outer(pulled, (gravity.x, gravity.y)).ravel()
-            self._weight[:] = np.outer(mass, (gravity.x, gravity.y)).ravel()
-            self.arrays[0][WEIGHT : WEIGHT + 2] = np.array((gravity.x, gravity.y)) * float(mass.sum())
-            self.arrays[0][UNIFORM : UNIFORM + 2] = gravity.x, gravity.y
+            after = end + 4 * self._places + 2 * first  # behind velocities, pulls and inverse masses
+            numbers[after : after + 2 * first] = np.outer(pulled, (gravity.x, gravity.y)).ravel()
+            numbers[after + 2 * first : after + 4 * first] = np.outer(mass, (gravity.x, gravity.y)).ravel()
+            numbers[WEIGHT : WEIGHT + 2] = np.array((gravity.x, gravity.y)) * float(mass.sum())
+            numbers[UNIFORM : UNIFORM + 2] = gravity.x, gravity.y
             self._physics = state.physics
-        transform, first = state.table(Transform), len(self._moving)
-        for end, springs, anchors in self._fixed:
-            if len(end):
-                points = transform["position"][end] + turned_anchors(state, end, springs, anchors)
-                held = self._place[first : first + len(end)]
+        transform, place = state.table(Transform), numbers[HEAD:end].reshape(-1, 2)
+        for ends, springs, anchors in self._fixed:
+            if len(ends):
+                points = transform["position"][ends] + turned_anchors(state, ends, springs, anchors)
+                held = place[first : first + len(ends)]
                 if not np.array_equal(points, held):
-                    held[:], self.arrays[0][KNOWN] = points, 0.0
-                first += len(end)
+                    held[:], numbers[KNOWN] = points, 0.0
+                first += len(ends)
+
+
+def put_together(flows: Sequence[SpringFlow]) -> Plain[Springs]:
+    """Put the arrays of flows one behind the other, where each goes on with its part of them.
+
+    Whole numbers begin with where in both arrays those of each flow begin and, last, end.
+    """
+    first = np.array((0, 2 * len(flows) + 2))
+    starts = np.cumsum([first, *(tuple(map(len, flow.arrays)) for flow in flows)], axis=0)
+    numbers = np.concatenate([np.zeros(0), *(flow.arrays[0] for flow in flows)])
+    whole = np.concatenate([starts.ravel(), *(flow.arrays[1] for flow in flows)])
+    for flow, (begin, low), (end, high) in zip(flows, starts[:-1], starts[1:], strict=True):
+        flow.arrays = numbers[begin:end], whole[low:high]
+    return numbers, whole
 
 
 def _reciprocal(numbers: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -7,7 +7,7 @@ from physicslab.kernels.solver import soft
 from physicslab.state.state import State
 from physicslab.stepping.accounting import acts_unbooked, run_measured
 from physicslab.stepping.plan import StepPlan
-from physicslab.stepping.split_forces import SplitForces
+from physicslab.stepping.split_forces import SplitForces, SplitPart
 from physicslab.stepping.stage_accounts import StageAccounts
 from physicslab.systems.accelerate import AccelerateSystem
 from physicslab.systems.broad_phase import BroadPhaseSystem
@@ -82,13 +82,13 @@ class SubstepParts:
         # A force that turns velocities is left to the flow: a contact has no speed to expect from it.
         turned = [f for f in schedule.forces if f.gyration(state) is not None] if self.split else []
         self.forces = [force for force in schedule.forces if force not in turned]
-        springs = None if self.split is None else self.split.springs
-        self.accounts = StageAccounts(state, self.forces, flown=springs is not None)
+        flown = self.split is not None and any(part.springs is not None for part in self.split.parts)
+        self.accounts = StageAccounts(state, self.forces, flown=flown)
         self._run: Callable[[Stage, State, float], None] = schedule.run
         # Where a system of one's own moves the bodies itself, its error is that of the method.
         if schedule.find(IntegrateSystem) is not None and any(map(acts_unbooked, schedule.running)):
             self._run = lambda stage, state, h: run_measured(stage, schedule, state, h)
-        self.compiled = schedule.find(ContactSystem) is not None or springs is not None
+        self.compiled = schedule.find(ContactSystem) is not None or flown
         self._sleeps = schedule.find(SleepSystem) is not None
         self.uniform, self.packs = True, False
         self.reasons: list[str] = []
@@ -127,7 +127,7 @@ class SubstepParts:
             if self.compiled:
                 self._part(soft.PREDICT, share)
             elif split is not None:
-                self._hook(lambda state, h: split.take_part(stage, state, share * h))
+                self._hook(lambda state, h: split.predict(state, share * h))
         elif systems:
             flown = stage is Stage.IMPACT and split is not None and accounts.notes_forces
             if flown:
@@ -136,11 +136,14 @@ class SubstepParts:
             if flown:
                 self._hook(lambda state, h: accounts.book_impacts(state))
         if split is not None and stage is Stage.DRIFT:
-            self._hook(lambda state, h: split.take_part(stage, state, share * h), share)
-            if split.springs is not None:
-                self.parts[-1] = soft.SPRINGS
-            else:
-                reason = reason or sentence("sub_integrated")
+            flow = soft.SPRINGS
+            for part in split.parts:
+                self._hook(_drift(part, share), share)
+                if part.springs is not None:
+                    self.parts[-1] = flow
+                    flow += 1
+                else:
+                    reason = reason or sentence("sub_integrated")
         self._drifted += share if stage is Stage.DRIFT else 0.0
         self._kicked += share if stage is Stage.KICK else 0.0
         return reason
@@ -210,3 +213,8 @@ class SubstepParts:
         """Count a call of each system in every substep."""
         for system in systems:
             self.calls[system] = self.calls.get(system, 0) + 1
+
+
+def _drift(part: SplitPart, share: float) -> Hook:
+    """Return what moves a part of the sub-integrated bodies for a share of the substep."""
+    return lambda state, h: part.drift(state, share * h)

@@ -115,8 +115,7 @@ class Substeps:
         self._h = 0.0
         self._columns: object = None
         self._shapes: object = None  # which are others where vertices are new in this process
-        springs = None if self.split is None else self.split.springs
-        self._springs = (np.zeros(0), np.zeros(0, np.int64)) if springs is None else springs.arrays
+        self._springs = (np.zeros(0), np.zeros(0, np.int64)) if self.split is None else self.split.flows
         self._entry: Callable[..., Any] = soft.advance
         self._fixed: tuple[tuple[Any, ...], tuple[Any, ...], Any]
         self._packed: tuple[list[NDArray[np.int64]], NDArray[np.int64]] = [], np.zeros((0, 3), np.int64)

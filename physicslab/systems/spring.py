@@ -56,12 +56,13 @@ class SpringSystem(ForceSystem):
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
         """Return the pull for compiled integrators."""
         spring, angle = state.table(Spring), state.table(Transform)["angle"]
-        rows, ends = self._rows, (self._a, self._b)
+        takes_part = (layout.place[self._a] >= 0) & (layout.place[self._b] >= 0)
+        rows, ends = self._rows[takes_part], (self._a[takes_part], self._b[takes_part])
         places = []
         for end, anchors in zip(ends, ("anchor_a", "anchor_b"), strict=True):
             turns = spring[anchors][rows].any(axis=1)  # the middle of a body stays where it is
             places += [layout.place[end], np.where(turns, layout.turn[end], -1)]
-        indices, books = self._booked(state, np.stack(places, axis=1))
+        indices, books = self._booked(state, ends, np.stack(places, axis=1))
         parameters = np.empty((len(rows), 7))
         for column, end, anchors in ((0, ends[0], "anchor_a"), (2, ends[1], "anchor_b")):
             steady = np.where(layout.turn[end] < 0, angle[end], 0.0)
@@ -75,14 +76,14 @@ class SpringSystem(ForceSystem):
         )  # fmt: skip
 
     def _booked(
-        self, state: State, places: NDArray[np.int64]
+        self, state: State, ends: tuple[NDArray[np.int64], NDArray[np.int64]], places: NDArray[np.int64]
     ) -> tuple[NDArray[np.int64], tuple[tuple[int, int], ...]]:
-        """Return the indices of the kernel, for ends at ``places`` (n, 4), and what it books."""
+        """Return the indices of the kernel, for ``ends`` A and B at ``places`` (n, 4), and what it books."""
         bodies, n, moved = state.bodies, len(places), np.zeros(len(places), np.int64)
         goes, driven = state.table(Velocity).present, False
         for end, turn, moves, turns in (
-            (self._a, places[:, 1], budget.A_MOVES, budget.A_TURNS),
-            (self._b, places[:, 3], budget.B_MOVES, budget.B_TURNS),
+            (ends[0], places[:, 1], budget.A_MOVES, budget.A_TURNS),
+            (ends[1], places[:, 3], budget.B_MOVES, budget.B_TURNS),
         ):
             shifted = bodies.inverse_mass[end] > 0.0
             turned = (turn < 0) | (bodies.inverse_inertia[end] > 0.0)
@@ -96,9 +97,9 @@ class SpringSystem(ForceSystem):
         if self.depends_on_velocity(state):
             found.append((accounts.DAMPING, 2 + 4 * n))
         opened = np.flatnonzero(moved != budget.ALL_MOVED)
-        ends = np.stack((opened, moved[opened]), axis=1)
+        open_ends = np.stack((opened, moved[opened]), axis=1)
         behind = (-1, -1, -1, -1, len(opened))
-        return np.concatenate(([n], places.ravel(), behind, ends.ravel())), tuple(found)
+        return np.concatenate(([n], places.ravel(), behind, open_ends.ravel())), tuple(found)
 
     def inputs(self, state: State, layout: StateLayout) -> bytes:
         """Return every number of every spring, and the angles of anchors that no force turns."""

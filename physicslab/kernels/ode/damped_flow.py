@@ -35,10 +35,12 @@ from physicslab.kernels.ode.spring_flow import (
     BY_DAMPERS,
     BY_HAND,
     BY_SPRINGS,
+    DECAY,
     DISSIPATED,
     FINEST,
     MAX_TURN,
     MOST_TERMS,
+    SERIES,
     SIZES,
     TURNS_FAST,
     UNIFORM,
@@ -342,9 +344,22 @@ def _follows(places: Places, links: Links, full: Full, turns: bool, h: float) ->
 
 
 @inlined
+def _terms(phase: float, series: float) -> int:
+    """Return how many terms of its series a kick takes whose length times the fastest decay is ``phase``."""
+    terms, rest = 1, 0.5 * phase * phase
+    if phase > 0.0:  # with one, the work of dampers would be of the order of the step
+        terms, rest = 2, rest * phase / 3.0
+    while rest > series and terms < MOST_TERMS:
+        terms += 1
+        rest *= phase / (terms + 1)
+    return terms
+
+
+@inlined
 def _advance(
     places: Places, links: Links, full: Full, slowed: Slowed, drifts: Numbers, kicks: Numbers, h: float,
-    steps: int, followed: float, terms: Rows, turns: bool, ends: Rows, held: Rows, given: Numbers,
+    steps: int, followed: float, decay: float, series: float, turns: bool, ends: Rows, held: Rows,
+    given: Numbers,
 ) -> int:  # fmt: skip
     """Advance what was gathered, as :func:`flow_forces` does."""
     for i in range(len(places.pull)):
@@ -358,9 +373,9 @@ def _advance(
             evaluations += 1
             if not _evaluate(places, links, full, slowed, turns, followed):
                 return TURNS_FAST
-            _kick(
-                places, links, full, slowed, kicks[stage] * h, terms[stage], turns, ends, held, given
-            )  # fmt: skip
+            kick = kicks[stage] * h
+            terms = _terms(abs(kick) * decay, series)
+            _kick(places, links, full, slowed, kick, terms, turns, ends, held, given)
             if stage < len(drifts):
                 _drift(places, full, drifts[stage] * h, turns)
         torque, torque_rate = book_gravity(places, h, torque, torque_rate, given)
@@ -389,15 +404,14 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
     Plain springs between middles are left to :func:`flow_springs`, which says how fast springs are followed.
     """
     numbers, whole = springs
-    m, p, n, s = whole[0], whole[1], whole[2], whole[3]
+    m, p, n = whole[0], whole[1], whole[2]
     turns, alone, last, made = whole[5] != 0, whole[6], len(whole), 0
     if whole[4] == 0:
         made = flow_springs(motion, springs, span, account)
     else:
         places, links, ends, given, drifts, kicks, at = named(springs)
         full, slowed, dragged = _full(numbers, at, m, p, n), slowed_in(springs), last - alone - whole[8]
-        terms = whole[dragged - s - 1 : dragged]
-        held = whole[SIZES + m + 2 * n + whole[7] : dragged - s - 1]
+        held = whole[SIZES + m + 2 * n + whole[7] : dragged]
         steps, finer, made = steps_of(springs, span), 1, TURNS_FAST
         while made < 0 and finer <= FINEST:
             gather(places, motion)
@@ -406,7 +420,7 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
                 given[i] = 0.0
             made = _advance(
                 places, links, full, slowed, drifts, kicks, span / (finer * steps), finer * steps,
-                still_followed(finer), terms, turns, ends, held, given,
+                still_followed(finer), numbers[DECAY], numbers[SERIES], turns, ends, held, given,
             )  # fmt: skip
             finer *= 2
         if made >= 0:

@@ -143,7 +143,7 @@ def first_step(
 
 
 @inlined
-def _all_finite(q: Numbers, v: Numbers, n: int) -> bool:
+def all_finite(q: Numbers, v: Numbers, n: int) -> bool:
     """Whether every one of the first ``n`` numbers of both is finite; :func:`largest` may overlook NaN."""
     finite = True
     for i in range(n):
@@ -268,7 +268,7 @@ def dop853(
         0,
         1,
     )
-    if not _all_finite(acceleration, stage_v, n):
+    if not all_finite(acceleration, stage_v, n):
         return NOT_FINITE
     evaluations, done, done_low = 1, 0.0, 0.0
     h = step[0] if step[0] > 0.0 else first_step(pushes, n, q_scale, v_scale, span, tolerance)
@@ -317,7 +317,7 @@ def dop853(
             speed = max(speed, floor * taken / tolerance)
             counts = max(counts, floor * taken * taken / tolerance)
         error = step_error(rates, pushes, taken, counts, speed, tolerance)
-        if not (math.isfinite(error) and _all_finite(stage_q, stage_v, n)):
+        if not (math.isfinite(error) and all_finite(stage_q, stage_v, n)):
             h, grow = _MIN_GROWTH * taken, 1.0
             last_error = math.inf
             continue

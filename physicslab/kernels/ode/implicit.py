@@ -8,7 +8,7 @@ from physicslab.kernels import Numbers, Rows, Vectors, allocating, allocating_ke
 from physicslab.kernels.forces.budget import CLOCK, DAMPED
 from physicslab.kernels.forces.force_calls import Calls, accelerate_over
 from physicslab.kernels.ode.compensated import add
-from physicslab.kernels.ode.dop853 import largest
+from physicslab.kernels.ode.dop853 import all_finite, largest
 
 _MAX_ITERATIONS = 40
 _PARTS = 1024
@@ -24,23 +24,27 @@ _EPSILON = 2.220446049250313e-16
 
 @inlined
 def _factorise(matrix: Vectors, pivots: Rows, band: int) -> None:
-    """Turn a matrix (n, n) with ``band`` diagonals on either side into its triangular factors, in place."""
+    """Turn a matrix with ``band`` diagonals on either side into its triangular factors, in place.
+
+    Row i of ``matrix`` (n, 3 band + 1) holds columns i - band to i + 2 band: exchanged rows reach so far.
+    """
     n = len(pivots)
     for k in range(n):
         foot, end = min(k + band + 1, n), min(k + 2 * band + 1, n)
         best = k
         for i in range(k + 1, foot):
-            if abs(matrix[i, k]) > abs(matrix[best, k]):
+            if abs(matrix[i, k - i + band]) > abs(matrix[best, k - best + band]):
                 best = i
         pivots[k] = best
         if best != k:
             for j in range(k, end):
-                matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+                here, there = j - k + band, j - best + band
+                matrix[k, here], matrix[best, there] = matrix[best, there], matrix[k, here]
         for i in range(k + 1, foot):
-            share = matrix[i, k] / matrix[k, k]
-            matrix[i, k] = share
+            share = matrix[i, k - i + band] / matrix[k, band]
+            matrix[i, k - i + band] = share
             for j in range(k + 1, end):
-                matrix[i, j] -= share * matrix[k, j]
+                matrix[i, j - i + band] -= share * matrix[k, j - k + band]
 
 
 @inlined
@@ -51,11 +55,11 @@ def _solve(matrix: Vectors, pivots: Rows, band: int, right: Numbers) -> None:
         best = pivots[k]
         right[k], right[best] = right[best], right[k]
         for i in range(k + 1, min(k + band + 1, n)):
-            right[i] -= matrix[i, k] * right[k]
+            right[i] -= matrix[i, k - i + band] * right[k]
     for k in range(n - 1, -1, -1):
         for j in range(k + 1, min(k + 2 * band + 1, n)):
-            right[k] -= matrix[k, j] * right[j]
-        right[k] /= matrix[k, k]
+            right[k] -= matrix[k, j - k + band] * right[j]
+        right[k] /= matrix[k, band]
 
 
 @inlined
@@ -124,10 +128,11 @@ def _differentiate(
             )  # fmt: skip
         for j in range(first, n, stride):
             moved[order[j]] = x[order[j]]
-            for i in range(max(j - 2 * band, 0), min(j + 2 * band + 1, n)):
-                matrix[i, j] = 0.0
+            for i in range(max(j - 2 * band, 0), max(j - band, 0)):
+                matrix[i, j - i + band] = 0.0
             for i in range(max(j - band, 0), min(j + band + 1, n)):
-                matrix[i, j] = (below[order[i]] - shifted[order[i]]) / (2.0 * shift if both else shift)
+                slope = (below[order[i]] - shifted[order[i]]) / (2.0 * shift if both else shift)
+                matrix[i, j - i + band] = slope
     return 2 * stride if both else stride
 
 
@@ -164,7 +169,7 @@ def _newton(
         # Below this times epsilon, coordinates cannot resolve a difference.
         size = largest(x, n) + largest(q, len(inverse_mass)) / h
         if change <= 4.0 * _EPSILON * size or (change >= 0.5 * before and change <= 1e-10 * size):
-            return iteration, evaluations
+            return (iteration if all_finite(x, residual, n) else -1), evaluations
         if not math.isfinite(change):
             break
         before, far = change, n > len(inverse_mass) and change > _FAR * size
@@ -228,7 +233,7 @@ def implicit_midpoint(
     start, given = q[clock], np.zeros(len(q) - clock - 1)
     stage_q, x, miss, shifted = q.copy(), np.zeros(m), np.empty(m), np.empty(m)
     acceleration, stack = np.empty(len(q)), np.zeros(3 * len(q))
-    matrix, pivots = np.zeros((m, m)), np.zeros(m, np.int64)
+    matrix, pivots = np.zeros((m, 3 * band + 1)), np.zeros(m, np.int64)
     evaluations, known = 0, False
     for step in range(steps):
         done, part = 0, _PARTS

@@ -35,11 +35,12 @@ SIZES = 9
 springs, drifts of the method; whether there are dampers or arms, and so more numbers behind
 (:mod:`physicslab.kernels.ode.damped_flow`); arms; how many bodies are in drag alone; how many ends springs do
 not move; how many of the bodies on springs drag slows. Then :attr:`Places.moving`, the springs' ends at A and
-B, and the ``ends`` that springs do not move; dampers at these; terms of the series of each kick; bodies on
-springs that drag slows; bodies in drag alone."""
-KNOWN, WEIGHT, _GIVEN, UNIFORM, LONGEST, HEAD = 0, 1, 3, 12, 14, 16
+B, and the ``ends`` that springs do not move; dampers at these; bodies on springs that drag
+slows; bodies in drag alone."""
+KNOWN, WEIGHT, _GIVEN, UNIFORM, LONGEST, DECAY, SERIES, HEAD = 0, 1, 3, 12, 14, 15, 16, 18
 """The numbers begin with: whether the pull is known (1,), the weight of all that moves on springs (2,) [N],
-what is given (GIVEN,), gravity (2,) [m/s^2], the longest step of the method [s]. Then those of
+what is given (GIVEN,), gravity (2,) [m/s^2], the longest step of the method [s], the fastest rate of decay
+[1/s], the share of a velocity that is left out of the series of a kick. Then those of
 :class:`Places` and of :class:`Links` in order, drifts and kicks, and what dampers and drag need."""
 
 
@@ -246,6 +247,21 @@ def _advance(
             speed[i] += kick * (pull[i] * places.gain[i] + places.gravity[i])
         torque, rate = book_gravity(places, h, torque, rate, given)
     return evaluations
+
+
+@inlined_by_numba
+def flow_at(springs: Springs, number: int) -> Springs:
+    """Return the arrays of one of several flows; ``whole`` begins with where those of each begin and end."""
+    numbers, whole = springs
+    begin, low, end, high = 2 * number, 2 * number + 1, 2 * number + 2, 2 * number + 3
+    return Springs(numbers[whole[begin] : whole[end]], whole[whole[low] : whole[high]])
+
+
+@inlined_by_numba
+def rows_in(flow: Springs) -> tuple[Rows, Rows]:
+    """Return the rows of the world that a flow moves: those on springs, and those in drag alone."""
+    whole = flow.whole
+    return whole[SIZES : SIZES + whole[0]], whole[len(whole) - whole[6] :]
 
 
 @inlined_by_numba

@@ -35,6 +35,7 @@ from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
 from physicslab.kernels.near_counts import ACTIVE, LEFT, OUTSIDE, ROUND, WIDE_COUNT
 from physicslab.kernels.ode.damped_flow import flow_forces
+from physicslab.kernels.ode.spring_flow import flow_at, rows_in
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.sleep.edits import find_pushed
 from physicslab.kernels.sleep.islands import count_rest, find_touched
@@ -60,15 +61,15 @@ again; so many bodies touch that more blocks may be needed; the last step left a
 sleeping body is touched or pushed; at the end of a step, an island may fall asleep, or a body was beyond the
 bounds, or the next step needs another number of substeps."""
 (
-    HOOK, DRIFT, SPRINGS, UNIFORM, PACKED, KICK, PAIRS, FIND, WIDEN, WAKE, IMPACTS, PAIRS_AGAIN,
-    LATER_IMPACTS, PREDICT, SOLVE, RELAX, OVERLAP,
+    HOOK, DRIFT, UNIFORM, PACKED, KICK, PAIRS, FIND, WIDEN, WAKE, IMPACTS, PAIRS_AGAIN, LATER_IMPACTS,
+    PREDICT, SOLVE, RELAX, OVERLAP, SPRINGS,
 ) = range(17)  # fmt: skip
-"""The parts of a substep: what is Python's; bodies move; those on springs do, or Python moves them; uniform
-forces, or compiled ones, are added up, and kick; whether the near pairs are still all that are near; where
-bodies touch; steady contacts get into blocks, once a step; whether sleeping bodies are to be woken; impacts;
-whether the near pairs still are all after these, and what they have left swift meets others; velocities are
-predicted; the impulses of contacts, and those after bodies have moved; what is Python's if these have moved
-bodies apart."""
+"""The parts of a substep: what is Python's; bodies move; uniform forces, or compiled ones, are added up, and
+kick; whether the near pairs are still all that are near; where bodies touch; steady contacts get into blocks,
+once a step; whether sleeping bodies are to be woken; impacts; whether the near pairs still are all after
+these, and what they have left swift meets others; velocities are predicted; the impulses of contacts, and
+those after bodies have moved; what is Python's if these have moved bodies apart. From SPRINGS on, the bodies
+of the flow of that number move, or Python moves them."""
 SHARE, DRIFTED, LATER = range(3)
 """Where in ``Course.times`` these are."""
 COSTS, STEPS = 8, 7
@@ -131,15 +132,15 @@ def _moved(motion: Motion, before: Numbers) -> bool:
 
 @inlined
 def _note_flow(
-    near: Near, motion: Motion, inverse: Inverse, acting: Acting, sub_integrated: Flags, sign: float, h: float
+    near: Near, motion: Motion, inverse: Inverse, acting: Acting, flow: Springs, sign: float, h: float
 ) -> None:
     """Take a flow from the velocities noted, if any were, as :func:`note_flow` does."""
     if near.counts[LEFT] + near.counts[WIDE_COUNT] > 0:
-        note_flow(
-            near.linear_before, near.angular_before, motion.linear, motion.angular, acting.force,
-            acting.torque, inverse.mass, inverse.inertia, sub_integrated, acting.unkicked, acting.uniform,
-            sign, h,
-        )  # fmt: skip
+        for rows in rows_in(flow):
+            note_flow(
+                near.linear_before, near.angular_before, motion.linear, motion.angular, acting.force,
+                acting.torque, inverse.mass, inverse.inertia, rows, acting.unkicked, acting.uniform, sign, h,
+            )  # fmt: skip
 
 
 @inlined
@@ -206,10 +207,11 @@ def _advance(
                 drift(position, angle, linear, angular, sub_integrated, span)
                 weighed = False
                 now = charge(cost, INTEGRATE, now)
-            elif what == SPRINGS:
-                _note_flow(near, motion, inverse, acting, sub_integrated, 1.0, span)
-                made = flow_forces(motion, springs, span, account)
-                _note_flow(near, motion, inverse, acting, sub_integrated, -1.0, 0.0 if made >= 0 else -span)
+            elif what >= SPRINGS:
+                flow = flow_at(springs, what - SPRINGS)
+                _note_flow(near, motion, inverse, acting, flow, 1.0, span)
+                made = flow_forces(motion, flow, span, account)
+                _note_flow(near, motion, inverse, acting, flow, -1.0, 0.0 if made >= 0 else -span)
                 evaluations += max(0, made)
                 why = ALL if made >= 0 else PYTHON
                 weighed = False

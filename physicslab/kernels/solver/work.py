@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from physicslab.kernels import Flags, Numbers, Vectors, always_inlined, inlined, kernel
+from physicslab.kernels import Flags, Numbers, Rows, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels import wide_layout as L
 from physicslab.kernels.accounts import (
     ANGULAR_MOMENTUM,
@@ -79,21 +79,20 @@ def note_velocities(
 @kernel
 def note_flow(
     linear_before: Vectors, angular_before: Numbers, linear: Vectors, angular: Numbers, force: Vectors,
-    torque: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers, sub_integrated: Flags, unkicked: Flags,
+    torque: Numbers, inverse_mass: Numbers, inverse_inertia: Numbers, rows: Rows, unkicked: Flags,
     uniform: bool, sign: float, h: float,
 ) -> None:  # fmt: skip
-    """Take from the velocities noted what a flow changes those of its bodies by, before contacts are booked.
+    """Take from the velocities noted what a flow changes those of its ``rows`` by, until contacts are booked.
 
     Called with 1 and the time ``h`` [s] of the flow before it, and with -1 and 0 after. A note is
     less than the velocities by the kick of a substep, twice ``h``, which the bodies of a flow do not get:
     half of it is what was predicted for them. Where forces are ``uniform`` it is taken later, of all bodies.
     """
-    for i in range(len(unkicked)):
-        if sub_integrated[i]:
-            share = h if not unkicked[i] else 2.0 * h if uniform else 0.0
-            linear_before[i, 0] += sign * linear[i, 0] + share * inverse_mass[i] * force[i, 0]
-            linear_before[i, 1] += sign * linear[i, 1] + share * inverse_mass[i] * force[i, 1]
-            angular_before[i] += sign * angular[i] + share * inverse_inertia[i] * torque[i]
+    for i in rows:
+        share = h if not unkicked[i] else 2.0 * h if uniform else 0.0
+        linear_before[i, 0] += sign * linear[i, 0] + share * inverse_mass[i] * force[i, 0]
+        linear_before[i, 1] += sign * linear[i, 1] + share * inverse_mass[i] * force[i, 1]
+        angular_before[i] += sign * angular[i] + share * inverse_inertia[i] * torque[i]
 
 
 @inlined

@@ -94,7 +94,7 @@ class KnownCase(Case):
         Parameters
         ----------
         advances : sequence of callables, optional
-            What advances each world; its own steps where there are none.
+            They advance each world; its own steps where there are none.
         """
         largest, advances = 0.0, advances or [own_steps(world) for world in worlds]
         for i, t in enumerate(self.times):

@@ -30,8 +30,8 @@ FLIP = np.array((1.0, -1.0))
 class Gauge:
     """How much of a quantity a metre of arrow stands for: 1, 2 or 5 times a power of ten.
 
-    The scale follows the strongest value of the last seconds. It depends on the world alone: zooming enlarges
-    arrows together with all else, and the legend stays true.
+    The scale follows the strongest value of the last seconds, and stays where there is none. It depends on
+    the world alone: zooming enlarges arrows together with all else, and the legend stays true.
 
     Parameters
     ----------
@@ -62,9 +62,9 @@ class Gauge:
 
     def follow(self, values: NDArray[np.float64], reach: float, time: float) -> None:
         """Take in the magnitudes (n,) of a frame; the strongest should be about ``reach`` [m] long."""
-        if self.kept and self.per_metre:
-            return
         strongest = float(np.max(values, initial=0.0, where=np.isfinite(values)))
+        if strongest == 0.0 or (self.kept and self.per_metre):
+            return
         faded = self._peak * math.exp(-abs(time - self._time) / _MEMORY)  # after a restart as well
         self._peak, self._time = max(strongest, faded), time
         wanted = self._peak / reach

@@ -88,12 +88,10 @@ def _build_table(ui: Ui, world: World, window: Window, rows: Any, size: ImVec2) 
     imgui.table_setup_scroll_freeze(0, 1)
     for head, width in zip(_HEADS, _WIDTHS, strict=True):
         imgui.table_setup_column(head, imgui.TableColumnFlags_.width_fixed, width * ui.size)
-    imgui.push_style_color(imgui.Col_.table_header_bg, packed(ui.theme.key))
     imgui.table_next_row(imgui.TableRowFlags_.headers)
     for n in range(len(_HEADS)):
         imgui.table_next_column()
         _build_heading(ui, window, n)
-    imgui.pop_style_color()
     clipper = imgui.ListClipper()
     clipper.begin(len(rows))
     while clipper.step():

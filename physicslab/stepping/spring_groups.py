@@ -1,0 +1,100 @@
+"""Which springs are followed together: those that bodies couple, and those that need as many steps.
+
+A few fast springs then make no others finer, and only those too fast for any steps have another method.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from physicslab.components import Drag, Velocity
+from physicslab.state.packed import spring_ends
+from physicslab.state.state import State
+from physicslab.stepping.forces import MAX_STEPS, WELL_RESOLVED, steps_needed
+from physicslab.stepping.partition import join
+from physicslab.systems.spring import SpringSystem
+from physicslab.systems.system import ForceSystem
+
+_RESOLVED = 0.26
+"""omega h of the steps of spring_splitting. Its phase is then right to 4e-10, and what it adds to the error
+of contacts within four substeps is 1e-5 of that (docs/decisions/springs-beside-contacts.md)."""
+_DAMPED = 1.0
+"""The same for rates of decay, whose exponential function a kick has."""
+_BEYOND = MAX_STEPS
+"""Kind of those that are too fast: the others are as many as the binary digits of their number of steps."""
+
+
+class SpringGroup(NamedTuple):
+    """Bodies that are followed together.
+
+    Attributes
+    ----------
+    rows : bool array (rows,)
+        The bodies, and what does not move that springs hold them to.
+    steps : int
+        Into how many steps half a substep is divided; 0 where they are too fast for any.
+    rate, decay : float
+        The fastest rate at which they swing or are slowed, and at which they are slowed [1/s].
+    """
+
+    rows: NDArray[np.bool_]
+    steps: int
+    rate: float
+    decay: float
+
+
+def drag_per_mass(state: State, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return how fast linear drag and damping slow rows (n,) [1/s]; 0 for what nothing moves."""
+    inverse = state.bodies.inverse_mass[rows]
+    damped = np.where(inverse > 0.0, state.physics.linear_damping, 0.0)
+    return state.table(Drag)["linear"][rows] * inverse + damped
+
+
+def spring_groups(state: State, forces: Sequence[ForceSystem], rows: NDArray[np.bool_]) -> list[SpringGroup]:
+    """Return the groups of the bodies and ends among ``rows``, the slowest first.
+
+    ``rows`` (rows,) tells which rows of the world these are. It depends on settings alone, on no place and no
+    velocity. Bodies in drag alone take steps of their own: it matters only whether they are too fast for any.
+    """
+    moves = state.table(Velocity).present
+    _, a, b = spring_ends(state)
+    moving = np.flatnonzero(rows & moves)
+    couples = np.stack((a, b), axis=1)[moves[a] & moves[b]]
+    labels, of = np.unique(join(moving, couples.tolist()), return_inverse=True)
+    bounds = [force.bounds(state) for force in forces if isinstance(force, SpringSystem)]
+    swings, decays = (sum((one[i][moving] for one in bounds), np.zeros(len(moving))) for i in (0, 1))
+    swing, damped, dragged = (
+        _largest(rates, of, len(labels)) for rates in (swings, decays, drag_per_mass(state, moving))
+    )
+    half, substeps = 0.5 * state.simulation.dt / state.simulation.substeps, state.simulation.substeps
+    decay = damped + dragged
+    rate = np.maximum(swing, decay)
+    too_fast = [2 * substeps * steps_needed(one, half, WELL_RESOLVED) > MAX_STEPS for one in rate.tolist()]
+    sprung = np.zeros(len(labels), np.bool_)
+    sprung[of[np.isin(moving, np.concatenate((a, b)))]] = True
+    decay, rate = decay * sprung, rate * sprung
+    steps = [
+        max(steps_needed(fast, half, _RESOLVED), steps_needed(slowed, half, _DAMPED))
+        for fast, slowed in zip((swing * sprung).tolist(), decay.tolist(), strict=True)
+    ]
+    kinds: dict[int, list[int]] = {}
+    for label, (needed, beyond) in enumerate(zip(steps, too_fast, strict=True)):
+        kinds.setdefault(_BEYOND if beyond else (needed - 1).bit_length(), []).append(label)
+    groups = []
+    for kind, chosen in sorted(kinds.items()):
+        part = np.zeros(len(moves), np.bool_)
+        part[moving[np.isin(of, chosen)]] = True
+        for end, other in ((a, b), (b, a)):
+            part[end[part[other] & ~moves[end]]] = True
+        most = 0 if kind == _BEYOND else max(steps[label] for label in chosen)
+        groups.append(SpringGroup(part, most, float(rate[chosen].max()), float(decay[chosen].max())))
+    return groups
+
+
+def _largest(rates: NDArray[np.float64], of: NDArray[np.int64], count: int) -> NDArray[np.float64]:
+    """Return the largest rate of each of ``count`` sets; ``of`` (n,) tells of which set each is."""
+    largest = np.zeros(count)
+    np.maximum.at(largest, of, rates)
+    return largest
