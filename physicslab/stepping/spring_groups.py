@@ -74,10 +74,10 @@ def spring_groups(state: State, forces: Sequence[ForceSystem], rows: NDArray[np.
     too_fast = [2 * substeps * steps_needed(one, half, WELL_RESOLVED) > MAX_STEPS for one in rate.tolist()]
     sprung = np.zeros(len(labels), np.bool_)
     sprung[of[np.isin(moving, np.concatenate((a, b)))]] = True
-    decay, rate = decay * sprung, rate * sprung
+    swing, decay, rate = (np.where(sprung, rates, 0.0) for rates in (swing, decay, rate))
     steps = [
         max(steps_needed(fast, half, _RESOLVED), steps_needed(slowed, half, _DAMPED))
-        for fast, slowed in zip((swing * sprung).tolist(), decay.tolist(), strict=True)
+        for fast, slowed in zip(swing.tolist(), decay.tolist(), strict=True)
     ]
     kinds: dict[int, list[int]] = {}
     for label, (needed, beyond) in enumerate(zip(steps, too_fast, strict=True)):
