@@ -236,12 +236,9 @@ class World(Facade):
         return sys.maxsize if self.islands.members else self.islands.steps_ahead(self, h)
 
     def run(
-        self,
-        *wrong: Never,
-        seconds: float | None = None,
-        steps: int | None = None,
+        self, *wrong: Never, seconds: float | None = None, steps: int | None = None,
         at_most: float | None = None,
-    ) -> None:
+    ) -> None:  # fmt: skip
         """Advance by a time or by a number of steps.
 
         ``world.time`` grows by exactly ``seconds``: the last step is shortened where they are no multiple of
