@@ -162,8 +162,8 @@ def test_rows_of_several_islands_have_the_bits_of_fresh_worlds_and_keep_their_is
 def test_measures_are_expressions_of_a_run_and_functions_of_its_end() -> None:
     measure: dict[str, Any] = {
         "end": "end.ball.y", "position": "ball.position.y", "greatest": "max(ball.y)",
-        "least": "min(ball.vy)", "first": "first_impact.time", "of two": "max(ball.y, 3 m)",
-        "lost": "account.impacts", "number": "collisions", "function": height_at_end,
+        "least": "min(ball.vy)", "fastest": "max(ball.vy)", "first": "first_impact.time",
+        "of two": "max(ball.y, 3 m)", "lost": "account.impacts", "number": "collisions", "function": height_at_end,
     }  # fmt: skip
     columns = ensemble("drop", {E: [0.7]}, measure=measure, seconds=1.5, executor="serial").columns
     found = {name: column[0] for name, column in columns.items()}
@@ -171,6 +171,7 @@ def test_measures_are_expressions_of_a_run_and_functions_of_its_end() -> None:
     assert found["greatest"] == 4.0 and found["number"] == 1.0
     assert found["first"] == pytest.approx(np.sqrt(2 * 3.75 / 9.81), rel=1e-12)
     assert found["least"] == pytest.approx(-np.sqrt(2 * 9.81 * 3.75), abs=9.81 / 60)
+    assert found["fastest"] == pytest.approx(-0.7 * found["least"], abs=2 * 9.81 / 60), "an impact is no peak"
     assert found["lost"] == pytest.approx(-9.81 * 3.75 * (1 - 0.7**2) - 1 / 6, rel=1e-9), "it leaves rolling"
 
 

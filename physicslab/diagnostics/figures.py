@@ -246,7 +246,7 @@ class Figures:
         """
         near = [series[i - 1] - 2.0 * series[i] + series[i + 1] for i in range(sample - 1, sample + 2)
                 if 0 < i < len(series) - 1]  # fmt: skip
-        if len(near) < 2 or not all(0.5 < bend / near[-1] < 2.0 for bend in near if near[-1]):
+        if len(near) < 2 or not near[-1] or not all(0.5 < bend / near[-1] < 2.0 for bend in near):
             return series[sample]
         times = self.record.times[: len(series)]
         low, high = times[max(sample - 1, 0)], times[min(sample + 1, len(times) - 1)]
