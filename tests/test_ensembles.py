@@ -163,7 +163,8 @@ def test_measures_are_expressions_of_a_run_and_functions_of_its_end() -> None:
     measure: dict[str, Any] = {
         "end": "end.ball.y", "position": "ball.position.y", "greatest": "max(ball.y)",
         "least": "min(ball.vy)", "fastest": "max(ball.vy)", "first": "first_impact.time",
-        "of two": "max(ball.y, 3 m)", "lost": "account.impacts", "number": "collisions", "function": height_at_end,
+        "of two": "max(ball.y, 3 m)", "lost": "account.impacts", "number": "collisions",
+        "function": height_at_end,
     }  # fmt: skip
     columns = ensemble("drop", {E: [0.7]}, measure=measure, seconds=1.5, executor="serial").columns
     found = {name: column[0] for name, column in columns.items()}
