@@ -35,7 +35,7 @@ class Dask(Executor):
         for name in ("distributed", "distributed.client"):  # which tell what is said in one line here
             logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
-            distributed.comm.resolve_address(address)  # of what is none, a client is left that cannot close
+            distributed.comm.resolve_address(address)  # else a client is left that cannot close
             self._client: Any = distributed.Client(address, timeout=_PATIENCE_S, set_as_default=False)
         except ValueError as error:
             raise SceneError(f"--dask {shown(address)}: must be as tcp://host:8786") from error

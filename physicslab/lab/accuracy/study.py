@@ -56,7 +56,7 @@ class Curve[Method, Found: Measured]:
 
     @property
     def largest(self) -> float | None:
-        """The largest error; ``None`` where a run failed or there is none."""
+        """The largest error; ``None`` where a run failed or measured no error."""
         found = [error for error in self.errors if error is not None]
         return max(found, default=None) if len(found) == len(self.rows) else None
 
