@@ -51,9 +51,7 @@ def build_title(ui: Ui, title: str, label: str) -> Iterator[bool]:
     """Write the title, with a button of a menu at the right; the yielded value says whether it is open."""
     style = imgui.get_style()
     width = imgui.calc_text_size(_MENU).x + 2.0 * style.frame_padding.x
-    imgui.align_text_to_frame_padding()
-    ui.faint(_words(title), wrapped=False)
-    imgui.same_line(imgui.get_window_width() - width - style.window_padding.x)
+    ui.lead(_words(title), imgui.get_window_width() - width - style.window_padding.x)
     tip = f"{label}: what it shows, and where"
     with ui.list(f"Menu of {label.lower()}", tip, shown=_MENU) as is_open:
         yield is_open
@@ -231,16 +229,13 @@ def _build_slider_menu(
 
     for name, words in _ENDS:
         spec = next(spec for spec in Slider.FIELDS if spec.name == name)
-        imgui.align_text_to_frame_padding()
-        ui.faint(words, wrapped=False)
-        imgui.same_line(3.0 * ui.size)
+        ui.lead(words, 3.0 * ui.size)
         key, width = f"{name} of slider {slider.number}", 6.0 * ui.size
         commit = partial(_change_end, change, slider, name)
         refusal = numbers.build(ui, key, given[name], spec, width, commit)
         imgui.same_line()
         ui.faint(written_unit(slider.unit), wrapped=False)
-        if refusal:
-            ui.text(refusal, ui.theme.error, wrapped=True)
+        ui.refusal(refusal)
     ui.rule()
     _build_choice(ui, world, window, slider, change)
     corner = build_corners(ui, slider.corner, CORNERS)
