@@ -51,11 +51,9 @@ def build_title(ui: Ui, title: str, label: str, beside: float = 0.0) -> Iterator
 
     It is cut where room for it ends, of which something takes so much ``beside`` it [px].
     """
-    imgui.align_text_to_frame_padding()
     style = imgui.get_style()
     room = _menu_at() - beside - style.item_spacing.x - style.window_padding.x
-    ui.faint(_cut(ui, _words(title), room), wrapped=False)
-    imgui.same_line(_menu_at())
+    ui.lead(_cut(ui, _words(title), room), _menu_at())
     tip = f"{label}: what it shows, and where"
     with ui.list(f"Menu of {label.lower()}", tip, shown=_MENU) as is_open:
         yield is_open
@@ -249,16 +247,13 @@ def _build_slider_menu(
 
     for name, words in _ENDS:
         spec = next(spec for spec in Slider.FIELDS if spec.name == name)
-        imgui.align_text_to_frame_padding()
-        ui.faint(words, wrapped=False)
-        imgui.same_line(3.0 * ui.size)
+        ui.lead(words, 3.0 * ui.size)
         key, width = f"{name} of slider {slider.number}", 6.0 * ui.size
         commit = partial(_change_end, change, slider, name)
         refusal = numbers.build(ui, key, given[name], spec, width, commit)
         imgui.same_line()
         ui.faint(written_unit(slider.unit), wrapped=False)
-        if refusal:
-            ui.text(refusal, ui.theme.error, wrapped=True)
+        ui.refusal(refusal)
     ui.rule()
     _build_choice(ui, world, window, slider, change)
     corner = build_corners(ui, slider.corner, CORNERS)
