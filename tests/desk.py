@@ -171,7 +171,7 @@ def click_at(desk: Desk, place: Place, button: str = "left") -> None:
 def bring_into_sight(desk: Desk, label: str) -> None:
     """Turn the wheel over what stands at the right of the world until a widget of it is in sight."""
     left, top, width, height = desk.sandbox.interface.layout.side
-    if label in (*MENUS, BADGE) or desk.sandbox.interface.toolkit.has_popup():
+    if label in (*MENUS, "...", BADGE) or desk.sandbox.interface.toolkit.has_popup():
         return
     if desk.ui.places[label][0] < left:  # in a window that is docked between the world and the panel
         world_left, _, world_width, _ = desk.window.framing.room()

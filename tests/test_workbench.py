@@ -309,6 +309,19 @@ def test_nothing_overlaps_and_nothing_is_cut(
         tap(desk, "escape")
 
 
+@pytest.mark.parametrize("width", [640, 800])
+def test_menus_without_room_are_in_the_last_one(width: int) -> None:
+    """In German with text of 200 % Help was cut off at 800 px."""
+    desk = sized((width, 600), text_scale=2.0)
+    desk.window.language = "de"
+    desk.frames(SETTLED)
+    assert all(rect.right <= width for rect in rects(desk).values())
+    assert {"File", "..."} <= desk.ui.places.keys() and "Help" not in desk.ui.places
+    for label in ("...", "Help", "All keys"):
+        click(desk, label)
+    assert desk.window.help
+
+
 def check_panels(desk: Desk) -> None:
     """Check that the panels lie beside each other, and each widget within its panel."""
     layout = desk.sandbox.interface.layout
@@ -373,7 +386,7 @@ def test_a_tiny_window_does_no_harm(size: tuple[int, int]) -> None:
             desk.window.selection.take(desk.world.entities()[0])
         desk.frames(8)
         circle(desk.world, (0, 0))
-    for menu in MENUS:
+    for menu in ("File", "..."):
         click(desk, menu)
 
 

@@ -174,13 +174,11 @@ def _tell(
 def _runs(names: Sequence[str], progress: Progress) -> list[dict[str, Any]]:
     """Make all runs, in processes where there are many; return what came of each."""
     found: list[dict[str, Any]] = []
-    try:
+    with progress:
         for done in in_processes(make_run, names, [[name] for name in names]):
             if isinstance(done, dict):
                 found.append(done)
             progress.show(len(found) / len(names) if isinstance(done, dict) else done)
-    finally:
-        progress.clear()
     return found
 
 

@@ -50,14 +50,10 @@ def _fill() -> None:
     """Have every kernel compiled that the cache does not hold."""
     if is_warm():
         return
-    line = Progress("compiling kernels", sys.stderr)
-    try:
-        with Warmup() as warmup:
-            while not warmup.finished:
-                progress = warmup.poll(_LOOK_EVERY_S)
-                line.show(progress.done / progress.total)
-    finally:
-        line.clear()
+    with Progress("compiling kernels", sys.stderr) as line, Warmup() as warmup:
+        while not warmup.finished:
+            progress = warmup.poll(_LOOK_EVERY_S)
+            line.show(progress.done / progress.total)
     if not is_warm():
         raise CommandError("not every kernel could be compiled", FAILED)
 

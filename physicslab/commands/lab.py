@@ -84,16 +84,13 @@ class LabRun:
 
     def shown[Result](self, work: Iterable[float | Result]) -> Iterator[Result]:
         """Yield the results of work, and show on the terminal the shares of it that are done."""
-        progress = Progress(self._label, sys.stderr, always=self._progress)
-        try:
+        with Progress(self._label, sys.stderr, always=self._progress) as progress:
             for found in work:
                 if isinstance(found, float):
                     progress.show(found)
                 else:
                     progress.clear()
                     yield found
-        finally:
-            progress.clear()
 
     def draw(self, name: str, picture: Callable[[], bytes]) -> None:
         """Write a plot, if ``--plot`` was given; only then is ``picture`` called."""

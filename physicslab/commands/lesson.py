@@ -41,12 +41,9 @@ def execute(arguments: Namespace) -> int:
         if arguments.page is None:
             sheet.write(worksheet(lessons[0], find).encode())
             return 0
-        progress = Progress(f"lesson {lessons[0].name}", sys.stderr, always=arguments.progress)
-        try:
-            with Tiers(True):
-                content = lesson_page(lessons[0], find, progress.show)
-        finally:
-            progress.clear()
+        label = f"lesson {lessons[0].name}"
+        with Progress(label, sys.stderr, always=arguments.progress) as progress, Tiers(True):
+            content = lesson_page(lessons[0], find, progress.show)
         sheet.write(content)
         if not sheet.to_stdout:
             print(f"{printable(sheet.path)}: {lessons[0].title}, {len(content) / 1000:,.0f} kB")

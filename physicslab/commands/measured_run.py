@@ -102,8 +102,7 @@ class MeasuredRun:
         patience = math.inf if self._at_most is None else _PATIENCE_S
         stepping = world.stepping(seconds=seconds, steps=steps, stride=stride, patience=patience)
         self._measure_every, self._look_every = (max(1, whole // (stride * n)) for n in (_SAMPLES, _LOOKS))
-        progress = Progress(self._label, sys.stderr)
-        try:
+        with Progress(self._label, sys.stderr) as progress:
             self._keep()
             while not self.stopped and self._advance(stepping, progress):
                 if self._is_due(dt):
@@ -118,8 +117,6 @@ class MeasuredRun:
             if not self._kept_now:
                 self._keep()
             record.warnings.add(find_warnings(world))
-        finally:
-            progress.clear()
         record.warnings.add(self._watch.warnings)
 
     def _stride(self, whole: int) -> int:

@@ -4,14 +4,14 @@ import math
 import time
 from collections.abc import Callable
 from datetime import timedelta
-from typing import TextIO
+from typing import Self, TextIO
 
 _DELAY_S = 1.0
 _INTERVAL_S = 0.1
 
 
 class Progress:
-    """Keeps one line of a terminal up to date; writes nothing in the first second.
+    """Keeps one line of a terminal up to date; writes nothing in the first second, and goes after a ``with``.
 
     Parameters
     ----------
@@ -41,6 +41,12 @@ class Progress:
         self._next = clock() + _DELAY_S if seen else float("inf")
         self._shown, self._foresees = False, foresees
         self._first: tuple[float, float] | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.clear()
 
     def show(self, share: float) -> None:
         """Say that this share of the work, from 0 to 1, is done."""

@@ -99,11 +99,8 @@ def _trust(arguments: Namespace, label: str, seconds: float) -> dict[str, object
         _configure(world, arguments)
         return world
 
-    progress = Progress(f"{label}, computed in other ways", sys.stderr)
-    try:
+    with Progress(f"{label}, computed in other ways", sys.stderr) as progress:
         return trust_report(result_of(assess(load, seconds), progress.show))
-    finally:
-        progress.clear()
 
 
 def _rescue(world: World, name: str, outputs: Mapping[str, Output]) -> str:

@@ -47,15 +47,12 @@ def execute(arguments: Namespace) -> int:
         return _open(task, arguments.open)
     picture = _map(arguments, task)
     label = shortened(printable(name_of(world, arguments)))
-    progress = Progress(label, sys.stderr, foresees=True)
     out = None if output is None else Path(output.path)
     try:
-        with _workers(arguments) as workers:
+        with Progress(label, sys.stderr, foresees=True) as progress, _workers(arguments) as workers:
             result = run_task(task, workers, out, progress.show)
     except OSError as error:
         raise CommandError(f"{label}: {error}", FAILED) from error
-    finally:
-        progress.clear()
     if picture is not None:
         picture.write(result.map())
     _tell(result, label, output)

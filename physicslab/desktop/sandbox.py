@@ -90,7 +90,7 @@ class Sandbox:
         self._source = window.scenes.source
         self.world = world
         self.interface = Interface(window)
-        window.framing.room = self.interface.room
+        window.framing.room, window.framing.small = self.interface.room, self.interface.small
         hud = Hud(window, self.interface)
         self._events = WindowEvents(window, self.interface.take)
         self._systems = (

@@ -168,11 +168,10 @@ def _softness(world: World, rigid: Rigid | None) -> Iterator[ModelWarning]:
     forces = np.hypot(*world.bodies.force.T) * world.bodies.inverse_mass
     h = simulation.dt / simulation.substeps
     off = max(float(forces.max(initial=0.0)) * h * h, float(graph.depth.max(initial=0.0)))
-    what = sentence("soft_contacts")
     setting = rigid_setting(world, len(graph.touching)) or _BETTER
     if off > 0.0:  # why steps were left to them has a line of its own
         why = "" if left else plan.contact_reason
-        yield ModelWarning(None, what, off, "m", 0.0, setting, because=why)
+        yield ModelWarning(None, sentence("soft_contacts"), off, "m", 0.0, setting, because=why)
 
 
 def _undetermined(world: World) -> Iterator[ModelWarning]:
@@ -216,6 +215,5 @@ def _undetermined(world: World) -> Iterator[ModelWarning]:
     k = int(found[-1])
     bodies = [int(number) for number in (body[k], other[k], other[k + 1]) if number]
     names = ", ".join(dict.fromkeys(world.label(number) for number in bodies))
-    what = sentence("undetermined")
     moments = len(np.unique(moment[first[found]]))
-    yield ModelWarning(names, what, float(moments), "", 0.0, "")
+    yield ModelWarning(names, sentence("undetermined"), float(moments), limit=0.0)

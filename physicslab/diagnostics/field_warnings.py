@@ -30,12 +30,12 @@ def field_warnings(world: World) -> Iterator[ModelWarning]:
     lost = [entity for entity in lost.tolist() if not world.has(entity, Held)]
     if lost:
         what = sentence("idle_thrust")
-        yield ModelWarning.about(world, lost[0], what, None, "", None, sentence("velocity_and_mass"))
+        yield ModelWarning.about(world, lost[0], what, setting=sentence("velocity_and_mass"))
     charges, laws = world.batch(Charge, Transform), world.physics
     charged = charges.entities[world.table(Charge)["charge"][charges.rows] != 0.0]
     if len(charged) and not (laws.coulomb_constant or laws.magnetic_field or laws.electric_field.magnitude):
         what, setting = sentence("idle_charge"), f"physics.coulomb_constant = {_COULOMB:.5g}"
-        yield ModelWarning.about(world, int(charged[0]), what, None, "", None, setting)
+        yield ModelWarning.about(world, int(charged[0]), what, setting=setting)
 
 
 def _coincident(world: World) -> Iterator[ModelWarning]:
@@ -56,9 +56,8 @@ def _coincident(world: World) -> Iterator[ModelWarning]:
         if pair is None or not world.bodies.inverse_mass[rows[list(pair)]].any():
             continue
         one, other = (int(world.entity_index.entities[rows[n]]) for n in pair)
-        what = sentence("one_place", law=law)
         setting = sentence("apart") if force.crowd else sentence("apart_or_softened")
-        warning = ModelWarning.about(world, one, what, None, "", None, setting)
+        warning = ModelWarning.about(world, one, sentence("one_place", law=law), setting=setting)
         yield replace(warning, because=sentence("too_near", body=world.label(other)))
 
 

@@ -43,7 +43,7 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
     moves = _moves(world)
     if not moves.all():
         idle, what = joints[int(np.argmin(moves))].entity, sentence("idle_joint")
-        yield ModelWarning.about(world, idle, what, None, "", None, sentence("mass_at_one_end"))
+        yield ModelWarning.about(world, idle, what, setting=sentence("mass_at_one_end"))
     if not moves.any():
         return
     yield from _light_to_turn(world)
@@ -66,14 +66,16 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
         joint = joints[int(joints_of_rows(world)[first])]
         if joint.kind is Rod and not measured_terms(world)[first, AX : BY + 1].any():
             what = sentence("ends_in_one_place")
-            yield ModelWarning.about(world, joint.entity, what, None, "", None, sentence("a_pin"))
+            yield ModelWarning.about(world, joint.entity, what, setting=sentence("a_pin"))
             return
         if (world.joints.role[dependent] == Role.MOTOR).all():
-            yield ModelWarning.about(world, joint.entity, sentence("blocked_motor"), None, "", None, "")
+            yield ModelWarning.about(world, joint.entity, sentence("blocked_motor"))
             return
         what = sentence("redundant")
         count = float(np.count_nonzero(dependent))
-        yield ModelWarning.about(world, joint.entity, what, count, "", 0.0, sentence("one_joint_less"))
+        yield ModelWarning.about(
+            world, joint.entity, what, count, limit=0.0, setting=sentence("one_joint_less")
+        )
 
 
 def _moves(world: World) -> NDArray[np.bool_]:

@@ -44,7 +44,7 @@ def words_of_digits(trust: Mapping[str, Any]) -> tuple[ModelWarning, ...]:
     if trust["digits"] is None or trust["digits"] >= DIGITS_LIMIT:
         return ()
     what = f"has {trust['digits']:.1f} digits of its position (--trust): {_CAUSES[trust['cause']]}"
-    return (ModelWarning(trust["worst"], what, None, "", None, "a shorter step" if _shorter(trust) else ""),)
+    return (ModelWarning(trust["worst"], what, setting="a shorter step" if _shorter(trust) else ""),)
 
 
 def _shorter(trust: Mapping[str, Any]) -> bool:

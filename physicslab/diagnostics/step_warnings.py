@@ -43,17 +43,17 @@ class ModelWarning:
 
     entity: str | None
     what: str
-    value: float | None
-    unit: str
-    limit: float | None
-    setting: str
+    value: float | None = None
+    unit: str = ""
+    limit: float | None = None
+    setting: str = ""
     number: int | None = None
     because: str = ""
 
     @classmethod
     def about(
-        cls, world: World, entity: int | None, what: str, value: float | None, unit: str,
-        limit: float | None, setting: str,
+        cls, world: World, entity: int | None, what: str, value: float | None = None, unit: str = "",
+        limit: float | None = None, setting: str = "",
     ) -> ModelWarning:  # fmt: skip
         """Return a warning about an entity of a world; about all of it where that is ``None``."""
         name = None if entity is None else world.label(entity)
@@ -152,8 +152,7 @@ def _cost(world: World) -> Iterator[ModelWarning]:
     setting = f"simulation.tolerance = {max(1e-12, 1e3 * world.simulation.tolerance):.0e}"
     if stiff:
         setting = 'simulation.integrator = "implicit_midpoint"'
-    what = sentence("many_evaluations")
-    yield ModelWarning(None, what, made, "", EVALUATIONS_LIMIT, setting)
+    yield ModelWarning(None, sentence("many_evaluations"), made, "", EVALUATIONS_LIMIT, setting)
 
 
 def _rates(world: World, integrator: Integrator, h: float) -> Iterator[ModelWarning]:
@@ -237,8 +236,7 @@ def _phase(world: World, integrator: Integrator) -> Iterator[ModelWarning]:
     )
     if world.simulation.integrator == "auto":
         setting = ""  # it takes other steps of its own
-    what = sentence("lost_phase")
-    yield ModelWarning.about(world, late, what, lost, "rad", PHASE_LIMIT, setting)
+    yield ModelWarning.about(world, late, sentence("lost_phase"), lost, "rad", PHASE_LIMIT, setting)
 
 
 def _order(world: World) -> Iterator[ModelWarning]:
@@ -258,7 +256,7 @@ def _order(world: World) -> Iterator[ModelWarning]:
         name = seeing.name.removesuffix("System")
         what = sentence("order_one", force=name, method=method.name)
         better = '"dop853"' if plan.smooth else '"auto"'
-        yield ModelWarning(None, what, None, "", None, f"simulation.integrator = {better}")
+        yield ModelWarning(None, what, setting=f"simulation.integrator = {better}")
 
 
 def _shorter(world: World, rate: float, limit: float, *, followed: bool) -> str:

@@ -94,15 +94,14 @@ def _finished_otherwise(world: World) -> Iterator[ModelWarning]:
         what, count = sentence("left_to_soft"), float(rigid.left_to_soft)
         behind = getattr(rigid.why_soft, "code", "") == "overlap" and _has_chain(world)
         setting = sentence("chain_turned") if behind else ""
-        yield ModelWarning(None, what, count, "", 0.0, setting, because=rigid.why_soft)
+        yield ModelWarning(None, what, count, limit=0.0, setting=setting, because=rigid.why_soft)
     if rigid.by_impulses:
         what, count = sentence("by_impulses"), rigid.by_impulses
         lost = measure_account(world).energy["numerical"]
         why = sentence("and_lost_by_now", why=rigid.why_impulses, energy=f"{lost:.3g}")
-        yield ModelWarning(None, what, float(count), "", 0.0, "", because=why)
+        yield ModelWarning(None, what, float(count), limit=0.0, because=why)
     if rigid.energy_added:
-        what = sentence("moved_apart")
-        yield ModelWarning(None, what, rigid.energy_added, "J", 0.0, "")
+        yield ModelWarning(None, sentence("moved_apart"), rigid.energy_added, "J", 0.0)
 
 
 def _has_chain(world: World) -> bool:
@@ -131,23 +130,21 @@ def _laws(world: World) -> Iterator[ModelWarning]:
     if rigid is not None:
         energetic, lowered = energetic + rigid.energetic_impacts, lowered + rigid.restitutions_lowered
     if energetic:
-        what = sentence("energetic_impacts")
-        yield ModelWarning(None, what, float(energetic), "", 0.0, "")
+        yield ModelWarning(None, sentence("energetic_impacts"), float(energetic), limit=0.0)
     if lowered:
-        what = sentence("lowered_restitution")
-        yield ModelWarning(None, what, float(lowered), "", 0.0, "")
+        yield ModelWarning(None, sentence("lowered_restitution"), float(lowered), limit=0.0)
 
 
 def _refusals(world: World) -> Iterator[ModelWarning]:
     """Yield settings that the engine could not follow."""
     method = world.plan
     if method.refused:
-        yield ModelWarning(None, method.refused, None, "", None, 'simulation.integrator = "auto"')
+        yield ModelWarning(None, method.refused, setting='simulation.integrator = "auto"')
     if world.simulation.contacts == "rigid" and method.contacts == "soft" and method.collisions != "none":
-        yield ModelWarning(None, method.contact_reason, None, "", None, 'simulation.contacts = "soft"')
+        yield ModelWarning(None, method.contact_reason, setting='simulation.contacts = "soft"')
     asked_for_exact = world.simulation.collisions == "exact" and method.contacts == "soft"
     if asked_for_exact and method.collisions == "step":
-        yield ModelWarning(None, method.collision_reason, None, "", None, 'simulation.collisions = "auto"')
+        yield ModelWarning(None, method.collision_reason, setting='simulation.collisions = "auto"')
 
 
 def _division(world: World) -> Iterator[ModelWarning]:
@@ -169,9 +166,8 @@ def _distance(world: World) -> Iterator[ModelWarning]:
     worst = int(np.argmax(reach / size))
     limit = DISTANCE_LIMIT * float(size[worst])
     if reach[worst] >= limit:
-        what = sentence("far_away")
         far, better = int(batch.entities[worst]), sentence("nearer_origin")
-        yield ModelWarning.about(world, far, what, float(reach[worst]), "m", limit, better)
+        yield ModelWarning.about(world, far, sentence("far_away"), float(reach[worst]), "m", limit, better)
 
 
 def _overlap(world: World, graph: ContactGraph) -> Iterator[ModelWarning]:
@@ -266,8 +262,7 @@ def _falls(world: World) -> Iterator[ModelWarning]:
         sizes = world.physics.gravity.magnitude * h * h / world.bodies.smallest
         if sizes <= FALL_LIMIT:
             return
-        what = sentence("falls_far")
-        yield ModelWarning(None, what, sizes, "", FALL_LIMIT, sentence("smaller_dt"))
+        yield ModelWarning(None, sentence("falls_far"), sizes, "", FALL_LIMIT, sentence("smaller_dt"))
 
 
 def _more_substeps(world: World, factor: float) -> str:

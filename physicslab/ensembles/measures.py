@@ -187,10 +187,8 @@ class Measures:
         self._path = _quantities(self._expressions[name] for name in path)
         self._end = _quantities(self._expressions[name] for name in self._expressions.keys() - path)
         self._on_path = path
-        self._since, self._impacts = (
-            0,
-            any(name.startswith(_WHICH) for one in self._expressions.values() for name in one.names()),
-        )
+        self._since, named = 0, (name for one in self._expressions.values() for name in one.names())
+        self._impacts = any(name.startswith(_WHICH) for name in named)
         world.contacts.read |= self._impacts
         self.units = {name: self._tried(name) for name in self._names}
         self._record, self._ends = Record(world, self._path), Record(world, self._end)

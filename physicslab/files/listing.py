@@ -35,6 +35,14 @@ def scene_files(directory: Path) -> list[Path]:
     return [path for path in reversed(_by_age(directory, "json", "step")) if offered(path)]
 
 
+def scenes_here() -> list[Path]:
+    """Return the scene files of the working directory; none where it cannot be read."""
+    try:
+        return scene_files(Path.cwd())
+    except OSError:
+        return []
+
+
 @dataclass(frozen=True, slots=True)
 class Entry:
     """A file or a folder, and why it is no scene; empty for folders and scenes."""

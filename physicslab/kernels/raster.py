@@ -17,31 +17,8 @@ from numba import uint32
 from numpy.typing import NDArray
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
-from physicslab.kernels.finishes import (
-    BLACK,
-    DEEP,
-    DIAGONAL,
-    FLAT,
-    GROUND,
-    LIGHT_REACH,
-    LIGHT_X,
-    LIGHT_Y,
-    LIT,
-    SHADOW_DOWN,
-    SHADOW_FROM,
-    SHADOW_SOFT,
-    WEDGE,
-    WEDGE_FROM,
-    WEDGE_REACH,
-    WEDGE_SHARE,
-    WHITE,
-    hatched,
-    lit,
-    mixed,
-    shaded,
-    textured,
-    unit,
-)  # fmt: skip
+from physicslab.kernels import finishes as F
+from physicslab.kernels.finishes import hatched, lit, mixed, shaded, textured, unit
 
 Pixels = Annotated[NDArray[np.uint32], uint32[:, ::1]]
 """A uint32 array (height, width): a picture."""
@@ -115,7 +92,7 @@ def _disc_edge(
 def _shadow_of_disc(pixels: Pixels, x: float, y: float, r: float, opacity: float) -> None:
     """Paint what is seen of a disc's shadow around it."""
     height, width = pixels.shape
-    outer, own, middle = r + SHADOW_SOFT, r - 0.5, y + SHADOW_DOWN
+    outer, own, middle = r + F.SHADOW_SOFT, r - 0.5, y + F.SHADOW_DOWN
     for row in range(_pixel(middle - outer, height), _pixel(middle + outer, height)):
         dy, from_own = row + 0.5 - middle, row + 0.5 - y
         reach = math.sqrt(max(outer * outer - dy * dy, 0.0))
@@ -126,15 +103,15 @@ def _shadow_of_disc(pixels: Pixels, x: float, y: float, r: float, opacity: float
             for column in range(first, end):
                 dx = column + 0.5 - x
                 away = math.sqrt(dx * dx + dy * dy) - r
-                share = opacity * unit(0.5 - 0.5 * away / SHADOW_SOFT)
-                pixels[row, column] = mixed(int(pixels[row, column]), BLACK, share)
+                share = opacity * unit(0.5 - 0.5 * away / F.SHADOW_SOFT)
+                pixels[row, column] = mixed(int(pixels[row, column]), F.BLACK, share)
 
 
 @inlined
 def _wedge(pixels: Pixels, x: float, y: float, r: float, angle: float) -> None:
     """Paint a bright sector from the middle of a disc towards its angle."""
     height, width = pixels.shape
-    half, reach = WEDGE * (1.0 + 3.0 / r), WEDGE_REACH * r
+    half, reach = F.WEDGE * (1.0 + 3.0 / r), F.WEDGE_REACH * r
     low_x, low_y = math.cos(angle - half), -math.sin(angle - half)
     high_x, high_y = math.cos(angle + half), -math.sin(angle + half)
     tip_x, tip_y = math.cos(angle), -math.sin(angle)
@@ -147,7 +124,7 @@ def _wedge(pixels: Pixels, x: float, y: float, r: float, angle: float) -> None:
             cover = unit(0.5 + dx * low_y - dy * low_x)
             cover *= unit(0.5 + dy * high_x - dx * high_y)
             cover *= unit(0.5 + reach - math.sqrt(dx * dx + dy * dy))
-            pixels[row, column] = mixed(int(pixels[row, column]), WHITE, WEDGE_SHARE * cover)
+            pixels[row, column] = mixed(int(pixels[row, column]), F.WHITE, F.WEDGE_SHARE * cover)
 
 
 @kernel
@@ -162,7 +139,7 @@ def paint_discs(
     """
     height, width = pixels.shape
     for i in range(len(radius) if shadow > 0.0 else 0):
-        if radius[i] >= SHADOW_FROM:
+        if radius[i] >= F.SHADOW_FROM:
             _shadow_of_disc(pixels, centre[i, 0], centre[i, 1], radius[i], shadow)
     for i in range(len(radius)):
         x, y, r, kind = centre[i, 0], centre[i, 1], radius[i], finish[i]
@@ -171,30 +148,30 @@ def paint_discs(
         c, s = math.cos(angle[i]), math.sin(angle[i])
         band = min(rim_width, 0.35 * r)
         outer, inner = r + 0.5, max(r - band - 0.5, 0.0)
-        per_square = 1.0 / (LIGHT_REACH * r * r)
+        per_square = 1.0 / (F.LIGHT_REACH * r * r)
         for row in range(_pixel(y - outer, height), _pixel(y + outer, height)):
             dy = row + 0.5 - y
             reach = math.sqrt(max(outer * outer - dy * dy, 0.0))
             core = math.sqrt(max(inner * inner - dy * dy, 0.0))
             left, right = _pixel(x - reach, width), _pixel(x + reach, width)
             core_left, core_right = _pixel(x - core, width), _pixel(x + core, width)
-            below = dy + LIGHT_Y * r
+            below = dy + F.LIGHT_Y * r
             level = mixed(bright, dim, unit((below * below + 0.5 * r * r) * per_square))
             _disc_edge(pixels, row, left, core_left, x, dy, r, band, level, edge)
-            if kind == FLAT:
+            if kind == F.FLAT:
                 for column in range(core_left, core_right):
                     pixels[row, column] = inside
             else:
                 for column in range(core_left, core_right):
                     dx = column + 0.5 - x
-                    away = dx + LIGHT_X * r
+                    away = dx + F.LIGHT_X * r
                     colour = mixed(bright, dim, unit((away * away + below * below) * per_square))
-                    if kind >= GROUND:
+                    if kind >= F.GROUND:
                         u, v = c * dx - s * dy, s * dx + c * dy
                         colour = textured(kind, u, v, colour, edge, int(pixels[row, column]))
                     pixels[row, column] = colour
             _disc_edge(pixels, row, core_right, right, x, dy, r, band, level, edge)
-        if r >= WEDGE_FROM and kind >= LIT and kind != GROUND:
+        if r >= F.WEDGE_FROM and kind >= F.LIT and kind != F.GROUND:
             _wedge(pixels, x, y, r, angle[i])
 
 
@@ -242,7 +219,7 @@ def _shadow_of_box(
 ) -> None:
     """Paint what is seen of a box's shadow around it."""
     height, width = pixels.shape
-    middle, out = y + SHADOW_DOWN, SHADOW_SOFT
+    middle, out = y + F.SHADOW_DOWN, F.SHADOW_SOFT
     extent = abs(s) * (a + out) + abs(c) * (b + out)
     for row in range(_pixel(middle - extent, height), _pixel(middle + extent, height)):
         dy = row + 0.5 - middle
@@ -258,7 +235,7 @@ def _shadow_of_box(
                 u, v = max(beyond_u, 0.0), max(beyond_v, 0.0)
                 away = math.sqrt(u * u + v * v) + min(max(beyond_u, beyond_v), 0.0)
                 share = opacity * unit(0.5 - 0.5 * away / out)
-                pixels[row, column] = mixed(int(pixels[row, column]), BLACK, share)
+                pixels[row, column] = mixed(int(pixels[row, column]), F.BLACK, share)
 
 
 @kernel
@@ -274,7 +251,7 @@ def paint_boxes(
     height, width = pixels.shape
     for i in range(len(angle) if shadow > 0.0 else 0):
         a, b = half[i, 0], half[i, 1]
-        if min(a, b) >= SHADOW_FROM:
+        if min(a, b) >= F.SHADOW_FROM:
             c, s = math.cos(angle[i]), math.sin(angle[i])
             _shadow_of_box(pixels, centre[i, 0], centre[i, 1], a, b, c, s, shadow)
     for i in range(len(angle)):
@@ -285,7 +262,7 @@ def paint_boxes(
         band = min(rim_width, 0.35 * min(a, b))
         core = band + 0.5
         extent = abs(s) * a + abs(c) * b + 0.75
-        depth = max(DEEP, 2.0 * extent) if kind == GROUND else 2.0 * extent
+        depth = max(F.DEEP, 2.0 * extent) if kind == F.GROUND else 2.0 * extent
         for row in range(_pixel(y - extent, height), _pixel(y + extent, height)):
             dy = row + 0.5 - y
             left, right = _box_run(c, s, dy, a + 0.5, b + 0.5, x, width)
@@ -294,12 +271,12 @@ def paint_boxes(
                 core_left = core_right = right
             level = mixed(bright, dim, unit((dy + extent) / depth))
             _box_edge(pixels, row, left, core_left, x, dy, c, s, a, b, band, level, edge)
-            if kind == GROUND:  # by itself: ground fills half of many pictures
-                ahead, place = (c + s) * DIAGONAL, (c - s) * DIAGONAL * dy
+            if kind == F.GROUND:  # by itself: ground fills half of many pictures
+                ahead, place = (c + s) * F.DIAGONAL, (c - s) * F.DIAGONAL * dy
                 for column in range(core_left, core_right):
                     diagonal = place + ahead * (column + 0.5 - x)
                     pixels[row, column] = hatched(diagonal, level, edge)
-            elif kind > GROUND:
+            elif kind > F.GROUND:
                 for column in range(core_left, core_right):
                     dx = column + 0.5 - x
                     u, v = c * dx - s * dy, s * dx + c * dy
@@ -347,10 +324,10 @@ def paint_rounded(
             left, right, top, bottom = min(left, at_x), max(right, at_x), min(top, at_y), max(bottom, at_y)
             x, y = x + at_x / count, y + at_y / count
         extent = bottom - top + 2.0 * radius[i]
-        casts = shadow > 0.0 and min(extent, right - left + 2.0 * radius[i]) >= 2.0 * SHADOW_FROM
-        down, soft = (SHADOW_DOWN, SHADOW_SOFT) if casts else (0.0, 0.5)
+        casts = shadow > 0.0 and min(extent, right - left + 2.0 * radius[i]) >= 2.0 * F.SHADOW_FROM
+        down, soft = (F.SHADOW_DOWN, F.SHADOW_SOFT) if casts else (0.0, 0.5)
         reach = radius[i] + soft
-        depth_of_light = max(DEEP, extent) if kind == GROUND else extent
+        depth_of_light = max(F.DEEP, extent) if kind == F.GROUND else extent
         along_x, along_y = corners[i, 0] - x, corners[i, 1] - y
         length = max(math.sqrt(along_x * along_x + along_y * along_y), 1e-9)
         c, s = along_x / length, along_y / length
@@ -362,10 +339,10 @@ def paint_rounded(
                 depth = radius[i] - _beyond_core(px, py, corners, i, count)
                 if casts and depth < 0.5:
                     away = _beyond_core(px, py - down, corners, i, count) - radius[i]
-                    under = mixed(under, BLACK, shadow * unit(0.5 - 0.5 * away / soft))
+                    under = mixed(under, F.BLACK, shadow * unit(0.5 - 0.5 * away / soft))
                 if depth > -0.5:
                     colour = level
-                    if kind >= GROUND:
+                    if kind >= F.GROUND:
                         dx, dy = px - x, py - y
                         colour = textured(kind, c * dx + s * dy, c * dy - s * dx, level, edge, under)
                     under = mixed(under, _rimmed(depth, rim_width, colour, edge), unit(depth + 0.5))

@@ -13,10 +13,8 @@ MANIFOLD = np.dtype(
         ("wall", np.int64),  # which of the bounds (0 left, 1 bottom, 2 right, 3 top), -1 for a pair of bodies
         ("a", np.int64),  # rows
         ("b", np.int64),
-        (
-            "count",
-            np.int64,
-        ),  # points in use; negative for a pair in event-driven motion, which the contact step skips
+        # Points in use; negative for a pair in event-driven motion, which the contact step skips.
+        ("count", np.int64),
         ("normal_x", np.float64),  # unit, from A to B
         ("normal_y", np.float64),
         ("friction", np.float64),
@@ -50,10 +48,8 @@ POINT = np.dtype(
         ("arm_by", np.float64),
         ("found_separation", np.float64),  # in the base pose
         ("separation", np.float64),  # now; negative where they overlap
-        (
-            "ahead",
-            np.int64,
-        ),  # 1 where it approaches fast and meets after this substep: an impact of the next one
+        # 1 where it approaches fast and meets after this substep: an impact of the next one.
+        ("ahead", np.int64),
         ("normal_mass", np.float64),  # effective masses
         ("tangent_mass", np.float64),
         ("normal_impulse", np.float64),  # in one substep, kept for warm starting

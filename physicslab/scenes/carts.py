@@ -13,7 +13,7 @@ _TRACK = 4.5
 @Scene(
     title="Carts on a track",
     description="1 kg at 2 m/s meets 2 kg: together they keep 2 kg m/s, but not their energy, as e is 0.8.",
-    view=(-4.9, -1.6, 4.9, 2.4),
+    view=(-4.9, -0.3, 4.9, 1.2),
     moment=2.2,
     teaches=("momentum", "collisions", "energy"),
     tags=("solid bodies",),

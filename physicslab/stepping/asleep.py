@@ -1,25 +1,19 @@
 """Steps in which everything sleeps."""
 
-from typing import Any
-
 from physicslab.contacts.islands import all_asleep
 from physicslab.ecs.sentences import sentence
 from physicslab.state.state import State
 from physicslab.stepping.plan import StepPlan
-from physicslab.stepping.stepper import Advance
+from physicslab.stepping.stepper import Advance, Stepper
 from physicslab.systems.schedule import Schedule
 
 
-class Asleep:
+class Asleep(Stepper):
     """Advances the clock alone, while all that could move sleeps."""
 
     name: str = "asleep"
     title: str = "Everything sleeps: only time passes"
-    leaps: bool = False
-    keeps_balance: bool = False
     leaves_forces: bool = True
-    samples: bool = False
-    kernels: tuple[Any, ...] = ()
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self.reason = sentence("everything_sleeps")
@@ -28,10 +22,6 @@ class Asleep:
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
         """Return why bodies cannot sleep, or ``None``."""
         return None if state.sleep.on else sentence("stays_awake")
-
-    def holds(self, state: State) -> bool:
-        """Return True: whether everything sleeps is found at every step."""
-        return True
 
     def ready(self, state: State, h: float) -> bool:
         """Whether nothing would happen."""

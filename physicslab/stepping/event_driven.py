@@ -19,7 +19,7 @@ from physicslab.state.state import State
 from physicslab.stepping.ballistic import pairs_that_may_meet, turning_rows, with_links
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.rigid import Rigid
-from physicslab.stepping.stepper import Advance, Stretch, divisions
+from physicslab.stepping.stepper import Advance, Stepper, Stretch, divisions
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
@@ -38,7 +38,7 @@ _run_events: Callable[..., tuple[int, int, int, float]] = events.run_events
 _IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 
 
-class EventDriven:
+class EventDriven(Stepper):
     """Advances bodies in closed form from impact to impact.
 
     Where one comes to rest on another the flight ends, and the next stepper makes the rest of the step, and
@@ -51,9 +51,6 @@ class EventDriven:
 
     name: str = "event_driven"
     title: str = "Impacts at their exact times"
-    leaps: bool = False
-    keeps_balance: bool = False
-    leaves_forces: bool = False
     samples: bool = True
     kernels: tuple[Any, ...] = (events.run_events, near_pairs.carry_over, slots.list_scalar)
 

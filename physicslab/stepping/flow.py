@@ -17,7 +17,7 @@ from physicslab.stepping.accounting import put_together
 from physicslab.stepping.fastest_body import changes_fast
 from physicslab.stepping.method import tolerance_for
 from physicslab.stepping.plan import StepPlan
-from physicslab.stepping.stepper import Advance, Stretch, divisions
+from physicslab.stepping.stepper import Advance, Stepper, Stretch, divisions
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.joint import JointSystem
 from physicslab.systems.schedule import Schedule
@@ -34,14 +34,12 @@ class NotSmooth(ArithmeticError):
     """A force in Python jumps, or those of joints grow without limit: steps that follow them end nowhere."""
 
 
-class Flow:
+class Flow(Stepper):
     """Advances the smooth motion of a world by the flow of an integrator."""
 
     name: str = "flow"
     title: str = "Steps as one compiled flow"
     leaps: bool = True
-    keeps_balance: bool = False
-    leaves_forces: bool = False
     samples: bool = True
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
@@ -60,10 +58,6 @@ class Flow:
     def holds(self, state: State) -> bool:
         """Whether no number was changed that the layout, or the choice of a method, depends on."""
         return not self._ode.outdated(state)
-
-    def ready(self, state: State, h: float) -> bool:
-        """Be ready for any step."""
-        return True
 
     @property
     def whole(self) -> bool:

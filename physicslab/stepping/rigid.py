@@ -33,7 +33,7 @@ from physicslab.stepping.flow import NotSmooth
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.rigid_motion import MadeStep, RigidMotion
 from physicslab.stepping.rigid_rows import RigidRows
-from physicslab.stepping.stepper import Advance, divisions
+from physicslab.stepping.stepper import Advance, Stepper, divisions
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.resolve import ResolveSystem
 from physicslab.systems.schedule import Schedule
@@ -42,7 +42,7 @@ from physicslab.systems.system import Stage
 _IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 
 
-class Rigid:
+class Rigid(Stepper):
     """Advances bodies as a constrained system, from event to event.
 
     Nothing is remembered between steps: what touches follows from the state. So a step that changed no bit of
@@ -69,9 +69,6 @@ class Rigid:
 
     name: str = "rigid"
     title: str = "Rigid contacts, events at their exact times"
-    leaps: bool = False
-    keeps_balance: bool = False
-    leaves_forces: bool = False
     samples: bool = True
     kernels: tuple[Any, ...] = (
         step.make_step, write_points, near_pairs.carry_over, slots.list_scalar,
@@ -212,12 +209,8 @@ class Rigid:
 
     def _scene(self, state: State) -> tuple[Any, ...]:
         """Return what the kernels take of the state, beside the state of motion."""
-        material, velocity, bodies, ode = (
-            state.table(Material),
-            state.table(Velocity),
-            state.bodies,
-            self._ode,
-        )
+        material, velocity = state.table(Material), state.table(Velocity)
+        bodies, ode = state.bodies, self._ode
         integers, lengths, pool = shapes_of(state)
         columns = (
             velocity.present, material["friction"], material["restitution"], bodies.inverse_mass,
@@ -303,9 +296,8 @@ class RigidRecords:
     def write(self, state: State, made: MadeStep, h: float) -> None:
         """Write the closed points and the impacts of a step of ``h`` seconds."""
         contacts = state.contacts
-        contacts.recorded = (
-            0  # blank: what soft steps before have left would depend on where a run was parted
-        )
+        # Blank: what soft steps before have left would depend on where a run was parted.
+        contacts.recorded = 0
         if contacts.wide.filled:
             contacts.wide.reset(len(state.entity_index))
         pairs, number = self._list(state, made)

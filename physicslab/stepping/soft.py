@@ -13,7 +13,7 @@ from physicslab.state.state import State
 from physicslab.stepping.accounting import held_in, open_account
 from physicslab.stepping.bounds import return_inside
 from physicslab.stepping.plan import StepPlan
-from physicslab.stepping.stepper import Advance, divisions, falls_far
+from physicslab.stepping.stepper import Advance, Stepper, divisions, falls_far
 from physicslab.stepping.substeps import Span, Substeps
 from physicslab.systems.broad_phase import BroadPhaseSystem
 from physicslab.systems.contact import ContactSystem
@@ -26,7 +26,7 @@ _CALL_NS = 100_000_000
 """Time [ns] that a call takes at most, judged by the last one: what stops a run waits for its end."""
 
 
-class Soft:
+class Soft(Stepper):
     """Goes through the stages of every substep, in one compiled loop.
 
     It can advance any world, so it is the last of the list. Where only systems of the engine act, it makes
@@ -45,9 +45,7 @@ class Soft:
 
     name: str = "contact"
     title: str = "Steps stage by stage, contacts within them"
-    leaps: bool = False
     leaves_forces: bool = True
-    samples: bool = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self.substeps = schedule, Substeps(state, schedule, plan)
@@ -76,10 +74,6 @@ class Soft:
         """Whether the sub-integrated bodies and their forces are still the same."""
         split = self.substeps.split
         return split is None or not split.outdated(state)
-
-    def ready(self, state: State, h: float) -> bool:
-        """Be ready for any step."""
-        return True
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Make ``steps`` steps or fewer; where one fails, those before it are counted."""

@@ -116,14 +116,30 @@ class Stepper(Advancer, Protocol):
     """One way to advance a state, made for its structure and remade when that changes.
 
     To add one, write its file, and name it in the list of :mod:`physicslab.stepping.select`, before those
-    over which it is preferred.
+    over which it is preferred. One that says nothing else can make any step, and does none of what the
+    attributes say.
     """
+
+    reason: str = ""
+    kernels: tuple[Any, ...] = ()
+    leaps: bool = False
+    keeps_balance: bool = False
+    leaves_forces: bool = False
+    samples: bool = False
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None: ...
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
         """Return why this stepper cannot advance such a world, or ``None``."""
+
+    def holds(self, state: State) -> bool:
+        """Return True: it was made from no numbers."""
+        return True
+
+    def ready(self, state: State, h: float) -> bool:
+        """Return True: it can make any step."""
+        return True
 
 
 def divisions(state: State, h: float) -> int:

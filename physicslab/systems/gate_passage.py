@@ -172,9 +172,7 @@ class Passage:
             left = (value > 0.0) == (below > 0.0)
             exact = value == 0.0
             low, high = np.where(left | exact, share, low), np.where(left & ~exact, high, share)
-            below, above = (
-                np.where(left, value, np.where(stays == -1, 0.5 * below, below)),
-                np.where(left, np.where(stays == 1, 0.5 * above, above), value),
-            )
+            below = np.where(left, value, np.where(stays == -1, 0.5 * below, below))
+            above = np.where(left, np.where(stays == 1, 0.5 * above, above), value)
             stays = np.where(left, np.int8(1), np.int8(-1))  # the end that stays where it was: high, or low
         return share

@@ -60,11 +60,8 @@ class MoleculeSystem(ForceSystem):
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row how fast it bounces where its speed brings it near another like it [rad/s]."""
         table, rows, rates = state.table(Molecule), self._acting, np.zeros(len(state.entity_index))
-        depth, distance, inverse = (
-            table["depth"][rows],
-            table["distance"][rows],
-            state.bodies.inverse_mass[rows],
-        )
+        depth, distance = table["depth"][rows], table["distance"][rows]
+        inverse = state.bodies.inverse_mass[rows]
         with np.errstate(all="ignore"):
             energy = 0.5 * np.square(state.table(Velocity)["linear"][rows]).sum(axis=1) / (inverse * depth)
             s = 1.0 + np.sqrt(1.0 + np.where(inverse * depth > 0.0, energy, 0.0))

@@ -247,11 +247,9 @@ def activate(
         scalar[scalar_count + k] = p
     for k in range(came - 1, -1, -1):
         proximity_count, to = proximity_count - 1, near[k]
-        proximity[2 * to], proximity[2 * to + 1], activation_distance[to] = (
-            proximity[2 * proximity_count],
-            proximity[2 * proximity_count + 1],
-            activation_distance[proximity_count],
-        )
+        proximity[2 * to] = proximity[2 * proximity_count]
+        proximity[2 * to + 1] = proximity[2 * proximity_count + 1]
+        activation_distance[to] = activation_distance[proximity_count]
     _merge_tail(manifolds, scalar, scalar_count, scalar_count + came, len(entities))
     return proximity_count, count + came, scalar_count + came
 

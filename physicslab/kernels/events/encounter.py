@@ -305,10 +305,8 @@ def time_apart(
     a, b, wall = manifold.a, manifold.b, manifold.wall
     half_x, half_y = _reaches(shapes, b, angle)
     s = now - paths[b, 10]
-    x, y = (
-        paths[b, 0] + s * (paths[b, 4] + 0.5 * s * paths[b, 8]),
-        paths[b, 2] + s * (paths[b, 6] + 0.5 * s * paths[b, 9]),
-    )
+    x = paths[b, 0] + s * (paths[b, 4] + 0.5 * s * paths[b, 8])
+    y = paths[b, 2] + s * (paths[b, 6] + 0.5 * s * paths[b, 9])
     vx, vy, wx, wy = paths[b, 4] + s * paths[b, 8], paths[b, 6] + s * paths[b, 9], paths[b, 8], paths[b, 9]
     if wall >= 0:
         sign = 1.0 if wall < 2 else -1.0

@@ -135,11 +135,8 @@ def meet_link(
     shapes: Shapes, chain: int, k: int, i: int, course: Course, turn: _Turn, span: float, min_speed: float
 ) -> tuple[float, int]:
     """Return in how many seconds the body in row i meets link k, up to ``span``, and at which feature."""
-    link, radius, seam = (
-        link_of(shapes, chain, k),
-        shapes.radius[i],
-        SEAM * (shapes.reach[chain] + shapes.reach[i]),
-    )
+    link, radius = link_of(shapes, chain, k), shapes.radius[i]
+    seam = SEAM * (shapes.reach[chain] + shapes.reach[i])
     dx, dy, ux, uy, wx, wy = course
     min_rate = ROUNDING * (abs(ux) + abs(uy)) + min_speed
     gap, speed, pull, nearest = gap_to_link(shapes, chain, k, i, course, turn)

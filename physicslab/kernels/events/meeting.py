@@ -130,6 +130,28 @@ def _extrema(course: Course, span: float) -> tuple[float, float, float]:
 
 
 @inlined
+def _first_crossing(course: Course, reach: float, span: float, height: float, side: float) -> float:
+    """Return when a circle is crossed, from outside where ``side`` is 1, from within where it is -1.
+
+    Or when one that is on the other side turns, before it has come back; infinity where neither is.
+    """
+    t1, t2, t3 = _extrema(course, span)
+    low, before = 0.0, side * height
+    for k in range(4):
+        high = t1 if k == 0 else (t2 if k == 1 else (t3 if k == 2 else span))
+        if high <= low:
+            continue
+        after = side * _height(course, reach, high)[0]
+        if after < before and after <= 0.0:
+            if before > 0.0:
+                return _root(course, reach, low, high)
+            if low > 0.0:
+                return low
+        low, before = high, after
+    return math.inf
+
+
+@inlined
 def meet_circle(course: Course, reach: float, span: float, min_speed: float) -> float:
     """Return when the centres of two circles come within ``reach``, up to ``span``, or infinity.
 
@@ -150,20 +172,7 @@ def meet_circle(course: Course, reach: float, span: float, min_speed: float) -> 
         return 2.0 * height / (math.sqrt(square) - rate)
     if height <= 0.0 and rate <= 0.0 and ux * ux + uy * uy + dx * wx + dy * wy < 0.0:
         return 0.0  # at rest on each other, and pressed together
-    t1, t2, t3 = _extrema(course, span)
-    low, before = 0.0, height
-    for k in range(4):
-        high = t1 if k == 0 else (t2 if k == 1 else (t3 if k == 2 else span))
-        if high <= low:
-            continue
-        after = _height(course, reach, high)[0]
-        if after < before and after <= 0.0:
-            if before > 0.0:
-                return _root(course, reach, low, high)
-            if low > 0.0:
-                return low  # it turns before the two have come apart
-        low, before = high, after
-    return math.inf
+    return _first_crossing(course, reach, span, height, 1.0)
 
 
 @inlined
@@ -180,20 +189,7 @@ def leave_circle(course: Course, reach: float, span: float, min_speed: float) ->
             return 0.0
         if rate >= 0.0 and ux * ux + uy * uy + dx * wx + dy * wy > 0.0:
             return 0.0
-    t1, t2, t3 = _extrema(course, span)
-    low, before = 0.0, height
-    for k in range(4):
-        high = t1 if k == 0 else (t2 if k == 1 else (t3 if k == 2 else span))
-        if high <= low:
-            continue
-        after = _height(course, reach, high)[0]
-        if after > before and after >= 0.0:
-            if before < 0.0:
-                return _root(course, reach, low, high)
-            if low > 0.0:
-                return low  # it turns before it is within again
-        low, before = high, after
-    return math.inf
+    return _first_crossing(course, reach, span, height, -1.0)
 
 
 @inlined

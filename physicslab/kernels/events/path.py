@@ -77,10 +77,8 @@ def advance_to(
     s = _advanced(paths, i, now, low)
     angle[i] += s * angular[i]
     px, py = paths[i, _M] * paths[i, _A] * s, paths[i, _M] * paths[i, _A + 1] * s
-    middle_x, middle_y = (
-        paths[i, _X] + 0.5 * s * paths[i, _VX],
-        paths[i, _X + 2] + 0.5 * s * paths[i, _VX + 2],
-    )
+    middle_x = paths[i, _X] + 0.5 * s * paths[i, _VX]
+    middle_y = paths[i, _X + 2] + 0.5 * s * paths[i, _VX + 2]
     book(account[GRAVITY], 0, 0.0, px, py, middle_x * py - middle_y * px)
     x, x_low, y, y_low = place(paths, i, now, low)
     vx, vx_low, vy, vy_low = velocity(paths, i, now, low)

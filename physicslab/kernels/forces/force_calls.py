@@ -49,11 +49,8 @@ class ForceKernel:
 
     def __init__(self, function: Callable[..., None]) -> None:
         self.py_func = function
-        self.__name__, self.__module__, self.__doc__ = (
-            function.__name__,
-            function.__module__,
-            function.__doc__,
-        )
+        self.__name__, self.__module__ = function.__name__, function.__module__
+        self.__doc__ = function.__doc__
         self.overloads: dict[Any, Any] = {}
         self.compiled = False
         self.is_fallback = False

@@ -63,10 +63,8 @@ def _measure(node: Numbers, x: Numbers, y: Numbers, mass: Numbers, order: Rows) 
     """Set the columns of a node that holds the bodies ``order``."""
     low_x, high_x, low_y, high_y = np.inf, -np.inf, np.inf, -np.inf
     total, mx, my = 0.0, 0.0, 0.0
-    x0, y0 = (
-        x[order[0]],
-        y[order[0]],
-    )  # the centre is computed relative to this: far from the origin digits are lost
+    # The centre is computed relative to this: far from the origin digits are lost.
+    x0, y0 = x[order[0]], y[order[0]]
     for i in order:
         low_x, high_x = min(low_x, x[i]), max(high_x, x[i])
         low_y, high_y = min(low_y, y[i]), max(high_y, y[i])

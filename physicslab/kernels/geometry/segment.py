@@ -215,10 +215,8 @@ def _touch_segment(x: float, y: float, a: Outline, b: Outline, pool: Vectors, ma
     nx, ny = ty, -tx
     height = nx * (x - px) + ny * (y - py)
     gap = _reach_along(x - px, y - py, nx, ny, b, pool)
-    after, before = (
-        _reach_along(x - qx, y - qy, tx, ty, b, pool),
-        _reach_along(x - px, y - py, -tx, -ty, b, pool),
-    )
+    after = _reach_along(x - qx, y - qy, tx, ty, b, pool)
+    before = _reach_along(x - px, y - py, -tx, -ty, b, pool)
     beside, sign = max(after, before), 1.0 if after > before else -1.0
     better, of_vertex, own, ux, uy, feature, ex, ey = _BETTER * b.thin, False, True, nx, ny, 0, px, py
     # Arcs begin before the ends, and hollow ones lie above the segment.

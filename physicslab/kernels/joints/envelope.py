@@ -58,12 +58,8 @@ def _factor(numbers: Any, whole: Any, even: bool, yielding: bool) -> float:
             left = _response(numbers, whole, i, j, even)
             if not even:
                 numbers[matrix + row + j] = left
-            own, first, other = (
-                left,
-                whole[L.FIRST + L.PLACES * j + L.BEGIN],
-                whole[L.FIRST + L.PLACES * j + L.AT],
-            )
-            other -= first
+            own, first = left, whole[L.FIRST + L.PLACES * j + L.BEGIN]
+            other = whole[L.FIRST + L.PLACES * j + L.AT] - first
             for k in range(max(begin, first), j):
                 left -= numbers[factor + row + k] * numbers[factor + other + k]
             if j < i:

@@ -150,11 +150,11 @@ def push_by_rows(target: Any, numbers: Any, whole: Any) -> None:
             x, turn, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + 3 * end
             if x < 0:
                 break
-            pull = numbers[s + L.LAMBDA]
-            target[x] += L.inverse_of(numbers, whole, x) * numbers[j] * pull
-            target[x + 1] += L.inverse_of(numbers, whole, x) * numbers[j + 1] * pull
-            if turn >= 0:
-                target[turn] += L.inverse_of(numbers, whole, turn) * numbers[j + 2] * pull
+            for k in range(3):
+                place = x + k if k < 2 else turn
+                if 0 <= place < whole[L.COORDINATES]:
+                    change = L.inverse_of(numbers, whole, place) * numbers[j + k]
+                    target[place] += change * numbers[s + L.LAMBDA]
 
 
 @force_kernel
@@ -227,18 +227,7 @@ def _solved_changes(numbers: Numbers, whole: Rows) -> None:
     solve(numbers, whole)
     for place in range(m):
         numbers[room + place] = 0.0
-    for i in range(whole[L.ROWS]):
-        s, w = L.first_state(whole) + L.STATE * i, L.FIRST + L.PLACES * i
-        for end in range(L.ENDS):
-            x, angle, j = whole[w + 2 * end], whole[w + 2 * end + 1], s + 3 * end
-            if x < 0:
-                break
-            for k in range(3):
-                place = x + k if k < 2 else angle
-                if 0 <= place < m:
-                    numbers[room + place] += (
-                        L.inverse_of(numbers, whole, place) * numbers[j + k] * numbers[s + L.LAMBDA]
-                    )
+    push_by_rows(numbers[room : room + m], numbers, whole)
 
 
 @always_inlined

@@ -13,27 +13,8 @@ from typing import NamedTuple
 from physicslab.kernels import Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import ENERGY, HAND, JOINTS, MOTORS, book
 from physicslab.kernels.arguments import Acting, Inverse, Motion
+from physicslab.kernels.joints import blocks as B
 from physicslab.kernels.joints.blocks import (
-    ACTIVE,
-    BEFORE,
-    BOUNDED,
-    CAP,
-    CHANGE,
-    DIAGONAL,
-    END_A,
-    END_B,
-    ENDS,
-    ERROR,
-    FIRST,
-    GIVES,
-    NOTED,
-    OFF,
-    PLACE,
-    ROW,
-    STATE,
-    TERM,
-    TERMS,
-    WIDTH,
     Joints,
     _unsigned,
     can_move,
@@ -75,7 +56,7 @@ def joint_softness(h: float) -> JointSoftness:
 def _speeds(joints: Joints, k: int, motion: Motion) -> tuple[float, float]:
     """Return how fast the quantities of a node grow [m/s or rad/s]."""
     g, linear, first, second = joints.gradient, motion.linear, 0.0, 0.0
-    for e in range(joints.nodes[k, ENDS], joints.nodes[k + 1, ENDS]):
+    for e in range(joints.nodes[k, B.ENDS], joints.nodes[k + 1, B.ENDS]):
         body = _unsigned(joints.body[e])
         x, y, spin = linear[body, 0], linear[body, 1], motion.angular[body]
         first += g[e, 0] * x + g[e, 1] * y + g[e, 2] * spin
@@ -87,7 +68,7 @@ def _speeds(joints: Joints, k: int, motion: Motion) -> tuple[float, float]:
 def _apply(joints: Joints, k: int, motion: Motion, inverse: Inverse, first: float, second: float) -> None:
     """Change velocities by the impulses of a node."""
     g, linear = joints.gradient, motion.linear
-    for e in range(joints.nodes[k, ENDS], joints.nodes[k + 1, ENDS]):
+    for e in range(joints.nodes[k, B.ENDS], joints.nodes[k + 1, B.ENDS]):
         body = _unsigned(joints.body[e])
         mass, inertia = inverse.mass[body], inverse.inertia[body]
         linear[body, 0] += mass * (first * g[e, 0] + second * g[e, 3])
@@ -98,17 +79,17 @@ def _apply(joints: Joints, k: int, motion: Motion, inverse: Inverse, first: floa
 @always_inlined
 def _impulses(joints: Joints, k: int) -> tuple[float, float]:
     """Return the impulses of a node."""
-    row = joints.nodes[k, ROW]
-    second = joints.impulse[row + 1] if joints.nodes[k, WIDTH] == 2 else 0.0
+    row = joints.nodes[k, B.ROW]
+    second = joints.impulse[row + 1] if joints.nodes[k, B.WIDTH] == 2 else 0.0
     return joints.impulse[row], second
 
 
 @always_inlined
 def _set_impulses(joints: Joints, k: int, first: float, second: float) -> None:
     """Set the impulses of a node."""
-    row = joints.nodes[k, ROW]
+    row = joints.nodes[k, B.ROW]
     joints.impulse[row] = first
-    if joints.nodes[k, WIDTH] == 2:
+    if joints.nodes[k, B.WIDTH] == 2:
         joints.impulse[row + 1] = second
 
 
@@ -134,8 +115,8 @@ def _turn(rotations: Vectors, body: int, angle: float) -> None:
 def _measure(joints: Joints, k: int, t: int, motion: Motion, rotations: Vectors) -> None:
     """Add what a term measures, and its gradient, to those of its node."""
     terms, g = joints.terms, joints.gradient
-    n, place = terms[t, TERM], terms[t, PLACE]
-    i, j, scale, e = joints.a[n], joints.b[n], joints.scale[n], terms[t, END_A]
+    n, place = terms[t, B.TERM], terms[t, B.PLACE]
+    i, j, scale, e = joints.a[n], joints.b[n], joints.scale[n], terms[t, B.END_A]
     _turn(rotations, i, motion.angle[i])
     _turn(rotations, j, motion.angle[j])
     one = measure_turned(
@@ -143,12 +124,12 @@ def _measure(joints: Joints, k: int, t: int, motion: Motion, rotations: Vectors)
         rotations[i, 1], rotations[i, 2], rotations[j, 1], rotations[j, 2],
         joints.axis[n, 0], joints.axis[n, 1],
     )  # fmt: skip
-    joints.state[k, ERROR + place] += scale * one.value
+    joints.state[k, B.ERROR + place] += scale * one.value
     if e >= 0:
         g[e, 3 * place] += scale * one.ax
         g[e, 3 * place + 1] += scale * one.ay
         g[e, 3 * place + 2] += scale * one.turn_a
-    e = terms[t, END_B]
+    e = terms[t, B.END_B]
     if e >= 0:
         g[e, 3 * place] += scale * one.bx
         g[e, 3 * place + 1] += scale * one.by
@@ -159,7 +140,7 @@ def _measure(joints: Joints, k: int, t: int, motion: Motion, rotations: Vectors)
 def _given(joints: Joints, k: int, inverse: Inverse, acting: Acting) -> tuple[float, float]:
     """Return how forces accelerate the quantities of a node."""
     g, force, first, second = joints.gradient, acting.force, 0.0, 0.0
-    for e in range(joints.nodes[k, ENDS], joints.nodes[k + 1, ENDS]):
+    for e in range(joints.nodes[k, B.ENDS], joints.nodes[k + 1, B.ENDS]):
         body = _unsigned(joints.body[e])
         if not acting.unkicked[body]:
             x, y = inverse.mass[body] * force[body, 0], inverse.mass[body] * force[body, 1]
@@ -179,30 +160,30 @@ def begin_joints(
     """
     nodes, state, g = joints.nodes, joints.state, joints.gradient
     for k in range(len(state)):
-        for e in range(nodes[k, ENDS], nodes[k + 1, ENDS]):
+        for e in range(nodes[k, B.ENDS], nodes[k + 1, B.ENDS]):
             g[e, 0] = g[e, 1] = g[e, 2] = g[e, 3] = g[e, 4] = g[e, 5] = 0.0
-        state[k, ERROR] = state[k, ERROR + 1] = 0.0
-        for t in range(nodes[k, TERMS], nodes[k + 1, TERMS]):
+        state[k, B.ERROR] = state[k, B.ERROR + 1] = 0.0
+        for t in range(nodes[k, B.TERMS], nodes[k + 1, B.TERMS]):
             _measure(joints, k, t, motion, rotations)
-        row = nodes[k, ROW]
-        for place in range(nodes[k, WIDTH]):
-            state[k, ERROR + place] -= joints.offset[row + place]
+        row = nodes[k, B.ROW]
+        for place in range(nodes[k, B.WIDTH]):
+            state[k, B.ERROR + place] -= joints.offset[row + place]
             if joints.role[row] != MOTOR:
-                error = state[k, ERROR + place]
+                error = state[k, B.ERROR + place]
                 off = -error if joints.role[row] == LIMIT else abs(error)
                 joints.largest[row + place] = max(joints.largest[row + place], off)
         first, second = _speeds(joints, k, motion)
         if acting.any:
             given, also = _given(joints, k, inverse, acting)
             first, second = first - h * given, second - h * also
-        state[k, BEFORE], state[k, BEFORE + 1] = first, second
-        state[k, NOTED], state[k, NOTED + 1] = _impulses(joints, k)
+        state[k, B.BEFORE], state[k, B.BEFORE + 1] = first, second
+        state[k, B.NOTED], state[k, B.NOTED + 1] = _impulses(joints, k)
 
 
 @always_inlined
 def _bounded(joints: Joints, k: int, impulse: float) -> float:
     """Return the impulse of a node, which a limit only pushes and a motor has not without bounds."""
-    role, cap = joints.role[joints.nodes[k, ROW]], joints.state[k, CAP]
+    role, cap = joints.role[joints.nodes[k, B.ROW]], joints.state[k, B.CAP]
     if role == HOLD:
         return impulse
     return max(0.0 if role == LIMIT else -cap, min(cap, impulse))  # type: ignore[no-any-return]
@@ -212,7 +193,7 @@ def _bounded(joints: Joints, k: int, impulse: float) -> float:
 def warm_start_joints(joints: Joints, motion: Motion, inverse: Inverse, scale: float, h: float) -> None:
     """Apply the impulses of the last substep, ``scale`` times as large, as far as ``h`` seconds allow."""
     for k in range(len(joints.state)):
-        joints.state[k, CAP] = h * joints.strongest[joints.nodes[k, ROW]]
+        joints.state[k, B.CAP] = h * joints.strongest[joints.nodes[k, B.ROW]]
         first, second = _impulses(joints, k)
         first, second = _bounded(joints, k, scale * first), scale * second
         _set_impulses(joints, k, first, second)
@@ -230,17 +211,17 @@ def _limit_correction(joints: Joints, first: int, end: int, inverse: Inverse, so
     nodes, state, stored, stiffness = joints.nodes, joints.state, 0.0, soft.rate / (soft.h * soft.spring)
     lightest, heaviest = 0.0, math.inf
     for k in range(first, end):
-        role = joints.role[nodes[k, ROW]]
-        state[k, CHANGE] = state[k, CHANGE + 1] = 0.0
-        if state[k, STATE] != ACTIVE or role == MOTOR or (role == LIMIT and state[k, ERROR] > 0.0):
+        role = joints.role[nodes[k, B.ROW]]
+        state[k, B.CHANGE] = state[k, B.CHANGE + 1] = 0.0
+        if state[k, B.STATE] != B.ACTIVE or role == MOTOR or (role == LIMIT and state[k, B.ERROR] > 0.0):
             continue
-        for e in range(nodes[k, ENDS], nodes[k + 1, ENDS]):
+        for e in range(nodes[k, B.ENDS], nodes[k + 1, B.ENDS]):
             mass = inverse.mass[joints.body[e]]
             if mass > 0.0:
                 lightest, heaviest = max(lightest, mass), min(heaviest, mass)
-        for place in range(nodes[k, WIDTH]):
-            error, diagonal = state[k, ERROR + place], state[k, DIAGONAL + place]
-            state[k, CHANGE + place] = -soft.rate * error
+        for place in range(nodes[k, B.WIDTH]):
+            error, diagonal = state[k, B.ERROR + place], state[k, B.DIAGONAL + place]
+            state[k, B.CHANGE + place] = -soft.rate * error
             if diagonal > 0.0:
                 stored += stiffness * error * error / diagonal
     if stored == 0.0:
@@ -250,22 +231,23 @@ def _limit_correction(joints: Joints, first: int, end: int, inverse: Inverse, so
     if given > stored:
         share = math.sqrt(stored / given)
         for k in range(first, end):
-            if joints.role[nodes[k, ROW]] == HOLD or state[k, ERROR] < 0.0:
-                state[k, ERROR], state[k, ERROR + 1] = share * state[k, ERROR], share * state[k, ERROR + 1]
+            if joints.role[nodes[k, B.ROW]] == HOLD or state[k, B.ERROR] < 0.0:
+                state[k, B.ERROR] *= share
+                state[k, B.ERROR + 1] *= share
 
 
 @inlined
 def factorise_joints(joints: Joints, inverse: Inverse, soft: JointSoftness) -> None:
     """Choose the nodes that act as far as is known, and factorise all blocks; limit what is corrected."""
     for k in range(len(joints.state)):
-        row, acts = joints.nodes[k, ROW], can_move(joints, k, inverse)
+        row, acts = joints.nodes[k, B.ROW], can_move(joints, k, inverse)
         if joints.role[row] == LIMIT:
             acts = acts and joints.impulse[row] > 0.0
         elif joints.role[row] == MOTOR:
-            acts = acts and abs(joints.impulse[row]) < joints.state[k, CAP]
-        joints.state[k, STATE] = ACTIVE if acts else OFF
+            acts = acts and abs(joints.impulse[row]) < joints.state[k, B.CAP]
+        joints.state[k, B.STATE] = B.ACTIVE if acts else B.OFF
     for block in range(len(joints.groups) - 1):
-        first, end = joints.groups[block, FIRST], joints.groups[block + 1, FIRST]
+        first, end = joints.groups[block, B.FIRST], joints.groups[block + 1, B.FIRST]
         factorise(joints, block, inverse, soft.spring)
         if soft.rate > 0.0:
             _limit_correction(joints, first, end, inverse, soft)
@@ -274,7 +256,7 @@ def factorise_joints(joints: Joints, inverse: Inverse, soft: JointSoftness) -> N
 @always_inlined
 def _wanted(joints: Joints, k: int, place: int, soft: JointSoftness) -> float:
     """Return how fast a quantity of a node is to grow [m/s or rad/s]."""
-    row, error = joints.nodes[k, ROW], joints.state[k, ERROR + place]
+    row, error = joints.nodes[k, B.ROW], joints.state[k, B.ERROR + place]
     if joints.role[row] == MOTOR:
         return joints.target[row]  # type: ignore[no-any-return]
     if joints.role[row] == LIMIT and error > 0.0:
@@ -286,16 +268,16 @@ def _wanted(joints: Joints, k: int, place: int, soft: JointSoftness) -> float:
 def _set_bounds(joints: Joints, block: int, motion: Motion, inverse: Inverse) -> bool:
     """Set impulses to their bounds that would go beyond; return whether any was."""
     state, found = joints.state, False
-    for n in range(joints.groups[block, BOUNDED], joints.groups[block + 1, BOUNDED]):
+    for n in range(joints.groups[block, B.BOUNDED], joints.groups[block + 1, B.BOUNDED]):
         k = joints.bounded[n]
-        if state[k, STATE] == OFF:
+        if state[k, B.STATE] == B.OFF:
             continue
-        now = joints.impulse[joints.nodes[k, ROW]]
-        target = now + state[k, CHANGE]
+        now = joints.impulse[joints.nodes[k, B.ROW]]
+        target = now + state[k, B.CHANGE]
         bound = _bounded(joints, k, target)
         if bound != target:
             _apply(joints, k, motion, inverse, bound - now, 0.0)
-            joints.impulse[joints.nodes[k, ROW]], state[k, STATE], found = bound, OFF, True
+            joints.impulse[joints.nodes[k, B.ROW]], state[k, B.STATE], found = bound, B.OFF, True
     return found
 
 
@@ -303,17 +285,17 @@ def _set_bounds(joints: Joints, block: int, motion: Motion, inverse: Inverse) ->
 def _free(joints: Joints, block: int, motion: Motion, inverse: Inverse, soft: JointSoftness) -> bool:
     """Let nodes act again whose bound does not hold any more; return whether any does."""
     state, found = joints.state, False
-    for n in range(joints.groups[block, BOUNDED], joints.groups[block + 1, BOUNDED]):
+    for n in range(joints.groups[block, B.BOUNDED], joints.groups[block + 1, B.BOUNDED]):
         k = joints.bounded[n]
-        if state[k, STATE] != OFF:
+        if state[k, B.STATE] != B.OFF:
             continue
         speed, _ = _speeds(joints, k, motion)
-        left, row = _wanted(joints, k, 0, soft) - speed, joints.nodes[k, ROW]
+        left, row = _wanted(joints, k, 0, soft) - speed, joints.nodes[k, B.ROW]
         inwards = left > 0.0 if joints.role[row] == LIMIT else left * joints.impulse[row] < 0.0
         if joints.role[row] == MOTOR and joints.impulse[row] == 0.0:
             inwards = left != 0.0 and joints.strongest[row] > 0.0
         if inwards and can_move(joints, k, inverse):
-            state[k, STATE], found = ACTIVE, True
+            state[k, B.STATE], found = B.ACTIVE, True
     return found
 
 
@@ -322,11 +304,11 @@ def _solve_once(joints: Joints, first: int, end: int, motion: Motion, soft: Join
     """Find by how much the impulses of a block's active nodes are to change."""
     state = joints.state
     for k in range(first, end):
-        if state[k, STATE] == ACTIVE:
+        if state[k, B.STATE] == B.ACTIVE:
             speed, also = _speeds(joints, k, motion)
             held, second = _impulses(joints, k) if soft.rate > 0.0 else (0.0, 0.0)
-            state[k, CHANGE] = _wanted(joints, k, 0, soft) - speed - state[k, GIVES] * held
-            state[k, CHANGE + 1] = _wanted(joints, k, 1, soft) - also - state[k, GIVES + 1] * second
+            state[k, B.CHANGE] = _wanted(joints, k, 0, soft) - speed - state[k, B.GIVES] * held
+            state[k, B.CHANGE + 1] = _wanted(joints, k, 1, soft) - also - state[k, B.GIVES + 1] * second
     substitute_forward(joints, first, end)
     substitute_back(joints, first, end)
 
@@ -334,7 +316,7 @@ def _solve_once(joints: Joints, first: int, end: int, motion: Motion, soft: Join
 @inlined
 def _solve_block(joints: Joints, block: int, motion: Motion, inverse: Inverse, soft: JointSoftness) -> bool:
     """Solve the rows of a block at once; return whether impulses still change."""
-    first, end = joints.groups[block, FIRST], joints.groups[block + 1, FIRST]
+    first, end = joints.groups[block, B.FIRST], joints.groups[block + 1, B.FIRST]
     state, changed, size, trials = joints.state, 0.0, 0.0, 0
     while trials < _TRIALS:
         trials += 1
@@ -344,9 +326,9 @@ def _solve_block(joints: Joints, block: int, motion: Motion, inverse: Inverse, s
             changed = 1.0
             continue
         for k in range(first, end):
-            if state[k, STATE] == ACTIVE:
+            if state[k, B.STATE] == B.ACTIVE:
                 before, held = _impulses(joints, k)
-                now, other = _bounded(joints, k, before + state[k, CHANGE]), held + state[k, CHANGE + 1]
+                now, other = _bounded(joints, k, before + state[k, B.CHANGE]), held + state[k, B.CHANGE + 1]
                 _set_impulses(joints, k, now, other)
                 _apply(joints, k, motion, inverse, now - before, other - held)
                 changed += abs(now - before) + abs(other - held)
@@ -373,8 +355,8 @@ def note_joints(joints: Joints, motion: Motion) -> None:
     """Note speeds and impulses as they are now."""
     state = joints.state
     for k in range(len(state)):
-        state[k, BEFORE], state[k, BEFORE + 1] = _speeds(joints, k, motion)
-        state[k, NOTED], state[k, NOTED + 1] = _impulses(joints, k)
+        state[k, B.BEFORE], state[k, B.BEFORE + 1] = _speeds(joints, k, motion)
+        state[k, B.NOTED], state[k, B.NOTED + 1] = _impulses(joints, k)
 
 
 @inlined
@@ -387,9 +369,9 @@ def book_work(joints: Joints, motion: Motion, account: Vectors, whole: bool) -> 
     for k in range(len(state)):
         impulse, second = _impulses(joints, k)
         speed, also = _speeds(joints, k, motion)
-        made = (impulse - (0.0 if whole else state[k, NOTED])) * (state[k, BEFORE] + speed)
-        made += (second - (0.0 if whole else state[k, NOTED + 1])) * (state[k, BEFORE + 1] + also)
-        cause = MOTORS if joints.role[joints.nodes[k, ROW]] == MOTOR else JOINTS
+        made = (impulse - (0.0 if whole else state[k, B.NOTED])) * (state[k, B.BEFORE] + speed)
+        made += (second - (0.0 if whole else state[k, B.NOTED + 1])) * (state[k, B.BEFORE + 1] + also)
+        cause = MOTORS if joints.role[joints.nodes[k, B.ROW]] == MOTOR else JOINTS
         account[cause, ENERGY] += 0.5 * made
 
 
@@ -403,9 +385,9 @@ def book_momentum(joints: Joints, motion: Motion, inverse: Inverse, account: Vec
     for k in range(len(state)):
         first, second = _impulses(joints, k)
         if not whole:
-            first, second = first - state[k, NOTED], second - state[k, NOTED + 1]
+            first, second = first - state[k, B.NOTED], second - state[k, B.NOTED + 1]
         x, y, spin, driven = 0.0, 0.0, 0.0, 0.0
-        for e in range(joints.nodes[k, ENDS], joints.nodes[k + 1, ENDS]):
+        for e in range(joints.nodes[k, B.ENDS], joints.nodes[k + 1, B.ENDS]):
             body = _unsigned(joints.body[e])
             px = first * g[e, 0] + second * g[e, 3]
             py = first * g[e, 1] + second * g[e, 4]
@@ -419,6 +401,6 @@ def book_momentum(joints: Joints, motion: Motion, inverse: Inverse, account: Vec
                 spin += turn
             else:
                 driven += turn * motion.angular[body]
-        cause = MOTORS if joints.role[joints.nodes[k, ROW]] == MOTOR else JOINTS
+        cause = MOTORS if joints.role[joints.nodes[k, B.ROW]] == MOTOR else JOINTS
         book(account[cause], 0, 0.0, x, y, spin)
         account[HAND, ENERGY] -= driven

@@ -29,33 +29,10 @@ from physicslab.kernels.float64x8 import (
     take_numbers,
     take_vectors,
 )
+from physicslab.kernels.ode import spring_flow as S
 from physicslab.kernels.ode.drag_flow import fall_in_drag
 from physicslab.kernels.ode.held_drag import Slowed, book_drag, slow, slowed_in
-from physicslab.kernels.ode.spring_flow import (
-    BY_DAMPERS,
-    BY_HAND,
-    BY_SPRINGS,
-    DECAY,
-    DISSIPATED,
-    FINEST,
-    MAX_TURN,
-    MOST_TERMS,
-    SERIES,
-    SIZES,
-    TURNS_FAST,
-    UNIFORM,
-    Links,
-    Places,
-    book_given,
-    book_gravity,
-    flow_springs,
-    gather,
-    named,
-    scatter,
-    steps_of,
-    still_followed,
-    torque_of_gravity,
-)
+from physicslab.kernels.ode.spring_flow import Links, Places
 from physicslab.kernels.wide_layout import WIDE
 
 
@@ -96,7 +73,7 @@ class Full(NamedTuple):
 def _full(numbers: Numbers, at: int, m: int, p: int, n: int) -> Full:
     """Return the arrays that begin at a place of the numbers."""
     places, links = at + 2 * m, at + 2 * m + 9 * p
-    arms = links + p + (4 + MOST_TERMS) * n
+    arms = links + p + (4 + S.MOST_TERMS) * n
     return Full(
         numbers[at : at + m],
         numbers[at + m : places],
@@ -282,23 +259,23 @@ def _book(
         i = links.b[slot] if at_b else links.a[slot]
         x, y = impulse * full.along_x[slot], impulse * full.along_y[slot]
         turn = places.place[i, 0] * y - places.place[i, 1] * x
-        for account, share in ((BY_SPRINGS, -1.0), (BY_DAMPERS, 1.0)):
+        for account, share in ((S.BY_SPRINGS, -1.0), (S.BY_DAMPERS, 1.0)):
             given[account] += share * x
             given[account + 1] += share * y
             given[account + 2] += share * turn
-    to = BY_DAMPERS if len(held) > 0 else BY_SPRINGS
+    to = S.BY_DAMPERS if len(held) > 0 else S.BY_SPRINGS
     for k in range(len(ends)):
         i = ends[k]
         x, y = full.push[i, 0], full.push[i, 1]
         given[to] -= x
         given[to + 1] -= y
         given[to + 2] -= places.place[i, 0] * y - places.place[i, 1] * x
-        given[BY_HAND] -= x * places.speed[i, 0] + y * places.speed[i, 1]
+        given[S.BY_HAND] -= x * places.speed[i, 0] + y * places.speed[i, 1]
     if turns:
         for i in range(len(full.spin_gain)):
             if full.spin_gain[i] == 0.0:
-                given[BY_SPRINGS + 2] -= full.twist_push[i]
-                given[BY_HAND] -= full.twist_push[i] * full.spin[i]
+                given[S.BY_SPRINGS + 2] -= full.twist_push[i]
+                given[S.BY_HAND] -= full.twist_push[i] * full.spin[i]
 
 
 @inlined
@@ -315,7 +292,7 @@ def _kick(
         _change(places, full, False, share, turns)
     _book(places, links, full, span, ends, held, turns, given)
     if terms > 1:  # else nothing is damped
-        given[DISSIPATED] += _dissipated(links, full, slowed, span, terms)
+        given[S.DISSIPATED] += _dissipated(links, full, slowed, span, terms)
         book_drag(places, slowed, span, terms, given)
 
 
@@ -338,7 +315,7 @@ def _follows(places: Places, links: Links, full: Full, turns: bool, h: float) ->
     for at in range(0, len(links.a), WIDE):
         dx, dy = _apart(places, links, full, turns, at)
         ux, uy = _opening(places.speed, full.spin, links, full, turns, at)
-        far = (ux * ux + uy * uy) * (h * h) > (dx * dx + dy * dy) * (MAX_TURN * MAX_TURN)
+        far = (ux * ux + uy * uy) * (h * h) > (dx * dx + dy * dy) * (S.MAX_TURN * S.MAX_TURN)
         fast |= mask_bits(far & (take(links.rest, at) > 0.0))
     return fast == 0
 
@@ -349,7 +326,7 @@ def _terms(phase: float, series: float) -> int:
     terms, rest = 1, 0.5 * phase * phase
     if phase > 0.0:  # with one, the work of dampers would be of the order of the step
         terms, rest = 2, rest * phase / 3.0
-    while rest > series and terms < MOST_TERMS:
+    while rest > series and terms < S.MOST_TERMS:
         terms += 1
         rest *= phase / (terms + 1)
     return terms
@@ -365,20 +342,20 @@ def _advance(
     for i in range(len(places.pull)):
         places.pull[i, 0], places.pull[i, 1], full.twist[i] = 0.0, 0.0, 0.0
     if not _follows(places, links, full, turns, h):
-        return TURNS_FAST
+        return S.TURNS_FAST
     evaluations = 0
-    torque, torque_rate = torque_of_gravity(places)
+    torque, torque_rate = S.torque_of_gravity(places)
     for _ in range(steps):
         for stage in range(len(kicks)):
             evaluations += 1
             if not _evaluate(places, links, full, slowed, turns, followed):
-                return TURNS_FAST
+                return S.TURNS_FAST
             kick = kicks[stage] * h
             terms = _terms(abs(kick) * decay, series)
             _kick(places, links, full, slowed, kick, terms, turns, ends, held, given)
             if stage < len(drifts):
                 _drift(places, full, drifts[stage] * h, turns)
-        torque, torque_rate = book_gravity(places, h, torque, torque_rate, given)
+        torque, torque_rate = S.book_gravity(places, h, torque, torque_rate, given)
     return evaluations
 
 
@@ -407,34 +384,34 @@ def flow_forces(motion: Motion, springs: Springs, span: float, account: Vectors)
     m, p, n = whole[0], whole[1], whole[2]
     turns, alone, last, made = whole[5] != 0, whole[6], len(whole), 0
     if whole[4] == 0:
-        made = flow_springs(motion, springs, span, account)
+        made = S.flow_springs(motion, springs, span, account)
     else:
-        places, links, ends, given, drifts, kicks, at = named(springs)
+        places, links, ends, given, drifts, kicks, at = S.named(springs)
         full, slowed, dragged = _full(numbers, at, m, p, n), slowed_in(springs), last - alone - whole[8]
-        held = whole[SIZES + m + 2 * n + whole[7] : dragged]
-        steps, finer, made = steps_of(springs, span), 1, TURNS_FAST
-        while made < 0 and finer <= FINEST:
-            gather(places, motion)
+        held = whole[S.SIZES + m + 2 * n + whole[7] : dragged]
+        steps, finer, made = S.steps_of(springs, span), 1, S.TURNS_FAST
+        while made < 0 and finer <= S.FINEST:
+            S.gather(places, motion)
             _take_spins(places, full, motion)
             for i in range(len(given)):
                 given[i] = 0.0
             made = _advance(
                 places, links, full, slowed, drifts, kicks, span / (finer * steps), finer * steps,
-                still_followed(finer), numbers[DECAY], numbers[SERIES], turns, ends, held, given,
+                S.still_followed(finer), numbers[S.DECAY], numbers[S.SERIES], turns, ends, held, given,
             )  # fmt: skip
             finer *= 2
         if made >= 0:
             if turns:
                 _put_spins(places, full, motion)
-            scatter(places, motion, 0.0 if turns else span)
-            book_given(given, numbers, span, account)
+            S.scatter(places, motion, 0.0 if turns else span)
+            S.book_given(given, numbers, span, account)
             book(
-                account[DAMPING], 0, -given[DISSIPATED], given[BY_DAMPERS], given[BY_DAMPERS + 1],
-                given[BY_DAMPERS + 2],
+                account[DAMPING], 0, -given[S.DISSIPATED], given[S.BY_DAMPERS], given[S.BY_DAMPERS + 1],
+                given[S.BY_DAMPERS + 2],
             )  # fmt: skip
     if made >= 0 and alone > 0:
         drag = numbers[len(numbers) - 3 * alone :]
         fall_in_drag(
-            motion, whole[last - alone :], drag, numbers[UNIFORM], numbers[UNIFORM + 1], span, account
+            motion, whole[last - alone :], drag, numbers[S.UNIFORM], numbers[S.UNIFORM + 1], span, account
         )
     return made

@@ -18,12 +18,8 @@ def book_contacts(
     with the work of what moves all the same. Normal forces do no work: what they hold together does not part.
     Motors do, with the speed at which they turn.
     """
-    rows, points, measures, contacts = (
-        scene.rows,
-        equations.points,
-        equations.measures,
-        scene.accounts[F.CONTACTS],
-    )
+    rows, contacts = scene.rows, scene.accounts[F.CONTACTS]
+    points, measures = equations.points, equations.measures
     friction_work, work = 0.0, 0.0
     for i in range(count):
         along, across = equations.vectors[UNKNOWN, 2 * i], equations.vectors[UNKNOWN, 2 * i + 1]

@@ -12,17 +12,8 @@ determined, as under a table with four legs, they are those of the least norm.
 """
 
 from physicslab.kernels import always_inlined, inlined
-from physicslab.kernels.rigid.equations import (
-    CAUSED,
-    CHANGE,
-    FREE,
-    OPEN,
-    SLIDES_BACK,
-    SLIDES_ON,
-    STICKS,
-    UNKNOWN,
-    Equations,
-)
+from physicslab.kernels.rigid import equations as E
+from physicslab.kernels.rigid.equations import Equations
 from physicslab.kernels.rigid.features import GIVEN, MU, STATUS
 from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.lemke import find_by_pivots
@@ -51,12 +42,12 @@ sides."""
 def _find_caused(equations: Equations, count: int) -> None:
     """Find what the unknowns cause, and in the row CHANGE how much of that may be rounding."""
     for i in range(2 * count):
-        caused, parts = equations.vectors[FREE, i], abs(equations.vectors[FREE, i])
+        caused, parts = equations.vectors[E.FREE, i], abs(equations.vectors[E.FREE, i])
         for j in range(2 * count):
-            part = equations.a[i, j] * equations.vectors[UNKNOWN, j]
+            part = equations.a[i, j] * equations.vectors[E.UNKNOWN, j]
             caused += part
             parts += abs(part)
-        equations.vectors[CAUSED, i], equations.vectors[CHANGE, i] = caused, _ROUNDING_OF_SUMS * parts
+        equations.vectors[E.CAUSED, i], equations.vectors[E.CHANGE, i] = caused, _ROUNDING_OF_SUMS * parts
 
 
 @inlined
@@ -65,36 +56,36 @@ def _closed_status(equations: Equations, i: int, opening: float, along: float) -
     given: int = equations.points[i, GIVEN]
     needed = abs(along) * equations.a[2 * i, 2 * i]
     if (
-        given == STICKS
+        given == E.STICKS
         and needed > equations.measures[i, MU] * max(-opening, 0.0) * equations.a[2 * i + 1, 2 * i + 1]
     ):
-        return SLIDES_ON if along > 0.0 else SLIDES_BACK
+        return E.SLIDES_ON if along > 0.0 else E.SLIDES_BACK
     return given
 
 
 @always_inlined
 def _change_most_violated(equations: Equations, count: int, w_scale: float, z_scale: float) -> bool:
     """Let the point whose law is violated most do what it must instead; return whether there is any."""
-    worst, change, amount = -1, OPEN, _VIOLATION
+    worst, change, amount = -1, E.OPEN, _VIOLATION
     vectors = equations.vectors
     for i in range(count):
         status, given, mu = equations.points[i, STATUS], equations.points[i, GIVEN], equations.measures[i, MU]
-        normal, friction = vectors[UNKNOWN, 2 * i] / z_scale, vectors[UNKNOWN, 2 * i + 1] / z_scale
-        opening, along = vectors[CAUSED, 2 * i] / w_scale, vectors[CAUSED, 2 * i + 1] / w_scale
-        if status == OPEN:
-            if -opening - vectors[CHANGE, 2 * i] / w_scale > amount:
+        normal, friction = vectors[E.UNKNOWN, 2 * i] / z_scale, vectors[E.UNKNOWN, 2 * i + 1] / z_scale
+        opening, along = vectors[E.CAUSED, 2 * i] / w_scale, vectors[E.CAUSED, 2 * i + 1] / w_scale
+        if status == E.OPEN:
+            if -opening - vectors[E.CHANGE, 2 * i] / w_scale > amount:
                 worst, change, amount = i, _closed_status(equations, i, opening, along), -opening
         elif -normal > amount:
-            worst, change, amount = i, OPEN, -normal
-        elif given == STICKS and mu > 0.0:
-            if status == STICKS:
+            worst, change, amount = i, E.OPEN, -normal
+        elif given == E.STICKS and mu > 0.0:
+            if status == E.STICKS:
                 if abs(friction) - mu * normal > amount:
                     worst, amount = i, abs(friction) - mu * normal
-                    change = SLIDES_ON if friction < 0.0 else SLIDES_BACK
+                    change = E.SLIDES_ON if friction < 0.0 else E.SLIDES_BACK
             else:  # friction must not drive the sliding
-                driven = -along if status == SLIDES_ON else along
-                if driven - vectors[CHANGE, 2 * i + 1] / w_scale > amount:
-                    worst, change, amount = i, STICKS, driven
+                driven = -along if status == E.SLIDES_ON else along
+                if driven - vectors[E.CHANGE, 2 * i + 1] / w_scale > amount:
+                    worst, change, amount = i, E.STICKS, driven
     if worst >= 0:
         equations.points[worst, STATUS] = change
     return worst >= 0
@@ -122,16 +113,16 @@ def _take_pivots(equations: Equations, count: int, closed: float, sticking: floa
     _find_caused(equations, count)
     vectors, points = equations.vectors, equations.points
     for i in range(count):
-        normal, friction = vectors[UNKNOWN, 2 * i], vectors[UNKNOWN, 2 * i + 1]
+        normal, friction = vectors[E.UNKNOWN, 2 * i], vectors[E.UNKNOWN, 2 * i + 1]
         edge = equations.measures[i, MU] * normal
-        if normal <= 0.0 and vectors[CAUSED, 2 * i] > closed:
-            points[i, STATUS] = OPEN
-        elif points[i, GIVEN] != STICKS:
+        if normal <= 0.0 and vectors[E.CAUSED, 2 * i] > closed:
+            points[i, STATUS] = E.OPEN
+        elif points[i, GIVEN] != E.STICKS:
             points[i, STATUS] = points[i, GIVEN]
-        elif abs(vectors[CAUSED, 2 * i + 1]) <= sticking or abs(friction) < (1.0 - _INSIDE) * edge:
-            points[i, STATUS] = STICKS
+        elif abs(vectors[E.CAUSED, 2 * i + 1]) <= sticking or abs(friction) < (1.0 - _INSIDE) * edge:
+            points[i, STATUS] = E.STICKS
         else:
-            points[i, STATUS] = SLIDES_ON if friction < 0.0 else SLIDES_BACK
+            points[i, STATUS] = E.SLIDES_ON if friction < 0.0 else E.SLIDES_BACK
 
 
 @inlined
@@ -139,8 +130,8 @@ def _largest_violation(equations: Equations, count: int, w_scale: float, z_scale
     """Return the largest violation of a law by what is known, as a share of the largest of its kind."""
     vectors, worst = equations.vectors, 0.0
     for i in range(count):
-        normal, friction = vectors[UNKNOWN, 2 * i] / z_scale, vectors[UNKNOWN, 2 * i + 1] / z_scale
-        opening = vectors[CAUSED, 2 * i] / w_scale
+        normal, friction = vectors[E.UNKNOWN, 2 * i] / z_scale, vectors[E.UNKNOWN, 2 * i + 1] / z_scale
+        opening = vectors[E.CAUSED, 2 * i] / w_scale
         worst = max(worst, -normal, -opening, min(normal, opening))
         worst = max(worst, abs(friction) - equations.measures[i, MU] * normal)
     return worst
@@ -156,14 +147,14 @@ def settle_at_an_edge(equations: Equations, count: int, scale: float) -> bool:
     points, vectors, kept = equations.points, equations.vectors, 2 * count
     w_scale, z_scale = scale, 0.0
     for i in range(2 * count):
-        w_scale, z_scale = max(w_scale, abs(vectors[FREE, i])), max(z_scale, abs(vectors[UNKNOWN, i]))
+        w_scale, z_scale = max(w_scale, abs(vectors[E.FREE, i])), max(z_scale, abs(vectors[E.UNKNOWN, i]))
     for i in range(count):
         equations.order[0, kept + i] = points[i, STATUS]
     for i in range(count):
-        for edge in (SLIDES_ON, SLIDES_BACK):
+        for edge in (E.SLIDES_ON, E.SLIDES_BACK):
             for k in range(count):
                 points[k, STATUS] = equations.order[0, kept + k]
-            if points[i, STATUS] == STICKS:
+            if points[i, STATUS] == E.STICKS:
                 points[i, STATUS] = edge
                 if _settle_by_changes(equations, count, _FEW_CHANGES, w_scale, z_scale):
                     return True
@@ -183,16 +174,16 @@ def solve_complementarity(equations: Equations, count: int, scale: float, exactl
     points, vectors = equations.points, equations.vectors
     w_scale, z_scale, largest = 0.0, 0.0, 0.0
     for i in range(2 * count):
-        vectors[UNKNOWN, i], vectors[CAUSED, i] = 0.0, vectors[FREE, i]
-        largest = max(largest, abs(vectors[FREE, i]))
+        vectors[E.UNKNOWN, i], vectors[E.CAUSED, i] = 0.0, vectors[E.FREE, i]
+        largest = max(largest, abs(vectors[E.FREE, i]))
         # How fast a point slides that slides in any case is no measure for what rests.
-        if i % 2 == 0 or points[i // 2, GIVEN] == STICKS:
-            w_scale = max(w_scale, abs(vectors[FREE, i]))
-            z_scale = max(z_scale, abs(vectors[FREE, i]) / equations.a[i, i])
+        if i % 2 == 0 or points[i // 2, GIVEN] == E.STICKS:
+            w_scale = max(w_scale, abs(vectors[E.FREE, i]))
+            z_scale = max(z_scale, abs(vectors[E.FREE, i]) / equations.a[i, i])
     w_scale = max(w_scale, _LEAST_SCALE * largest, scale)
     z_scale = z_scale if z_scale > 0.0 else 1.0
     for i in range(count):
-        free_n, free_t = vectors[FREE, 2 * i], vectors[FREE, 2 * i + 1]
+        free_n, free_t = vectors[E.FREE, 2 * i], vectors[E.FREE, 2 * i + 1]
         points[i, STATUS] = _closed_status(equations, i, free_n, free_t) if free_n < 0.0 else points[i, GIVEN]
     if largest == 0.0:
         return SETTLED
@@ -209,7 +200,7 @@ def solve_complementarity(equations: Equations, count: int, scale: float, exactl
             if not find_by_pivots(equations, count, _SLACKS[attempt]):
                 continue
             for i in range(2 * count):
-                z_scale = max(z_scale, abs(vectors[UNKNOWN, i]))
+                z_scale = max(z_scale, abs(vectors[E.UNKNOWN, i]))
             limit = _AT_REST * w_scale if attempt == 0 else -1.0
             _take_pivots(equations, count, limit, limit)
             fits = _largest_violation(equations, count, w_scale, z_scale) <= _AT_REST

@@ -66,18 +66,9 @@ def assemble(scene: RigidScene, equations: Equations, count: int) -> None:
             nn, nt, tn, tt = _coupling(scene, equations, i, j)
             if i == j and equations.points[i, F.FEATURE] >= F.JOINT:
                 nn, tt = _own_response(scene, equations, i, nn, tt)
-            a[2 * i, 2 * j], a[2 * i, 2 * j + 1], a[2 * i + 1, 2 * j], a[2 * i + 1, 2 * j + 1] = (
-                nn,
-                nt,
-                tn,
-                tt,
-            )
-            a[2 * j, 2 * i], a[2 * j + 1, 2 * i], a[2 * j, 2 * i + 1], a[2 * j + 1, 2 * i + 1] = (
-                nn,
-                nt,
-                tn,
-                tt,
-            )
+            n, t, other_n, other_t = 2 * i, 2 * i + 1, 2 * j, 2 * j + 1
+            a[n, other_n], a[n, other_t], a[t, other_n], a[t, other_t] = nn, nt, tn, tt
+            a[other_n, n], a[other_t, n], a[other_n, t], a[other_t, t] = nn, nt, tn, tt
     if scene.joints[ROWS] > 0:
         lessen(scene, equations.points, equations.measures, count, a)
 

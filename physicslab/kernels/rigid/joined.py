@@ -8,19 +8,8 @@ for smooth motion (:mod:`physicslab.kernels.joints.rows`), whose force is part o
 
 from physicslab.kernels import Numbers, Vectors, inlined, kernel
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, HAND, JOINTS, MOTORS, PX, PY
+from physicslab.kernels.joints import layout as L
 from physicslab.kernels.joints.envelope import factorise, solve
-from physicslab.kernels.joints.layout import (
-    ENDS,
-    FIRST,
-    HOLD,
-    LAMBDA,
-    MOTOR,
-    PLACES,
-    RIGHT,
-    ROWS,
-    STATE,
-    first_state,
-)
 from physicslab.kernels.joints.rows import book_rows, given_by_rows, measure_rows, push_by_rows
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, named_scene
@@ -39,15 +28,15 @@ def measure_joints(scene: RigidScene, q: Numbers, v: Numbers) -> None:
 @inlined
 def _at_row(scene: RigidScene, points: Points, measures: Vectors, i: int, r: int) -> tuple[float, float]:
     """Return how unit forces at point i, along its normal and its tangent, accelerate row r of joints."""
-    along, across, states = 0.0, 0.0, first_state(scene.joints)
+    along, across, states = 0.0, 0.0, L.first_state(scene.joints)
     for side in range(2):
         body = points[i, F.ONE + side]
         mass, inertia = scene.inverse_mass[2 * body], scene.inverse_mass[2 * scene.rows + body]
         n, t = F.NORMAL + 3 * side, F.TANGENT + 3 * side
-        for end in range(ENDS):
-            if scene.joints[FIRST + PLACES * r + 2 * end] != 2 * body:
+        for end in range(L.ENDS):
+            if scene.joints[L.FIRST + L.PLACES * r + 2 * end] != 2 * body:
                 continue
-            j = states + STATE * r + 3 * end
+            j = states + L.STATE * r + 3 * end
             jx, jy = scene.joint_numbers[j], scene.joint_numbers[j + 1]
             turn = inertia * scene.joint_numbers[j + 2]
             along += mass * (jx * measures[i, n] + jy * measures[i, n + 1]) + turn * measures[i, n + 2]
@@ -61,18 +50,18 @@ def lessen(scene: RigidScene, points: Points, measures: Vectors, count: int, a: 
 
     A force that joints answer in full moves nothing, and is left as if by itself: nothing presses there.
     """
-    n, states = scene.joints[ROWS], first_state(scene.joints)
+    n, states = scene.joints[L.ROWS], L.first_state(scene.joints)
     for column in range(2 * count):
         for r in range(n):
             along, across = _at_row(scene, points, measures, column // 2, r)
-            scene.joint_numbers[states + STATE * r + RIGHT] = along if column % 2 == 0 else across
+            scene.joint_numbers[states + L.STATE * r + L.RIGHT] = along if column % 2 == 0 else across
         solve(scene.joint_numbers, scene.joints)
         own = a[column, column]
         for row in range(column, 2 * count):
             held = 0.0
             for r in range(n):
                 along, across = _at_row(scene, points, measures, row // 2, r)
-                answered = scene.joint_numbers[states + STATE * r + LAMBDA]
+                answered = scene.joint_numbers[states + L.STATE * r + L.LAMBDA]
                 held += answered * (along if row % 2 == 0 else across)
             a[row, column] -= held
             a[column, row] = a[row, column]
@@ -85,13 +74,13 @@ def lessen(scene: RigidScene, points: Points, measures: Vectors, count: int, a: 
 @inlined
 def answer(scene: RigidScene, points: Points, measures: Vectors, forces: Numbers, count: int) -> None:
     """Find the forces with which joints answer the ``forces`` (2 count,) of points."""
-    states = first_state(scene.joints)
-    for r in range(scene.joints[ROWS]):
+    states = L.first_state(scene.joints)
+    for r in range(scene.joints[L.ROWS]):
         total = 0.0
         for i in range(count):
             along, across = _at_row(scene, points, measures, i, r)
             total -= forces[2 * i] * along + forces[2 * i + 1] * across
-        scene.joint_numbers[states + STATE * r + RIGHT] = total
+        scene.joint_numbers[states + L.STATE * r + L.RIGHT] = total
     solve(scene.joint_numbers, scene.joints)
 
 
@@ -121,10 +110,10 @@ def book_impulses(
 ) -> None:  # fmt: skip
     """Book what joints give as they answer ``impulses`` (2 count,) at points, at a moment."""
     answer(scene, points, measures, impulses, count)
-    for role in (HOLD, MOTOR):
-        cause = JOINTS if role == HOLD else MOTORS
+    for role in (L.HOLD, L.MOTOR):
+        cause = JOINTS if role == L.HOLD else MOTORS
         power, px, py, spin, driven = given_by_rows(q, v, scene.joint_numbers, scene.joints, role)
-        account[cause, ENERGY] += power if role == MOTOR else 0.0
+        account[cause, ENERGY] += power if role == L.MOTOR else 0.0
         account[cause, PX] += px
         account[cause, PY] += py
         account[cause, ANGULAR_MOMENTUM] += spin
@@ -134,11 +123,11 @@ def book_impulses(
 @inlined
 def strongest_joint(scene: RigidScene) -> float:
     """Return the largest acceleration that the force of a row gives to a body by itself [m/s^2]."""
-    strongest, states = 0.0, first_state(scene.joints)
-    for r in range(scene.joints[ROWS]):
-        force = abs(scene.joint_numbers[states + STATE * r + LAMBDA])
-        for end in range(ENDS):
-            place = scene.joints[FIRST + PLACES * r + 2 * end]
+    strongest, states = 0.0, L.first_state(scene.joints)
+    for r in range(scene.joints[L.ROWS]):
+        force = abs(scene.joint_numbers[states + L.STATE * r + L.LAMBDA])
+        for end in range(L.ENDS):
+            place = scene.joints[L.FIRST + L.PLACES * r + 2 * end]
             if place < 0:
                 break
             strongest = max(strongest, scene.inverse_mass[place] * force)

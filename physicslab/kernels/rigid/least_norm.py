@@ -8,17 +8,8 @@ M^T (M M^T)^-1 r, refined; where that does not suffice M^T = Q R P (Golub & Van 
 import math
 
 from physicslab.kernels import always_inlined, inlined
-from physicslab.kernels.rigid.equations import (
-    CAUSED,
-    CHANGE,
-    FREE,
-    OPEN,
-    RIGHT,
-    STICKS,
-    UNKNOWN,
-    Equations,
-    edge_of,
-)
+from physicslab.kernels.rigid import equations as E
+from physicslab.kernels.rigid.equations import Equations
 from physicslab.kernels.rigid.features import MU, STATUS
 
 _DAMPED = 1e-13
@@ -42,10 +33,10 @@ def _take_equations(equations: Equations, count: int, friction: float) -> int:
     n, order, a = 0, equations.order, equations.a
     for i in range(count):
         status = equations.points[i, STATUS]
-        if status != OPEN:
+        if status != E.OPEN:
             order[1, n] = 2 * i
             n += 1
-            if status == STICKS:
+            if status == E.STICKS:
                 order[1, n] = 2 * i + 1
                 n += 1
     for k in range(n):
@@ -53,8 +44,9 @@ def _take_equations(equations: Equations, count: int, friction: float) -> int:
         for j in range(n):
             column = order[1, j]
             value, status = a[row, column], equations.points[column // 2, STATUS]
-            if column % 2 == 0 and status != STICKS:
-                value += friction * edge_of(status, equations.measures[column // 2, MU]) * a[row, column + 1]
+            if column % 2 == 0 and status != E.STICKS:
+                edge = E.edge_of(status, equations.measures[column // 2, MU])
+                value += friction * edge * a[row, column + 1]
             equations.matrix[k, j] = value / math.sqrt(a[row, row] * a[column, column])
     return n
 
@@ -88,18 +80,18 @@ def _substitute(equations: Equations, n: int) -> None:
     factor, vectors = equations.tableau, equations.vectors
     for i in range(n):
         for k in range(i):
-            vectors[RIGHT, i] -= factor[i, k] * vectors[RIGHT, k]
-        vectors[RIGHT, i] /= factor[i, i]
+            vectors[E.RIGHT, i] -= factor[i, k] * vectors[E.RIGHT, k]
+        vectors[E.RIGHT, i] /= factor[i, i]
     for i in range(n - 1, -1, -1):
         for k in range(i + 1, n):
-            vectors[RIGHT, i] -= factor[k, i] * vectors[RIGHT, k]
-        vectors[RIGHT, i] /= factor[i, i]
+            vectors[E.RIGHT, i] -= factor[k, i] * vectors[E.RIGHT, k]
+        vectors[E.RIGHT, i] /= factor[i, i]
     for j in range(n):
-        vectors[CHANGE, j] = 0.0
+        vectors[E.CHANGE, j] = 0.0
         for k in range(n):
-            vectors[CHANGE, j] += equations.matrix[k, j] * vectors[RIGHT, k]
+            vectors[E.CHANGE, j] += equations.matrix[k, j] * vectors[E.RIGHT, k]
     for j in range(n):
-        vectors[RIGHT, j] = vectors[CHANGE, j]
+        vectors[E.RIGHT, j] = vectors[E.CHANGE, j]
 
 
 @inlined
@@ -148,23 +140,23 @@ def _substitute_orthogonally(equations: Equations, n: int, rank: int) -> bool:
     """Replace the right side r by the shortest x with M x = r; return whether there is any."""
     factor, order, vectors, largest = equations.tableau, equations.order, equations.vectors, 0.0
     for i in range(n):
-        largest = max(largest, abs(vectors[RIGHT, i]))
+        largest = max(largest, abs(vectors[E.RIGHT, i]))
     for i in range(n):
-        left = vectors[RIGHT, order[0, i]]
+        left = vectors[E.RIGHT, order[0, i]]
         for k in range(min(i, rank)):
-            left -= factor[i, k] * vectors[CHANGE, k]
+            left -= factor[i, k] * vectors[E.CHANGE, k]
         if i >= rank and abs(left) > _CONTRADICTS * largest:
             return False
-        vectors[CHANGE, i] = left / factor[i, n + 1] if i < rank else 0.0
+        vectors[E.CHANGE, i] = left / factor[i, n + 1] if i < rank else 0.0
     for k in range(rank - 1, -1, -1):
         share = 0.0
         for j in range(k, n):
-            share += factor[k, j] * vectors[CHANGE, j]
+            share += factor[k, j] * vectors[E.CHANGE, j]
         share *= factor[k, n]
         for j in range(k, n):
-            vectors[CHANGE, j] -= share * factor[k, j]
+            vectors[E.CHANGE, j] -= share * factor[k, j]
     for i in range(n):
-        vectors[RIGHT, i] = vectors[CHANGE, i]
+        vectors[E.RIGHT, i] = vectors[E.CHANGE, i]
     return True
 
 
@@ -175,7 +167,7 @@ def begin_equations(equations: Equations, count: int, friction: float) -> int:
     Points that slide have ``friction`` (0 or 1) times their friction.
     """
     for i in range(2 * count):
-        equations.vectors[UNKNOWN, i] = 0.0
+        equations.vectors[E.UNKNOWN, i] = 0.0
     n = _take_equations(equations, count, friction)
     _factorise(equations, n)
     return n
@@ -196,7 +188,7 @@ def refine(
     vectors, order, a, residual = equations.vectors, equations.order, equations.a, 0.0
     for k in range(n):
         row = order[1, k]
-        vectors[RIGHT, k] = -vectors[caused, row] / math.sqrt(a[row, row])
+        vectors[E.RIGHT, k] = -vectors[caused, row] / math.sqrt(a[row, row])
         residual = max(residual, abs(vectors[caused, row]))
     if residual <= 2e-16 * largest or not residual < math.inf:
         return -1.0, rank
@@ -209,16 +201,16 @@ def refine(
     elif not _substitute_orthogonally(equations, n, rank):
         return -1.0, rank
     for i in range(2 * count):
-        vectors[CHANGE, i] = 0.0
+        vectors[E.CHANGE, i] = 0.0
     for k in range(n):
         row = order[1, k]
-        change, status = vectors[RIGHT, k] / math.sqrt(a[row, row]), equations.points[row // 2, STATUS]
-        vectors[CHANGE, row] += change
-        if row % 2 == 0 and status != STICKS:
-            edge = friction * edge_of(status, equations.measures[row // 2, MU])
-            vectors[CHANGE, row + 1] += edge * change
+        change, status = vectors[E.RIGHT, k] / math.sqrt(a[row, row]), equations.points[row // 2, STATUS]
+        vectors[E.CHANGE, row] += change
+        if row % 2 == 0 and status != E.STICKS:
+            edge = friction * E.edge_of(status, equations.measures[row // 2, MU])
+            vectors[E.CHANGE, row + 1] += edge * change
     for i in range(2 * count):
-        vectors[UNKNOWN, i] += vectors[CHANGE, i]
+        vectors[E.UNKNOWN, i] += vectors[E.CHANGE, i]
     return residual, rank
 
 
@@ -230,15 +222,15 @@ def solve_equations(equations: Equations, count: int, friction: float) -> None:
     """
     vectors, largest, residual, rank = equations.vectors, 0.0, math.inf, 0
     for i in range(2 * count):
-        largest = max(largest, abs(vectors[FREE, i]))
+        largest = max(largest, abs(vectors[E.FREE, i]))
     n = begin_equations(equations, count, friction)
     for _ in range(REFINEMENTS):
         for k in range(n):
             row = equations.order[1, k]
-            w = vectors[FREE, row]
+            w = vectors[E.FREE, row]
             for j in range(2 * count):
-                w += equations.a[row, j] * vectors[UNKNOWN, j]
-            vectors[CAUSED, row] = w
-        residual, rank = refine(equations, count, n, friction, CAUSED, largest, residual, rank)
+                w += equations.a[row, j] * vectors[E.UNKNOWN, j]
+            vectors[E.CAUSED, row] = w
+        residual, rank = refine(equations, count, n, friction, E.CAUSED, largest, residual, rank)
         if residual < 0.0:
             break

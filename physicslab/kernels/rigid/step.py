@@ -19,24 +19,15 @@ from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid import features as F
+from physicslab.kernels.rigid import motion
 from physicslab.kernels.rigid.equations import UNKNOWN, Equations
 from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, named_scene
 from physicslab.kernels.rigid.impacts import resolve_simultaneous_impacts
-from physicslab.kernels.rigid.motion import (
-    DONE,
-    NO_FORCES,
-    STOPPED,
-    TOO_MANY,
-    UNRESOLVED,
-    advance_segment,
-    begin_motion,
-    touch,
-)
 from physicslab.kernels.rigid.smooth_segment import Stages
 from physicslab.kernels.rigid.time_stepping import drive, kick, move, separate, take_work
 from physicslab.kernels.rigid.touching import length_of
 
-STALLED, NOT_FINITE, SQUARES_NOT_FINITE, TOO_FAST, OVERLAPS = range(TOO_MANY + 1, TOO_MANY + 6)
+STALLED, NOT_FINITE, SQUARES_NOT_FINITE, TOO_FAST, OVERLAPS = range(motion.TOO_MANY + 1, motion.TOO_MANY + 6)
 """Why else a step ends: events follow each other without time; a segment, or squares of speeds are not
 finite; short steps are too long for what is fast; bodies overlap too deeply."""
 CLOSED, IMPACTS, EVALUATIONS, ENERGETIC, LOWERED, WORK, LOGGED, COUNTED = range(8)
@@ -146,19 +137,19 @@ def _go_by_events(
     """Go from event to event."""
     done, stalled, foreseen, rows = 0.0, 0, True, 1 + of.scene.joints[ROWS]
     why, added = _move_apart(of, _OVERLAP, False)
-    if why != DONE:
+    if why != motion.DONE:
         return why, 0.0, added
     for _ in range(most_events):
         why, rest, still = _begin(of, at + done, steady)
-        if why != DONE:
+        if why != motion.DONE:
             return why, done, added
         closed = of.counts[CLOSED]
         if still:
             _go_on_at_rest(of, h - done)
         if done >= h or still:
             _keep_points(of, of.equations, closed)
-            return DONE, h, added
-        segment, evaluations, foreseen = advance_segment(
+            return motion.DONE, h, added
+        segment, evaluations, foreseen = motion.advance_segment(
             of.scene, of.equations, closed, of.room, of.stages, of.start, of.changed, of.q, of.v, h - done,
             _TOLERANCE, rest, foreseen,
         )  # fmt: skip
@@ -199,7 +190,7 @@ def _go_by_impulses(
         of.counts[EVALUATIONS] += 1
         of.counts[CLOSED] = 0
         why = _resist(of, end - left + 0.5 * h, h, _SLOW * gained)
-        if why != DONE:
+        if why != motion.DONE:
             return why, 0.0, total
         move(of.q, of.v, 0.5 * h)
         left = 0.0 if last else left - h
@@ -207,16 +198,16 @@ def _go_by_impulses(
         if not last and _largest(of, of.v) <= _RESTING * gained:
             continue
         why, added = _move_apart(of, math.inf, True)
-        if why != DONE:
+        if why != motion.DONE:
             return why, 0.0, added
         total += added
     for i in range(len(of.forces)):
         of.forces[i] /= h
     # The forces at the end; where there are none, the mean ones of the last impulses.
     why, _, _ = _begin(of, end, steady)
-    if why == DONE:
+    if why == motion.DONE:
         _keep_points(of, of.equations, of.counts[CLOSED])
-    return DONE, left, total
+    return motion.DONE, left, total
 
 
 @inlined
@@ -240,16 +231,16 @@ def _begin(of: Course, at: float, steady: bool) -> tuple[int, float, bool]:
     """
     for _ in range(_MAX_STALLED):
         why, count, _ = meet(of, of.q, 0.0, 0.0, REPEATS, at)
-        if why != DONE:
+        if why != motion.DONE:
             return why, 0.0, False
-        why, closed, rest, still = begin_motion(
+        why, closed, rest, still = motion.begin_motion(
             of.scene, of.equations, count, of.stages, of.changed, of.q, of.v, steady
         )
-        if why != STOPPED:
+        if why != motion.STOPPED:
             of.counts[CLOSED] = closed
             return why, rest, still
     of.counts[CLOSED] = 0
-    return NO_FORCES, 0.0, False
+    return motion.NO_FORCES, 0.0, False
 
 
 @inlined
@@ -264,10 +255,10 @@ def meet(
     """
     counts, count, last = of.counts, 0, 0
     for _ in range(repeats):
-        why, count, rest, _, approaching = touch(
+        why, count, rest, _, approaching = motion.touch(
             of.scene, of.equations, of.room, of.stages.acceleration, place, of.v, 0.0
         )
-        if why != DONE or not approaching:
+        if why != motion.DONE or not approaching:
             return why, count, last
         new, solved, energetic, lowered, last, rounds = resolve_simultaneous_impacts(
             of.scene, of.equations, count, of.room, of.q, of.v, of.stages.v, of.stages.acceleration,
@@ -279,8 +270,8 @@ def meet(
         counts[LOWERED] += lowered
         counts[WORK] += rounds * (500 + count * count * count * count) // 500 // 4
         if not solved:
-            return UNRESOLVED, count, last
-    return DONE, count, last
+            return motion.UNRESOLVED, count, last
+    return motion.DONE, count, last
 
 
 @inlined
@@ -296,11 +287,11 @@ def _resist(of: Course, time: float, h: float, tolerance: float) -> int:
             soon[i] = of.q[i]
         move(soon, of.v, h)
         why, _, points = meet(of, soon, tolerance, 2.0 / h, 1, time)
-        if why != DONE or points == 0:
+        if why != motion.DONE or points == 0:
             return why
         of.counts[CLOSED] = points
         _keep_points(of, of.room, points)
-    return DONE
+    return motion.DONE
 
 
 @always_inlined
@@ -357,15 +348,15 @@ def _move_apart(of: Course, allowed: float, pay: bool) -> tuple[int, float]:
     smallest = max(_smallest_size(of.scene), _LEAST)
     rounding = _COORDINATE_ROUNDING * _largest(of, of.q) / smallest
     for _ in range(_SEPARATIONS):
-        why, count, rest, deepest, _ = touch(
+        why, count, rest, deepest, _ = motion.touch(
             of.scene, of.equations, of.room, of.stages.acceleration, of.q, of.v, _NEAR * deepest
         )
-        if why != DONE:
+        if why != motion.DONE:
             return why, 0.0
         if not math.isfinite(rest):  # every speed would be treated as zero
             return SQUARES_NOT_FINITE, 0.0
         if deepest <= max(_SEPARATE, rounding):
-            return DONE, _book_overlap(of, count, pay) if moved else 0.0
+            return motion.DONE, _book_overlap(of, count, pay) if moved else 0.0
         if not moved:
             moved = True
             for i in range(len(of.q)):

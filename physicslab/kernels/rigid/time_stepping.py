@@ -101,10 +101,8 @@ def _find_islands(scene: RigidScene, equations: Equations, count: int, island: N
         changed = False
         for k in range(n * ENDS * ENDS):
             ends = FIRST + PLACES * (k // (ENDS * ENDS))
-            at_one, at_other = (
-                scene.joints[ends + 2 * (k // ENDS % ENDS)],
-                scene.joints[ends + 2 * (k % ENDS)],
-            )
+            at_one = scene.joints[ends + 2 * (k // ENDS % ENDS)]
+            at_other = scene.joints[ends + 2 * (k % ENDS)]
             if at_one < 0 or at_other < 0:
                 continue
             one, other = at_one // 2, at_other // 2

@@ -3,21 +3,12 @@
 import numpy as np
 
 from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined, kernel
+from physicslab.kernels import near_counts as N
 from physicslab.kernels.arguments import Inverse, Materials, Motion, Near, named_near
 from physicslab.kernels.broad.near_pairs import sort_scalar
 from physicslab.kernels.geometry.contact import note_pose, slides_on
 from physicslab.kernels.geometry.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
-from physicslab.kernels.near_counts import (
-    ACTIVE,
-    BOX_BLOCKS,
-    DISC_BLOCKS,
-    RECORDED,
-    SCALAR,
-    SLEEPING,
-    UNORDERED,
-    WIDE_COUNT,
-)
 from physicslab.kernels.records import Manifold, Manifolds, Point
 from physicslab.kernels.wide.restore_slots import fill_slot, is_of_kind
 from physicslab.kernels.wide.slots import COLOURS, clear_slot, list_scalar
@@ -134,7 +125,7 @@ def _assign_colours(
     """
     rows, came = rows_of(slots.kind), 0
     blocks, empty = _survey(blocks, slots, opened)
-    for k in range(near.counts[ACTIVE]):
+    for k in range(near.counts[N.ACTIVE]):
         p = near.touching[k]
         manifold = near.manifolds[p]
         if not _may_enter(slots, near, p, motion, shapes, asleep, h):
@@ -216,39 +207,39 @@ def add_to_blocks(
 ) -> int:  # fmt: skip
     """Put steady contacts into blocks, as :func:`add_constraints` describes."""
     counts, discs, boxes = near.counts, near.discs, near.boxes
-    before = counts[DISC_BLOCKS], counts[BOX_BLOCKS]
-    counts[DISC_BLOCKS] = _trimmed(counts[DISC_BLOCKS], discs.pair)
-    counts[BOX_BLOCKS] = _trimmed(counts[BOX_BLOCKS], boxes.pair)
+    before = counts[N.DISC_BLOCKS], counts[N.BOX_BLOCKS]
+    counts[N.DISC_BLOCKS] = _trimmed(counts[N.DISC_BLOCKS], discs.pair)
+    counts[N.BOX_BLOCKS] = _trimmed(counts[N.BOX_BLOCKS], boxes.pair)
     # At once: where this returns early, the next call finds nothing to drop.
-    if counts[DISC_BLOCKS] != before[0]:
-        sort_blocks(counts[DISC_BLOCKS], discs.colour, discs.order)
-    if counts[BOX_BLOCKS] != before[1]:
-        sort_blocks(counts[BOX_BLOCKS], boxes.colour, boxes.order)
-    active, room = counts[ACTIVE], WIDE * (counts[DISC_BLOCKS] + counts[BOX_BLOCKS])
-    if room > 2 * COLOURS * WIDE and counts[WIDE_COUNT] < _SPARSE * room:
+    if counts[N.DISC_BLOCKS] != before[0]:
+        sort_blocks(counts[N.DISC_BLOCKS], discs.colour, discs.order)
+    if counts[N.BOX_BLOCKS] != before[1]:
+        sort_blocks(counts[N.BOX_BLOCKS], boxes.colour, boxes.order)
+    active, room = counts[N.ACTIVE], WIDE * (counts[N.DISC_BLOCKS] + counts[N.BOX_BLOCKS])
+    if room > 2 * COLOURS * WIDE and counts[N.WIDE_COUNT] < _SPARSE * room:
         return SPARSE
     came = 0
-    if active > 0 and (counts[WIDE_COUNT] > 0 or active >= MIN_WIDE):
+    if active > 0 and (counts[N.WIDE_COUNT] > 0 or active >= MIN_WIDE):
         if not (
-            _has_room(discs, counts[DISC_BLOCKS], active) and _has_room(boxes, counts[BOX_BLOCKS], active)
+            _has_room(discs, counts[N.DISC_BLOCKS], active) and _has_room(boxes, counts[N.BOX_BLOCKS], active)
         ):
             return FULL
         for slots in (discs, boxes):
-            which = DISC_BLOCKS + slots.kind
+            which = N.DISC_BLOCKS + slots.kind
             counts[which], more = _assign_colours(
                 slots, counts[which], opened, near, motion, shapes, materials, inverse, asleep, h
             )
             came += more
     if came > 0:
-        sort_blocks(counts[DISC_BLOCKS], discs.colour, discs.order)
-        sort_blocks(counts[BOX_BLOCKS], boxes.colour, boxes.order)
-        counts[WIDE_COUNT] += came
-        counts[ACTIVE] = _keep_scalar(near.manifolds, near.touching, active)
-        counts[SCALAR], counts[SLEEPING] = list_scalar(
-            near.manifolds, counts[RECORDED], inactive, near.scalar, sleeping
+        sort_blocks(counts[N.DISC_BLOCKS], discs.colour, discs.order)
+        sort_blocks(counts[N.BOX_BLOCKS], boxes.colour, boxes.order)
+        counts[N.WIDE_COUNT] += came
+        counts[N.ACTIVE] = _keep_scalar(near.manifolds, near.touching, active)
+        counts[N.SCALAR], counts[N.SLEEPING] = list_scalar(
+            near.manifolds, counts[N.RECORDED], inactive, near.scalar, sleeping
         )
-        sort_scalar(near.manifolds, near.scalar, counts[SCALAR], len(motion.angle))
-        counts[UNORDERED] = 0
+        sort_scalar(near.manifolds, near.scalar, counts[N.SCALAR], len(motion.angle))
+        counts[N.UNORDERED] = 0
     return ADDED
 
 

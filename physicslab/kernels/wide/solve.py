@@ -253,13 +253,8 @@ def slot_frame(slots: L.Slots, at: int, point: int) -> ContactFrame[float]:
     if slots.kind == L.DISC:
         ra, rb = data[at + L.RADIUS_A], data[at + L.RADIUS_B]
         return ContactFrame(nx, ny, ra * nx, ra * ny, -rb * nx, -rb * ny)
-    ax, ay, bx, by = (
-        data[base + L.ARM_AX],
-        data[base + L.ARM_AY],
-        data[base + L.ARM_BX],
-        data[base + L.ARM_BY],
-    )
-    return ContactFrame(nx, ny, ax, ay, bx, by)
+    ax, ay = data[base + L.ARM_AX], data[base + L.ARM_AY]
+    return ContactFrame(nx, ny, ax, ay, data[base + L.ARM_BX], data[base + L.ARM_BY])
 
 
 @always_inlined
@@ -297,10 +292,8 @@ def _sweep_boxes(
         pressed = work_of(
             push1 * approach1 + push2 * approach2, push1 + push2, turn_a, turn_b, ma + mb, ia, ib
         )
-    tangent1, tangent2 = (
-        take(data, at + L.ONE + L.TANGENT_IMPULSE),
-        take(data, at + L.TWO + L.TANGENT_IMPULSE),
-    )
+    tangent1 = take(data, at + L.ONE + L.TANGENT_IMPULSE)
+    tangent2 = take(data, at + L.TWO + L.TANGENT_IMPULSE)
     sliding1, sliding2 = across + wb * t1b - wa * t1a, across + wb * t2b - wa * t2a
     friction1, friction2 = two_frictions(
         tangent1, tangent2, sliding1, sliding2,

@@ -52,11 +52,8 @@ def _in_fields(name: str, title: str, mass: float, charge: float, laws: PhysicsC
     pull = complex(*laws.electric_field) * share
 
     def build(simulation: SimulationConfig) -> World:
-        world, where, how = (
-            empty_world(simulation, laws),
-            (_START.real, _START.imag),
-            (_SPEED.real, _SPEED.imag),
-        )
+        world = empty_world(simulation, laws)
+        where, how = (_START.real, _START.imag), (_SPEED.real, _SPEED.imag)
         spawn_point(world, where, how, Charge(charge), mass=mass, name="body")
         return world
 

@@ -202,11 +202,8 @@ class Box2DMirror(Peer):
         bounds = {
             "enableLimit": joint.is_limited, "enableMotor": joint.strongest > 0.0, "motorSpeed": joint.speed,
         }  # fmt: skip
-        lower, upper, strongest = (
-            max(joint.lower, -STRONG),
-            min(joint.upper, STRONG),
-            min(joint.strongest, STRONG),
-        )
+        lower, upper = max(joint.lower, -STRONG), min(joint.upper, STRONG)
+        strongest = min(joint.strongest, STRONG)
         match joint.kind:
             case "rod":
                 self.space.CreateDistanceJoint(length=joint.length, frequencyHz=0.0, **held)

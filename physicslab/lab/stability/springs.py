@@ -76,10 +76,8 @@ def _past_limit(damping: float, kind: str, touches: bool) -> float:
 
 def _swing(touches: bool, stiffness: float) -> tuple[World, int]:
     """Return a world with a bob of 1 kg let go aside, on a spring of 1 m with a strong damper."""
-    world, spring = (
-        open_space(dt=_DT, contacts="soft"),
-        Spring(rest_length=1.0, stiffness=stiffness, damping=1e9),
-    )
+    world = open_space(dt=_DT, contacts="soft")
+    spring = Spring(rest_length=1.0, stiffness=stiffness, damping=1e9)
     return world, spawn_bob(world, (0.8, -0.6), touches=touches, part=spring)
 
 

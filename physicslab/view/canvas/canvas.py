@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
@@ -35,6 +35,38 @@ def overlap(one: tuple[float, float, float, float], other: tuple[float, float, f
     """Whether two rectangles have a part in common [px]."""
     (x, y, width, height), (left, top, across, down) = one, other
     return x < left + across and left < x + width and y < top + down and top < y + height
+
+
+def free_rects(area: Rect, taken: Sequence[Rect]) -> list[Rect]:
+    """Return the largest rectangles of an area that others leave [px]: none of them lies in another.
+
+    >>> free_rects((0, 0, 100, 50), [(0, 0, 40, 20)])
+    [(40, 0, 60, 50), (0, 20, 100, 30)]
+    """
+    free = [area]
+    for one in taken:
+        x, y, width, height = one
+        parts: list[Rect] = []
+        for rect in free:
+            left, top, across, down = rect
+            if not overlap(rect, one):
+                parts.append(rect)
+                continue
+            parts += [
+                (left, top, x - left, down),
+                (x + width, top, left + across - x - width, down),
+                (left, top, across, y - top),
+                (left, y + height, across, top + down - y - height),
+            ]
+        parts = [rect for rect in dict.fromkeys(parts) if rect[2] > 0 and rect[3] > 0]
+        free = [rect for rect in parts if not any(_holds(other, rect) for other in parts if other != rect)]
+    return free
+
+
+def _holds(outer: Rect, inner: Rect) -> bool:
+    """Whether a rectangle lies in another."""
+    (x, y, width, height), (left, top, across, down) = outer, inner
+    return x <= left and y <= top and left + across <= x + width and top + down <= y + height
 
 
 type Painter = Callable[[pygame.Surface], None]

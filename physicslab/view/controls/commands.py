@@ -4,11 +4,10 @@ import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 
 from physicslab.components.quantities import QUANTITIES
 from physicslab.ecs.text import printable
-from physicslab.files.listing import scene_files
+from physicslab.files.listing import scenes_here
 from physicslab.languages.catalogue import languages
 from physicslab.languages.language import Language
 from physicslab.lessons.catalogue import titles
@@ -77,19 +76,11 @@ def commands(window: Window | None = None) -> Iterator[Command]:
         yield Command(scene.title, "scene", scene.description, partial(open_from_list, source=name))
     for name, title in titles("" if window is None else window.language).items():
         yield Command(title, "lesson", "predict, run, compare, explain", opener(name))
-    for path in _own_scenes():
+    for path in scenes_here():
         yield Command(printable(path.name), "file", str(path), partial(open_from_list, source=path))
     for name, quantity in QUANTITIES.items():
         of = "of the selection" if quantity.of_entity else "of the world"
         yield Command(f"Graph: {name}", "graph", of, partial(dashboard_actions.plot_quantity, name=name))
-
-
-def _own_scenes() -> list[Path]:
-    """Return the scene files of the working directory; none where it cannot be read."""
-    try:
-        return scene_files(Path.cwd())
-    except OSError:
-        return []
 
 
 def _choose_level(world: World, window: Window, level: str) -> None:

@@ -139,10 +139,6 @@ def write_note(world: World, window: Window, entity: int) -> None:
     window.measuring.writing = Writing(Spot(place), entity, world.component(entity, Note).text)
 
 
-def _nothing(world: World, window: Window) -> None:
-    """Do nothing."""
-
-
 RULER = Tool(
     "ruler", "Ruler",
     "Ruler: drag from point to point; an end in the middle of a body moves with it. Shift: round angles.",
@@ -158,7 +154,7 @@ GATE = Tool(
     _placing(Gate), _end_placing, prompts=("Drag a line for bodies to cross", "... to its other end"),
 )  # fmt: skip
 NOTE = Tool(
-    "note", "Note", "Note: click a point, and write. Enter keeps it.", _begin_note, _nothing,
+    "note", "Note", "Note: click a point, and write. Enter keeps it.", _begin_note,
     prompts=("Click a point for the note",),
 )  # fmt: skip
 MEASURING_TOOLS = (RULER, PROTRACTOR, GATE, NOTE)

@@ -5,7 +5,12 @@ from dataclasses import dataclass
 import pygame
 
 from physicslab.view.controls.drawing import Drawn
-from physicslab.view.window.window import Action
+from physicslab.view.window.window import Action, Window
+from physicslab.world import World
+
+
+def _nothing(world: World, window: Window) -> None:
+    """Do nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +36,8 @@ class Tool:
     name: str
     title: str
     usage: str
-    press: Action
-    release: Action
+    press: Action = _nothing
+    release: Action = _nothing
     pans: bool = False
     drags: bool = False
     draws: Drawn | None = None

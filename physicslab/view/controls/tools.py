@@ -21,10 +21,6 @@ from physicslab.view.window.window import Window
 from physicslab.world import World
 
 
-def _nothing(world: World, window: Window) -> None:
-    """Do nothing."""
-
-
 def let_go(world: World, window: Window) -> None:
     """Let go of what is held."""
     window.pins.release(window.edits)
@@ -173,12 +169,10 @@ DRAWING = {drawn.name: drawing_tool(drawn) for drawn in (*BODIES, *JOINTS, *GROU
 """A tool for each thing that is drawn."""
 HAND = DRAWING["circle"]
 """The tool at the start: that of a new window."""
-REMOVE = Tool(
-    "remove", "Erase", "Erase: click a body to remove it with its springs, or a spring.", remove, _nothing
-)
+REMOVE = Tool("remove", "Erase", "Erase: click a body to remove it with its springs, or a spring.", remove)
 _USAGE = "Select: click a body to see its numbers; drag to move or throw it."
 SELECT = Tool("select", "Select", _USAGE, select, end_select)
-PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", _nothing, _nothing, pans=True, drags=True)
+PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", pans=True, drags=True)
 _IN_SIGHT = ("circle", "box", "polygon", "block", "pendulum", "spring", "rod", "rope", "pin")
 PALETTE = (SELECT, *(DRAWING[name] for name in _IN_SIGHT), *MEASURING_TOOLS, REMOVE, PAN)
 """The tools that are in sight, in their order."""

@@ -43,6 +43,12 @@ def extent_of(world: World) -> Extent | None:
     return _union(np.concatenate((shown, np.concatenate(clipped, axis=1))))
 
 
+def boxes_of(world: World) -> Boxes:
+    """Return the upright boxes around all bodies."""
+    world.synchronise()
+    return _reach(world, body_rows(world).all)
+
+
 def _reach(world: World, rows: NDArray[np.int64]) -> Boxes:
     outlines = outlines_of(world, rows)
     return np.concatenate((outlines.place - outlines.reach, outlines.place + outlines.reach), axis=1)

@@ -45,8 +45,7 @@ class Ui(Windows):
 
         Powers in a line are small figures, all at one height: fonts lack some of the raised.
         """
-        words = self.said(words)
-        self.words.append(words)
+        words = self.written(words)
         imgui.push_style_color(imgui.Col_.text, packed(colour or self.theme.text))
         if wrapped and not any(raised for _, raised in raised_parts(words)):
             imgui.push_text_wrap_pos(0.0)
@@ -81,6 +80,17 @@ class Ui(Windows):
     def faint(self, words: str, *, wrapped: bool = True) -> None:
         """Write words that matter less."""
         self.text(words, self.theme.faint, wrapped=wrapped)
+
+    def refusal(self, words: str) -> None:
+        """Write why something cannot be so, if there is a reason."""
+        if words:
+            self.text(words, self.theme.error, wrapped=True)
+
+    def lead(self, words: str, at: float = 0.0) -> None:
+        """Write what the widget is for that comes next in the line, there or ``at`` a place [px]."""
+        imgui.align_text_to_frame_padding()
+        self.faint(words, wrapped=False)
+        imgui.same_line(at)
 
     def heading(self, words: str) -> None:
         """Write a title."""
@@ -130,8 +140,7 @@ class Ui(Windows):
     def tip(self, words: str) -> None:
         """Show words beside the cursor while it rests on what was drawn last."""
         if words and imgui.is_item_hovered(_TIP_FLAGS):
-            words = self.said(words)
-            self.words.append(words)
+            words = self.written(words)
             self._place_tip()
             if imgui.begin_tooltip():
                 imgui.push_text_wrap_pos(22 * self.size)
@@ -184,8 +193,7 @@ class Ui(Windows):
         on : bool
             Whether it is marked as what there is now.
         """
-        words = self.said(label if shown is None else shown)
-        self.words.append(words)
+        words = self.written(label if shown is None else shown)
         if on:
             imgui.push_style_color(imgui.Col_.button, packed(self.theme.accent))
             imgui.push_style_color(imgui.Col_.button_hovered, packed(self.theme.accent, 0.9))
@@ -215,8 +223,7 @@ class Ui(Windows):
 
         ``shown`` is written on it, where not the label; ``identity`` tells it from lines with the same one.
         """
-        words = self.said(label if shown is None else shown)
-        self.words.append(words)
+        words = self.written(label if shown is None else shown)
         chosen, _ = imgui.menu_item(widget_label(words, identity or label), self.said(keys), on, enabled)
         self.note(label, "menu item", "on" if on else "")
         self.tip(tip)
@@ -225,8 +232,7 @@ class Ui(Windows):
     @contextmanager
     def menu(self, label: str, identity: str | None = None) -> Iterator[bool]:
         """Begin a menu; what is yielded says whether it is open. ``identity`` as in :meth:`item`."""
-        words = self.said(label)
-        self.words.append(words)
+        words = self.written(label)
         shown = bool(imgui.begin_menu(widget_label(words, identity or label)))
         self.note(label, "menu")
         try:
@@ -282,8 +288,7 @@ class Ui(Windows):
 
     def checkbox(self, label: str, on: bool, tip: str = "") -> bool:
         """Draw a box to tick, and return whether it was clicked."""
-        words = self.said(label)
-        self.words.append(words)
+        words = self.written(label)
         changed, _ = imgui.checkbox(widget_label(words, label), on)
         self.note(label, "check box", "on" if on else "off")
         self.tip(tip)
@@ -307,8 +312,7 @@ class Ui(Windows):
         shown : str, optional
             The words of what is chosen, where it is no text.
         """
-        words = self.said(str(chosen) if shown is None else shown)
-        self.words.append(words)
+        words = self.written(str(chosen) if shown is None else shown)
         imgui.set_next_item_width(width)
         unfolded = imgui.begin_combo(widget_label("", label), words)
         self.note(label, "combo box", words)
@@ -316,8 +320,7 @@ class Ui(Windows):
         if unfolded:
             offered = choices() if callable(choices) else {one: str(one) for one in choices}
             for one, name in offered.items():
-                self.words.append(self.said(name))
-                clicked, _ = imgui.selectable(widget_label(self.words[-1], repr(one)), one == chosen)
+                clicked, _ = imgui.selectable(widget_label(self.written(name), repr(one)), one == chosen)
                 self.note(f"{label}: {name}", "list item")
                 if clicked:
                     chosen = one
@@ -331,8 +334,7 @@ class Ui(Windows):
 
         ``identity`` as in :meth:`item`.
         """
-        words = self.said(label)
-        self.words.append(words)
+        words = self.written(label)
         imgui.push_style_color(imgui.Col_.text, packed(self.theme.faint if faint else self.theme.text))
         clicked, _ = imgui.selectable(widget_label(words, identity or label), on)
         imgui.pop_style_color()
@@ -365,8 +367,7 @@ class Ui(Windows):
 
         It slides a share: Dear ImGui takes float32, and ends the program where a range is beyond that.
         """
-        shown = self.said(shown)
-        self.words.append(shown)
+        shown = self.written(shown)
         imgui.set_next_item_width(width)
         flags = imgui.SliderFlags_.no_input  # Ctrl-click would make a field of it, without units
         words = shown.replace("%", "%%")

@@ -144,6 +144,11 @@ class Windows:
         """Return words in the language of the window, as they can be drawn."""
         return drawable(self.language.reword(words))
 
+    def written(self, words: str) -> str:
+        """Return words as :meth:`said` does, and note that they are written."""
+        self.words.append(self.said(words))
+        return self.words[-1]
+
     def _titled(self, title: str) -> str:
         """Return the name of a window whose title is shown in the language of the window."""
         said = self.said(title)
@@ -274,7 +279,7 @@ class Windows:
         name = self._titled(title)
         _, stays = imgui.begin(name, True, (_FLOATING | _BESIDE) if docks else (_FLOATING | _APART))
         keep_inside(low, room)
-        self.words.append(self.said(title))
+        self.written(title)
         if docks:
             self.raise_tab(self._raised.get(name))
         try:

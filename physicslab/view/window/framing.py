@@ -1,13 +1,12 @@
 """The part of the world that is seen: all of it, what its scene says, or what was chosen."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
-from physicslab.components import Slider
 from physicslab.ecs.vector import Vector2
 from physicslab.view.canvas.camera import Camera, Extent
-from physicslab.view.canvas.canvas import Canvas, Rect
+from physicslab.view.canvas.canvas import Canvas, Rect, free_rects, overlap
 from physicslab.view.picture.backdrop import falls_down
-from physicslab.view.picture.extent import extent_of
+from physicslab.view.picture.extent import boxes_of, extent_of
 from physicslab.world import World
 
 _AROUND = 0.04
@@ -15,6 +14,9 @@ _AROUND = 0.04
 
 _SKY = 0.25
 """Share of the height that is left over by which a world is lower than the middle where bodies fall down."""
+
+_LEAST = 0.3
+"""Share of the usual scale below which nothing is made smaller for the sake of panels that lie over it."""
 
 
 class Framing:
@@ -31,13 +33,17 @@ class Framing:
     ----------
     room : callable
         Returns which part of the canvas is left for the world [px].
+    small : callable
+        Returns where meters and sliders lie in it [px].
     """
 
     def __init__(self, canvas: Canvas, camera: Camera, scale: float) -> None:
         self._canvas, self._camera, self._scale = canvas, camera, scale
         self.room: Callable[[], Rect] = lambda: (0, 0, *canvas.size)
+        self.small: Callable[[], Sequence[Rect]] = lambda: ()
         self._shown: tuple[Vector2, float, float, Extent | None] | None = None
         self._room: Rect | None = None
+        self._count = 0  # of meters and sliders; where one grows by a digit the view stays
 
     @property
     def middle(self) -> tuple[float, float]:
@@ -47,9 +53,10 @@ class Framing:
 
     def follow(self, world: World) -> None:
         """Let the camera follow the canvas and its room; an untouched view still shows all of the world."""
-        if self._camera.size == self._canvas.size and self._room == self.room():
+        now = self.room(), len(self.small())
+        if self._camera.size == self._canvas.size and now == (self._room, self._count):
             return
-        before, self._room = self._room, self.room()
+        before, (self._room, self._count) = self._room, now
         is_resized = self._camera.size != self._canvas.size
         self._camera.resize(self._canvas.size)
         if self._shown is not None and self._shown[:2] == (self._camera.centre, self._camera.scale):
@@ -87,9 +94,30 @@ class Framing:
         if extent is None:
             self._camera.look_at((0.0, 0.0, 0.0, 0.0), self._scale, room)
         else:
-            scale = min(self._camera.fitting_scale(extent, room, _AROUND), largest_scale)
-            self._camera.look_at(extent, scale, room)
-            if falls_down(world) and not len(world.batch(Slider)):  # sliders stand below the bodies
-                spare = (1.0 - 2.0 * _AROUND) * room[3] - (extent[3] - extent[1]) * self._camera.scale
-                self._camera.pan(0.0, _SKY * max(spare, 0.0))
+            scale = self._look(world, extent, room, largest_scale)
+            if self._is_covered(world):
+                rooms = free_rects(room, self.small())
+                largest = max(rooms, key=lambda free: self._camera.fitting_scale(extent, free), default=room)
+                if self._look(world, extent, largest, largest_scale) < _LEAST * scale:
+                    self._look(world, extent, room, largest_scale)
         self._shown = (self._camera.centre, self._camera.scale, largest_scale, view)
+
+    def _look(self, world: World, extent: Extent, room: Rect, largest_scale: float) -> float:
+        """Show a part of the world in a part of the canvas, and return the scale [px/m]."""
+        scale = min(self._camera.fitting_scale(extent, room, _AROUND), largest_scale)
+        self._camera.look_at(extent, scale, room)
+        if falls_down(world):
+            spare = (1.0 - 2.0 * _AROUND) * room[3] - (extent[3] - extent[1]) * self._camera.scale
+            self._camera.pan(0.0, _SKY * max(spare, 0.0))
+        return scale
+
+    def _is_covered(self, world: World) -> bool:
+        """Whether a meter or a slider lies over a body."""
+        small = self.small()
+        boxes = boxes_of(world) if small else ()
+        for x_min, y_min, x_max, y_max in boxes:
+            left, top = self._camera.to_screen(Vector2(x_min, y_max))
+            size = (x_max - x_min) * self._camera.scale, (y_max - y_min) * self._camera.scale
+            if any(overlap((left, top, *size), rect) for rect in small):
+                return True
+        return False

@@ -55,8 +55,7 @@ class AboutPanel:
             is_active |= active
             if active or not self._active:
                 self._written[key] = text
-            if key in self._refused:
-                ui.text(self._refused[key], ui.theme.error, wrapped=True)
+            ui.refusal(self._refused.get(key, ""))
         ui.faint("Enter: keep   Esc: drop")
         if self._active and not is_active:
             if imgui.is_key_pressed(imgui.Key.escape):

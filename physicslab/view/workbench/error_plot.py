@@ -123,9 +123,7 @@ def _build_plot(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, fl
     if not implot.begin_plot("##error", ImVec2(*size), flags):
         return
     series = _series(study)
-    across, along = ui.said("processor time [ms]"), ui.said("largest error [m]")
-    implot.setup_axes(across, along)
-    ui.words += across, along
+    implot.setup_axes(ui.written("processor time [ms]"), ui.written("largest error [m]"))
     implot.setup_axis_scale(implot.ImAxis_.x1, implot.Scale_.log10)
     implot.setup_axis_scale(implot.ImAxis_.y1, implot.Scale_.log10)
     costs = np.concatenate([line[1] for line in series])
@@ -139,8 +137,7 @@ def _build_plot(ui: Ui, study: ErrorStudy, window: Window, size: tuple[float, fl
         spec.line_color = spec.marker_fill_color = spec.marker_line_color = as_vector(
             ui.theme.bodies[n % len(ui.theme.bodies)]
         )
-        implot.plot_line(ui.said(name), times, distances, spec)
-        ui.words.append(name)
+        implot.plot_line(ui.written(name), times, distances, spec)
     if study.rounding > 0.0:
         spec = implot.Spec()
         spec.flags, spec.line_color = implot.InfLinesFlags_.horizontal, as_vector(ui.theme.faint)

@@ -77,8 +77,7 @@ class FileBrowser:
             seen = path if _is_pointed_at() else seen
         self._list(opening.folder)
         ui.faint(printable(str(opening.folder)), wrapped=False)
-        if self._refused:
-            ui.text(self._refused, ui.theme.error, wrapped=True)
+        ui.refusal(self._refused)
         if opening.folder.parent != opening.folder:
             ui.selectable("Up", file_actions.open_folder, opening.folder.parent, identity="the folder above")
         for entry in self._listed:
@@ -114,8 +113,7 @@ class FileBrowser:
         if known is None:
             return
         ui.text(known.title, wrapped=True)
-        if known.failure:
-            ui.text(known.failure, ui.theme.error, wrapped=True)
+        ui.refusal(known.failure)
         ui.faint(known.words[:300])
 
 

@@ -36,8 +36,7 @@ def build_name(ui: Ui, label: str, naming: Naming, width: float, close: Callable
     text, _ = ui.field(label, naming.text, width * ui.size, wrong=bool(naming.refused))
     entered = imgui.is_item_focused() and imgui.is_key_pressed(imgui.Key.enter)
     naming.entered |= entered
-    if naming.refused:
-        ui.text(naming.refused, ui.theme.error, wrapped=True)
+    ui.refusal(naming.refused)
     naming.write(text)
     return bool(entered)
 

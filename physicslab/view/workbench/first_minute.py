@@ -89,8 +89,7 @@ def _build_card(ui: Ui, title: str, kind: str, tip: str, action: Action, size: t
     for words, colour, font in (
         (title, ui.theme.heading, ui.fonts.bold), (kind, ui.theme.faint, ui.fonts.plain),
     ):  # fmt: skip
-        words = ui.said(words)
-        ui.words.append(words)
+        words = ui.written(words)
         imgui.push_font(font, ui.size)
         left = low.x + 0.5 * (size[0] - imgui.calc_text_size(words).x)
         paper.add_text(ImVec2(left, top), packed(colour), words)

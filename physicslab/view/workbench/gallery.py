@@ -8,7 +8,7 @@ import pygame
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.ecs.text import printable
-from physicslab.files.listing import scene_files
+from physicslab.files.listing import scenes_here
 from physicslab.lessons.catalogue import LESSONS
 from physicslab.scenes import SCENES
 from physicslab.view.controls.file_actions import open_from_list
@@ -42,10 +42,7 @@ class Gallery:
 
     def refresh(self, window: Window) -> None:
         """Look again which scene files there are; those here come first, then the last few of elsewhere."""
-        try:
-            files = scene_files(Path.cwd())
-        except OSError:
-            files = []
+        files = scenes_here()
         for path in files:
             self._thumbnails.forget(path)
         others = [path for path in window.scenes.recent.there if path not in files]
@@ -54,13 +51,12 @@ class Gallery:
     def build(self, ui: Ui, window: Window) -> None:
         """Build the search and the cards in a window over the world."""
         size = ui.size
-        left, top, width, height = window.framing.room()
+        _, _, width, height = window.framing.room()
         columns = max(int(_SHARE * width / ((_CARD[0] + 0.6) * size)), 1)
         inner = ImVec2(columns * (_CARD[0] + 0.6) * size + 1.5 * size, _SHARE * height - (4.0 + _HEAD) * size)
         self._thumbnails.begin(window.language, runs=window.has_kernels())
-        place = left + 0.5 * width, top + 0.5 * height
         close = window.closing_of("scenes.shows_gallery")
-        with ui.floating("Scenes", place, close, docks=True):
+        with ui.floating("Scenes", window.framing.middle, close, docks=True):
             if imgui.is_window_appearing():
                 self._words, self._tag = "", window.scenes.tag
                 self.refresh(window)

@@ -180,8 +180,7 @@ class NotePanel:
             self._keep(window, writing)
         self._active = active
         ui.faint("Enter: keep   Ctrl+Enter: next line   Esc: drop", wrapped=False)
-        if writing.refusal:
-            ui.text(writing.refusal, ui.theme.error, wrapped=True)
+        ui.refusal(writing.refusal)
         imgui.end()
 
     def finish(self, window: Window) -> str:

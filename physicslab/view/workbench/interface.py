@@ -184,6 +184,10 @@ class Interface:
         bar = min(self._bar_height, height - 1)
         return left, top + bar, width, height - bar
 
+    def small(self) -> tuple[Rect, ...]:
+        """Return where meters and sliders are [px]."""
+        return self._scene_panels.small
+
     @property
     def visible(self) -> Rect:
         """The part of the window where words can be drawn over the world: no panel covers it [px]."""

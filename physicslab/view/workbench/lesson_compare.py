@@ -107,7 +107,7 @@ def _build_row(
             ui.text(_figure(predicted, row.unit), wrapped=True)
         imgui.table_next_column()
     if isinstance(row, str):
-        ui.text(row, ui.theme.error, wrapped=True)
+        ui.refusal(row)
         return
     ui.text(_figure(row.theory, row.unit), wrapped=True)
     imgui.table_next_column()

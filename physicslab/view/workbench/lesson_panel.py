@@ -71,9 +71,7 @@ class LessonPanel:
         ui.heading(lesson.lesson.title)
         if lesson.told or lesson.failure:
             ui.text(lesson.failure or lesson.told, ui.theme.notice, wrapped=True)
-        imgui.align_text_to_frame_padding()
-        ui.faint("Your name", wrapped=False)
-        imgui.same_line()
+        ui.lead("Your name")
         learner, editing = ui.field("Your name", lesson.learner, -1.0)
         if learner != lesson.learner:
             lesson.learner = learner[:200]
@@ -182,7 +180,7 @@ class LessonPanel:
         tip = "It cannot be changed afterwards" if ready else "First your prediction, and how sure you are"
         if ui.button(f"Lock in {part.name}", tip, shown=f"{_LOCKED}  Lock it in", enabled=ready) and found:
             self._refused[part.name] = lesson.answer(part.name, part, {**found, "sure": sure})
-        self._say_refused(ui, part.name)
+        ui.refusal(self._refused.get(part.name, ""))
 
     def _build_question(
         self, ui: Ui, window: Window, lesson: OpenLesson, part: Question, name: str, kind: str, of: Lesson
@@ -194,7 +192,7 @@ class LessonPanel:
             found = self._build_room(ui, lesson, part, name)
             if ui.button(f"Check {name}", shown="Check", enabled=found is not None) and found:
                 self._refused[name] = lesson.answer(name, part, found)
-        self._say_refused(ui, name)
+        ui.refusal(self._refused.get(name, ""))
         if name in lesson.given:
             self._build_verdict(ui, lesson, part, name, kind)
         elif kind != "recall":
@@ -206,10 +204,6 @@ class LessonPanel:
             if ui.button(f"Pass {part.name}", "You can come back to it", shown="Go on without an answer"):
                 lesson.passed.add(part.name)
                 lesson.number += 1
-
-    def _say_refused(self, ui: Ui, name: str) -> None:
-        if self._refused.get(name):
-            ui.text(self._refused[name], ui.theme.error, wrapped=True)
 
     def _build_room(self, ui: Ui, lesson: OpenLesson, part: Question, name: str) -> dict[str, object] | None:
         """Build where an answer is given, and return it; ``None`` while there is none."""
@@ -233,7 +227,7 @@ class LessonPanel:
         try:
             evaluate(draft, part.unit)
         except InvalidText as error:
-            ui.text(str(error), ui.theme.error, wrapped=True)
+            ui.refusal(str(error))
             return None
         return {"value": draft.strip()}
 
@@ -326,7 +320,7 @@ class LessonPanel:
             try:
                 value, least, most = (setup.quantity(name, one) for one in (text, low, high))
             except InvalidText as error:
-                ui.text(str(error), ui.theme.error, wrapped=True)
+                ui.refusal(str(error))
                 ready = False
                 continue
             imgui.same_line()
@@ -336,7 +330,7 @@ class LessonPanel:
             if moved is not None and not editing:
                 lesson.values[name] = _in_unit_of(moved, low)
             if not least <= value <= most:
-                ui.text(f"{name} must be from {low} to {high}", ui.theme.error, wrapped=True)
+                ui.refusal(f"{name} must be from {low} to {high}")
                 ready = False
         case = lesson.own_case()
         if ui.button(f"Run own {part.name}", "", shown=f"{RUN}  Run with these values",
@@ -376,7 +370,7 @@ class LessonPanel:
         if ui.button(f"Say {part.name}", tip, shown="Compare with the model answer", enabled=ready):
             text = self._drafts[part.name].strip()
             self._refused[part.name] = lesson.answer(part.name, part, {"text": text})
-        self._say_refused(ui, part.name)
+        ui.refusal(self._refused.get(part.name, ""))
         self._build_pass(ui, lesson, part)
 
 
@@ -384,8 +378,7 @@ def _build_trial(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
     """Build what is known of a run so far."""
     if not trial.ended:
         imgui.progress_bar(trial.share, ImVec2(-1.0, 0.5 * ui.size), "")
-    if trial.failure:
-        ui.text(trial.failure, ui.theme.error, wrapped=True)
+    ui.refusal(trial.failure)
     if trial.case.values:
         own = language(lesson.lesson.language)
         values = (f"{name} = {formula(own, text)}" for name, text in trial.case.values)

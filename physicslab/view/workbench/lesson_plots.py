@@ -14,7 +14,7 @@ from physicslab.lessons.check import Row, si_unit
 from physicslab.lessons.lesson import Compare, Question
 from physicslab.theme import Colour
 from physicslab.view.canvas.quantities import rounded_up, written_unit
-from physicslab.view.toolkit.axes import finish_axes
+from physicslab.view.toolkit.axes import finish_axes, plot_rect
 from physicslab.view.toolkit.style import as_vector
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.lesson import Curve, OpenLesson, Trial
@@ -77,8 +77,7 @@ def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve, usual: C
     if usual is not None:
         look = _look(ui, ui.theme.faint)
         look.line_weight *= _THIN
-        implot.plot_line(ui.said(AS_RUN), np.array(usual.x), np.array(usual.y), look)
-        ui.words.append(AS_RUN)
+        implot.plot_line(ui.written(AS_RUN), np.array(usual.x), np.array(usual.y), look)
     x, y = np.array(curve.x), np.array(curve.y)
     theme = ui.theme
     if curve.against.text == "time":
@@ -95,8 +94,8 @@ def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve, usual: C
                     shade.fill_color, shade.fill_alpha = as_vector(theme.notice), _SHADE
                     implot.plot_shaded("##gap", x, predicted, y, shade)
                     values = drawn[:, 1] * factor_of(question.unit)
-                    implot.plot_line(ui.said(PREDICTED), drawn[:, 0].copy(), values, _look(ui, theme.notice))
-                    ui.words.append(PREDICTED)
+                    own = _look(ui, theme.notice)
+                    implot.plot_line(ui.written(PREDICTED), drawn[:, 0].copy(), values, own)
     implot.plot_line(ui.said(MEASURED), x, y, _look(ui, theme.accent))
     for compare in lesson.lesson.compares():
         if compare.name in trial.theory and compare.measured.text == curve.along.text:
@@ -105,8 +104,7 @@ def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve, usual: C
             dashes = dashes[: len(dashes) // 2 * 2]
             look = _look(ui, theme.text)
             look.flags = implot.LineFlags_.segments
-            implot.plot_line(ui.said(THEORY), x[dashes], theory[dashes], look)
-            ui.words.append(THEORY)
+            implot.plot_line(ui.written(THEORY), x[dashes], theory[dashes], look)
 
 
 def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predicted: float | None) -> None:
@@ -134,8 +132,7 @@ def plot_compared(ui: Ui, part: Compare, rows: Sequence[tuple[int, Row]], predic
         look.marker, look.marker_size = marker, size * ui.size
         look.marker_line_color = as_vector(colour)
         look.marker_fill_color = as_vector(colour, 0.0 if name == THEORY else 1.0)
-        implot.plot_scatter(ui.said(name), x, y, look)
-        ui.words.append(name)
+        implot.plot_scatter(ui.written(name), x, y, look)
     implot.end_plot()
     implot.pop_style_var()
 
@@ -167,9 +164,8 @@ def _begin(ui: Ui, name: str, across: str, along: str, flags: int = _FLAGS) -> b
     if not implot.begin_plot(f"##{name}", ImVec2(-1.0, _HEIGHT * ui.size), flags):
         return False
     fit = implot.AxisFlags_.auto_fit
-    implot.setup_axes(ui.said(across), "", fit, fit)
+    implot.setup_axes(ui.written(across), "", fit, fit)
     implot.setup_legend(implot.Location_.north, implot.LegendFlags_.horizontal | implot.LegendFlags_.outside)
-    ui.words.append(across)
     return True
 
 
@@ -198,10 +194,7 @@ class CurveField:
             implot.setup_axes(ui.said(across), ui.said(along), _LOCK, _LOCK)
             implot.setup_axes_limits(0.0, end, low, high, implot.Cond_.always)
             ui.words += finish_axes(ui.language)
-            place, size = implot.get_plot_pos(), implot.get_plot_size()
-            ui.places.setdefault(
-                f"Draw {part.name}", (round(place.x), round(place.y), round(size.x), round(size.y))
-            )
+            ui.places.setdefault(f"Draw {part.name}", plot_rect())
             self._follow_mouse(end, low, high)
             if self._values:
                 points = np.array(sorted(self._values.items()))
@@ -246,8 +239,7 @@ class CurveField:
         imgui.same_line()
         if ui.button(f"Clear {part.name}", shown="Clear"):
             self._values, self._text, self._refusal = {}, "", ""
-        if self._refusal:
-            ui.text(self._refusal, ui.theme.error, wrapped=True)
+        ui.refusal(self._refusal)
 
 
 def _axes(lesson: OpenLesson, part: Question) -> tuple[float, float, float]:

@@ -48,7 +48,7 @@ def build_maker(ui: Ui, world: World, window: Window) -> None:
                                     wrong=("run", "seconds") in refused)  # fmt: skip
         imgui.same_line()
         ui.faint("seconds", wrapped=False)
-        _say(ui, refused, ("run", "seconds"))
+        ui.refusal(refused.get(("run", "seconds"), ""))
         _build_opened(ui, world, window, refused)
         _build_prediction(ui, world, making, refused)
         ui.rule(0.2)
@@ -66,7 +66,7 @@ def build_maker(ui: Ui, world: World, window: Window) -> None:
         _build_field(ui, making, refused, "Answer", "answer", "A model answer, shown after the learner's own")
         for entry, why in refused.items():
             if entry not in _BLOCKS.values() and entry[1] not in ("let", "open"):
-                ui.text(why, ui.theme.error, wrapped=True)
+                ui.refusal(why)
         build_answers(
             ui, making.naming, ("Make the lesson", "No lesson"), entered, actions.make_lesson, close
         )
@@ -92,8 +92,8 @@ def _build_opened(ui: Ui, world: World, window: Window, refused: dict[tuple[str,
             opened.low, _ = ui.field(f"Least of {n}", opened.low, _NUMBER * ui.size)
             imgui.same_line()
             opened.high, _ = ui.field(f"Greatest of {n}", opened.high, _NUMBER * ui.size)
-    _say(ui, refused, ("scene", "let"))
-    _say(ui, refused, ("scene", "open"))
+    for entry in (("scene", "let"), ("scene", "open")):
+        ui.refusal(refused.get(entry, ""))
 
 
 def _build_prediction(ui: Ui, world: World, making: Making, refused: dict[tuple[str, str], str]) -> None:
@@ -128,9 +128,7 @@ def _build_prediction(ui: Ui, world: World, making: Making, refused: dict[tuple[
 
 def _begin(ui: Ui, words: str) -> None:
     """Begin a line with what it is about."""
-    imgui.align_text_to_frame_padding()
-    ui.faint(words, wrapped=False)
-    imgui.same_line(_LABEL * ui.size)
+    ui.lead(words, _LABEL * ui.size)
 
 
 def _build_field(
@@ -142,9 +140,4 @@ def _build_field(
     text, _ = ui.field(f"{part} of the lesson", getattr(making.draft, part), -1.0, wrong=entry in refused)
     ui.tip(tip)
     setattr(making.draft, part, text)
-    _say(ui, refused, entry)
-
-
-def _say(ui: Ui, refused: dict[tuple[str, str], str], entry: tuple[str, str]) -> None:
-    if entry in refused:
-        ui.text(refused[entry], ui.theme.error, wrapped=True)
+    ui.refusal(refused.get(entry, ""))

@@ -1,6 +1,8 @@
 """Where actions are found: the menus at the top, the tools at the left, and the help, which lists keys."""
 
-from collections.abc import Sequence
+from bisect import bisect
+from collections.abc import Callable, Sequence
+from itertools import accumulate
 from pathlib import Path
 
 from imgui_bundle import ImVec2, imgui
@@ -29,34 +31,44 @@ from physicslab.view.workbench.file_panels import recent_label
 from physicslab.view.workbench.trust_badge import badge_width, build_badge
 from physicslab.world import World
 
-_MENUS = {"File": ("file", "quit"), "Edit": ("edit",), "World": ("laws",), "Instruments": ("measure",),
-          "View": ("show", "view", "window"),
-          "Help": ("help",)}  # fmt: skip
-"""Which groups of controls each menu shows."""
 _MAX_TITLE = 60
 
 
 def build_menu_bar(ui: Ui, world: World, window: Window) -> None:
-    """Build the menus, and the title of the scene at the right."""
+    """Build the menus, and the title of the scene at the right; menus without room are in a last one."""
     if not imgui.begin_main_menu_bar():
         return
+    names = list(_MENUS)
     if ui.keys_go_to == "menu":
-        _begin_walk(next(iter(_MENUS)))
-    for name, groups in _MENUS.items():
-        with ui.menu(name) as shown:
-            if shown:
-                _build_controls(ui, groups, world, window)
-        for follows, title, build in (
-            ("File", "Scenes", _build_scenes),
-            ("File", "Lessons", _build_lessons),
-            ("Edit", "Draw", _build_tools),
-        ):
-            if name == follows:
-                with ui.menu(title) as shown:
-                    if shown:
-                        build(ui, world, window)
+        _begin_walk(names[0])
+    beside = _beside(ui, names)
+    for name in names[:beside]:
+        _build_menu(ui, name, world, window)
+    if beside < len(names):
+        with ui.menu(_MORE) as is_open:
+            for name in names[beside:] if is_open else ():
+                _build_menu(ui, name, world, window)
     _build_right(ui, world, window)
     imgui.end_main_menu_bar()
+
+
+def _build_menu(ui: Ui, name: str, world: World, window: Window) -> None:
+    with ui.menu(name) as is_open:
+        if is_open:
+            build = _MENUS[name]
+            if isinstance(build, tuple):
+                _build_controls(ui, build, world, window)
+            else:
+                build(ui, world, window)
+
+
+def _beside(ui: Ui, names: Sequence[str]) -> int:
+    """Return for how many menus there is room in the bar, beside one for the others if that is not all."""
+    room, between = imgui.get_content_region_avail().x, 2.0 * imgui.get_style().item_spacing.x
+    ends = list(accumulate(ui.width(name) + between for name in names))
+    if ends[-1] <= room:
+        return len(names)
+    return max(bisect(ends, room - ui.width(_MORE) - between), 1)
 
 
 def _build_right(ui: Ui, world: World, window: Window) -> None:
@@ -150,6 +162,15 @@ def _build_lessons(ui: Ui, world: World, window: Window) -> None:
     now = "" if window.lesson is None else window.lesson.lesson.name
     for name, title in titles(window.language).items():
         ui.item(title, open_lesson, name, identity=name, on=name == now)
+
+
+_MENUS: dict[str, tuple[str, ...] | Callable[[Ui, World, Window], None]] = {
+    "File": ("file", "quit"), "Scenes": _build_scenes, "Lessons": _build_lessons, "Edit": ("edit",),
+    "Draw": _build_tools, "World": ("laws",), "Instruments": ("measure",), "View": ("show", "view", "window"),
+    "Help": ("help",),
+}  # fmt: skip
+"""Which groups of controls each menu shows, or what builds it."""
+_MORE = "..."
 
 
 # ---- help --------------------------------------------------------------------------------------------------

@@ -38,10 +38,9 @@ _FLAT = 0.6
 
 def build_microscope(ui: Ui, world: World, window: Window) -> None:
     """Build it in a window of its own: what happened, both bodies, momenta, energies, and the rest below."""
-    left, top, across, down = window.framing.room()
     ui.stand_beside("Collision microscope", "right", 0.5, 0.0, stacks=False)
-    place = left + 0.5 * across, top + 0.5 * down
-    with ui.floating("Collision microscope", place, window.closing_of("microscope.record"), docks=True):
+    middle, close = window.framing.middle, window.closing_of("microscope.record")
+    with ui.floating("Collision microscope", middle, close, docks=True):
         ui.raise_tab(window.microscope.number)
         size = ui.extent(_WIDE * ui.size, _TALL * ui.size)
         with ui.child("impact", ImVec2(size.x, max(size.y, 8.0 * ui.size))) as is_seen:

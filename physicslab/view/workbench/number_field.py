@@ -234,8 +234,7 @@ class NumberFields:
         imgui.invisible_button(ui.held(f"drag {key}"), ImVec2(width, imgui.get_frame_height()))
         imgui.pop_item_flag()
         ui.note(f"label {key}")
-        words = ui.said(words)
-        ui.words.append(words)
+        words = ui.written(words)
         drags = value is not None and commit is not None
         lit = drags and (imgui.is_item_hovered() or imgui.is_item_active())
         place = ImVec2(corner.x, corner.y + 0.5 * (imgui.get_frame_height() - imgui.get_font_size()))
@@ -338,5 +337,4 @@ def _finish(ui: Ui, unit: str, refusal: str) -> None:
     if unit:
         imgui.same_line(0.0, 0.4 * ui.size)
         ui.faint(unit, wrapped=False)
-    if refusal:
-        ui.text(refusal, ui.theme.error, wrapped=True)
+    ui.refusal(refusal)

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from physicslab.view.canvas.canvas import Rect, overlap
+from physicslab.view.canvas.canvas import Rect, free_rects, overlap
 
 _ROOM = (13.0, 12.0)
 """Width and height below which there is no room for any panel, in heights of the text."""
@@ -47,7 +47,16 @@ def places(area: Rect, text: float, small: Sequence[Small]) -> dict[int, Rect]:
     left, top, width, height = area
     inner = (left + gap, top + gap, max(width - 2 * gap, 1), max(height - 2 * gap, 1))
     ways = [_small(inner, text, gap, small, downwards=downwards) for downwards in (True, False)]
-    return max(ways, key=lambda way: (-_covered(way.values()), _free(inner, list(way.values()))))
+    return max(ways, key=lambda way: (-covered(way.values()), _largest(inner, list(way.values()))))
+
+
+def covered(taken: Iterable[Rect]) -> int:
+    """Return how much of small panels others cover, as those from two corners do in little room [px^2]."""
+    pairs = combinations(taken, 2)
+    return sum(
+        max(min(x + w, u + m) - max(x, u), 0) * max(min(y + h, v + n) - max(y, v), 0)
+        for (x, y, w, h), (u, v, m, n) in pairs
+    )
 
 
 def has_room(area: Rect, text: float) -> bool:
@@ -75,7 +84,7 @@ def _small(area: Rect, text: float, gap: int, small: Sequence[Small], *, downwar
         stack = [one for one in small if one.corner == corner]
         if downwards:
             placed = _stacked(_beside_numbers(area, text, corner), gap, stack, corner)
-            if _covered([*taken, *placed.values()]):  # over the numbers all of a stack is in one line
+            if covered([*taken, *placed.values()]):  # over the numbers all of a stack is in one line
                 placed = _stacked(area, gap, stack, corner)
         else:
             below = 0 if "top" in corner else round(_SCALE_BAR * text)
@@ -146,21 +155,6 @@ def _in_rows(area: Rect, gap: int, stack: Sequence[Small], corner: str) -> dict[
     return {entity: (y, x, h, w) for entity, (x, y, w, h) in found.items()}
 
 
-def _covered(taken: Iterable[Rect]) -> int:
-    """Return how much of small panels others cover, as those from two corners do in little room [px^2]."""
-    pairs = combinations(taken, 2)
-    return sum(
-        max(min(x + w, u + m) - max(x, u), 0) * max(min(y + h, v + n) - max(y, v), 0)
-        for (x, y, w, h), (u, v, m, n) in pairs
-    )
-
-
-def _free(area: Rect, taken: Sequence[Rect]) -> int:
-    """Return the area of the largest part that small panels leave, beside them or between them [px^2]."""
-    left, top, width, height = area
-    low_x, high_x, low_y, high_y = left, left + width, top, top + height
-    for x, y, w, h in taken:
-        at_left, at_top = x + 0.5 * w < left + 0.5 * width, y + 0.5 * h < top + 0.5 * height
-        low_x, high_x = (max(low_x, x + w), high_x) if at_left else (low_x, min(high_x, x))
-        low_y, high_y = (max(low_y, y + h), high_y) if at_top else (low_y, min(high_y, y))
-    return max(max(high_x - low_x, 0) * height, max(high_y - low_y, 0) * width)
+def _largest(area: Rect, taken: Sequence[Rect]) -> int:
+    """Return the area of the largest part that small panels leave [px^2]."""
+    return max((width * height for _, _, width, height in free_rects(area, taken)), default=0)

@@ -22,7 +22,7 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench import graph_readings
 from physicslab.view.workbench.graph_plot import GraphPlot
 from physicslab.view.workbench.number_field import NumberFields
-from physicslab.view.workbench.panel_places import Small, bar_at_top, has_room, is_crowded, places
+from physicslab.view.workbench.panel_places import Small, bar_at_top, covered, has_room, is_crowded, places
 from physicslab.view.workbench.small_panels import MeterPanels, SliderPanels
 from physicslab.world import World
 
@@ -199,9 +199,16 @@ def _title(graph: GraphShown, window: Window) -> str:
 
 
 class ScenePanels:
-    """The panels of a scene, each at a place of its own."""
+    """The panels of a scene, each at a place of its own.
+
+    Attributes
+    ----------
+    small : tuple of Rect
+        Where meters and sliders are [px].
+    """
 
     def __init__(self) -> None:
+        self.small: tuple[Rect, ...] = ()
         self._graphs = GraphPanels()
         self._meters = MeterPanels()
         self._sliders = SliderPanels()
@@ -214,7 +221,7 @@ class ScenePanels:
         has_graphs = not dashboard.graphs or has_room(whole, ui.size)
         if has_graphs:
             self._graphs.build(ui, world, window)
-        has_small = bool(dashboard.meters or dashboard.sliders)
+        has_small, self.small = bool(dashboard.meters or dashboard.sliders), ()
         if has_graphs and not has_small:
             return
         if not has_graphs or not has_room(area, ui.size):
@@ -224,6 +231,10 @@ class ScenePanels:
         if is_crowded(area, small):
             small = self._small(ui, world, window, flat=True)
         found = places(area, ui.size, small)
+        if window.figures and covered(found.values()):
+            _build_room_maker(ui, window, bar_at_top(area, ui.size))
+            return
+        self.small = tuple(found.values())
         self._meters.build(ui, world, window, found)
         self._sliders.build(ui, numbers, world, window, found)
 

@@ -57,8 +57,7 @@ def _build_run(ui: Ui, world: World, window: Window) -> None:
             slid.span, _ = ui.field(f"Values of slider {n}", before, _SPAN * size, wrong=bool(slid.refused))
             if slid.span != before:
                 slid.refused = ""
-            if slid.refused:
-                ui.text(slid.refused, ui.theme.error, wrapped=True)
+            ui.refusal(slid.refused)
 
 
 def build_sharing(ui: Ui, window: Window) -> None:

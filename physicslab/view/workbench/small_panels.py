@@ -39,21 +39,21 @@ def size_of(ui: Ui, title: str, width: float, height: float) -> tuple[int, int]:
     A ``height`` of 0 puts it beside the title.
     """
     style = imgui.get_style()
-    button = imgui.calc_text_size(_MENU).x + 2.0 * style.frame_padding.x + style.item_spacing.x
-    head = ui.width(_words(title)) + button
+    head = ui.width(_words(title)) + style.item_spacing.x + _menu_width()
     inside = max(width, head) if height else head + style.item_spacing.x + width
     high = imgui.get_frame_height() + (style.item_spacing.y + height if height else 0.0)
     return round(inside + 2.0 * style.window_padding.x), round(high + 2.0 * style.window_padding.y)
 
 
 @contextmanager
-def build_title(ui: Ui, title: str, label: str) -> Iterator[bool]:
-    """Write the title, with a button of a menu at the right; the yielded value says whether it is open."""
+def build_title(ui: Ui, title: str, label: str, beside: float = 0.0) -> Iterator[bool]:
+    """Write the title, with a button of a menu at the right; the yielded value says whether it is open.
+
+    It is cut where room for it ends, of which something takes so much ``beside`` it [px].
+    """
     style = imgui.get_style()
-    width = imgui.calc_text_size(_MENU).x + 2.0 * style.frame_padding.x
-    imgui.align_text_to_frame_padding()
-    ui.faint(_words(title), wrapped=False)
-    imgui.same_line(imgui.get_window_width() - width - style.window_padding.x)
+    room = _menu_at() - beside - style.item_spacing.x - style.window_padding.x
+    ui.lead(_cut(ui, _words(title), room), _menu_at())
     tip = f"{label}: what it shows, and where"
     with ui.list(f"Menu of {label.lower()}", tip, shown=_MENU) as is_open:
         yield is_open
@@ -69,8 +69,26 @@ def build_corners(ui: Ui, now: str, corners: Sequence[str]) -> str | None:
     return chosen
 
 
+def _menu_width() -> float:
+    return float(imgui.calc_text_size(_MENU).x + 2.0 * imgui.get_style().frame_padding.x)
+
+
+def _menu_at() -> float:
+    """Return where the button of the menu begins in a panel [px]."""
+    return float(imgui.get_window_width() - _menu_width() - imgui.get_style().window_padding.x)
+
+
 def _words(title: str) -> str:
     return drawable(shortened(title, _LETTERS))
+
+
+def _cut(ui: Ui, words: str, room: float) -> str:
+    """Return words without as many of their last letters as there is no room for [px]."""
+    room += 1.0  # a panel is so many whole pixels wide
+    if ui.width(words) <= room:
+        return words
+    words = ui.said(words)
+    return next((cut for n in range(len(words), 0, -1) if ui.width(cut := shortened(words, n)) <= room), "")
 
 
 # ---- meters ------------------------------------------------------------------------------------------------
@@ -87,12 +105,11 @@ class MeterPanels:
 
     def __init__(self) -> None:
         self._figures: dict[int, str] = {}
-        self._is_flat = False
+        self._beside: dict[int, float] = {}  # how wide numbers beside titles are [px]
 
     def sizes(self, ui: Ui, world: World, window: Window, *, flat: bool) -> list[Small]:
         """Return how large each meter is; one that is ``flat`` has its number beside its title."""
-        self._is_flat = flat
-        found, reading = [], Reading(world)
+        self._beside, found, reading = {}, [], Reading(world)
         scales = scales_of(world)
         shown = {meter.entity: _figures_of(reading, meter.key, scales) for meter in window.dashboard.meters}
         known = {entity: self._figures.get(entity, _WIDEST) for entity in shown}
@@ -102,6 +119,8 @@ class MeterPanels:
             number = imgui.calc_text_size(self._figures[meter.entity]).x
             imgui.pop_font()
             number += imgui.get_style().item_spacing.x + imgui.calc_text_size(unit_of(meter.key)).x
+            if flat:
+                self._beside[meter.entity] = number + imgui.get_style().item_spacing.x
             size = size_of(ui, named_key(meter.key, window), number, 0.0 if flat else _LARGE * ui.size)
             found.append(Small(meter.entity, meter.corner, size))
         return found
@@ -111,20 +130,17 @@ class MeterPanels:
         reading, scales = Reading(world), scales_of(world)
         for meter in window.dashboard.meters:
             with ui.panel(f"meter {meter.entity}", places[meter.entity], rounded=True):
-                title = named_key(meter.key, window)
-                with build_title(ui, title, f"Meter {meter.number}") as is_open:
+                title, beside = named_key(meter.key, window), self._beside.get(meter.entity, 0.0)
+                with build_title(ui, title, f"Meter {meter.number}", beside) as is_open:
                     if is_open:
                         _build_menu(ui, world, window, meter)
-                if self._is_flat:
-                    style = imgui.get_style()
-                    imgui.same_line(style.window_padding.x + ui.width(_words(title)) + style.item_spacing.x)
+                if beside:
+                    imgui.same_line(_menu_at() - beside)
                 why = why_undefined(world, meter.key[1], meter.key[0])
                 if why:
-                    ui.faint(
-                        f"The body is {why}" if why == "gone" else f"It {why}", wrapped=not self._is_flat
-                    )
+                    ui.faint(f"The body is {why}" if why == "gone" else f"It {why}", wrapped=not self._beside)
                 else:
-                    large = ui.size if self._is_flat else _LARGE * ui.size
+                    large = ui.size if self._beside else _LARGE * ui.size
                     _build_number(ui, _figures_of(reading, meter.key, scales), unit_of(meter.key), large)
 
 
@@ -231,16 +247,13 @@ def _build_slider_menu(
 
     for name, words in _ENDS:
         spec = next(spec for spec in Slider.FIELDS if spec.name == name)
-        imgui.align_text_to_frame_padding()
-        ui.faint(words, wrapped=False)
-        imgui.same_line(3.0 * ui.size)
+        ui.lead(words, 3.0 * ui.size)
         key, width = f"{name} of slider {slider.number}", 6.0 * ui.size
         commit = partial(_change_end, change, slider, name)
         refusal = numbers.build(ui, key, given[name], spec, width, commit)
         imgui.same_line()
         ui.faint(written_unit(slider.unit), wrapped=False)
-        if refusal:
-            ui.text(refusal, ui.theme.error, wrapped=True)
+        ui.refusal(refusal)
     ui.rule()
     _build_choice(ui, world, window, slider, change)
     corner = build_corners(ui, slider.corner, CORNERS)

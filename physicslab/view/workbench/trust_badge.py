@@ -42,8 +42,7 @@ def build_badge(ui: Ui, world: World, window: Window, room: float) -> None:
         return
     inset = room - _width(ui, words) + _INSET * ui.size
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + inset)
-    words = ui.said(words)
-    ui.words.append(words)
+    words = ui.written(words)
     imgui.set_next_window_size_constraints(ImVec2(_OPENED * ui.size, 0.0), ImVec2(_OPENED * ui.size, 1e9))
     is_quiet = trust.finding(now) is None
     imgui.push_style_color(imgui.Col_.text, packed(ui.theme.faint if is_quiet else ui.theme.text))

@@ -236,9 +236,7 @@ def _build_gravity(ui: Ui, world: World, window: Window) -> None:
     else:
         down = physics.gravity == Vector2(0.0, physics.gravity.y)
         now = next((name for name, g in _PLANETS.items() if down and -physics.gravity.y == g), "own")
-    imgui.align_text_to_frame_padding()
-    ui.faint("Gravity", wrapped=False)
-    imgui.same_line()
+    ui.lead("Gravity")
     chosen = ui.choice("Gravity", now, [*_PLANETS, "between bodies"], "Gravity: choose a planet")
     ui.rows["Gravity"] = gravity_in_words(world)
     if chosen != now:
