@@ -261,6 +261,7 @@ SENTENCES = {
     "too_near": "{body} is nearer than numbers tell",
     "steps_of": "{why}; {steps} steps of omega h = {phase}",
     "charges_alone": "charges",
+    "attraction_of_two": "attraction between two bodies",
     "uniform_gravity": "uniform gravity",
     "anchored_springs": "springs to fixed points",
     "linear_drag": "linear drag",

@@ -10,23 +10,31 @@ from numpy.typing import NDArray
 
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.forces.budget import ACCOUNTS
+from physicslab.kernels.ode.compensated import add_all
+from physicslab.kernels.ode.kepler import kepler_change
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.ode.closed_form import closed_form
 from physicslab.ode.closed_form_account import given_in_closed_form
+from physicslab.ode.kepler import TwoBodies
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     form = closed_form(state, ode.forces)
-    position, velocity = form.motion(state)
-    form.advance(position, velocity, steps * h)
     for cause, given in given_in_closed_form(state, form, steps * h).items():
         slot = ode.slots.get(cause)
         if slot is not None:
             ode.v[slot : slot + ACCOUNTS] = given
-    n = 2 * len(ode.layout.moving)
-    ode.q[:n], ode.v[:n] = position.ravel(), velocity.ravel()
+    n, start = 2 * len(ode.layout.moving), form.motion(state)
+    if isinstance(form, TwoBodies):
+        moved, gained = form.change(start, steps * h)
+        q_low, v_low = ode.remainders(state)
+        add_all(ode.q, q_low, moved.ravel())
+        add_all(ode.v, v_low, gained.ravel())
+    else:
+        position, velocity = form.after(start, steps * h)
+        ode.q[:n], ode.v[:n] = position.ravel(), velocity.ravel()
     turning = slice(n, ode.layout.moving_count)
     ode.q[turning] += steps * h * ode.v[turning]
     return 0
@@ -34,9 +42,9 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
 
 def _sample(state: State, ode: OdeSystem, spans: NDArray[np.float64], into: NDArray[np.float64]) -> None:
     form, n = closed_form(state, ode.forces), 2 * len(ode.layout.moving)
+    start = form.motion(state)
     for k, after in enumerate(np.cumsum(spans).tolist()):
-        position, velocity = form.motion(state)
-        form.advance(position, velocity, after)
+        position, velocity = form.after(start, after)
         into[0, k], into[1, k] = ode.q, ode.v
         into[0, k, :n], into[1, k, :n] = position.ravel(), velocity.ravel()
         into[0, k, n : ode.layout.moving_count] += after * ode.v[n : ode.layout.moving_count]
@@ -48,9 +56,9 @@ EXACT = Integrator(
     order=float("inf"),
     evaluations=0,
     symplectic=True,
-    source="Landau & Lifshitz, Mechanics, 1976, sections 5, 21, 25",
+    source="Landau & Lifshitz, Mechanics, 1976, sections 5, 15, 21, 25",
     flow=_flow,
-    kernels=(propagate,),
+    kernels=(propagate, kepler_change, add_all),
     chooses_steps=True,
     sample=_sample,
 )

@@ -10,9 +10,11 @@ from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.ecs.sentences import listed, sentence
 from physicslab.ecs.vector import rotated
 from physicslab.kernels.ode.propagate import propagate
+from physicslab.ode.kepler import Motion, TwoBodies, two_bodies
 from physicslab.state.packed import spring_ends
 from physicslab.state.state import State
 from physicslab.systems.drag import DragSystem
+from physicslab.systems.gravity import GravitySystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.systems.system import ForceSystem
 
@@ -51,28 +53,35 @@ class ClosedForm:
     acceleration: NDArray[np.float64]
     what: str
 
-    def motion(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def motion(self, state: State) -> Motion:
         """Return copies of the present positions [m] and velocities [m/s] (n, 2)."""
         return state.table(Transform)["position"][self.rows], state.table(Velocity)["linear"][self.rows]
 
-    def advance(self, position: NDArray[np.float64], velocity: NDArray[np.float64], t: float) -> None:
-        """Change positions [m] and velocities [m/s] (n, 2) to those a time t [s] later."""
+    def after(self, start: Motion, t: float) -> Motion:
+        """Return positions [m] and velocities [m/s] (n, 2) a time t [s] after a start."""
+        position, velocity = start[0].copy(), start[1].copy()
         propagate(
             position, velocity, self.direction, self.rate2, self.drag, self.centre, self.acceleration, t
         )
+        return position, velocity
 
 
-def closed_form(state: State, forces: Sequence[ForceSystem]) -> ClosedForm:
+def closed_form(state: State, forces: Sequence[ForceSystem]) -> ClosedForm | TwoBodies:
     """Return the closed form of a world in which nothing but ``forces`` act.
 
-    There is one for uniform gravity, linear drag and damping, and springs to fixed points: those of no rest
-    length and no damper in the plane, all of them along one line, on which the body must then stay.
+    There is one for two bodies that attract each other; and for uniform gravity, linear drag and damping, and
+    springs to fixed points: those of no rest length and no damper in the plane, all of them along one line,
+    on which the body must then stay.
 
     Raises
     ------
     NoClosedForm
         If there is none.
     """
+    if [type(force) for force in forces] == [GravitySystem] and forces[0].attractors == 2:
+        orbits = two_bodies(state)
+        if orbits is not None:
+            return orbits
     uniform = _uniform(state, forces)
     rows = np.flatnonzero(state.table(Transform).present & state.table(Velocity).present)
     n = len(rows)

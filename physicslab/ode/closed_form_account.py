@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, DAMPING, ENERGY, GRAVITY, PX, PY, SPRINGS
 from physicslab.ode.closed_form import ClosedForm
+from physicslab.ode.kepler import TwoBodies
 from physicslab.state.state import State
 
 type Numbers = NDArray[np.float64]
@@ -22,14 +23,14 @@ _SMALL = 0.1
 
 
 @np.errstate(all="ignore")  # whether the motion is finite is looked at when it is made
-def given_in_closed_form(state: State, form: ClosedForm, t: float) -> dict[int, Numbers]:
+def given_in_closed_form(state: State, form: ClosedForm | TwoBodies, t: float) -> dict[int, Numbers]:
     """Return what each cause has given to bodies within a time t [s].
 
     Parameters
     ----------
     state : State
         The world as it was before.
-    form : ClosedForm
+    form : ClosedForm or TwoBodies
         How its bodies move.
     t : float
         How long that took [s].
@@ -40,6 +41,8 @@ def given_in_closed_form(state: State, form: ClosedForm, t: float) -> dict[int, 
         For gravity, springs and damping the energy [J], the momentum [N s] and the angular momentum about the
         origin [N m s]; gravity and springs store energy, which is not counted.
     """
+    if isinstance(form, TwoBodies):
+        return form.given(state, t)
     free = state.bodies.inverse_mass[form.rows] > 0.0
     mass = state.table(Mass)["mass"][form.rows][free, None]
     along = form.direction[free]

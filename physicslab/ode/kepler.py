@@ -1,91 +1,106 @@
-"""The motion of two bodies that attract each other by the inverse square: Kepler's problem."""
+"""Two bodies that attract each other, one of which may be fixed: their motion in closed form."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-_MAX_ITERATIONS = 100
+from physicslab.components import Mass, Transform, Velocity
+from physicslab.ecs.sentences import sentence
+from physicslab.kernels.accounts import ANGULAR_MOMENTUM, GRAVITY, PX, PY
+from physicslab.kernels.forces.budget import ACCOUNTS
+from physicslab.kernels.ode.kepler import kepler_change
+from physicslab.state.state import State
+
+type Motion = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""Positions [m] and velocities [m/s] of bodies, (n, 2) each."""
+_HEAD_ON = 1e-12
+"""Half-width of an orbit, as a share of the distance, below which the two fall straight into each other."""
 
 
-def propagate_kepler(
-    position: NDArray[np.float64], velocity: NDArray[np.float64], mu: float, t: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return where a body on a Kepler orbit is a time t [s] later, and its velocity.
+@dataclass(frozen=True, slots=True)
+class TwoBodies:
+    """Bodies on Kepler orbits about their common centre of mass, or about the one that is fixed.
 
-    Parameters
+    Attributes
     ----------
-    position, velocity : float64 arrays (2,)
-        Relative to the attracting body [m, m/s].
+    pair : int64 array (2,)
+        The rows that attract each other.
+    moves : bool array (2,)
+        Which of them move: n of the two.
+    share : float64 array (2,)
+        The share of each in the mass of both; a fixed body counts for all of it.
     mu : float
-        G times the mass that attracts [m^3/s^2], > 0.
-    t : float
-        Time from now [s]; may be negative.
-
-    Notes
-    -----
-    By universal variables, for ellipses, parabolas and hyperbolas alike (Danby, Fundamentals of Celestial
-    Mechanics, 1988, 6.9). Whole periods are taken off first.
-
-    Examples
-    --------
-    A quarter of a circle:
-
-    >>> x, v = propagate_kepler(np.array((1.0, 0.0)), np.array((0.0, 1.0)), 1.0, math.pi / 2)
-    >>> bool(abs(x - (0, 1)).max() < 1e-14 and abs(v - (-1, 0)).max() < 1e-14)
-    True
+        G times the mass that attracts [m^3/s^2].
+    what : str
+        The motion that it covers, in words.
     """
-    r = math.hypot(*position)
-    radial = float(position @ velocity)
-    alpha = 2.0 * mu / r - float(velocity @ velocity)  # mu over the semi-major axis
-    if alpha > 0.0:
-        period = 2.0 * math.pi * mu / alpha**1.5
-        t = math.remainder(t, period)
 
-    def late(s: float) -> tuple[float, float, tuple[float, float, float]]:
-        """Return by how much s is later than t, how fast that changes, and the functions at s."""
-        g1, g2, g3 = _functions(alpha, s)
-        return r * g1 + radial * g2 + mu * g3 - t, r + radial * g1 + (mu - alpha * r) * g2, (g1, g2, g3)
+    pair: NDArray[np.int64]
+    moves: NDArray[np.bool_]
+    share: NDArray[np.float64]
+    mu: float
+    what: str
 
-    low, high = _bracket(late, t, r)
-    s = 0.5 * (low + high)
-    for _ in range(_MAX_ITERATIONS):
-        excess, slope, _ = late(s)
-        low, high = (low, s) if excess > 0.0 else (s, high)
-        following = s - excess / slope if slope > 0.0 else math.nan
-        if not low < following < high:
-            following = 0.5 * (low + high)
-        if abs(following - s) <= 2.0 * math.ulp(max(abs(s), 1e-300)):
-            break
-        s = following
-    _, distance, (g1, g2, g3) = late(s)
-    f, g = 1.0 - mu * g2 / r, t - mu * g3
-    df, dg = -mu * g1 / (r * distance), 1.0 - mu * g2 / distance
-    return f * position + g * velocity, df * position + dg * velocity
+    @property
+    def rows(self) -> NDArray[np.int64]:
+        """The rows that move (n,)."""
+        return self.pair[self.moves]
+
+    def motion(self, state: State) -> Motion:
+        """Return copies of the present positions [m] and velocities [m/s] of both (2, 2)."""
+        linear = state.table(Velocity)["linear"][self.pair]
+        linear[~self.moves] = 0.0
+        return state.table(Transform)["position"][self.pair], linear
+
+    def change(self, start: Motion, t: float) -> Motion:
+        """Return the changes of positions [m] and velocities [m/s] of what moves (n, 2) in a time t [s]."""
+        position, velocity = start
+        moved, gained = np.zeros(2), np.zeros(2)
+        kepler_change(position[1] - position[0], velocity[1] - velocity[0], self.mu, t, moved, gained)
+        arms = np.array((-self.share[1], self.share[0]))[self.moves, None]
+        return self.share @ velocity * t + arms * moved, arms * gained
+
+    def after(self, start: Motion, t: float) -> Motion:
+        """Return positions [m] and velocities [m/s] of what moves (n, 2) a time t [s] after a start."""
+        moved, gained = self.change(start, t)
+        return start[0][self.moves] + moved, start[1][self.moves] + gained
+
+    def given(self, state: State, t: float) -> dict[int, NDArray[np.float64]]:
+        """Return what comes in by a body that is fixed within a time t [s].
+
+        As :func:`~physicslab.ode.closed_form_account.given_in_closed_form`: momentum, and angular momentum
+        about the origin, for the line of the force always leads through the fixed body.
+        """
+        row = np.zeros(ACCOUNTS)
+        if not self.moves.all():
+            start, other = self.motion(state), int(self.moves[0])
+            row[[PX, PY]] = self.change(start, t)[1][0] * state.table(Mass)["mass"][self.pair[1 - other]]
+            row[ANGULAR_MOMENTUM] = start[0][other, 0] * row[PY] - start[0][other, 1] * row[PX]
+        return {GRAVITY: row}
 
 
-def _bracket(late: object, t: float, r: float) -> tuple[float, float]:
-    """Return two values of s between which the time is t."""
-    assert callable(late)
-    step = math.copysign(max(abs(t), 1e-300) / r, t)
-    while late(step)[0] * step < 0.0:
-        step *= 2.0
-    return (0.0, step) if step > 0.0 else (step, 0.0)
+def two_bodies(state: State) -> TwoBodies | None:
+    """Return how two bodies that attract each other move, where gravity alone acts on nothing but these.
 
-
-def _functions(alpha: float, s: float) -> tuple[float, float, float]:
-    """Return G1, G2 and G3: s^k times Stumpff's c_k of alpha s^2."""
-    z = alpha * s * s
-    if abs(z) < 0.1:
-        c2 = c3 = term = 0.0
-        term = 1.0
-        for k in range(1, 12):
-            c2 += term / math.factorial(2 * k) * (1.0 if k % 2 else -1.0)
-            c3 += term / math.factorial(2 * k + 1) * (1.0 if k % 2 else -1.0)
-            term *= z
-        return s * (1.0 - z * c3), s * s * c2, s**3 * c3
-    root = math.sqrt(abs(alpha))
-    x = root * s
-    if alpha > 0.0:
-        return math.sin(x) / root, (1.0 - math.cos(x)) / alpha, (x - math.sin(x)) / (alpha * root)
-    return math.sinh(x) / root, (1.0 - math.cosh(x)) / alpha, (math.sinh(x) - x) / (-alpha * root)
+    ``None`` where more bodies attract or move, where one is driven, where the pull is softened or damped, and
+    where the two fall straight into each other.
+    """
+    physics, pair, speeds = state.physics, state.batch(Transform, Mass).rows, state.table(Velocity)
+    if len(pair) != 2 or physics.softening or physics.linear_damping or physics.G <= 0.0:
+        return None
+    moves, mass = speeds.present[pair], state.table(Mass)["mass"][pair]
+    count = np.count_nonzero(moves)
+    if not count or count != np.count_nonzero(speeds.present):
+        return None
+    if 0.0 in state.bodies.inverse_mass[pair][moves]:
+        return None
+    one, other = mass.tolist()
+    pulls, share = one + other, mass / (one + other)
+    if count == 1:
+        pulls, share = (other if moves[0] else one), (~moves).astype(np.float64)
+    form = TwoBodies(pair, moves, share, physics.G * pulls, sentence("attraction_of_two"))
+    position, velocity = form.motion(state)
+    (x, y), (u, v) = (position[1] - position[0]).tolist(), (velocity[1] - velocity[0]).tolist()
+    return form if (x * v - y * u) ** 2 > _HEAD_ON * form.mu * math.hypot(x, y) else None

@@ -1,6 +1,6 @@
 """Sums that keep what rounding leaves out."""
 
-from physicslab.kernels import inlined
+from physicslab.kernels import Numbers, inlined, kernel
 
 
 @inlined
@@ -13,6 +13,13 @@ def add(value: float, low: float, change: float) -> tuple[float, float]:
     total = value + change
     part = total - value
     return total, (value - (total - part)) + (change - part)
+
+
+@kernel
+def add_all(value: Numbers, low: Numbers, change: Numbers) -> None:
+    """Add changes (n,) to numbers (n,) with remainders (n,), in place."""
+    for i in range(len(change)):
+        value[i], low[i] = add(value[i], low[i], change[i])
 
 
 @inlined
