@@ -4,8 +4,6 @@ All of it is local: whether two bodies are joined depends on these two alone, so
 same whatever there is elsewhere.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
