@@ -8,6 +8,7 @@ from importlib.metadata import PackageNotFoundError
 
 import physicslab
 from physicslab.commands import FAILED, USAGE, CommandError, command, require_window
+from physicslab.commands.interrupts import interrupts_kept
 from physicslab.commands.parsers import WindowParser, completion, manual, parser_of
 from physicslab.commands.usage import COMMANDS
 from physicslab.ecs.text import printable, shortened, suggestion
@@ -38,7 +39,8 @@ def main(argv: Sequence[str] | None = None) -> int:
                 errors="backslashreplace"
             )  # a terminal may not be able to show every letter of a title
     try:
-        status = _dispatch(list(sys.argv[1:] if argv is None else argv))
+        with interrupts_kept():
+            status = _dispatch(list(sys.argv[1:] if argv is None else argv))
         if sys.stdout is not None:
             sys.stdout.flush()
         return status

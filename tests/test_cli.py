@@ -8,8 +8,10 @@ import json
 import math
 import os
 import re
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -361,6 +363,22 @@ def test_an_interrupted_run_ends_quietly(
     assert os.listdir(tmp_path) == []
 
 
+def test_an_interrupt_that_comes_in_a_callback_is_not_forgotten(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Dropped:
+        def __del__(self) -> None:
+            signal.raise_signal(signal.SIGINT)
+
+    def go_on(*_: object) -> None:
+        Dropped()
+        for _count in range(1000):
+            time.sleep(0.01)
+
+    monkeypatch.setattr(MeasuredRun, "_measure", go_on)
+    assert complaint(capsys, "run", "drop", status=130) == "interrupted"
+
+
 def test_a_full_disk_is_said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -494,6 +512,7 @@ def test_a_pipe_with_a_path_is_written_to_as_it_is() -> None:
 def test_nothing_without_a_window_imports_pygame() -> None:
     code = """
 import sys
+import time
 import physicslab
 from physicslab import cli
 assert cli.main(["scenes"]) == 0

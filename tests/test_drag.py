@@ -25,6 +25,14 @@ def thrown(
     return world, world.spawn(Transform(), Velocity(velocity), Mass(mass), drag)
 
 
+def test_a_rate_beyond_all_numbers_is_without_limit() -> None:
+    world, ball = thrown(Drag(linear=1e300), 1e-10, (10, 15))
+    held = world.spawn(Transform(), Velocity(), Drag(quadratic=1e300))  # without a mass nothing slows it
+    world.component(ball, Mass)  # what is read has a row
+    rates = DragSystem().rates(world)
+    assert [rates[world.entity_index.row_of[entity]] for entity in (ball, held)] == [math.inf, 0.0]
+
+
 def test_linear_drag_against_the_closed_form() -> None:
     world, ball = thrown(Drag(linear=0.5), 2.0, (10, 15))
     world.run(seconds=3.0)

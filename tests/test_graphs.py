@@ -353,6 +353,20 @@ def test_a_graph_knows_what_was_before_it_and_every_step_of_it() -> None:
         assert height[step - 1] == desk.world.component(ball, Transform).position.y
 
 
+def test_the_only_moment_of_a_run_is_a_point(desk: Desk) -> None:
+    pause(desk)
+    ball_of(desk)
+    tap(desk, "m")
+    desk.frames(SETTLED)
+    assert len(desk.window.dashboard.record.times) == 1
+    *_, uppermost = colours_of(desk.world, desk.window.theme, graph_of(desk))
+    left, top, width, height = desk.ui.places["Plot of graph 1"]
+    pixels = pygame.surfarray.array3d(desk.window.canvas.surface)  # type: ignore[attr-defined]
+    plot = pixels[left : left + width, top : top + height].astype(int)
+    near = np.abs(plot - np.array(uppermost)).max(axis=2) < 40
+    assert 20 < np.count_nonzero(near) < 400
+
+
 def test_a_line_has_the_colour_of_its_body_and_the_next_of_the_same_a_tint() -> None:
     one, two = (LineShown(20 + n, (body, "speed")) for n, body in enumerate((5, 9)))
     graph = GraphShown(1, 1, None, "right", (two, one, LineShown(23, (9, "x"))))

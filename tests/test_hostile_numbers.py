@@ -217,12 +217,14 @@ def test_an_id_given_twice_is_refused_in_one_printable_line() -> None:
 def test_a_spring_needs_two_ends(ends: tuple[int | None, int]) -> None:
     world = World(SpringSystem())
     body = world.spawn(Transform(), Velocity())
-    if ends[0] is None:
-        world.add(body, Spring(None, body))
-    else:
-        world.spawn(Spring(*ends))
     with pytest.raises(InvalidValue, match=r"Spring\.b = 1: must be another entity than a"):
-        world.step()
+        if ends[0] is None:
+            world.add(body, Spring(None, body))
+        else:
+            world.spawn(Spring(*ends))
+    with pytest.raises(InvalidValue, match=r"Spring\.b = 2: must be another entity than a"):
+        world.spawn(Transform(), Velocity(), Spring(b=world.next_entity))
+    assert len(world.entities()) == 1
     for entity in (ROPE, BALL | ROPE):
         spring = changed(entity, Spring={"b": "ball"})
         entities = [spring] if "id" in entity else [BALL, spring]

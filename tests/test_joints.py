@@ -236,10 +236,8 @@ def test_a_joint_that_joins_nothing_is_refused_by_name(pins: list[dict[str, obje
 def test_the_same_is_refused_in_a_world() -> None:
     world = World()
     body = world.spawn(Transform(), Velocity(), Mass(), name="body")
-    pin = world.spawn(Pin(a=body, b=body), name="pin")
-    with pytest.raises(InvalidValue, match=r"pin: Pin.b = 1: must be another entity than a"):
-        world.step()
-    world.remove(pin)
+    with pytest.raises(InvalidValue, match=r"Pin.b = 1: must be another entity than a"):
+        world.spawn(Pin(a=body, b=body), name="pin")
     for name in ("one", "two"):
         world.spawn(Pin(a=body), name=name)
     with pytest.raises(InvalidValue, match=r"two: Pin.b = None: must be other points than those that one"):

@@ -139,6 +139,13 @@ def test_figures_of_a_run(text: str, value: float) -> None:
     assert Expression(text).value(figures).value == pytest.approx(value, abs=1e-9)
 
 
+@pytest.mark.parametrize(("peak", "jump"), [(2.2, 5), (5.7, 4)])
+def test_an_impact_beside_a_peak_is_no_part_of_it(peak: float, jump: int) -> None:
+    smooth = [10.0 - (t - peak) ** 2 for t in range(9)]
+    broken = [x if (t < jump) == (peak < jump) else -5.0 for t, x in enumerate(smooth)]
+    assert Expression("greatest(b.x)").value(recorded(broken)).value == pytest.approx(10.0, abs=1e-9)
+
+
 @pytest.mark.parametrize("text", ["period(b.x)", "when(b.x > 99)", "peak(3, b.x)", "at(9 s, b.x)", "slope()"])
 def test_figures_that_a_run_does_not_have(text: str) -> None:
     with pytest.raises(InvalidText):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,6 +11,7 @@ from pathlib import Path
 import pytest
 from desk import SETTLED, Desk, bits, click, fill, tap
 
+from physicslab.commands import export, progress
 from physicslab.components import Shape, Slider
 from physicslab.files.scene import load_scene
 from physicslab.view.controls import share_actions
@@ -59,6 +62,30 @@ def test_a_page_is_made_of_the_scene_with_the_sliders_that_were_chosen(desk: Des
     assert "--seconds 103 " in written or "--seconds 3 " in written
     assert "--vary ball.Velocity.linear.x=1:5:9 --progress --html" in written
     assert "Saved" in desk.window.notice and bits(desk.world) == before
+
+
+def test_it_is_said_how_far_the_only_run_of_a_page_is(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It stayed at 0 % up to the end."""
+    monkeypatch.setattr(progress, "_DELAY_S", 0.0)
+    monkeypatch.setattr(progress, "_INTERVAL_S", 0.0)
+    task = {"scene": "drop", "set": [], "seconds": 1.0, "every": 0.1, "at_most": None}
+    for is_read in (True, False):
+        export.make_run(json.dumps(task | {"progress": is_read}))
+        shares = {int(share) for share in re.findall(r"drop: (\d+) %", capsys.readouterr().err)}
+        assert len(shares) > 5 if is_read else not shares
+
+
+def test_a_process_says_how_long_it_has_been_until_it_says_how_far_it_is(tmp_path: Path) -> None:
+    waits = "import sys, time; time.sleep(.5); print('a: 7 %', file=sys.stderr, flush=True); time.sleep(60)"
+    sharing = Sharing((sys.executable, "-c", waits))
+    sharing.make(lambda scene: scene.write_text(""), tmp_path / "page.html")
+    assert re.fullmatch(r"Starting, \d+ s", sharing.progress)
+    while not sharing.share:
+        assert sharing.ended() is None
+    assert sharing.progress == "7%"
+    sharing.stop()
 
 
 def test_of_a_lesson_the_whole_lesson_is_offered_first(desk: Desk, tmp_path: Path) -> None:

@@ -141,6 +141,7 @@ def make_page(arguments: Namespace) -> None:
     tasks = [{"set": [*arguments.set, *texts]} for texts in combinations(varied)]
     _check_size(world, len(tasks), arguments)
     shared = {key: getattr(arguments, key) for key in ("scene", "seconds", "every", "at_most")}
+    shared["progress"] = arguments.progress and len(tasks) == 1  # of many it is said how many are made
     label = shortened(printable(name_of(world, arguments)))
     names = [json.dumps(shared | task) for task in tasks]
     runs = _runs(names, Progress(label, sys.stderr, always=arguments.progress))
@@ -190,7 +191,15 @@ def make_run(task: str) -> dict[str, Any]:
         name = name_of(world, arguments)
         recorder = RunRecorder(world)
         with Tiers(is_small(world)) as tiers:
-            run = MeasuredRun(world, name, tiers, arguments.at_most, recorder.write, arguments.every)
+            run = MeasuredRun(
+                world,
+                name,
+                tiers,
+                arguments.at_most,
+                recorder.write,
+                arguments.every,
+                always=arguments.progress,
+            )
             run.go(arguments.seconds, None)
     except (Diverged, NotShown, CommandError, SceneError, InvalidValue) as error:
         return {"failure": str(error)}

@@ -56,6 +56,8 @@ class MeasuredRun:
         from the start; every step if it is 0.
     impact_table : ImpactTableWriter, optional
         The writer of impacts, after each call of a stepper.
+    always : bool
+        Whether how far it is is written to a file or a pipe as well, for a program that reads it.
 
     Attributes
     ----------
@@ -74,11 +76,13 @@ class MeasuredRun:
         keep: Keep | None = None,
         every: float = 0.0,
         impact_table: ImpactTableWriter | None = None,
+        *,
+        always: bool = False,
     ) -> None:
         self.record, self.stopped = RunRecord(name, Audit(world)), ""
         self._world, self._tiers, self._at_most = world, tiers, at_most
         self._keeper, self._every, self._kept_at = keep, every, -math.inf
-        self._impact_table = impact_table
+        self._impact_table, self._always = impact_table, always
         self._watch = StepWatch(world)
         self._label = shortened(printable(name))
         self._start = world.time
@@ -102,7 +106,7 @@ class MeasuredRun:
         patience = math.inf if self._at_most is None else _PATIENCE_S
         stepping = world.stepping(seconds=seconds, steps=steps, stride=stride, patience=patience)
         self._measure_every, self._look_every = (max(1, whole // (stride * n)) for n in (_SAMPLES, _LOOKS))
-        with Progress(self._label, sys.stderr) as progress:
+        with Progress(self._label, sys.stderr, always=self._always) as progress:
             self._keep()
             while not self.stopped and self._advance(stepping, progress):
                 if self._is_due(dt):

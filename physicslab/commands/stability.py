@@ -1,11 +1,11 @@
 """Run stiff, extreme and hostile cases: which pass, which fall short."""
 
 from argparse import Namespace
-from concurrent.futures.process import BrokenProcessPool
 
 from physicslab.commands import FAILED, CommandError
 from physicslab.commands.lab import LabRun, chosen_cases, list_cases, unknown_name
 from physicslab.lab.jobs import in_processes
+from physicslab.lab.processes import ProcessEnded
 from physicslab.lab.stability.case import (
     Outcome,
     StabilityCase,
@@ -32,7 +32,7 @@ def execute(arguments: Namespace) -> int:
         for case, figures in zip(cases, found, strict=True):
             outcomes.append(Outcome(case, *figures))
             run.show(row_text(outcomes[-1], aligned))
-    except BrokenProcessPool:
+    except ProcessEnded:
         reason = "a process was ended from outside; is there enough memory?"
         raise CommandError(f"{cases[len(outcomes)].name}: {reason}", FAILED) from None
     run.show(summary_text(outcomes))

@@ -228,8 +228,11 @@ class Figures:
         if not (times and times[0] <= time <= times[-1]):
             raise Undefined(f"the run has no time {time:.6g} s")
         first = max(0, min(place - AROUND // 2, len(times) - AROUND))
-        nodes = range(first, min(first + AROUND, len(times)))
-        total = 0.0
+        return self._through(range(first, min(first + AROUND, len(times))), column, time)
+
+    def _through(self, nodes: Sequence[int], column: Sequence[float], time: float) -> float:
+        """Return the value at a time [s] of Lagrange's polynomial through some samples."""
+        times, total = self.record.times, 0.0
         for i in nodes:
             weight = 1.0
             for j in nodes:
@@ -241,20 +244,20 @@ class Figures:
     def extreme(self, series: Sequence[float], sample: int, sign: float) -> float:
         """Return the extreme value of samples near one of them, ``sign`` 1 for the greatest, -1 the least.
 
-        Where they bend as strongly before and after it, the polynomial has it; at a kink, as at an impact, or
-        at an end it is the sample.
+        Where they bend as strongly before and after it, the polynomial through these has it, and through no
+        others: an impact may be next to them. At a kink, as at an impact, or at an end it is the sample.
         """
-        near = [series[i - 1] - 2.0 * series[i] + series[i + 1] for i in range(sample - 1, sample + 2)
-                if 0 < i < len(series) - 1]  # fmt: skip
+        bent = range(max(sample - 1, 1), min(sample + 2, len(series) - 1))
+        near = [series[i - 1] - 2.0 * series[i] + series[i + 1] for i in bent]
         if len(near) < 2 or not near[-1] or not all(0.5 < bend / near[-1] < 2.0 for bend in near):
             return series[sample]
-        times = self.record.times[: len(series)]
+        times, nodes = self.record.times[: len(series)], range(bent[0] - 1, bent[-1] + 2)
         low, high = times[max(sample - 1, 0)], times[min(sample + 1, len(times) - 1)]
         for _ in range(_HALVINGS):
             third = (high - low) / 3.0
-            left, right = (self.between(series, time) for time in (low + third, high - third))
+            left, right = (self._through(nodes, series, time) for time in (low + third, high - third))
             low, high = (low + third, high) if sign * left < sign * right else (low, high - third)
-        best = self.between(series, 0.5 * (low + high))
+        best = self._through(nodes, series, 0.5 * (low + high))
         return sign * max(sign * best, sign * series[sample])
 
 

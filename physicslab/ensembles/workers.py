@@ -9,14 +9,13 @@ import queue
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from physicslab.ensembles.task import Block, Task, ready, work
-from physicslab.lab.jobs import Processes
+from physicslab.lab.processes import ProcessEnded, Processes
 
 KINDS = ("processes", "threads", "serial")
 """Workers that are started here."""
@@ -28,10 +27,8 @@ _AHEAD = 3
 """Pieces that are handed over for each worker."""
 _UNKNOWN = 64
 """Workers that an executor is taken to have that does not say how many."""
-_SUSPECT = 2
-"""Deaths of processes after which a piece is worked on alone."""
 _DEATHS = 3
-"""How often a run that is alone must then end its process to be taken for the reason."""
+"""How often a run must end its process to be taken for the reason."""
 _UNGUARDED = 78
 """Exit status of a process that began by running the script that has started it."""
 
@@ -53,7 +50,7 @@ class Serial(Executor):
 
 @dataclass
 class _Piece:
-    """Rows that are worked on together, and how often a process has ended meanwhile."""
+    """Rows that are worked on together, and how often that has ended a process."""
 
     first: int
     last: int
@@ -61,7 +58,7 @@ class _Piece:
 
 
 class Workers:
-    """An executor, made again where its processes die, in a ``with`` block.
+    """An executor, and what is tried again where its processes die, in a ``with`` block.
 
     Parameters
     ----------
@@ -77,7 +74,6 @@ class Workers:
         self._done: queue.SimpleQueue[tuple[_Piece, Future[Block]]] = queue.SimpleQueue()
         self._flying: set[Future[Block]] = set()
         self._begun = False
-        self._children: set[Any] = set()
 
     def __enter__(self) -> Workers:
         return self
@@ -87,14 +83,14 @@ class Workers:
             future.cancel()
         if kind is not None and isinstance(self._own, Processes):
             self._own.abandon()
-        self._stop(wait=kind is None)
+        elif self._own is not None:
+            self._own.shutdown(wait=kind is None, cancel_futures=True)
 
     def blocks(self, task: Task, missing: Iterator[tuple[int, int]]) -> Iterator[Block]:
         """Yield the results of the missing rows, in whatever order they come.
 
         The first is made alone: kernels that it needs are compiled once, and its time tells how many rows
-        are worth a piece. So is a piece during which processes have ended twice, to find the run that does
-        it.
+        are worth a piece. A piece that ends its process is halved, to find the run that does it.
 
         Raises
         ------
@@ -105,7 +101,7 @@ class Workers:
         """
         ahead, waiting = _Ahead(missing), deque[_Piece]()
         while True:
-            while len(self._flying) < self._room(waiting):
+            while len(self._flying) < self._room():
                 piece = waiting.popleft() if waiting else ahead.next()
                 if piece is None:
                     break
@@ -114,47 +110,37 @@ class Workers:
                 return
             piece, future = self._done.get()
             self._flying.discard(future)
-            if future.cancelled():  # it waited in a pool that was given up
-                if isinstance(self._kind, Executor):
-                    raise BrokenExecutor("the executor has given up what was handed to it")
-                waiting.appendleft(piece)
-                continue
+            if future.cancelled():
+                raise BrokenExecutor("the executor has given up what was handed to it")
             error = future.exception()
             if error is None:
                 self._begun, block = True, future.result()
                 ahead.learn(block)
                 yield block
             else:
-                alone = not self._flying
-                self._bury(error)
-                again = _after(piece, alone and piece.deaths >= _SUSPECT, isinstance(error, BrokenExecutor))
+                self._check(error)
+                again = _after(piece, isinstance(error, ProcessEnded))
                 waiting.extendleft(reversed(again))
                 if not again:
                     yield _failed(task, piece, error)
 
-    def _room(self, waiting: deque[_Piece]) -> int:
+    def _room(self) -> int:
         """Return how many pieces may be worked on at once."""
-        if not self._begun or any(piece.deaths >= _SUSPECT for piece in waiting):
-            return 1
-        if self._kind == "serial":
+        if not self._begun or self._kind == "serial":
             return 1
         count = self._count or getattr(self._executor, "_max_workers", None)
         return _AHEAD * (count if isinstance(count, int) else _UNKNOWN)
 
-    def _bury(self, error: BaseException) -> None:
-        """Make ready for another try, or raise where there is none."""
-        if not isinstance(error, BrokenExecutor):
-            if not self._begun:
-                raise error
-        elif isinstance(self._kind, Executor):
+    def _check(self, error: BaseException) -> None:
+        """Raise an error after which no piece is worth another try."""
+        if isinstance(error, ProcessEnded):
+            if error.status == _UNGUARDED:
+                raise RuntimeError(
+                    "ensemble: each process that it starts runs this script again: call it under "
+                    'if __name__ == "__main__":, or with executor="threads"'
+                ) from None
+        elif isinstance(error, BrokenExecutor) or not self._begun:
             raise error
-        elif any(child.exitcode == _UNGUARDED for child in self._children):
-            raise RuntimeError(
-                "ensemble: each process that it starts runs this script again: call it under if __name__ == "
-                '"__main__":, or with executor="threads"'
-            ) from None
-        else:
-            self._stop(wait=True)
 
     @property
     def _executor(self) -> Executor:
@@ -172,29 +158,13 @@ class Workers:
                 self._own = Processes(count)
         return self._own
 
-    def _stop(self, *, wait: bool) -> None:
-        own, self._own = self._own, None
-        if own is not None:
-            own.shutdown(wait=wait, cancel_futures=True)
-
     def _submit(self, task: Task, piece: _Piece) -> None:
-        try:
-            future: Future[Block] = self._executor.submit(work, task.payload, piece.first, piece.last)
-        except BrokenExecutor as error:  # it broke a moment ago, and its pieces are about to say so
-            future = Future()
-            future.set_exception(error)
-        if not self._begun and self._kind == "processes":
-            self._start_all(len(task.space))
+        future: Future[Block] = self._executor.submit(work, task.payload, piece.first, piece.last)
+        if not self._begun and self._kind == "processes":  # all import while the first makes the first row
+            for _ in range(min(self._count or os.cpu_count() or 1, len(task.space)) - 1):
+                self._executor.submit(ready)
         self._flying.add(future)
         future.add_done_callback(lambda done: self._done.put((piece, done)))
-
-    def _start_all(self, rows: int) -> None:
-        """Have all processes import what rows need while the first makes the first row."""
-        count = min(self._count or os.cpu_count() or 1, rows)
-        with suppress(BrokenExecutor):  # the first row is about to say so
-            for _ in range(count - 1):
-                self._executor.submit(ready)
-        self._children.update(multiprocessing.active_children())
 
 
 class _Ahead:
@@ -222,20 +192,18 @@ class _Ahead:
         self._size = max(1, min(int(AIM_S / max(each, 1e-9)), 10 * self._size, MOST_ROWS))
 
 
-def _after(piece: _Piece, guilty: bool, died: bool) -> list[_Piece]:
+def _after(piece: _Piece, died: bool) -> list[_Piece]:
     """Return what is tried again of a piece that came to nothing; nothing where its one run is the reason."""
-    count, deaths = piece.last - piece.first, piece.deaths + 1
-    if not guilty and died:
-        return [replace(piece, deaths=deaths)]
-    if count > 1:
-        middle = piece.first + count // 2
-        return [_Piece(piece.first, middle, _SUSPECT), _Piece(middle, piece.last, _SUSPECT)]
-    return [replace(piece, deaths=deaths)] if died and deaths < _SUSPECT + _DEATHS else []
+    if piece.last - piece.first > 1:
+        middle = (piece.first + piece.last) // 2
+        return [_Piece(piece.first, middle), _Piece(middle, piece.last)]
+    deaths = piece.deaths + 1
+    return [replace(piece, deaths=deaths)] if died and deaths < _DEATHS else []
 
 
 def _failed(task: Task, piece: _Piece, error: BaseException) -> Block:
     """Return the result of a run that no process survives."""
-    reason = "the process that made this run ended" if isinstance(error, BrokenExecutor) else str(error)
+    reason = "the process that made this run ended" if isinstance(error, ProcessEnded) else str(error)
     count = piece.last - piece.first
     values = np.full((count, len(task.measures)), math.nan)
     return Block(

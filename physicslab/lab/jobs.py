@@ -1,22 +1,18 @@
 """The work of a lab: jobs one after the other, or in processes where no figure depends on the machine."""
 
 import gc
-import multiprocessing
 import os
-import signal
-import threading
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 
 from physicslab.kernels.warm import Warmup, is_warm
+from physicslab.lab.processes import Processes
 
 type Job[Result] = Generator[float, None, Result]
 """Work that yields the share of it that is done (0 to 1) now and then, and returns the result."""
 
 _WORTH_A_PROCESS = 8
 """As many cases take longer than a process needs to start."""
-_HAS_MASKS = hasattr(signal, "pthread_sigmask")
-"""Whether signals can be held back, as everywhere but on Windows."""
 
 
 def run_jobs[Result](jobs: Iterable[tuple[float, Job[Result]]]) -> Iterator[float | Result]:
@@ -80,7 +76,7 @@ def in_processes[Result](
 
     Raises
     ------
-    BrokenProcessPool
+    ProcessEnded
         If a process ends before its work does, as it does where memory runs out.
     """
     workers = min(os.cpu_count() or 1, len(names) // _WORTH_A_PROCESS)
@@ -100,49 +96,6 @@ def in_processes[Result](
         except BaseException:  # else the end of the block waits
             pool.abandon()
             raise
-
-
-class Processes(ProcessPoolExecutor):
-    """Processes that end without a word with the one that began them, killed as it may be, or by Ctrl+C.
-
-    A fork would share threads of the compiled code: each imports for itself. Until it has, Ctrl+C waits, else
-    Python would write where in an import it was.
-    """
-
-    def __init__(self, count: int) -> None:
-        super().__init__(count, multiprocessing.get_context("spawn"), initializer=_begin)
-
-    def submit[**P, T](self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
-        """Hand over work, for which a process may be started."""
-        if not _HAS_MASKS:
-            return super().submit(fn, *args, **kwargs)
-        held = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))  # a process inherits it
-        try:
-            return super().submit(fn, *args, **kwargs)
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, held)
-
-    def abandon(self) -> None:
-        """End all processes at once, in the midst of their work."""
-        processes = [*(self._processes or {}).values()]
-        self.shutdown(wait=False, cancel_futures=True)
-        for process in processes:
-            process.terminate()
-
-
-def _begin() -> None:
-    """Begin the life of a process that others have started."""
-    threading.Thread(target=_follow_parent, name="parent", daemon=True).start()
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    if _HAS_MASKS:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT,))
-
-
-def _follow_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
 
 
 def _each[Result](work: Callable[[str], Result], names: Sequence[str]) -> dict[str, Result]:

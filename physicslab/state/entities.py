@@ -90,7 +90,7 @@ class Entities:
             If something is no component.
         InvalidValue
             If a body that one refers to, as a spring to its ends, is not there; where ``entity`` is given, it
-            may still come.
+            may still come. If both ends of one are the same.
         """
         if name is not None:
             components = (*components, Name(name))
@@ -101,7 +101,7 @@ class Entities:
         with self.active():
             for component in components:
                 self._check_name(component)
-                self._find_ends(component, may_come=entity is not None)
+                self._find_ends(component, entity, may_come=entity is not None)
             if entity is not None:
                 return create_numbered(entity, components)
             return esper.create_entity(*components)
@@ -250,8 +250,9 @@ class Entities:
         """
         if not isinstance(component, Component):
             return
-        for spec in component.FIELDS:
-            end: Any = getattr(component, spec.name) if spec.kind == "entity" else None
+        specs = [spec for spec in component.FIELDS if spec.kind == "entity"]
+        for spec in specs:
+            end: Any = getattr(component, spec.name)
             if isinstance(end, str):
                 try:
                     component.name_entity(spec.name, self.entity(end))
@@ -262,6 +263,11 @@ class Entities:
                 continue
             elif end != (own or next_number()):
                 raise InvalidValue(spec.owner, spec.name, end, "an entity of this world or null")
+        if component.physical and len(specs) == 2:
+            one, other = (getattr(component, spec.name) for spec in specs)
+            if other is not None and other == (one or own or next_number()):
+                allowed = f"another entity than {specs[0].name}"
+                raise InvalidValue(specs[1].owner, specs[1].name, other, allowed)
 
     def _found(self, entity: int | str) -> int:
         """Return the number of an entity that is given by it, or by its id."""

@@ -47,9 +47,11 @@ class DragSystem(ForceSystem):
         """Return for each row the rate at which it slows down at its present speed [1/s]."""
         table, rows = state.table(Drag), state.batch(*self.needs).rows
         speed = np.maximum(np.hypot(*state.table(Velocity)["linear"][rows].T), AT_REST)
-        rates = np.zeros(len(state.entity_index))
-        rates[rows] = table["linear"][rows] + 2.0 * table["quadratic"][rows] * speed
-        return rates * state.bodies.inverse_mass
+        rates, inverse = np.zeros(len(state.entity_index)), state.bodies.inverse_mass[rows]
+        with np.errstate(over="ignore"):  # that is an unlimited rate
+            slowed = (table["linear"][rows] + 2.0 * table["quadratic"][rows] * speed) * inverse
+        rates[rows] = np.where(inverse > 0.0, slowed, 0.0)
+        return rates
 
     def couples(self, state: State) -> NDArray[np.int64]:
         """Drag couples nothing."""

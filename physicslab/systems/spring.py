@@ -4,8 +4,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Mass, Spring, Transform, Velocity
-from physicslab.components.spring import OTHER_END
-from physicslab.ecs.component import InvalidValue
 from physicslab.ecs.sentences import sentence
 from physicslab.ecs.vector import rotated
 from physicslab.kernels import accounts, direct_entry
@@ -38,13 +36,9 @@ class SpringSystem(ForceSystem):
         Raises
         ------
         InvalidValue
-            If an end never was an entity, or is one without a Transform; or if both are the same.
+            If an end never was an entity, or is one without a Transform.
         """
         self._rows, self._a, self._b = _, a, b = spring_ends(state)
-        entities = state.batch(Spring).entities
-        for i in np.flatnonzero((a == b) & (a > 0)).tolist():
-            end = int(state.entity_index.entities[b[i]])
-            raise InvalidValue(f"{state.label(int(entities[i]))}: Spring", "b", end, OTHER_END)
         remove_lost(state, Spring, a, b)
 
     def turned(self, state: State) -> NDArray[np.int64]:

@@ -6,6 +6,7 @@ import re
 import subprocess
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -46,8 +47,13 @@ class LabProcess:
         self._command = tuple(command)
         self._process: subprocess.Popen[bytes] | None = None
         self._place: tempfile.TemporaryDirectory[str] | None = None
-        self.share = 0.0
+        self.share = self._begun = 0.0
         self.failure = ""
+
+    @property
+    def progress(self) -> str:
+        """How far it is, in words: some seconds pass before a process has begun."""
+        return f"{self.share:.0%}" if self.share else f"Starting, {time.perf_counter() - self._begun:.0f} s"
 
     @property
     def running(self) -> bool:
@@ -83,6 +89,7 @@ class LabProcess:
                     os.PRIO_PROCESS, self._process.pid, os.getpriority(os.PRIO_PROCESS, 0) + self.niceness
                 )
         self.share, self.failure = 0.0, ""
+        self._begun = time.perf_counter()
 
     @staticmethod
     def read(report: Path) -> dict[str, Any]:

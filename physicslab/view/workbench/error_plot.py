@@ -50,7 +50,7 @@ def _build_progress(ui: Ui, window: Window) -> None:
     study, (left, top, width, _) = window.error_study, window.framing.room()
     place, stop = (left + 0.5 * width, top + 4.0 * ui.size), partial(window.do_next, file_actions.study_error)
     with ui.floating("Measuring the error", place, stop):
-        ui.bar("Measuring this scene with every method", f"{study.share:.0%}", study.share, ui.theme.accent)
+        ui.bar("Measuring this scene with every method", study.progress, study.share, ui.theme.accent)
         ui.button("Stop", "Give up measuring (F5)", file_actions.study_error)
 
 

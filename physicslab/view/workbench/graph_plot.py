@@ -141,6 +141,8 @@ class GraphPlot:
                 label = widget_label(name, f"{line.entity}{' before' if is_before else ''}")
                 look = _look(colour, _FAINT if is_before else 1.0, _WEIGHT * ui.size)
                 for part in unbroken(y):
+                    is_point = len(y[part]) == 1  # as long as the run has a single moment
+                    look.marker = implot.Marker_.circle if is_point else implot.Marker_.none
                     implot.plot_line(label, x[part], y[part], look)
                     if is_before:
                         ui.words.append(f"{name} before")

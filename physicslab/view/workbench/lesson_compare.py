@@ -92,6 +92,8 @@ def _build_row(
     imgui.table_next_column()
     what = values if case.values else Sentence("as run")
     words = Sentence("{n}. {case}", n=number, case=what)
+    if row is None:
+        imgui.align_text_to_frame_padding()  # a button stands beside it
     ui.text(Sentence("{case}: {note}", case=words, note=case.note) if case.note else words, wrapped=True)
     if row is None:
         button, tip = f"Run {part.name} {number}", f"Run it with {values}"

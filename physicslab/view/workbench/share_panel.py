@@ -69,6 +69,6 @@ def build_sharing(ui: Ui, window: Window) -> None:
     )
     with ui.floating("Making the page", place, stop):
         ui.faint("The runs of the page are made beside the window", wrapped=False)
-        share = window.sharing.share
-        ui.bar(printable(window.sharing.path.name), f"{share:.0%}", share, ui.theme.accent)
+        sharing = window.sharing
+        ui.bar(printable(sharing.path.name), sharing.progress, sharing.share, ui.theme.accent)
         ui.button("Give it up", "Esc does so too", share_actions.stop_sharing)
