@@ -38,6 +38,14 @@ def kept(path: Path) -> dict[str, bytes]:
         return {name: columns[name].tobytes() for name in columns.files if name != "wall_s"}
 
 
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """Return the columns of the sweep, made without a disturbance."""
+    out = tmp_path_factory.mktemp("whole") / "whole.npz"
+    subprocess.run(command("--out", str(out), "--workers", "1"), check=True, timeout=900)
+    return kept(out)
+
+
 @contextmanager
 def scheduler(workers: int) -> Iterator[str]:
     """Start a scheduler and workers on this machine; give its address."""
@@ -85,17 +93,16 @@ def scheduler(workers: int) -> Iterator[str]:
 
 
 @pytest.mark.cluster
-def test_a_cluster_makes_the_rows_that_one_process_makes(tmp_path: Path) -> None:
+def test_a_cluster_makes_the_rows_that_one_process_makes(tmp_path: Path, whole: dict[str, bytes]) -> None:
     import distributed
 
-    one, many = tmp_path / "one.npz", tmp_path / "many.npz"
-    subprocess.run(command("--out", str(one), "--workers", "1"), check=True, timeout=900)
+    many = tmp_path / "many.npz"
     with scheduler(2) as address:
         client = distributed.Client(address, timeout=60)
         client.wait_for_workers(2, timeout=120)
         client.close()
         subprocess.run(command("--out", str(many), "--dask", address), check=True, timeout=900)
-    assert kept(one) == kept(many)
+    assert kept(many) == whole
 
 
 @pytest.mark.cluster
@@ -176,13 +183,12 @@ def killed_and_resumed(out: Path, kills: int, rng: random.Random) -> int:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="children are listed in /proc")
-def test_killed_at_random_moments_it_comes_to_the_same_bytes(tmp_path: Path) -> None:
-    whole, out = tmp_path / "whole.npz", tmp_path / "killed.npz"
-    subprocess.run(command("--out", str(whole), "--workers", "1"), check=True, timeout=900)
+def test_killed_at_random_moments_it_comes_to_the_same_bytes(tmp_path: Path, whole: dict[str, bytes]) -> None:
+    out = tmp_path / "killed.npz"
     kills, rng = int(os.environ.get("PHYSICSLAB_KILLS", "4")), random.Random(1)
     while kills:
         kills = killed_and_resumed(out, kills, rng)
-        assert kept(whole) == kept(out)
+        assert kept(out) == whole
         assert not (tmp_path / "killed.npz.parts").exists()
         out.unlink()  # or the next sweep would find it finished
 
@@ -191,10 +197,11 @@ def test_killed_at_random_moments_it_comes_to_the_same_bytes(tmp_path: Path) -> 
 @pytest.mark.skipif(
     not hasattr(os, "killpg"), reason="needs groups of processes, to which a terminal signals"
 )
-def test_ctrl_c_at_random_moments_says_one_line_and_the_rest_comes_to_the_same_bytes(tmp_path: Path) -> None:
-    whole, out, rng = tmp_path / "whole.npz", tmp_path / "interrupted.npz", random.Random(2)
-    subprocess.run(command("--out", str(whole), "--workers", "1"), check=True, timeout=900)
-    for _ in range(int(os.environ.get("PHYSICSLAB_KILLS", "6"))):
+def test_ctrl_c_at_random_moments_says_one_line_and_the_rest_comes_to_the_same_bytes(
+    tmp_path: Path, whole: dict[str, bytes]
+) -> None:
+    out, rng = tmp_path / "interrupted.npz", random.Random(2)
+    for _ in range(int(os.environ.get("PHYSICSLAB_KILLS", "4"))):
         process = subprocess.Popen(
             command("--out", str(out), "--workers", "2"), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
             text=True, start_new_session=True,
@@ -209,7 +216,7 @@ def test_ctrl_c_at_random_moments_says_one_line_and_the_rest_comes_to_the_same_b
             assert interrupted or not process.returncode, (process.returncode, said)
         out.unlink(missing_ok=True)  # or the next sweep would find it finished
     subprocess.run(command("--out", str(out), "--workers", "2"), check=True, timeout=900)
-    assert kept(whole) == kept(out) and not (tmp_path / "interrupted.npz.parts").exists()
+    assert kept(out) == whole and not (tmp_path / "interrupted.npz.parts").exists()
 
 
 def test_all_processes_start_with_the_first_row() -> None:
