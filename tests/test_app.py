@@ -312,7 +312,7 @@ def test_what_is_said_while_it_loads_is_in_the_chosen_language(
         draw_loading(canvas, theme, remark)
         said.append((theme.name, canvas.language.reword("Loading, 3 s")))
 
-    monkeypatch.setattr(app, "preferences_path", lambda: path)
+    monkeypatch.setattr("physicslab.desktop.appearance.preferences_path", lambda: path)
     monkeypatch.setattr(app, "draw_loading", load)
     monkeypatch.setattr(app, "_import", lambda module: time.sleep(0.1))
     with Display.open(WindowConfig(), "test") as display:

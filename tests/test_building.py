@@ -26,9 +26,11 @@ from desk import (
 
 from physicslab.components import Drag, Mass, Material, Name, Rod, Shape, Spring, Trail, Transform, Velocity
 from physicslab.diagnostics.warnings import find_warnings
-from physicslab.ecs.component import Component, component, field, local_components
+from physicslab.ecs.component import COMPONENTS, Component, component, field, local_components
 from physicslab.ecs.vector import Vector2
+from physicslab.files import entities
 from physicslab.prefabs import box, circle, pendulum
+from physicslab.view.window import changing
 from physicslab.view.window.changing import addable, plain_kind
 from physicslab.world import World
 
@@ -87,6 +89,11 @@ def test_what_a_body_has_not_is_added_from_a_list_and_taken_away_again() -> None
 def _middle(desk: Desk, label: str) -> tuple[int, int]:
     left, top, width, height = desk.ui.places[label]
     return left + width // 2, top + height // 2
+
+
+def test_tables_that_name_components_name_some_that_exist() -> None:
+    named = {*changing._PLAIN, *changing._MEANINGS, *entities._NEED_TRANSFORM, *entities._MAY_REST}
+    assert named <= set(COMPONENTS)
 
 
 def test_a_component_that_is_new_appears_by_the_words_of_its_class() -> None:

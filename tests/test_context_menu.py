@@ -193,6 +193,17 @@ def test_copies_are_made_where_there_is_room(desk: Desk) -> None:
     assert len(desk.window.edits.history.entries) == 1, "one undo"
 
 
+def test_the_panel_of_copies_goes_with_what_they_are_of(desk: Desk) -> None:
+    """It stayed after a new scene was opened, over the place where something is drawn there."""
+    desk.window.selection.entities = tuple(desk.world.entities()[:1])
+    desk.frames()
+    tap(desk, "d", pygame.KMOD_SHIFT | pygame.KMOD_CTRL)
+    assert "Make copies" in desk.ui.places
+    desk.window.selection.clear()
+    desk.frames(SETTLED)
+    assert "Make copies" not in desk.ui.places and desk.window.copying is None
+
+
 def test_the_copy_of_a_mechanism_works_like_its_original(desk: Desk) -> None:
     world = desk.world
     world.remove(world.entities()[0])

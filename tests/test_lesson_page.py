@@ -193,7 +193,7 @@ def answer(browser: Browser, name: str, *keys: str, sure: bool = True) -> None:
 def test_texts_twice_as_long_are_neither_cut_nor_upon_each_other(
     width: int, page: Path, browser: Browser, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in ("lessons.page", "export.page"):
+    for module in ("lessons.lesson", "export.page"):
         monkeypatch.setattr(f"physicslab.{module}.language", lambda code: PSEUDO)
     long = page.with_name("long.html")
     assert main(["lesson", str(page.with_suffix(".md")), "--page", str(long)]) == 0

@@ -6,16 +6,7 @@ from physicslab.commands import FAILED, CommandError
 from physicslab.commands.lab import LabRun, chosen_cases, list_cases, unknown_name
 from physicslab.lab.jobs import in_processes
 from physicslab.lab.processes import ProcessEnded
-from physicslab.lab.stability.case import (
-    Outcome,
-    StabilityCase,
-    columns,
-    document,
-    head_text,
-    row_text,
-    short_names,
-    summary_text,
-)
+from physicslab.lab.stability import case
 from physicslab.lab.stability.catalogue import CASES, run_named, runs_of
 
 
@@ -24,24 +15,24 @@ def execute(arguments: Namespace) -> int:
     if arguments.list:
         return list_cases(CASES)
     cases = chosen_cases(arguments.names or CASES, CASES, _unknown)
-    run, aligned = LabRun("stability", arguments), columns(cases)
-    outcomes: list[Outcome] = []
-    run.show(head_text(aligned))
-    found = run.shown(in_processes(run_named, [case.name for case in cases], runs_of(cases)))
+    run, aligned = LabRun("stability", arguments), case.columns(cases)
+    outcomes: list[case.Outcome] = []
+    run.show(case.head_text(aligned))
+    found = run.shown(in_processes(run_named, [one.name for one in cases], runs_of(cases)))
     try:
-        for case, figures in zip(cases, found, strict=True):
-            outcomes.append(Outcome(case, *figures))
-            run.show(row_text(outcomes[-1], aligned))
+        for one, figures in zip(cases, found, strict=True):
+            outcomes.append(case.Outcome(one, *figures))
+            run.show(case.row_text(outcomes[-1], aligned))
     except ProcessEnded:
         reason = "a process was ended from outside; is there enough memory?"
         raise CommandError(f"{cases[len(outcomes)].name}: {reason}", FAILED) from None
-    run.show(summary_text(outcomes))
-    run.write(document(outcomes))
-    if short := short_names(outcomes):
+    run.show(case.summary_text(outcomes))
+    run.write(case.document(outcomes))
+    if short := case.short_names(outcomes):
         raise CommandError(f"{len(short)} of {len(outcomes)} cases fall short: {', '.join(short)}", FAILED)
     return 0
 
 
-def _unknown(name: str) -> StabilityCase | None:
+def _unknown(name: str) -> case.StabilityCase | None:
     known = f"there are the groups {', '.join(CASES.families)}, and the cases that --list names"
     raise unknown_name(name, "case", CASES.names, known)

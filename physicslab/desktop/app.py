@@ -6,13 +6,7 @@ from contextlib import suppress
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from physicslab.desktop.appearance import (
-    UNREADABLE,
-    chosen_language,
-    chosen_theme,
-    preferences_path,
-    read_preferences,
-)
+from physicslab.desktop import appearance
 from physicslab.desktop.garbage import loading
 from physicslab.desktop.progress import PAUSE, draw_loading
 from physicslab.ecs.config import WindowConfig
@@ -60,10 +54,10 @@ def _load(display: Display, module: str) -> bool:
     """
     thread = threading.Thread(target=_import, args=(module,), daemon=True)
     found: dict[str, Any] = {}
-    with suppress(*UNREADABLE):  # it is said where the window can say it
-        found = read_preferences(preferences_path())
-    display.canvas.language = language(chosen_language(found))
-    theme, start, drawn = chosen_theme(found), time.perf_counter(), None
+    with suppress(*appearance.UNREADABLE):  # it is said where the window can say it
+        found = appearance.read_preferences(appearance.preferences_path())
+    display.canvas.language = language(appearance.chosen_language(found))
+    theme, start, drawn = appearance.chosen_theme(found), time.perf_counter(), None
     while drawn is None or thread.is_alive():
         seconds = time.perf_counter() - start
         remark = f"Loading, {int(seconds)} s" if seconds > _PATIENCE else ""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Hashable, Sequence
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from physicslab.desktop.progress import PAUSE, draw_corner, draw_progress, draw_waiting
@@ -154,13 +153,11 @@ class Compiling:
             load(soft.advance)  # 26 ms, for which no frame has room
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *raised: Any) -> None:
         ask_before_compiling(None)
         interpreter.unlimited()
         if self._warmup is not None:
-            self._warmup.__exit__(kind, error, trace)
+            self._warmup.__exit__(*raised)
 
     def _start(self) -> Warmup:
         """Start the processes that compile, if they have not been started."""

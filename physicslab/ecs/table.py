@@ -89,9 +89,9 @@ class Table:
         self.handles[entity] = handle
 
     def blank(self) -> Component:
-        """Return a component of no entity, whose values are all zero: its row is written later."""
+        """Return a component of no entity, whose values are all zero: it is adopted before any is written."""
         made: Component = Component.__new__(self.component)
-        made._views = [zero.copy() for zero in self._zeros]
+        made._views = self._zeros
         made._row = 0
         return made
 

@@ -10,17 +10,9 @@ from typing import Any
 
 from physicslab.diagnostics.energy import measure_account
 from physicslab.ecs.text import printable
+from physicslab.export import parts
 from physicslab.export.look import look, style
 from physicslab.export.packing import pack
-from physicslab.export.parts import (
-    fields_of,
-    gates_of,
-    joints_of,
-    notes_of,
-    quantity_words,
-    springs_of,
-    thrusts_of,
-)
 from physicslab.export.recording import RunRecorder, extent_of_run
 from physicslab.languages.catalogue import SOURCE
 from physicslab.languages.language import language
@@ -136,18 +128,18 @@ def run_document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> d
         "start": recorder.start,
         "instants": recorder.count,
         "energies": recorder.energies,
-        "quantities": [quantity_words(world, key) for key in recorder.quantities],
+        "quantities": [parts.quantity_words(world, key) for key in recorder.quantities],
         "graphs": [
             {"across": None if across is None else index[across], "lines": [index[line] for line in lines]}
             for across, lines in recorder.graphs
         ],
         "bodies": recorder.bodies(world),
-        "springs": springs_of(world),
-        "joints": joints_of(world),
-        "fields": fields_of(world),
-        "thrusts": thrusts_of(world),
-        "texts": notes_of(world),
-        "gates": gates_of(world, recorder.start),
+        "springs": parts.springs_of(world),
+        "joints": parts.joints_of(world),
+        "fields": parts.fields_of(world),
+        "thrusts": parts.thrusts_of(world),
+        "texts": parts.notes_of(world),
+        "gates": parts.gates_of(world, recorder.start),
         "space": physics.gravity_mode == "planet",
         "gravity": list(physics.gravity) if uniform else None,
         "bounds": None if physics.bounds is None else list(physics.bounds),

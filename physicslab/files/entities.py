@@ -8,27 +8,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from physicslab.components import (
-    Charge,
-    Colour,
-    Drag,
-    Gear,
-    Held,
-    Layer,
-    MadeOf,
-    Mass,
-    Material,
-    Medium,
-    Molecule,
-    Pin,
-    Shape,
-    Slot,
-    Spring,
-    Thrust,
-    Trail,
-    Transform,
-    Velocity,
-)
+from physicslab.components import Gear, Held, Mass, Medium, Pin, Shape, Slot, Spring, Transform, Velocity
 from physicslab.components.gear import COUPLED, OTHER_JOINT
 from physicslab.components.joint_ends import key_of, why_not_joined
 from physicslab.components.name import why_no_id
@@ -45,10 +25,11 @@ UNSAVED: frozenset[type[Any]] = frozenset({Held})
 
 type _Expected = tuple[dict[str, Field], tuple[str, ...], str]
 _NEED_TRANSFORM = (
-    Velocity, Mass, Shape, Material, Drag, Thrust, Charge, Molecule, Medium, Trail, Layer, MadeOf, Colour,
+    "Velocity", "Mass", "Shape", "Material", "Drag", "Thrust", "Charge", "Molecule", "Medium", "Trail",
+    "Layer", "MadeOf", "Colour",
 )  # fmt: skip
 _PLACED = "the id of an entity with a Transform"
-_MAY_REST = (Velocity, Mass, Shape)
+_MAY_REST = ("Velocity", "Mass", "Shape")
 
 
 def check_ids(entities: object, source: str) -> dict[str, int]:
@@ -151,8 +132,8 @@ def check_rests(
             allowed = "an id for a sleeper, which a force of x and y N and a torque N m may follow; "
             raise checks.refusal(where, row, allowed + "or an id, a time s and a speed m/s; in a list")
         number = ids.get(row[0], 0) if isinstance(row[0], str) else 0
-        if not number or not all(kind.__name__ in entities[number - 1] for kind in _MAY_REST):
-            allowed = "the id of an entity with " + ", ".join(kind.__name__ for kind in _MAY_REST)
+        if not number or not all(name in entities[number - 1] for name in _MAY_REST):
+            allowed = "the id of an entity with " + ", ".join(_MAY_REST)
             raise checks.refusal(f"{where}[0]", row[0], allowed)
         if number in seen:
             raise checks.refusal(f"{where}[0]", row[0], "an id that has no rest yet")
@@ -210,8 +191,7 @@ def _entity_of(name: object, ids: Mapping[str, int], where: str) -> int:
 
 def _check_together(components: Sequence[Component], entity: Mapping[str, Any], where: str) -> None:
     """Check what concerns several components."""
-    for kind in _NEED_TRANSFORM:
-        name = kind.__name__
+    for name in _NEED_TRANSFORM:
         if name in entity and Transform.__name__ not in entity:
             raise checks.SceneError(
                 f"{where}: {name} = {checks.shown(entity[name])}: must have a Transform beside it"

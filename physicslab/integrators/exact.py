@@ -2,27 +2,35 @@
 
 The contribution of each cause is measured in another way than in other methods: no power is integrated, but
 the solution has its own energy, of which dampers and drag take what is lost
-(:mod:`physicslab.ode.closed_form_account`).
+(:mod:`physicslab.kernels.ode.closed_form_account`).
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.components import Spring
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.forces.budget import ACCOUNTS
+from physicslab.kernels.ode.closed_form_account import give_in_closed_form
 from physicslab.kernels.ode.compensated import add_all
 from physicslab.kernels.ode.kepler import kepler_change
 from physicslab.kernels.ode.propagate import propagate
-from physicslab.ode.closed_form import closed_form
-from physicslab.ode.closed_form_account import given_in_closed_form
+from physicslab.ode.closed_form import ClosedForm, closed_form
 from physicslab.ode.kepler import TwoBodies
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 
 
+def _form(state: State, ode: OdeSystem) -> ClosedForm | TwoBodies:
+    """Return the closed form; it is kept while the laws are, where it depends on these alone."""
+    if ode.form is None or ode.laws is None or ode.form[0] is not ode.laws or len(state.batch(Spring)):
+        ode.form = ode.laws, closed_form(state, ode.forces)
+    return ode.form[1]
+
+
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
-    form = closed_form(state, ode.forces)
-    for cause, given in given_in_closed_form(state, form, steps * h).items():
+    form = _form(state, ode)
+    for cause, given in form.given(state, steps * h).items():
         slot = ode.slots.get(cause)
         if slot is not None:
             ode.v[slot : slot + ACCOUNTS] = given
@@ -41,7 +49,7 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
 
 
 def _sample(state: State, ode: OdeSystem, spans: NDArray[np.float64], into: NDArray[np.float64]) -> None:
-    form, n = closed_form(state, ode.forces), 2 * len(ode.layout.moving)
+    form, n = _form(state, ode), 2 * len(ode.layout.moving)
     start = form.motion(state)
     for k, after in enumerate(np.cumsum(spans).tolist()):
         position, velocity = form.after(start, after)
@@ -58,7 +66,7 @@ EXACT = Integrator(
     symplectic=True,
     source="Landau & Lifshitz, Mechanics, 1976, sections 5, 15, 21, 25",
     flow=_flow,
-    kernels=(propagate, kepler_change, add_all),
+    kernels=(propagate, give_in_closed_form, kepler_change, add_all),
     chooses_steps=True,
     sample=_sample,
 )

@@ -17,14 +17,8 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
+from physicslab.kernels import keys
 from physicslab.kernels.cache import cache_directory, place_of
-from physicslab.kernels.keys import (
-    current_folders,
-    platform_key,
-    sources_key,
-    supported_levels,
-    use_processor,
-)
 
 _FORMAT = "physicslab-kernels/1"
 _MANIFEST = "manifest.json"
@@ -53,7 +47,7 @@ def pack(folders: Collection[str] | None = None) -> bytes:
     """
     cache_directory()  # it determines for which processor is compiled
     buffer = io.BytesIO()
-    chosen = current_folders().values() if folders is None else folders
+    chosen = keys.current_folders().values() if folders is None else folders
     files = {
         f"{folder}/{path.name}": path.read_bytes()
         for folder in sorted(chosen)
@@ -61,8 +55,8 @@ def pack(folders: Collection[str] | None = None) -> bytes:
     }
     document = {
         "format": _FORMAT,
-        "sources": sources_key(),
-        "platform": platform_key(),
+        "sources": keys.sources_key(),
+        "platform": keys.platform_key(),
         "files": {name: _hash(content) for name, content in files.items()},
     }
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -118,13 +112,13 @@ def _manifest(archive: zipfile.ZipFile) -> dict[str, Any]:
 def _check(manifest: dict[str, Any]) -> None:
     """Refuse an archive that is for another computer or another version, and say what does not fit."""
     theirs = manifest.get("platform")
-    if isinstance(theirs, dict) and theirs.get("processor") in supported_levels():
-        use_processor(str(theirs["processor"]))
-    for name, own in platform_key().items():
+    if isinstance(theirs, dict) and theirs.get("processor") in keys.supported_levels():
+        keys.use_processor(str(theirs["processor"]))
+    for name, own in keys.platform_key().items():
         other = theirs.get(name) if isinstance(theirs, dict) else None
         if other != own:
             raise ArchiveError(f"does not fit: it is for {name} {str(other)[:80]!r}, and here is {own!r}")
-    if manifest.get("sources") != sources_key():
+    if manifest.get("sources") != keys.sources_key():
         raise ArchiveError("does not fit: it holds the kernels of another version of physicslab")
 
 
@@ -132,7 +126,7 @@ def _files(archive: zipfile.ZipFile) -> dict[tuple[str, str], bytes]:
     """Return the files of an archive that fits, by folder and name in the cache; refuse all others."""
     manifest = _manifest(archive)
     _check(manifest)
-    allowed, found, size = set(current_folders().values()), {}, 0
+    allowed, found, size = set(keys.current_folders().values()), {}, 0
     for member in archive.infolist():
         if member.filename == _MANIFEST:
             continue

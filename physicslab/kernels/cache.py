@@ -43,16 +43,7 @@ import numba.core.config
 from numba.core.caching import CacheImpl, UserProvidedCacheLocator
 from platformdirs import user_cache_path
 
-from physicslab.kernels.keys import (
-    LEVELS,
-    current_folders,
-    folder_of,
-    hash_of,
-    is_own,
-    platform_key,
-    supported_levels,
-    use_processor,
-)
+from physicslab.kernels import keys
 
 if numba.core.config.DISABLE_JIT:  # type: ignore[attr-defined]
     raise ImportError(
@@ -161,7 +152,7 @@ def _first_shared() -> Path | None:
     for place in filter(Path.is_dir, places):
         with contextlib.suppress(OSError):
             folder = _without_links(place)
-            is_full = any((folder / _mark_name(level)).is_file() for level in ("", *supported_levels()))
+            is_full = any((folder / _mark_name(level)).is_file() for level in ("", *keys.supported_levels()))
             if is_full and all(_is_safe(path, folder) for path in (*reversed(folder.parents), folder)):
                 return folder
     return None
@@ -172,10 +163,10 @@ def _choose_processor(folders: list[Path]) -> None:
     settings: Any = numba.core.config
     if settings.CPU_NAME is not None or not any(any(place.glob(_OF_LEVEL)) for place in folders):
         return
-    levels = ("", *supported_levels())
+    levels = ("", *keys.supported_levels())
     chosen = next((e for e in levels if any((place / _mark_name(e)).is_file() for place in folders)), "")
     if chosen:
-        use_processor(chosen)
+        keys.use_processor(chosen)
 
 
 def _without_links(path: Path) -> Path:
@@ -240,9 +231,9 @@ def mark() -> Path:
 
 
 def _mark_name(level: str = "") -> str:
-    processor = platform_key(level)["processor"]
-    kind = f"{processor}-" if processor in LEVELS else ""
-    return f"complete-{kind}{hash_of(*sorted(current_folders(level).values()))[:16]}"
+    processor = keys.platform_key(level)["processor"]
+    kind = f"{processor}-" if processor in keys.LEVELS else ""
+    return f"complete-{kind}{keys.hash_of(*sorted(keys.current_folders(level).values()))[:16]}"
 
 
 # ---- for numba ---------------------------------------------------------------------------------------------
@@ -254,7 +245,7 @@ class _Locator(UserProvidedCacheLocator):
     def __init__(self, function: Callable[..., Any], path: str) -> None:
         self._py_file, self._lineno = path, function.__code__.co_firstlineno
         cache_directory()  # it determines for which processor is compiled
-        self._folder = folder_of(function.__module__, path)
+        self._folder = keys.folder_of(function.__module__, path)
         self._cache_path = str(place_of(self._folder))
 
     def ensure_cache_path(self) -> None:
@@ -269,7 +260,7 @@ class _Locator(UserProvidedCacheLocator):
     @classmethod
     def from_function(cls, function: Callable[..., Any], path: str) -> _Locator | None:
         """Return the locator of a function; None where it is another's without a file."""
-        return cls(function, path) if is_own(function.__module__) or os.path.exists(path) else None
+        return cls(function, path) if keys.is_own(function.__module__) or os.path.exists(path) else None
 
 
 @contextmanager
@@ -289,7 +280,7 @@ def cached() -> Iterator[None]:
 
 def _folder(function: Callable[..., Any]) -> Path:
     cache_directory()
-    return place_of(folder_of(function.__module__, inspect.getfile(function)))
+    return place_of(keys.folder_of(function.__module__, inspect.getfile(function)))
 
 
 def is_kept(function: Callable[..., Any]) -> bool:
@@ -322,7 +313,7 @@ def prune() -> None:
     The eight folders of each module that were used last stay at most: other versions of this program, and
     other Pythons, have theirs in the same place.
     """
-    root, own = cache_directory(), set(current_folders().values())
+    root, own = cache_directory(), set(keys.current_folders().values())
     old: dict[str, list[tuple[float, Path]]] = {}
     with contextlib.suppress(OSError):
         beside = root.parent.glob(f"kernels-{'[0-9a-f]' * 16}")  # named as in earlier versions

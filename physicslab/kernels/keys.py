@@ -28,8 +28,8 @@ _PACKAGE = __name__.rpartition(".")[0]
 _WITHOUT_CODE = frozenset(
     f"{_PACKAGE}.{name}"
     for name in (
-        "__main__", "archive", "cache", "compile_budget", "interpreter", "keys", "loading", "program",
-        "python_equivalents", "warm",
+        "__main__", "archive", "cache", "interpreter", "keys", "loading", "program", "python_equivalents",
+        "warm",
     )
 )  # fmt: skip
 """Modules that determine when kernels are compiled and where they are kept, but no instruction of them."""

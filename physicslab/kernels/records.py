@@ -6,6 +6,11 @@ import numpy as np
 from numba import from_dtype, int64, uint32
 from numpy.typing import NDArray
 
+
+def _floats(*names: str) -> list[tuple[str, type[np.float64]]]:
+    return [(name, np.float64) for name in names]
+
+
 MANIFOLD = np.dtype(
     [
         ("entity_a", np.int64),  # 0 is the world's bounds
@@ -15,18 +20,12 @@ MANIFOLD = np.dtype(
         ("b", np.int64),
         # Points in use; negative for a pair in event-driven motion, which the contact step skips.
         ("count", np.int64),
-        ("normal_x", np.float64),  # unit, from A to B
-        ("normal_y", np.float64),
-        ("friction", np.float64),
-        ("restitution", np.float64),
-        ("offset_x", np.float64),  # from A's centre to B's when the separations were measured
-        ("offset_y", np.float64),
+        *_floats("normal_x", "normal_y"),  # unit, from A to B
+        *_floats("friction", "restitution"),
+        *_floats("offset_x", "offset_y"),  # from A's centre to B's when the separations were measured
         # The relative pose for which the points were found: while it hardly changes, they are kept.
         ("found", np.int64),  # 2: good to keep; 3: of a pair with a disc, good in this very pose
-        ("base_x", np.float64),
-        ("base_y", np.float64),
-        ("base_angle_a", np.float64),
-        ("base_angle_b", np.float64),
+        *_floats("base_x", "base_y", "base_angle_a", "base_angle_b"),
         ("gap", np.float64),  # of boxes in that pose, where they had no points: they have none while it lasts
         ("base_sizes", np.float64),  # of both boxes, mixed into one number
         ("impact_count", np.int64),  # impacts of this step
@@ -42,21 +41,15 @@ MANIFOLD = np.dtype(
 POINT = np.dtype(
     [
         ("feature", np.int64),  # which corner or face the point belongs to: matches points from step to step
-        ("arm_ax", np.float64),  # from A's centre to the point
-        ("arm_ay", np.float64),
-        ("arm_bx", np.float64),
-        ("arm_by", np.float64),
+        *_floats("arm_ax", "arm_ay", "arm_bx", "arm_by"),  # from the centres of A and of B to the point
         ("found_separation", np.float64),  # in the base pose
         ("separation", np.float64),  # now; negative where they overlap
         # 1 where it approaches fast and meets after this substep: an impact of the next one.
         ("ahead", np.int64),
-        ("normal_mass", np.float64),  # effective masses
-        ("tangent_mass", np.float64),
-        ("normal_impulse", np.float64),  # in one substep, kept for warm starting
-        ("tangent_impulse", np.float64),
+        *_floats("normal_mass", "tangent_mass"),  # effective masses
+        *_floats("normal_impulse", "tangent_impulse"),  # in one substep, kept for warm starting
         ("approach_speed", np.float64),  # before the impact of this step, 0 if there was none
-        ("impact_normal", np.float64),  # impulses of the impacts of this step
-        ("impact_tangent", np.float64),
+        *_floats("impact_normal", "impact_tangent"),  # impulses of the impacts of this step
         # On a round bend of a chain, how fast the normal that was found turns away from the point in half a
         # substep [m/s]: what slides along leaves it with this speed, and comes to the next one with it.
         ("bend", np.float64),
@@ -70,43 +63,21 @@ IMPACT = np.dtype(
         ("entity_a", np.int64),  # 0 is the world's bounds
         ("entity_b", np.int64),
         ("wall", np.int64),  # which of the bounds, -1 for a pair of bodies
-        ("normal_x", np.float64),  # unit, from A to B
-        ("normal_y", np.float64),
-        ("x", np.float64),  # where they met, the point with the larger impulse [m]
-        ("y", np.float64),
+        *_floats("normal_x", "normal_y"),  # unit, from A to B
+        *_floats("x", "y"),  # where they met, the point with the larger impulse [m]
         ("approach_speed", np.float64),  # before the impact [m/s]
         # The impulses of all points [N s], on B; the tangent is the normal turned counter-clockwise.
-        ("normal_impulse", np.float64),
-        ("tangent_impulse", np.float64),
+        *_floats("normal_impulse", "tangent_impulse"),
         ("points", np.int64),  # 1 or 2
-        ("x_2", np.float64),  # the second point and the part of the impulses there; 0 where there is one
-        ("y_2", np.float64),
-        ("normal_impulse_2", np.float64),
-        ("tangent_impulse_2", np.float64),
-        ("center_ax", np.float64),  # where both bodies were at that moment [m, rad]
-        ("center_ay", np.float64),
-        ("angle_a", np.float64),
-        ("center_bx", np.float64),
-        ("center_by", np.float64),
-        ("angle_b", np.float64),
-        ("before_ax", np.float64),  # how they moved before [m/s, rad/s]
-        ("before_ay", np.float64),
-        ("before_wa", np.float64),
-        ("before_bx", np.float64),
-        ("before_by", np.float64),
-        ("before_wb", np.float64),
-        ("after_ax", np.float64),  # and after
-        ("after_ay", np.float64),
-        ("after_wa", np.float64),
-        ("after_bx", np.float64),
-        ("after_by", np.float64),
-        ("after_wb", np.float64),
-        ("inverse_mass_a", np.float64),  # [1/kg]; 0 of what an impact does not move
-        ("inverse_inertia_a", np.float64),  # [1/(kg m^2)]
-        ("inverse_mass_b", np.float64),
-        ("inverse_inertia_b", np.float64),
-        ("restitution", np.float64),  # those that the materials have
-        ("friction", np.float64),
+        # The second point and the part of the impulses there; 0 where there is one.
+        *_floats("x_2", "y_2", "normal_impulse_2", "tangent_impulse_2"),
+        # Where both bodies were at that moment [m, rad]; how they moved before it, and after [m/s, rad/s].
+        *_floats("center_ax", "center_ay", "angle_a", "center_bx", "center_by", "angle_b"),
+        *_floats("before_ax", "before_ay", "before_wa", "before_bx", "before_by", "before_wb"),
+        *_floats("after_ax", "after_ay", "after_wa", "after_bx", "after_by", "after_wb"),
+        # [1/kg], [1/(kg m^2)]; 0 of what an impact does not move.
+        *_floats("inverse_mass_a", "inverse_inertia_a", "inverse_mass_b", "inverse_inertia_b"),
+        *_floats("restitution", "friction"),  # those that the materials have
         ("law", np.int64),  # NEWTON, ENERGETIC or LOWERED of physicslab.kernels.constraint.impact_law
         ("alone", np.int64),  # 0 where other pairs acted on one of the bodies at the same moment, else 1
     ]

@@ -16,7 +16,6 @@ from physicslab.files.checks import SceneError
 from physicslab.files.json_text import json_bytes
 from physicslab.files.replace import replace_file
 from physicslab.files.scene import parse_json, read_text
-from physicslab.languages.language import language
 from physicslab.lessons.blocks import LessonError
 from physicslab.lessons.check import LessonRuns, curve_gap, is_near
 from physicslab.lessons.lesson import SURENESS, Explain, Lesson, Question, Recall, Reply, place_of
@@ -219,7 +218,7 @@ def grade_one(
 
 
 def _expected(runs: LessonRuns, question: Question) -> str:
-    own = language(runs.lesson.language)
+    own = runs.lesson.own
     match question.form:
         case "choice":
             return next(reply.text for reply in question.replies if reply.right)
@@ -244,7 +243,7 @@ def _grade_choice(runs: LessonRuns, question: Question, value: int, blank: Grade
 
 def _grade_number(runs: LessonRuns, question: Question, value: object, blank: Graded) -> Graded:
     number, right = _number(value, question.unit, question.name), runs.number(question)
-    given = measure(language(runs.lesson.language), number, question.unit)
+    given = measure(runs.lesson.own, number, question.unit)
     if is_near(number, right, question.tolerance):
         return replace(blank, given=given, right=True, feedback=question.right)
     reply: Reply | None = None
@@ -257,7 +256,7 @@ def _grade_number(runs: LessonRuns, question: Question, value: object, blank: Gr
 
 def _grade_goal(runs: LessonRuns, question: Question, value: Mapping[str, str], blank: Graded) -> Graded:
     text = "; ".join(f"{name} = {one}" for name, one in value.items())
-    blank = replace(blank, given=formula(language(runs.lesson.language), text), right=False)
+    blank = replace(blank, given=formula(runs.lesson.own, text), right=False)
     try:
         _refuse_closed(runs, value)
         assert question.goal is not None
@@ -269,7 +268,7 @@ def _grade_goal(runs: LessonRuns, question: Question, value: Mapping[str, str], 
 
 def _refuse_closed(runs: LessonRuns, value: Mapping[str, str]) -> None:
     """Refuse values of what is not open, or beyond its least and greatest value."""
-    own, opened = language(runs.lesson.language), runs.lesson.setup.opened
+    own, opened = runs.lesson.own, runs.lesson.setup.opened
     for name, text in value.items():
         if name not in opened:
             names = ", ".join(opened)
@@ -288,7 +287,7 @@ def _grade_curve(runs: LessonRuns, question: Question, value: object, blank: Gra
     measured = runs.curve(question)
     times = runs.figures(question.run).record.times[: len(measured)]
     drawn = [unit * _drawn(points, time) for time in times]
-    gap, own = curve_gap(drawn, measured), language(runs.lesson.language)
+    gap, own = curve_gap(drawn, measured), runs.lesson.own
     given = own.say("a curve that is {gap} of the span away", gap=own.decimal(f"{100.0 * gap:.1f} %"))
     if gap <= question.tolerance:
         return replace(blank, given=given, right=True, feedback=question.right)

@@ -16,7 +16,6 @@ from physicslab.ecs.quantity_text import (
     same_dimension,
 )  # fmt: skip
 from physicslab.files.checks import SceneError, shown
-from physicslab.languages.language import language
 from physicslab.lessons.blocks import LessonError
 from physicslab.lessons.lesson import Compare, Lesson, Question, Reply, Run, place_of
 from physicslab.lessons.live_run import record_run
@@ -171,7 +170,7 @@ def row_of(lesson: Lesson, compare: Compare, case: Case, figures: Figures) -> Ro
     most = tolerance.value / factor if absolute else tolerance.value
     return Row(
         lesson.name, compare.name, compare.line, compare.quantity,
-        case_words(language(lesson.language), with_run(compare.run, case)), unit,
+        case_words(lesson.own, with_run(compare.run, case)), unit,
         measured.value / factor, theory.value / factor, gap, most, absolute, holds,
         (gap <= most) == holds,
     )  # fmt: skip

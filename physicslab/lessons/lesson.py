@@ -7,6 +7,7 @@ from pathlib import Path
 
 from physicslab.ecs.conditions import Condition
 from physicslab.ecs.quantity_text import Expression
+from physicslab.languages.language import Language, language
 from physicslab.lessons.setup import AS_IT_IS, Case, Setup
 
 SURENESS = ("guess", "unsure", "sure", "certain")
@@ -242,6 +243,11 @@ class Lesson:
     digest: str = ""
     path: Path = Path()
 
+    @property
+    def own(self) -> Language:
+        """The language in which its formulas are written."""
+        return language(self.language)
+
     def parts(self) -> Iterator[Part]:
         """Yield everything in it, in order."""
         for step in self.steps:
@@ -250,6 +256,15 @@ class Lesson:
     def questions(self, kind: str = "") -> Iterator[Question]:
         """Yield its questions, or those of a kind."""
         yield from (part for part in self.parts() if isinstance(part, Question) and kind in ("", part.kind))
+
+    def predictions(self, run: Run) -> list[Question]:
+        """Return what is to be predicted of a run."""
+        return [one for one in self.questions("predict") if one.run and one.run.line == run.line]
+
+    def predicted(self, run: Run, form: str, text: str) -> list[Question]:
+        """Return which predictions of a run ask, in a form, for an expression of that text."""
+        asked = (one for one in self.predictions(run) if one.form == form)
+        return [one for one in asked if one.answer is not None and one.answer.text == text]
 
     def compares(self) -> Iterator[Compare]:
         """Yield what it compares."""

@@ -21,25 +21,13 @@ from physicslab.export.packing import pack
 from physicslab.export.page import fill_page, run_document
 from physicslab.export.recording import NotShown, RunRecorder
 from physicslab.files.checks import SceneError
-from physicslab.languages.language import language
+from physicslab.lessons import words
 from physicslab.lessons.answers import FORMAT, asked, grade_one
 from physicslab.lessons.check import LessonRuns, Row, row_of, si_unit
 from physicslab.lessons.film import Film
 from physicslab.lessons.lesson import Compare, Explain, Lesson, Part, Prose, Question, Recall, Reply, Run
 from physicslab.lessons.live_run import record_run
 from physicslab.lessons.setup import AS_IT_IS, Case
-from physicslab.lessons.words import (
-    about_words,
-    case_words,
-    compare_words,
-    formula,
-    kind_words,
-    measure,
-    run_words,
-    sureness_words,
-    unit_words,
-    with_run,
-)
 from physicslab.state.masses import Diverged
 from physicslab.world import World
 
@@ -63,7 +51,7 @@ def lesson_page(
     made = _Page(lesson, find, tell)
     article = "\n".join(made.article())
     document = {"lesson": made.told, "runs": made.pictures, "books": made.books, "words": made.words}
-    return fill_page(lesson.title, about_words(made.own, lesson), document, article, lesson.language)
+    return fill_page(lesson.title, words.about_words(made.own, lesson), document, article, lesson.language)
 
 
 class _Page:
@@ -73,7 +61,7 @@ class _Page:
         self, lesson: Lesson, find: Callable[[str], Lesson], tell: Callable[[float], object]
     ) -> None:
         self._report, self._parts, self._done = tell, sum(len(step.parts) for step in lesson.steps), 0
-        self.lesson, self.own = lesson, language(lesson.language)
+        self.lesson, self.own = lesson, lesson.own
         self.pictures: list[dict[str, Any]] = []
         self.books: list[dict[str, Any]] = []
         self.words: dict[str, str] = {}
@@ -115,7 +103,7 @@ class _Page:
         """Return the number of a run's picture, and its figures, if it can be made; each is made once."""
         texts = [one and one.text for one in (run.seconds, run.until, run.limit)]
         graphs = [(one.text, across.text) for one, across in run.graphs]
-        key = (runs.lesson.name, str(texts), str(graphs), with_run(run, case).values)
+        key = (runs.lesson.name, str(texts), str(graphs), words.with_run(run, case).values)
         if key not in self._made:
             try:
                 document, figures = self._record(runs.lesson, run, case)
@@ -150,9 +138,9 @@ class _Page:
             series = [expression.value(figures.at(sample)) for sample in kept]
             columns.append(np.array([one.value for one in series], np.float32))
             unit = si_unit(series[0])
-            words, body = self._quantity(expression, world)
+            called, body = self._quantity(expression, world)
             document["quantities"].append(
-                {"name": name or words, "unit": unit, "body": None if name else body}
+                {"name": name or called, "unit": unit, "body": None if name else body}
             )
             return len(document["quantities"]) - 1
 
@@ -175,7 +163,7 @@ class _Page:
         try:
             entity, name = quantity_of(dotted(expression.node), ids)
         except InvalidText:
-            return formula(self.own, expression.text), None
+            return words.formula(self.own, expression.text), None
         said = self.own.reword(name)
         return (said, None) if entity is None else (f"{entity}: {said}", ids[entity])
 
@@ -195,7 +183,7 @@ class _Page:
             unit, values, start = self._values(lesson, run, name, _VALUES[len(names) - 1], dict(least.values))
             note = lesson.setup.notes.get(name, "")
             label = f"{name}, {note}" if note else name
-            shown = "" if unit == "1" else formula(self.own, f"1 {unit}")[1:].strip()
+            shown = "" if unit == "1" else words.formula(self.own, f"1 {unit}")[1:].strip()
             sliders.append({"label": label, "unit": shown, "values": values, "start": start, "name": name})
             texts.append([f"{value!r} {'' if unit == '1' else unit}".strip() for value in values])
             sliders[-1]["texts"] = texts[-1]
@@ -245,8 +233,8 @@ class _Page:
                 f"<li>[{escape(key)}] {escape(said)}</li>" for key, said in self.lesson.sources.items()
             )
             yield "</ul></details>"
-        words = own.say("Your answers stay in this page until you save them; the file is for your teacher.")
-        yield f'<section class="part keep"><p>{escape(words)}</p>'
+        said = own.say("Your answers stay in this page until you save them; the file is for your teacher.")
+        yield f'<section class="part keep"><p>{escape(said)}</p>'
         save, again = escape(own.say("Save the answers")), escape(own.say("Open saved answers"))
         yield f'<button id="save" type="button" class="main">{save}</button>'
         yield f'<label class="file">{again} <input id="open" type="file" accept=".json"></label>'
@@ -273,7 +261,7 @@ class _Page:
                         yield from self._question(f"{name}/{check}", kind, question, runs)
 
     def _begun(self, tag: str, kind: str, name: str) -> str:
-        title = escape(kind_words(self.own)[kind])
+        title = escape(words.kind_words(self.own)[kind])
         return f'<{tag} class="part {kind}" data-kind="{kind}" data-name="{escape(name)}"><h3>{title}</h3>'
 
     def _question(self, name: str, kind: str, part: Question, runs: LessonRuns) -> Iterator[str]:
@@ -281,7 +269,7 @@ class _Page:
         self._tell(name, kind, part, runs)
         yield self._begun("form", kind, name)
         yield f"<fieldset><legend>{escape(part.prompt)}</legend>"
-        unit = unit_words(own, part.unit)
+        unit = words.unit_words(own, part.unit)
         if part.form == "choice":
             for n, reply in enumerate(part.replies, 1):
                 button = f'<input type="radio" name="choice" value="{n}">'
@@ -298,7 +286,7 @@ class _Page:
         if predicts:
             how = escape(own.say("How sure?"))
             yield f'<div class="sure" role="radiogroup" aria-label="{how}"><span>{how}</span>'
-            for key, said in sureness_words(own).items():
+            for key, said in words.sureness_words(own).items():
                 yield f'<label><input type="radio" name="sure" value="{key}"> {escape(said)}</label>'
             yield "</div>"
         yield "</fieldset>"
@@ -318,20 +306,20 @@ class _Page:
         yield '<div class="said" role="status"></div></form>'
 
     def _run(self, run: Run) -> Iterator[str]:
-        own, said = self.own, run_words(self.own, run)
+        own, said = self.own, words.run_words(self.own, run)
         self.told["runs"][run.name] = {"line": run.line, "book": self._slid(self._runs, run)}
         yield self._begun("section", "run", run.name)
         yield f'<p>{escape(said)}</p><button type="button" class="main">{escape(own.say("Run"))}</button>'
         yield '<div class="here"></div></section>'
 
     def _compare(self, part: Compare) -> Iterator[str]:
-        theory, holds, heads = compare_words(self.own, part)
+        theory, holds, heads = words.compare_words(self.own, part)
         cases = part.rows()
         books = [self.book(self._runs, part.run, [case]) for case in cases]
         rows = [self.books[book]["rows"][0].get(part.name) for book in books]
         self.told["compares"][part.name] = {
             "run": part.run.line, "along": part.along, "quantity": part.quantity, "rows": rows,
-            "cases": [case_words(self.own, case) for case in cases], "books": books,
+            "cases": [words.case_words(self.own, case) for case in cases], "books": books,
             "prediction": self._prediction(part),
         }  # fmt: skip
         yield self._begun("section", "compare", part.name)
@@ -349,24 +337,22 @@ class _Page:
         except _FAILURES:
             return None
         unit = row.unit or "1"
-        gap = measure(self.own, row.gap, unit, 2) if row.absolute else self._percent(row.gap)
+        gap = words.measure(self.own, row.gap, unit, 2) if row.absolute else self._percent(row.gap)
         near = row.gap <= row.tolerance
         return {
             "theory": row.theory, "measured": row.measured, "gap": gap, "near": bool(near),
-            "words": [measure(self.own, one, unit) for one in (row.theory, row.measured)],
-            "unit": unit_words(self.own, unit),
+            "words": [words.measure(self.own, one, unit) for one in (row.theory, row.measured)],
+            "unit": words.unit_words(self.own, unit),
         }  # fmt: skip
 
     def _percent(self, share: float) -> str:
-        words = "< 0.001 %" if 0.0 < share < 1e-5 else f"{100.0 * share:.{2 if share < 1.0 else 3}g} %"
-        return self.own.decimal(words) if share < np.inf else "∞"
+        shown = "< 0.001 %" if 0.0 < share < 1e-5 else f"{100.0 * share:.{2 if share < 1.0 else 3}g} %"
+        return self.own.decimal(shown) if share < np.inf else "∞"
 
     def _prediction(self, compare: Compare) -> dict[str, Any] | None:
         """Return the question of the number that is compared, and how many SI units its unit is."""
-        for one in self.lesson.questions("predict"):
-            same = one.run and one.run.line == compare.run.line and one.answer
-            if same and one.form == "number" and one.answer and one.answer.text == compare.measured.text:
-                return {"name": one.name, "factor": factor_of(one.unit) / factor_of(compare.unit or "1")}
+        for one in self.lesson.predicted(compare.run, "number", compare.measured.text):
+            return {"name": one.name, "factor": factor_of(one.unit) / factor_of(compare.unit or "1")}
         return None
 
     def _tell(self, name: str, kind: str, part: Question, runs: LessonRuns) -> None:
@@ -374,7 +360,7 @@ class _Page:
         told: dict[str, Any] = {
             "kind": kind, "form": part.form, "run": part.run.line if part.run else 0,
             "yes": part.right, "expected": grade_one(runs, name, kind, part, None).expected,
-            "unit": unit_words(self.own, part.unit),
+            "unit": words.unit_words(self.own, part.unit),
             "replies": [self._reply(part, reply, runs) for reply in part.replies],
         }  # fmt: skip
         if part.form == "number":
@@ -413,7 +399,7 @@ class _Page:
         if reply.shown_by is not None and part.run is not None:
             try:
                 told["show"] = self.book(runs, part.run, [reply.shown_by])
-                told["case"] = case_words(self.own, reply.shown_by, noted=False)
+                told["case"] = words.case_words(self.own, reply.shown_by, noted=False)
                 told["note"] = reply.shown_by.note
             except SceneError:
                 pass  # the run does not come to its end so: the words have to do

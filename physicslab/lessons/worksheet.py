@@ -3,19 +3,10 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from html import escape
 
-from physicslab.languages.language import Language, language
+from physicslab.languages.language import Language
+from physicslab.lessons import words
 from physicslab.lessons.answers import asked
 from physicslab.lessons.lesson import Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
-from physicslab.lessons.words import (
-    about_words,
-    case_words,
-    compare_words,
-    formula,
-    kind_words,
-    run_words,
-    sureness_words,
-    unit_words,
-)
 
 _STYLE = """
 body { font: 11pt/1.45 sans-serif; max-width: 44em; margin: 1em auto; padding: 0 1em; }
@@ -39,16 +30,16 @@ def worksheet(lesson: Lesson, find: Callable[[str], Lesson]) -> str:
 
 
 def _body(lesson: Lesson, recalled: Mapping[str, Question]) -> Iterator[str]:
-    own, setup = language(lesson.language), lesson.setup
+    own, setup = lesson.own, lesson.setup
     yield f"<h1>{escape(lesson.title)}</h1>"
-    yield f'<p class="kind">{escape(about_words(own, lesson))}</p>'
+    yield f'<p class="kind">{escape(words.about_words(own, lesson))}</p>'
     yield f"<p>{own.say('Name')}: ______________________________ &nbsp; {own.say('Date')}: ______________</p>"
     yield _row("th", ["", own.say("value"), own.say("may be")], "<table>")
     for name, expression in setup.parameters.items():
         note, span = setup.notes.get(name, ""), setup.opened.get(name)
         may = own.say("{least} to {most}", least=span[0], most=span[1]) if span else ""
-        cells = (f"{name}, {note}" if note else name, formula(own, expression.text), formula(own, may))
-        yield _row("td", cells)
+        called = f"{name}, {note}" if note else name
+        yield _row("td", (called, words.formula(own, expression.text), words.formula(own, may)))
     yield "</table>"
     for step in lesson.steps:
         if step.heading:
@@ -57,7 +48,7 @@ def _body(lesson: Lesson, recalled: Mapping[str, Question]) -> Iterator[str]:
             yield from _part(part, recalled, own)
     if lesson.sources:
         yield f"<h2>{own.say('Sources')}</h2><ul>"
-        yield from (f"<li>[{escape(key)}] {escape(words)}</li>" for key, words in lesson.sources.items())
+        yield from (f"<li>[{escape(key)}] {escape(source)}</li>" for key, source in lesson.sources.items())
         yield "</ul>"
 
 
@@ -74,14 +65,14 @@ def _part(part: Part, recalled: Mapping[str, Question], own: Language) -> Iterat
         case Question():
             kind, inner = part.kind, [f"<p>{escape(part.prompt)}</p>", *_room(part, own)]
             if kind == "predict":
-                marks = " · ".join(f"□ {word}" for word in sureness_words(own).values())
+                marks = " · ".join(f"□ {word}" for word in words.sureness_words(own).values())
                 inner.append(f'<p class="kind">{escape(own.say("How sure?"))} {escape(marks)}</p>')
         case Run():
-            kind, said = "run", run_words(own, part)
+            kind, said = "run", words.run_words(own, part)
             inner = [f"<p>{escape(said)} {escape(own.say('What do you see?'))}</p>", *_lines(2)]
         case Compare():
-            kind, (theory, holds, heads) = "compare", compare_words(own, part)
-            cases = [(case_words(own, case, noted=False), *"    ") for case in part.cases + part.fails]
+            kind, (theory, holds, heads) = "compare", words.compare_words(own, part)
+            cases = [(words.case_words(own, case, noted=False), *"    ") for case in part.cases + part.fails]
             inner = [
                 f"<p>{escape(theory)} &nbsp; <span class='kind'>{escape(holds)}</span></p>",
                 _row("th", heads, "<table>"), *(_row("td", cells) for cells in cases), "</table>",
@@ -93,14 +84,14 @@ def _part(part: Part, recalled: Mapping[str, Question], own: Language) -> Iterat
             for lesson, name in part.asks:
                 question = recalled[f"{lesson}/{name}"]
                 inner += [f"<p>{escape(question.prompt)}</p>", *_room(question, own)]
-    yield f'<section><div class="kind">{kind_words(own)[kind]}</div>'
+    yield f'<section><div class="kind">{words.kind_words(own)[kind]}</div>'
     yield from inner
     yield "</section>"
 
 
 def _room(question: Question, own: Language) -> Iterator[str]:
     """Yield what an answer is marked in or written on."""
-    unit = unit_words(own, question.unit)
+    unit = words.unit_words(own, question.unit)
     if question.form == "choice":
         yield "<ul>"
         yield from (f"<li>□ {escape(reply.text)}</li>" for reply in question.replies)

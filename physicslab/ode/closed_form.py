@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 from physicslab.components import Drag, Mass, Spring, Transform, Velocity
 from physicslab.ecs.sentences import listed, sentence
 from physicslab.ecs.vector import rotated
+from physicslab.kernels.accounts import DAMPING, GRAVITY, SPRINGS
+from physicslab.kernels.forces.budget import ACCOUNTS
+from physicslab.kernels.ode.closed_form_account import give_in_closed_form
 from physicslab.kernels.ode.propagate import propagate
 from physicslab.ode.kepler import Motion, TwoBodies, two_bodies
 from physicslab.state.packed import spring_ends
@@ -22,6 +25,8 @@ _KNOWN = (SpringSystem, DragSystem)
 """The forces that have a closed form, beside those that accelerate every body alike."""
 _IN_LINE = 1e-12
 """How far [share of the length] a body may be off the line of its springs and still count as on it."""
+_CAUSES = (GRAVITY, SPRINGS, DAMPING)
+"""In the order of the rows of what is given in closed form."""
 
 
 class NoClosedForm(LookupError):
@@ -64,6 +69,20 @@ class ClosedForm:
             position, velocity, self.direction, self.rate2, self.drag, self.centre, self.acceleration, t
         )
         return position, velocity
+
+    def given(self, state: State, t: float) -> dict[int, NDArray[np.float64]]:
+        """Return what each cause gives within a time t [s].
+
+        Energy [J], momentum [N s] and angular momentum about the origin [N m s] (4,) by cause.
+        """
+        position, velocity = self.motion(state)
+        mass = np.where(state.bodies.inverse_mass[self.rows] > 0.0, state.table(Mass)["mass"][self.rows], 0.0)
+        given = np.zeros((len(_CAUSES), ACCOUNTS))
+        give_in_closed_form(
+            position, velocity, mass, self.direction, self.rate2, self.drag, self.centre, self.acceleration,
+            t, given,
+        )  # fmt: skip
+        return dict(zip(_CAUSES, given, strict=True))
 
 
 def closed_form(state: State, forces: Sequence[ForceSystem]) -> ClosedForm | TwoBodies:

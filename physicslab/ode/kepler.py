@@ -70,8 +70,8 @@ class TwoBodies:
     def given(self, state: State, t: float) -> dict[int, NDArray[np.float64]]:
         """Return what comes in by a body that is fixed within a time t [s].
 
-        As :func:`~physicslab.ode.closed_form_account.given_in_closed_form`: momentum, and angular momentum
-        about the origin, for the line of the force always leads through the fixed body.
+        Momentum [N s], and angular momentum about the origin [N m s], in an account (4,): the line of the
+        force always leads through the fixed body. Gravity stores the energy.
         """
         row = np.zeros(ACCOUNTS)
         if not self.moves.all():

@@ -66,6 +66,8 @@ class OdeSystem:
     near : int64 array and int, optional
         An order of the coordinates in which those that forces couple are near, and how near; found
         once by the method that needs it, as it depends on the layout alone.
+    form : tuple, optional
+        A closed form of the motion, behind the ``laws`` for which it holds.
     free_bodies : int
         How many bodies move, where no force depends on the origin and they are few; else 0.
     steepness : float64 array (1,)
@@ -122,6 +124,7 @@ class OdeSystem:
         self._keys = coordinate_keys(entities[self.layout.moving], entities[self.layout.turning])
         self._low: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None
         self.near: tuple[NDArray[np.int64], int] | None = None
+        self.form: tuple[Any, Any] | None = None
         self.tolerance = state.simulation.tolerance
         self.most: int | None = None
         self._error: BaseException | None = None

@@ -16,7 +16,7 @@ from physicslab.ecs.table import Table
 from physicslab.kernels import near_counts
 from physicslab.state.state import State
 from physicslab.stepping.flow import Flow
-from physicslab.stepping.partition import Extent, movable_in
+from physicslab.stepping.partition import movable_in
 from physicslab.stepping.plan import StepPlan
 from physicslab.stepping.planning import choose_plan, outlived
 from physicslab.stepping.run import Stepped
@@ -54,10 +54,10 @@ class Island:
         The bodies that are its own, in order.
     own, there : int64 arrays (n,)
         Their rows in its world, and in the whole one.
+    shaped : int64 array (k,)
+        Rows in the whole world of those that can touch others.
     every, every_there : int64 arrays (m,)
         Those of all its entities, fixed bodies and springs among them.
-    touches : bool
-        Whether any of its bodies can touch another.
     """
 
     def __init__(self, world: Part, entities: Rows) -> None:
@@ -65,8 +65,12 @@ class Island:
         self.world: Part = world
         self.state: State = world
         self.entities = entities
-        self.touches = False
-        self.own = self.there = self.every = self.every_there = np.zeros(0, np.int64)
+        self.own = self.there = self.shaped = self.every = self.every_there = np.zeros(0, np.int64)
+
+    @property
+    def touches(self) -> bool:
+        """Whether any of its bodies can touch another."""
+        return len(self.shaped) > 0
 
     def follow_rows(self, state: State) -> None:
         """Find its rows again in the whole world."""
@@ -74,17 +78,16 @@ class Island:
         self.own, self.there = index.rows_of(self.entities), state.entity_index.rows_of(self.entities)
         self.every = np.flatnonzero(index.entities)
         self.every_there = state.entity_index.rows_of(index.entities[self.every])
-        self.touches = bool(self.state.table(Shape).present[self.own].any())
+        self.shaped = self.there[self.state.table(Shape).present[self.own]]
 
-    def extent(self) -> Extent:
-        """Return where its bodies are now."""
+    def stored(self) -> float:
+        """Return the energy in its springs and fields that is no weight [J]."""
         stores = [force for force in self.world.schedule.forces if force.potential is not None]
-        stored = sum(
+        return sum(
             force.potential_energy(self.state)
             for force in stores
             if force.uniform_acceleration(self.state) is None
         )
-        return Extent.of(self.state, self.own, stored)
 
     def take(self, state: State, changed: NDArray[np.bool_]) -> None:
         """Follow what was edited in rows (rows,) of the whole world, which books it."""
@@ -227,12 +230,8 @@ def rows_changed(numbers: Sequence[NDArray[Any]], left: bytes) -> NDArray[np.boo
 
 def join_logs(state: State, parts: list[State], logged: list[int]) -> None:
     """Add the impacts of all parts, from numbers ``logged`` on, to the log of the whole, in order of time."""
-    new = [
-        part.contacts.log[np.arange(first, part.contacts.logged) % len(part.contacts.log)]
-        for part, first in zip(parts, logged, strict=True)
-        if part.contacts.logged > first
-    ]
-    if new:
+    new = [part.contacts.impacts_since(first) for part, first in zip(parts, logged, strict=True)]
+    if any(map(len, new)):
         log, first = state.contacts.log, state.contacts.logged
         impacts = np.concatenate(new)
         impacts = impacts[np.argsort(impacts["time"], kind="stable")][-len(log) :]

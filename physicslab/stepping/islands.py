@@ -9,7 +9,6 @@ its bodies move. So the bits of an island are those that it has alone.
 import math
 import weakref
 from collections.abc import Callable, Iterable, Sequence
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -306,17 +305,11 @@ class Islands:
         touching = [island for island in self.members if island.touches]
         if not touching or (state.time < self._apart_until - 0.5 * h and h <= state.simulation.dt):
             return False
-        near: list[tuple[int, int]] = []
-        steps = _NEVER
-        extents = [island.extent() for island in touching]
-        for (i, one), (j, other) in combinations(enumerate(extents), 2):
-            apart = one.steps_apart(other, h)
-            near += [(i, j)] if apart == 0 else []
-            steps = min(steps, apart or steps)
-        self._apart_until = state.time + min(steps, 1 << 20) * h
-        if not near:
+        rows, stored = [island.shaped for island in touching], [island.stored() for island in touching]
+        labels, steps = partition.meetings(state, rows, stored, h)
+        self._apart_until = state.time + steps * h
+        if (labels == np.arange(len(labels))).all():
             return False
-        labels = partition.join(np.arange(len(touching)), near)
         members = [island for island in self.members if not island.touches]
         all_one = not members and not labels.any()
         for label in dict.fromkeys(labels.tolist()):

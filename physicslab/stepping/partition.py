@@ -4,11 +4,8 @@ All of it is local: whether two bodies are joined depends on these two alone, so
 same whatever there is elsewhere.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +14,7 @@ from numpy.typing import NDArray
 from physicslab.components import Drag, Mass, Shape, Transform, Velocity
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.broad.clusters import label_clusters
+from physicslab.kernels.broad.island_gaps import steps_apart
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import CONTACT_STEP
 from physicslab.systems.accelerate import AccelerateSystem
@@ -26,8 +24,6 @@ from physicslab.systems.standard import PHYSICS_SYSTEMS
 
 type Rows = NDArray[np.int64]
 """Numbers of rows (n,)."""
-type Numbers = NDArray[np.float64]
-"""An array of bodies (n,), or of vectors (n, 2)."""
 
 MAX_BODIES = 12
 """Number of bodies with a Shape above which an island has none of its own steppers: all such are together."""
@@ -39,10 +35,6 @@ FAR_RADII = 4.0
 """Distance, in radii of both, up to which they stay one island in any case."""
 NEAR_S, NEAR_STEPS = 0.1, 4.0
 """Islands that could meet within so long [s], or so many steps, become one."""
-_SAFETY = 2.0
-"""Factor by which bodies may become faster while no meeting is looked for."""
-_MAX_STEPS = 128
-"""Largest number of steps before it is looked for again."""
 
 
 class Partition(NamedTuple):
@@ -177,71 +169,34 @@ def _gravity(state: State) -> float:
     return state.physics.gravity.magnitude if state.physics.gravity_mode == "linear" else 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class Extent:
-    """Where the bodies of an island are that can touch others, and how fast they move.
+def meetings(state: State, islands: Sequence[Rows], stored: Sequence[float], h: float) -> tuple[Rows, int]:
+    """Return labels, the same for islands that may meet soon, and for how many steps no others will.
 
-    Attributes
+    Parameters
     ----------
-    position : float64 array (n, 2)
-        Their centres [m].
-    radius, speed : float64 arrays (n,)
-        Radii of the circles around them [m]; how fast these move [m/s].
-    low, high : float64 arrays (2,)
-        The box around all of them [m].
-    fastest : float
-        The highest speed that they may soon have [m/s], gravity left out.
-    gravity : float
-        By which they are accelerated [m/s^2].
+    state : State
+        The whole world.
+    islands : sequence of int64 arrays (n,)
+        The rows of the bodies of each that can touch others.
+    stored : sequence of float
+        The energy in springs and fields of each [J].
+    h : float
+        The length of steps [s].
     """
-
-    position: Numbers
-    radius: Numbers
-    speed: Numbers
-    low: Numbers
-    high: Numbers
-    fastest: float
-    gravity: float
-
-    @classmethod
-    def of(cls, state: State, rows: Rows, stored: float) -> Extent:
-        """Return that of the rows of an island, whose springs hold ``stored`` energy [J]."""
-        shaped, velocity = state.table(Shape).present, state.table(Velocity)
-        rows, inverse_mass = rows[shaped[rows]], state.bodies.inverse_mass
-        position, radius = state.table(Transform)["position"][rows], state.bodies.shapes.reach[rows]
-        speed = np.hypot(*velocity["linear"][rows].T)
-        driven = shaped & velocity.present & (inverse_mass == 0.0)
-        pushed = np.hypot(*velocity["linear"][driven].T) + np.abs(velocity["angular"][driven])
-        fastest = float(speed.max()) + 2.0 * float(pushed.max(initial=0.0))
-        if stored > 0.0:
-            fastest += math.sqrt(2.0 * stored * float(inverse_mass[rows].max()))
-        around = radius[:, None]
-        low, high = (position - around).min(axis=0), (position + around).max(axis=0)
-        return cls(position, radius, speed, low, high, fastest, _gravity(state))
-
-    def steps_apart(self, other: Extent, h: float) -> int:
-        """Return how many steps of ``h`` seconds it is certain that no body comes near one of another island.
-
-        Zero means that two may meet soon; whether they do so depends on these two alone.
-        """
-        soon = max(NEAR_S, NEAR_STEPS * h)
-        fall, fastest = self.gravity * soon * soon, self.fastest + other.fastest
-        gap = float(np.maximum(self.low - other.high, other.low - self.high).max())
-        steps = self._steps(gap, fastest, soon, h)
-        if steps > 1:
-            return steps
-        apart = self.position[:, None] - other.position
-        gaps = np.hypot(apart[..., 0], apart[..., 1]) - self.radius[:, None] - other.radius
-        if (gaps <= (self.speed[:, None] + other.speed) * soon + fall).any():
-            return 0
-        return max(1, self._steps(float(gaps.min()), fastest, soon, h))
-
-    def _steps(self, gap: float, fastest: float, soon: float, h: float) -> int:
-        """Return how many steps bodies need at least to be near that are ``gap`` metres apart."""
-        steps = _MAX_STEPS
-        while steps:
-            speed = fastest + 2.0 * self.gravity * steps * h
-            if gap > _SAFETY * speed * (steps * h + soon) + self.gravity * soon * soon:
-                break
-            steps //= 2
-        return steps
+    rows, inverse_mass = np.concatenate(islands), state.bodies.inverse_mass
+    first = np.cumsum([0, *map(len, islands)])
+    shaped, velocity = state.table(Shape).present, state.table(Velocity)
+    speed = np.hypot(*velocity["linear"][rows].T)
+    driven = shaped & velocity.present & (inverse_mass == 0.0)
+    pushed = np.hypot(*velocity["linear"][driven].T) + np.abs(velocity["angular"][driven])
+    fastest = np.maximum.reduceat(speed, first[:-1]) + 2.0 * float(pushed.max(initial=0.0))
+    for n, energy in enumerate(stored):
+        if energy > 0.0:
+            fastest[n] += math.sqrt(2.0 * energy * float(inverse_mass[islands[n]].max()))
+    labels, soon = np.arange(len(islands)), max(NEAR_S, NEAR_STEPS * h)
+    state.compile((steps_apart,))
+    steps = steps_apart(
+        first, state.table(Transform)["position"][rows], state.bodies.shapes.reach[rows],
+        speed, fastest, _gravity(state), soon, h, labels,
+    )  # fmt: skip
+    return labels, steps

@@ -50,11 +50,8 @@ def take_stick(item: Item, draft: Draft) -> None:
 
 def take_pin(item: Item, draft: Draft) -> None:
     """Take a pin. A particle at a distance from its pin goes around it, as if it were on a stick."""
-    body, place = draft.end(item, "body"), item.pair("position")
-    if body is None:
-        _lose_end(item, draft, "body")
-        return
-    if not body.moves:
+    body, place = _body(item, draft), item.pair("position")
+    if body is None or not body.moves:
         return
     draft.points.append(place)
     point = item.pair("localPosition")
@@ -69,18 +66,15 @@ def take_pin(item: Item, draft: Draft) -> None:
 
 def take_anchor(item: Item, draft: Draft) -> None:
     """Take an anchor: the body stays where it is."""
-    body = draft.end(item, "body")
-    if body is None:
-        _lose_end(item, draft, "body")
-    else:
+    body = _body(item, draft)
+    if body is not None:
         _hold(body)
 
 
 def take_motor(item: Item, draft: Draft) -> None:
     """Take a motor: a constant force at a point of a body, or a constant torque."""
-    body = draft.end(item, "body")
+    body = _body(item, draft)
     if body is None:
-        _lose_end(item, draft, "body")
         return
     draft.placed[item.number] = body.entity
     if item.kind == "CircularMotor" and body.is_point:
@@ -184,9 +178,9 @@ def _ends(item: Item, draft: Draft) -> tuple[dict[str, Any], float] | None:
     """Return the two ends, a body first, and their distance [m]; nothing where neither is one that moves."""
     ends: list[tuple[Body | None, Pair]] = []
     for n in ("1", "2"):
-        body, point = draft.end(item, f"body{n}"), item.pair(f"localPosition{n}")
-        if body is None and item.whole(f"body{n}", 0):
-            _lose_end(item, draft, f"body{n}")
+        name, point = f"body{n}", item.pair(f"localPosition{n}")
+        body = _body(item, draft, name) if item.whole(name, 0) else draft.end(item, name)
+        if body is None and item.whole(name, 0):
             return None
         ends.append((body, point))
     (a, at_a), (b, at_b) = ends if ends[0][0] is not None else ends[::-1]
@@ -204,9 +198,12 @@ def _ends(item: Item, draft: Draft) -> tuple[dict[str, Any], float] | None:
     return values, ((here[0] - there[0]) ** 2 + (here[1] - there[1]) ** 2) ** 0.5
 
 
-def _lose_end(item: Item, draft: Draft, name: str) -> None:
-    number = item.whole(name, 0)
-    draft.lose(item, f"its body, item {number}, is not taken" if number else "it has no body")
+def _body(item: Item, draft: Draft, name: str = "body") -> Body | None:
+    """Return the body that an item names; without one it is lost, and that is said."""
+    body, number = draft.end(item, name), item.whole(name, 0)
+    if body is None:
+        draft.lose(item, f"its body, item {number}, is not taken" if number else "it has no body")
+    return body
 
 
 def _hold(body: Body) -> None:

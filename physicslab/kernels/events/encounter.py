@@ -9,16 +9,9 @@ import math
 from typing import NamedTuple
 
 from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
+from physicslab.kernels.events import meeting
 from physicslab.kernels.events.links import curvature_of, gap_to_link, meet_link, touch_link
-from physicslab.kernels.events.meeting import (
-    ROUNDING,
-    SEAM,
-    Course,
-    cross_line,
-    meet_circle,
-    meet_line,
-    place_at,
-)
+from physicslab.kernels.events.meeting import Course
 from physicslab.kernels.events.path import place, seen_from, velocity
 from physicslab.kernels.geometry.links import box_of
 from physicslab.kernels.geometry.shapes import MOST_VERTICES, Shapes, face, is_chain, segment_of, vertex
@@ -70,7 +63,7 @@ def _seen(course: Course, c: float, s: float) -> Course:
 @always_inlined
 def _support(shapes: Shapes, i: int, x: float, y: float) -> Support:
     """Return how the core of row i reaches against a direction (x, y) of its own; the tangent is (-y, x)."""
-    nearest, low, high, seam = math.inf, 0.0, 0.0, SEAM * shapes.reach[i]
+    nearest, low, high, seam = math.inf, 0.0, 0.0, meeting.SEAM * shapes.reach[i]
     for k in range(shapes.vertices[i]):
         vx, vy = vertex(shapes, i, k)
         height, side = x * vx + y * vy, x * vy - y * vx
@@ -198,7 +191,8 @@ def _meet_wall(
     (nx, ny), (gap, _) = _wall_normal(manifold.wall), _to_wall(manifold, x, y, angle, shapes, walls)
     speed = nx * (vx + vx_low) + ny * (vy + vy_low)
     pull = nx * paths[b, 8] + ny * paths[b, 9]
-    return meet_line(gap + (nx * x_low + ny * y_low), speed, pull, ROUNDING * (abs(vx) + abs(vy)) + min_speed)
+    min_rate = meeting.ROUNDING * (abs(vx) + abs(vy)) + min_speed
+    return meeting.meet_line(gap + (nx * x_low + ny * y_low), speed, pull, min_rate)
 
 
 @always_inlined
@@ -243,8 +237,8 @@ def meeting_of(
         chain, k, body, way, turned = _on_chain(manifold, seen, angle, shapes)
         return meet_link(shapes, chain, k, body, way, turned, span, min_speed)
     course, c, s, _, _ = _lie(manifold, seen, angle, shapes)
-    rounding, seam = shapes.radius[a] + shapes.radius[b], SEAM * (shapes.reach[a] + shapes.reach[b])
-    min_rate = ROUNDING * (abs(course.ux) + abs(course.uy)) + min_speed
+    rounding, seam = shapes.radius[a] + shapes.radius[b], meeting.SEAM * (shapes.reach[a] + shapes.reach[b])
+    min_rate = meeting.ROUNDING * (abs(course.ux) + abs(course.uy)) + min_speed
     best, feature, widest = math.inf, -1, -math.inf
     for side in range(2):
         one, other, turn = (a, b, s) if side == 0 else (b, a, -s)
@@ -254,9 +248,9 @@ def meeting_of(
             gap = _apart(edge, to.dx, to.dy, rounding)
             widest = max(widest, gap)
             speed, pull = edge.nx * to.ux + edge.ny * to.uy, edge.nx * to.wx + edge.ny * to.wy
-            t = cross_line(gap, speed, pull, seam, min_rate)
+            t = meeting.cross_line(gap, speed, pull, seam, min_rate)
             if t < best and t <= span:
-                x, y = place_at(to, t)
+                x, y = meeting.place_at(to, t)
                 if _is_beside(edge, x, y, seam):
                     best, feature = t, side * MOST_VERTICES + k
     if widest <= 0.0 and shapes.vertices[a] + shapes.vertices[b] > 2:
@@ -270,9 +264,9 @@ def meeting_of(
         for j in range(shapes.vertices[b]):
             x, y = _between(shapes, a, i, b, j, (course.dx, course.dy, c, s))
             way = Course(x, y, course.ux, course.uy, course.wx, course.wy)
-            t = meet_circle(way, rounding, min(best, span), min_speed)
+            t = meeting.meet_circle(way, rounding, min(best, span), min_speed)
             if t < best:
-                x, y = place_at(way, t)
+                x, y = meeting.place_at(way, t)
                 if _is_between(shapes, a, i, b, j, x, y, c, s, seam):
                     best, feature = t, _ARC + MOST_VERTICES * i + j
     return best, feature
@@ -290,7 +284,7 @@ def _reaches(shapes: Shapes, i: int, angle: Numbers) -> tuple[float, float]:
 @inlined
 def _time_open(gap: float, speed: float, pull: float) -> float:
     """Return how long a gap stays open [s]; 0 if it is closed."""
-    return meet_line(gap, speed, pull, 0.0) if gap > 0.0 else 0.0
+    return meeting.meet_line(gap, speed, pull, 0.0) if gap > 0.0 else 0.0
 
 
 @always_inlined

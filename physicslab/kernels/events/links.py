@@ -7,15 +7,8 @@ faces arcs that bend outwards: lines, and circles about a centre, that are met f
 import math
 
 from physicslab.kernels import inlined
-from physicslab.kernels.events.meeting import (
-    ROUNDING,
-    SEAM,
-    Course,
-    cross_line,
-    leave_circle,
-    meet_circle,
-    place_at,
-)
+from physicslab.kernels.events import meeting
+from physicslab.kernels.events.meeting import Course
 from physicslab.kernels.geometry.links import Link, beside_arc, link_of
 from physicslab.kernels.geometry.shapes import Shapes, face, vertex
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
@@ -32,7 +25,7 @@ _Turn = tuple[float, float]
 @inlined
 def _lowest(shapes: Shapes, i: int, nx: float, ny: float, turn: _Turn) -> tuple[float, float, float]:
     """Return how low the core of row i reaches along a normal, and between which lengths across it [m]."""
-    least, low, high, seam = math.inf, 0.0, 0.0, SEAM * shapes.reach[i]
+    least, low, high, seam = math.inf, 0.0, 0.0, meeting.SEAM * shapes.reach[i]
     for j in range(shapes.vertices[i]):
         x, y = _corner(shapes, i, j, turn)
         height, along = nx * x + ny * y, nx * y - ny * x
@@ -88,7 +81,7 @@ def _is_on_face(link: Link, side: Link, seam: float) -> bool:
     along = side.nx * (link.y - side.y) - side.ny * (link.x - side.x)
     ahead, behind = beside_arc(link, -side.nx, -side.ny)
     faces = side.nx * (link.nx + link.mx) + side.ny * (link.ny + link.my) < 0.0
-    return faces and min(ahead, behind) >= -ROUNDING and -seam <= along <= side.size + seam
+    return faces and min(ahead, behind) >= -meeting.ROUNDING and -seam <= along <= side.size + seam
 
 
 @inlined
@@ -136,9 +129,9 @@ def meet_link(
 ) -> tuple[float, int]:
     """Return in how many seconds the body in row i meets link k, up to ``span``, and at which feature."""
     link, radius = link_of(shapes, chain, k), shapes.radius[i]
-    seam = SEAM * (shapes.reach[chain] + shapes.reach[i])
+    seam = meeting.SEAM * (shapes.reach[chain] + shapes.reach[i])
     dx, dy, ux, uy, wx, wy = course
-    min_rate = ROUNDING * (abs(ux) + abs(uy)) + min_speed
+    min_rate = meeting.ROUNDING * (abs(ux) + abs(uy)) + min_speed
     gap, speed, pull, nearest = gap_to_link(shapes, chain, k, i, course, turn)
     if -2.0 * _DEEP * shapes.thin[i] < gap <= 0.0:
         if speed < -min_rate:
@@ -149,9 +142,9 @@ def meet_link(
     if link.bend == 0.0:
         least, _, _ = _lowest(shapes, i, link.nx, link.ny, turn)
         gap = link.nx * (dx - link.x) + link.ny * (dy - link.y) + least - radius
-        t = cross_line(gap, link.nx * ux + link.ny * uy, link.nx * wx + link.ny * wy, seam, min_rate)
+        t = meeting.cross_line(gap, link.nx * ux + link.ny * uy, link.nx * wx + link.ny * wy, seam, min_rate)
         if t <= span:
-            x, y = place_at(course, t)
+            x, y = meeting.place_at(course, t)
             if _is_beside(shapes, i, link, x, y, turn, seam):
                 best, feature = t, 0
         return best, feature
@@ -161,20 +154,20 @@ def meet_link(
         vx, vy = _corner(shapes, i, j, turn)
         way = Course(dx + vx - link.x, dy + vy - link.y, ux, uy, wx, wy)
         if link.bend > 0.0:
-            t = meet_circle(way, link.size + radius, min(best, span), min_speed)
+            t = meeting.meet_circle(way, link.size + radius, min(best, span), min_speed)
         else:
-            t = leave_circle(way, link.size - radius, min(best, span), min_speed)
+            t = meeting.leave_circle(way, link.size - radius, min(best, span), min_speed)
         if t < best:
-            x, y = place_at(way, t)
+            x, y = meeting.place_at(way, t)
             if _is_on_arc(shapes, i, j, link, x, y, turn, seam):
                 best, feature = t, j
     for j in range(shapes.vertices[i] if link.bend > 0.0 and shapes.vertices[i] > 1 else 0):
         side = _face_over(shapes, i, j, link, dx, dy, turn)
         gap = side.nx * (link.x - side.x) + side.ny * (link.y - side.y) - radius - link.size
         speed, pull = -(side.nx * ux + side.ny * uy), -(side.nx * wx + side.ny * wy)
-        t = cross_line(gap, speed, pull, seam, min_rate)
+        t = meeting.cross_line(gap, speed, pull, seam, min_rate)
         if t < best and t <= span:
-            x, y = place_at(course, t)
+            x, y = meeting.place_at(course, t)
             if _is_on_face(link, _face_over(shapes, i, j, link, x, y, turn), seam):
                 best, feature = t, _FACE + j
     return best, feature

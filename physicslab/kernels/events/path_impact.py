@@ -1,17 +1,9 @@
 """The impulse of an impact, as it changes two paths, with rounding compensated."""
 
 from physicslab.kernels import Numbers, Vectors, inlined
+from physicslab.kernels.constraint import pair
 from physicslab.kernels.constraint.impact_law import NEWTON, ImpactImpulses, point_response, solve_impact
-from physicslab.kernels.constraint.pair import (
-    ContactFrame,
-    PairInverseMass,
-    PairVelocity,
-    PointState,
-    frame_of,
-    impulse_at,
-    moments_of,
-    point_state,
-)
+from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity, PointState
 from physicslab.kernels.events.path import push
 from physicslab.kernels.ode.compensated import add_pair, multiply
 from physicslab.kernels.records import Manifold, Point
@@ -33,7 +25,7 @@ def _state(
     """Return the state of a point and the remainder of its velocity along the normal; the paths begin now."""
     vx, x_low = add_pair(paths[b, 4], paths[b, 5], -paths[a, 4], -paths[a, 5])
     vy, y_low = add_pair(paths[b, 6], paths[b, 7], -paths[a, 6], -paths[a, 7])
-    state = point_state(at, PairVelocity(0.0, 0.0, angular[a], vx, vy, angular[b]))
+    state = pair.point_state(at, PairVelocity(0.0, 0.0, angular[a], vx, vy, angular[b]))
     return state, x_low * at.nx + y_low * at.ny
 
 
@@ -43,8 +35,8 @@ def _push_pair(
     at: ContactFrame[float], v: float, normal: float, tangent: float,
 ) -> None:  # fmt: skip
     """Apply impulses at a point to the paths of A and B, and note them and the approach ``v`` there."""
-    px, py = impulse_at(at.nx, at.ny, normal, tangent)
-    moment_a, moment_b = moments_of(at, px, py)
+    px, py = pair.impulse_at(at.nx, at.ny, normal, tangent)
+    moment_a, moment_b = pair.moments_of(at, px, py)
     push(paths, a, -mass.a, px, py)
     push(paths, b, mass.b, px, py)
     angular[a] -= mass.inertia_a * moment_a
@@ -60,7 +52,7 @@ def resolve_ballistic_impacts(
 ) -> tuple[ImpactImpulses, int]:
     """Bounce a pair whose paths begin now and whose point is filled; return the impulses, and their law."""
     a, b, e = manifold.a, manifold.b, manifold.restitution
-    at = frame_of(manifold, point)
+    at = pair.frame_of(manifold, point)
     state, low = _state(paths, angular, a, b, at)
     manifold.impact_count += 1
     if state.v >= 0.0:

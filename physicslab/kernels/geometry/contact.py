@@ -5,17 +5,10 @@ import math
 from physicslab.kernels import Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment_arms, response
+from physicslab.kernels.geometry import pair
 from physicslab.kernels.geometry.bend import note_bends
 from physicslab.kernels.geometry.cores import VERTICES
 from physicslab.kernels.geometry.outline import Way, is_segment, kept_outline, on_segment, swing_of
-from physicslab.kernels.geometry.pair import (
-    CONTACT_MARGIN,
-    SWEEP_THRESHOLD,
-    touch_boxes,
-    touch_rounded,
-    touch_wall,
-    touch_with_circle,
-)
 from physicslab.kernels.geometry.shapes import Shapes, has_own_way, is_chain, segment_of
 from physicslab.kernels.near_counts import ACTIVE, SCALAR
 from physicslab.kernels.records import Manifold, Point, Points
@@ -89,7 +82,7 @@ def _too_far(
         return bool(dx * dx + dy * dy > reach * reach)
     away = motion.position[b, wall % 2] - bounds.walls[wall]
     clear = (away if wall < 2 else -away) - shapes.radius[b]
-    margin = ACTIVATION_RATIO * CONTACT_MARGIN * shapes.radius[b] + abs(ux) + abs(uy)
+    margin = ACTIVATION_RATIO * pair.CONTACT_MARGIN * shapes.radius[b] + abs(ux) + abs(uy)
     return bool(clear > margin + speculative_margin)
 
 
@@ -111,7 +104,7 @@ def forget_points(one: Point, two: Point) -> None:
 def slides_on(manifold: Manifold, one: Point, two: Point, travel: float) -> bool:
     """Whether a pair has other points on a chain soon: it moves by ``travel`` [m], or is where that turns."""
     on_bend = one.feature >= VERTICES or (manifold.count == 2 and two.feature >= VERTICES)
-    return bool(manifold.wall < -1 and (on_bend or travel > SWEEP_THRESHOLD * manifold.size))
+    return bool(manifold.wall < -1 and (on_bend or travel > pair.SWEEP_THRESHOLD * manifold.size))
 
 
 @always_inlined
@@ -119,7 +112,7 @@ def _to_be_swept(manifold: Manifold, points: Points, p: int, travel: float, size
     """Whether a pair that moves by ``travel`` [m] in a substep may have points of a later moment in it."""
     one, two = points[2 * p], points[2 * p + 1]
     loose = one.normal_impulse + (two.normal_impulse if manifold.count == 2 else 0.0) == 0.0
-    meets = manifold.swept == 1 or (loose and travel > SWEEP_THRESHOLD * size)
+    meets = manifold.swept == 1 or (loose and travel > pair.SWEEP_THRESHOLD * size)
     return bool(meets or slides_on(manifold, one, two, travel))
 
 
@@ -169,7 +162,7 @@ def _look_up(
         of_both += 7.0 * radius[a] + 11.0 * radius[b]
     moved_x, moved_y = way.dx - manifold.base_x, way.dy - manifold.base_y
     turn_a, turn_b = angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b
-    slow = travel <= 0.5 * CONTACT_MARGIN * size
+    slow = travel <= 0.5 * pair.CONTACT_MARGIN * size
     if manifold.found == 2 and manifold.base_sizes == of_both:
         if manifold.count == 0:
             # A lower bound of their gap now, however they have moved since.
@@ -179,7 +172,7 @@ def _look_up(
                 nx, ny = manifold.normal_x, manifold.normal_y
                 nearest = manifold.gap + moved_x * nx + moved_y * ny - turned - 0.0025 * size
                 ahead = abs(way.ux * nx + way.uy * ny) + swing
-            if nearest > CONTACT_MARGIN * size + ahead + speculative_margin:
+            if nearest > pair.CONTACT_MARGIN * size + ahead + speculative_margin:
                 return _APART
         elif (
             not disc
@@ -213,7 +206,7 @@ def _in_place(
         and (vertices[a] < 2 or angle[a] == manifold.base_angle_a)
         and (vertices[b] < 2 or angle[b] == manifold.base_angle_b)
         and point.normal_impulse > 0.0
-        and point.found_separation < CONTACT_MARGIN * 0.5 * manifold.size + speculative_margin
+        and point.found_separation < pair.CONTACT_MARGIN * 0.5 * manifold.size + speculative_margin
     )
 
 
@@ -228,13 +221,13 @@ def touch(
     if manifold.wall >= 0:
         spin = swing_of(body, motion.angular[b] * h)
         place = Way(motion.position[b, 0], motion.position[b, 1], way.ux, way.uy)
-        touch_wall(manifold, one, two, place, spin, speculative_margin, body, bounds.walls, shapes.pool)
+        pair.touch_wall(manifold, one, two, place, spin, speculative_margin, body, bounds.walls, shapes.pool)
         return
     other = kept_outline(manifold.a, motion.angle, shapes, rotations)
     turn_a = h * motion.angular[manifold.a] if other.vertices > 1 else 0.0
     turn_b = h * motion.angular[b] if body.vertices > 1 else 0.0
     if not (has_own_way(shapes, manifold.a) and has_own_way(shapes, b)):
-        touch_rounded(
+        pair.touch_rounded(
             manifold, one, two, way, turn_a, turn_b, start, speculative_margin,
             on_segment(other, manifold.wall), on_segment(body, manifold.wall), shapes.pool,
         )  # fmt: skip
@@ -246,12 +239,12 @@ def touch(
                 on_segment(segment, manifold.wall), moved, shapes.pool,
             )  # fmt: skip
     elif other.box and body.box:
-        touch_boxes(
+        pair.touch_boxes(
             manifold, one, two, way, turn_a, turn_b, start, speculative_margin, other, body, shapes.pool
         )
     else:
         turn = turn_a if other.box else turn_b
-        touch_with_circle(manifold, one, way, turn, start, speculative_margin, other, body, shapes.pool)
+        pair.touch_with_circle(manifold, one, way, turn, start, speculative_margin, other, body, shapes.pool)
 
 
 @always_inlined

@@ -7,15 +7,8 @@ into the next one without a notch, a point is on one of them: the one that it co
 import math
 
 from physicslab.kernels import Numbers, inlined
-from physicslab.kernels.geometry.links import (
-    Link,
-    are_joined,
-    beside_arc,
-    count_links,
-    distance_to_links,
-    link_of,
-    next_near,
-)
+from physicslab.kernels.geometry import links
+from physicslab.kernels.geometry.links import Link
 from physicslab.kernels.geometry.shapes import Shapes, face, is_chain, vertex
 from physicslab.kernels.geometry.vertex_cone import beside_vertex
 from physicslab.kernels.rigid import features as F
@@ -66,9 +59,9 @@ def _is_on(distance: float, rate: float, tie: float, sharp: bool) -> bool:
 @inlined
 def _is_sharp(shapes: Shapes, chain: int, k: int, step: int, radius: float) -> bool:
     """Whether a face ends in a notch or a corner there, for a body of no radius."""
-    count = count_links(shapes, chain)
+    count = links.count_links(shapes, chain)
     beside = (k + step + count) % count
-    link = link_of(shapes, chain, beside)
+    link = links.link_of(shapes, chain, beside)
     return radius == 0.0 and (link.bend == 0.0 or link.size == 0.0)
 
 
@@ -135,7 +128,7 @@ def _to_arc(
             continue
         nx, ny = bend * dx / distance, bend * dy / distance
         vx, vy = _speed(lie, x, y)
-        ahead, behind = beside_arc(link, nx, ny)
+        ahead, behind = links.beside_arc(link, nx, ny)
         if nx * (link.nx + link.mx) + ny * (link.ny + link.my) <= 0.0:
             continue
         turning = nx * vy - ny * vx  # along the chain, be it against the turn of the normal
@@ -171,7 +164,7 @@ def _faces_on_arc(
         if abs(gap) > near:
             continue
         nx, ny = -(c * fx - s * fy), -(s * fx + c * fy)
-        ahead, behind = beside_arc(link, nx, ny)
+        ahead, behind = links.beside_arc(link, nx, ny)
         spin = lie[6] * shapes.reach[body]
         inside = nx * (link.nx + link.mx) + ny * (link.ny + link.my) > 0.0
         if link.size > 0.0:
@@ -207,17 +200,17 @@ def find_chain_points(
     if not is_chain(shapes, chain):
         chain, body = body, chain
     lie = _seen(q, v, scene.rows, chain, body)
-    count, room = count_links(shapes, chain), shapes.reach[body] + near
-    k = next_near(shapes, chain, 0, lie[0], lie[1], room)
+    count, room = links.count_links(shapes, chain), shapes.reach[body] + near
+    k = links.next_near(shapes, chain, 0, lie[0], lie[1], room)
     while k < count:
-        link = link_of(shapes, chain, k)
+        link = links.link_of(shapes, chain, k)
         if link.bend == 0.0:
             n = _to_face(shapes, points, n, p, chain, k, link, body, lie, near, tie)
         else:
             n = _to_arc(shapes, points, n, p, chain, k, link, body, lie, near, tie)
             if link.bend > 0.0 and shapes.vertices[body] > 1:
                 n = _faces_on_arc(shapes, points, n, p, chain, k, link, body, lie, near, tie)
-        k = next_near(shapes, chain, k + 1, lie[0], lie[1], room)
+        k = links.next_near(shapes, chain, k + 1, lie[0], lie[1], room)
     return n, math.inf
 
 
@@ -227,7 +220,7 @@ def distance_to_chain(scene: RigidScene, chain: int, body: int, q: Numbers, enou
     rows, reach = scene.rows, scene.shapes.reach[body]
     c, s = math.cos(q[2 * rows + chain]), math.sin(q[2 * rows + chain])
     dx, dy = q[2 * body] - q[2 * chain], q[2 * body + 1] - q[2 * chain + 1]
-    away = distance_to_links(scene.shapes, chain, c * dx + s * dy, c * dy - s * dx, enough + reach)
+    away = links.distance_to_links(scene.shapes, chain, c * dx + s * dy, c * dy - s * dx, enough + reach)
     apart: float = away - reach
     return apart
 
@@ -247,7 +240,7 @@ def _goes_on(shapes: Shapes, points: Points, i: int, others: Points, k: int) -> 
         else:
             same = points[i, F.FEATURE] == others[k, F.FEATURE]
             one, other = points[i, F.VERTEX], others[k, F.VERTEX]
-        return same and are_joined(shapes, chain, one, other)
+        return same and links.are_joined(shapes, chain, one, other)
     return False
 
 

@@ -12,16 +12,8 @@ import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import CONTACT, ENERGY, FRICTION, HAND, IMPACTS, JOINTS
-from physicslab.kernels.constraint.impact_law import (
-    ENERGETIC,
-    LOWERED,
-    NEWTON,
-    ImpactImpulses,
-    PointResponse,
-    begin_search,
-    narrow_search,
-    solve_impact,
-)
+from physicslab.kernels.constraint import impact_law
+from physicslab.kernels.constraint.impact_law import ImpactImpulses, PointResponse
 from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity
 from physicslab.kernels.geometry.links import segment_at
 from physicslab.kernels.geometry.shapes import is_chain, wall_of
@@ -34,14 +26,8 @@ from physicslab.kernels.rigid.constraints import apply, assemble, measure_all
 from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, STICKS, UNKNOWN, Equations
 from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.joined import book_impulses
-from physicslab.kernels.solver.impact_log import (
-    ImpactPoints,
-    Pair,
-    Pose,
-    book_impact,
-    shares_of,
-    write_impact,
-)
+from physicslab.kernels.solver import impact_log
+from physicslab.kernels.solver.impact_log import ImpactPoints, Pair, Pose
 
 _MAX_ROUNDS, _SHORT_ROUNDS = 500, 3
 """Rounds of impacts at one time, and within a short step; after them all points that touch are inelastic."""
@@ -141,14 +127,15 @@ def _find_impulses(impact: Equations, n: int, rest: float, rate: float) -> tuple
     a, measures, vectors = impact.a, impact.measures, impact.vectors
     if n == 1 and measures[0, F.RESTITUTION] > 0.0:
         response = PointResponse(a[0, 0], a[1, 1], a[0, 1], measures[0, F.VN], measures[0, F.VT])
-        normal, tangent, law = solve_impact(response, measures[0, F.RESTITUTION], measures[0, F.MU])
+        e, mu = measures[0, F.RESTITUTION], measures[0, F.MU]
+        normal, tangent, law = impact_law.solve_impact(response, e, mu)
         vectors[UNKNOWN, 0], vectors[UNKNOWN, 1] = normal, tangent
         return True, law
-    search, solved = begin_search(), False
+    search, solved = impact_law.begin_search(), False
     while not search.ended:
         solved = _solve(impact, n, search.share, rest, rate)
-        search = narrow_search(search, _energy_gained(impact, n) if solved else math.inf)
-    return solved, NEWTON if search.share == 1.0 else LOWERED
+        search = impact_law.narrow_search(search, _energy_gained(impact, n) if solved else math.inf)
+    return solved, impact_law.NEWTON if search.share == 1.0 else impact_law.LOWERED
 
 
 @inlined
@@ -247,7 +234,7 @@ def _book(
             n2, t2 = impact.vectors[UNKNOWN, 2 * k + 2], impact.vectors[UNKNOWN, 2 * k + 3]
         n1, t1 = impact.vectors[UNKNOWN, 2 * k], impact.vectors[UNKNOWN, 2 * k + 1]
         points = ImpactPoints(one, two, ImpactImpulses(n1, t1, n2, t2))
-        book_impact(account, points, pose, before, after, mass, cause)
+        impact_log.book_impact(account, points, pose, before, after, mass, cause)
 
 
 @inlined
@@ -289,7 +276,7 @@ def _note_round(
                 ids = Pair(
                     entities[a] if wall < 0 else 0, entities[b], wall, restitution, impact.measures[i, F.MU]
                 )
-                write_impact(
+                impact_log.write_impact(
                     log, logged + written, ids, time, approach, _two_points(scene, impact, i, end, q), pose,
                     _pair_velocity(scene, old, 0.0, acceleration, a, b),
                     _pair_velocity(scene, v, 0.0, acceleration, a, b), mass, law,
@@ -300,7 +287,7 @@ def _note_round(
     # Where several pairs meet at once, one can give what another takes: all together take, or give nothing.
     along, across = account[IMPACTS, ENERGY] - bounced, account[FRICTION, ENERGY] - friction_work
     if along > 0.0 or across > 0.0:
-        along, across = shares_of(along, across)
+        along, across = impact_log.shares_of(along, across)
         account[IMPACTS, ENERGY], account[FRICTION, ENERGY] = bounced + along, friction_work + across
     return written
 
@@ -330,7 +317,8 @@ def resolve_simultaneous_impacts(
         solved, law = _find_impulses(impact, n, rest, rate)
         if not solved:
             return impacts, False, energetic, lowered, last, turn
-        energetic, lowered, last = energetic + int(law == ENERGETIC), lowered + int(law == LOWERED), n
+        energetic += int(law == impact_law.ENERGETIC)
+        lowered, last = lowered + int(law == impact_law.LOWERED), n
         for i in range(len(v)):
             old[i] = v[i]
         apply(scene, impact, n, v)

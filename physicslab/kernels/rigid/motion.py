@@ -14,6 +14,7 @@ from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ROWS
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid import features as F
+from physicslab.kernels.rigid import smooth_segment, touching
 from physicslab.kernels.rigid.budget import book_contacts, book_speeds
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, SETTLED, solve_complementarity
 from physicslab.kernels.rigid.constraints import apply, find_loads, measure_all, project
@@ -24,23 +25,7 @@ from physicslab.kernels.rigid.joined import book_answer
 from physicslab.kernels.rigid.least_norm import solve_equations
 from physicslab.kernels.rigid.passing import longest_segment, share_of_ways
 from physicslab.kernels.rigid.segment_end import ALLOWED, HOLDS, PRESSES, SLIDES, locate_event, note_start
-from physicslab.kernels.rigid.smooth_segment import (
-    SHORT_LAST,
-    Stages,
-    begin_segment,
-    make_segment,
-    make_stages,
-)
-from physicslab.kernels.rigid.touching import (
-    NO_PUSH,
-    SLOW,
-    find_touching,
-    hold_closed,
-    hold_evenly,
-    keep_pressing,
-    rest_limits,
-    take_closed,
-)
+from physicslab.kernels.rigid.smooth_segment import Stages
 
 DONE, STOPPED, NO_FORCES, UNRESOLVED, TOO_MANY = range(5)
 """Why the motion cannot go on: it can; sliding was stopped by impulses, so that all has to be found again; no
@@ -77,15 +62,15 @@ def _note_changes(
             continue
         pressing, rubbing = forces[UNKNOWN, 2 * i], forces[UNKNOWN, 2 * i + 1]
         left = equations.measures[i, F.MU] * pressing - abs(rubbing)
-        status = -1
+        status, now = -1, equations.points[i, F.STATUS]
         if kind == SLIDES:
             status = STICKS
         elif kind == PRESSES and i == index:
             status = OPEN
-        elif kind == HOLDS and (i == index or (equations.points[i, F.STATUS] == STICKS and left <= limit)):
+        elif kind == HOLDS and (i == index or (now == STICKS and left <= limit)):
             status = SLIDES_ON if rubbing < 0.0 else SLIDES_BACK
-        elif equations.points[i, F.STATUS] > STICKS and abs(equations.measures[i, F.VT]) <= SLOW * rest:
-            status = equations.points[i, F.STATUS]
+        elif now > STICKS and abs(equations.measures[i, F.VT]) <= touching.SLOW * rest:
+            status = now
         if status >= 0:
             for column in range(F.GIVEN):
                 changed[n, column] = equations.points[i, column]
@@ -101,7 +86,7 @@ def _is_slow(scene: RigidScene, v: Numbers, rest: float) -> bool:
     slow = True
     for i in range(3 * scene.rows):
         way = scene.shapes.reach[i - 2 * scene.rows] if i >= 2 * scene.rows else 1.0
-        slow = slow and way * abs(v[i]) <= (SLOW * rest if scene.inverse_mass[i] > 0.0 else 0.0)
+        slow = slow and way * abs(v[i]) <= (touching.SLOW * rest if scene.inverse_mass[i] > 0.0 else 0.0)
     return slow
 
 
@@ -137,8 +122,8 @@ def touch(
     [m/s], the deepest overlap as a share of a size, and whether any point approaches there.
     """
     accelerate(place, v, acceleration, of.inverse_mass, of.damping, of.calls)
-    rest, least = rest_limits(of, acceleration, v)
-    count, deepest = find_touching(of, equations, room, place, v, within, least / NO_PUSH)
+    rest, least = touching.rest_limits(of, acceleration, v)
+    count, deepest = touching.find_touching(of, equations, room, place, v, within, least / touching.NO_PUSH)
     if count > len(equations.points):
         return TOO_MANY, 0, rest, deepest, False
     return DONE, count, rest, deepest, _any_approaches(of, equations, count, place, v, rest)
@@ -166,7 +151,7 @@ def _make_smooth(
     Returns how long it is, and how many trials there were.
     """
     for trial in range(_SHORTENINGS):
-        error = make_segment(scene, equations, count, q, v, h, tolerance, stages)
+        error = smooth_segment.make_segment(scene, equations, count, q, v, h, tolerance, stages)
         share = share_of_ways(scene, v, h, False, stages, allowed) if error <= 1.0 else 1.0
         if max(error, share) <= 1.0 or h <= _SHORTEST * left:
             return h, trial + 1
@@ -192,8 +177,8 @@ def advance_segment(
     short = h < _SHORT * limit
     for _ in range(2):
         if short:
-            make_stages(of, points, count, q, v, h, True, at)
-            evaluations += SHORT_LAST
+            smooth_segment.make_stages(of, points, count, q, v, h, True, at)
+            evaluations += smooth_segment.SHORT_LAST
             short = share_of_ways(of, v, h, True, at, allowed) <= 1.0
         if not short:
             h, segments = _make_smooth(of, points, count, q, v, h, left, tolerance, at, allowed)
@@ -223,21 +208,21 @@ def begin_motion(
     tolerance of speeds [m/s], and whether nothing moves or accelerates.
     """
     accelerate(q, v, at.acceleration, of.inverse_mass, of.damping, of.calls)
-    rest, least = rest_limits(of, at.acceleration, v)
-    count = take_closed(of, points, count, changed, q, v, rest)
+    rest, least = touching.rest_limits(of, at.acceleration, v)
+    count = touching.take_closed(of, points, count, changed, q, v, rest)
     slow, held = steady and _is_slow(of, v, rest), False
     if slow and of.joints[ROWS] == 0:  # joints hold bodies of the masses that they have
-        found = hold_evenly(of, points, count, changed, at.acceleration, rest, least, at.v, at.q)
+        found = touching.hold_evenly(of, points, count, changed, at.acceleration, rest, least, at.v, at.q)
         share = _BALANCED if found == SETTLED else _FITTED
         held = found != NOT_FOUND and _is_balanced(of, points, count, share, at.acceleration, least, at.q)
     if not held:
-        count, solved = hold_closed(of, points, count, changed, q, v, at.acceleration, rest, least)
+        count, solved = touching.hold_closed(of, points, count, changed, q, v, at.acceleration, rest, least)
         if not solved:
             stopped = stop_sliding(of, points, count, changed, q, v, rest)
             return STOPPED if stopped else NO_FORCES, 0, rest, False
         # A light body on top of a heavy one is held to more digits by its own mass.
         held = slow and _is_balanced(of, points, count, _BALANCED, at.acceleration, least, at.q)
-    closed = keep_pressing(points, count, least)
+    closed = touching.keep_pressing(points, count, least)
     if held:
         book_speeds(of, q, v, -1.0)
         for i in range(3 * of.rows):
@@ -249,7 +234,7 @@ def begin_motion(
         return DONE, closed, rest, True
     if closed > 0:
         project(of, points, closed, q, v)
-    begin_segment(of, points, closed, q, v, at)
+    smooth_segment.begin_segment(of, points, closed, q, v, at)
     return DONE, closed, rest, False
 
 
@@ -290,7 +275,7 @@ def stop_sliding(
     for i in range(count):
         before, after = vectors[FREE, 2 * i + 1], measures[i, VT]
         back = after if before < 0.0 else -after
-        stopped = stopped or (abs(before) > SLOW * rest and back >= -SLOW * rest)
+        stopped = stopped or (abs(before) > touching.SLOW * rest and back >= -touching.SLOW * rest)
         # Impulses act along the mean of the speeds before and after.
         points[i, STATUS], measures[i, VT] = SLIDES_ON, 0.5 * (before + after)
     book_contacts(scene, equations, count, q, v, v)

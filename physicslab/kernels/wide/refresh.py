@@ -14,16 +14,7 @@ from physicslab.kernels.float64x8 import (
     take_numbers,
     take_vectors,
 )
-from physicslab.kernels.geometry.contact import (
-    CACHE_TOLERANCE,
-    CACHE_TURN_TOLERANCE,
-    WIDE_TOLERANCE,
-    effective_masses,
-    forget_points,
-    note_pose,
-    slides_on,
-    touch,
-)
+from physicslab.kernels.geometry import contact
 from physicslab.kernels.geometry.outline import Way
 from physicslab.kernels.geometry.pair import CONTACT_MARGIN, SWEEP_THRESHOLD, WIDE_SHARE
 from physicslab.kernels.geometry.shapes import Shapes
@@ -109,9 +100,9 @@ def _refresh_boxes(slots: L.Slots, k: int, motion: Motion, tolerance: float) -> 
     _follow(data, at + L.TWO, x, y, nx, ny, turn_a, turn_b)
     size = take(data, at + L.SIZE)
     moved = (
-        (size_of(x) + size_of(y) > tolerance * CACHE_TOLERANCE * size)
-        | (size_of(turn_a) > tolerance * CACHE_TURN_TOLERANCE)
-        | (size_of(turn_b) > tolerance * CACHE_TURN_TOLERANCE)
+        (size_of(x) + size_of(y) > tolerance * contact.CACHE_TOLERANCE * size)
+        | (size_of(turn_a) > tolerance * contact.CACHE_TURN_TOLERANCE)
+        | (size_of(turn_b) > tolerance * contact.CACHE_TURN_TOLERANCE)
     )
     return mask_bits(moved)
 
@@ -131,16 +122,17 @@ def _find_again(
         (linear[b, 0] - linear[a, 0]) * h, (linear[b, 1] - linear[a, 1]) * h,
     )  # fmt: skip
     manifold.offset_x, manifold.offset_y = way.dx, way.dy
-    touch(manifold, one, two, way, motion, shapes, bounds, near.rotations, h, start, speculative_margin)
-    slides = slides_on(manifold, one, two, abs(way.ux) + abs(way.uy))
+    turned = near.rotations
+    contact.touch(manifold, one, two, way, motion, shapes, bounds, turned, h, start, speculative_margin)
+    slides = contact.slides_on(manifold, one, two, abs(way.ux) + abs(way.uy))
     if manifold.count == 0 or manifold.swept != 0 or slides:
         if manifold.count == 0:
-            forget_points(one, two)
+            contact.forget_points(one, two)
         manifold.found, manifold.slot = 0, -1
         empty_slot(slots, slot)
         return False
-    note_pose(manifold, way.dx, way.dy, motion.angle[a], motion.angle[b])
-    effective_masses(manifold, near.points, p, inverse)
+    contact.note_pose(manifold, way.dx, way.dy, motion.angle[a], motion.angle[b])
+    contact.effective_masses(manifold, near.points, p, inverse)
     fill_points(slots, slot, manifold, one, two)
     return True
 
@@ -156,7 +148,7 @@ def refresh(
     written to its records and added to the scalar pairs. The points of a pair with a box are followed; where
     it has moved, they are found again in the first substep, and it keeps its slot.
     """
-    tolerance = WIDE_TOLERANCE if first else _WITHIN_STEP
+    tolerance = contact.WIDE_TOLERANCE if first else _WITHIN_STEP
     for k in range(near.counts[DISC_BLOCKS + slots.kind]):
         lost, moved = _restless(slots, k, motion, h) if first else 0, 0
         if slots.kind == L.DISC:

@@ -1,8 +1,9 @@
 """A world's scene in pymunk, Box2D 2.3 and Box2D 3, by their Python bindings."""
 
 import math
+from abc import abstractmethod
 from collections.abc import Sequence
-from typing import Any, override
+from typing import Any, ClassVar, override
 
 from physicslab.components import Material, Shape, Spring
 from physicslab.lab.peers.peer import CannotBuild, Peer, PeerBody, PeerJoint
@@ -133,7 +134,70 @@ def _smaller_restitution(engine: Any) -> Any:
     return SmallerRestitution()
 
 
-class Box2DMirror(Peer):
+class _Box2D(Peer):
+    """A world in Box2D, whose versions have the same joints under other names.
+
+    Attributes
+    ----------
+    turn : float
+        The largest limit of a pin that it takes [rad].
+    """
+
+    turn: ClassVar[float] = STRONG
+
+    @abstractmethod
+    def join(self, kind: str, **numbers: Any) -> None:
+        """Add a joint of a kind, with numbers by the names of version 3."""
+
+    @abstractmethod
+    def tie(self, length: float, held: dict[str, Any]) -> None:
+        """Add a rope of a length [m] between what is held."""
+
+    @override
+    def add_spring(self, spring: Spring, ends: Sequence[Any], entity: int) -> None:
+        hertz, damping = self.frequency(entity, spring)
+        held = _held(ends, (tuple(spring.anchor_a), tuple(spring.anchor_b)), True)
+        self.join("distance", length=spring.rest_length, hertz=hertz, damping_ratio=damping, **held)
+
+    @override
+    def add_joint(self, joint: PeerJoint) -> None:
+        held = _held(joint.ends, joint.anchors, joint.collide)
+        bounds = {
+            "enable_limit": joint.is_limited, "enable_motor": joint.strongest > 0.0,
+            "motor_speed": joint.speed,
+        }  # fmt: skip
+        most = self.turn if joint.kind == "pin" else STRONG
+        lower, upper = max(joint.lower, -most), min(joint.upper, most)
+        strongest = min(joint.strongest, STRONG)
+        match joint.kind:
+            case "rod":
+                self.join("distance", length=joint.length, **held)
+            case "rope":
+                self.tie(joint.length, held)
+            case "pin":
+                reach = {"reference_angle": 0.0, "lower_angle": lower, "upper_angle": upper}
+                self.join("revolute", max_motor_torque=strongest, **reach, **held, **bounds)
+            case "slot":
+                if joint.angle is None:
+                    raise CannotBuild("no slot in which a body turns")
+                reach = {"lower_translation": lower, "upper_translation": upper}
+                self.join(
+                    "prismatic", local_axis_a=joint.axis, reference_angle=joint.angle,
+                    max_motor_force=strongest, **reach, **held, **bounds,
+                )  # fmt: skip
+            case "weld":
+                self.join("weld", reference_angle=joint.angle, **held)
+
+
+def _held(ends: Sequence[Any], anchors: tuple[Any, Any], collide: bool) -> dict[str, Any]:
+    """Return the bodies that a joint holds and where, by the names of version 3."""
+    return {
+        "body_a": ends[0], "body_b": ends[1], "local_anchor_a": anchors[0], "local_anchor_b": anchors[1],
+        "collide_connected": collide,
+    }  # fmt: skip
+
+
+class Box2DMirror(_Box2D):
     """A world in one of Box2D's, at its usual settings of 8 and 3 iterations."""
 
     title, module = "Box2D 2.3", "Box2D"
@@ -185,48 +249,15 @@ class Box2DMirror(Peer):
         body.massData = self.engine.b2MassData(mass=mass, I=inertia, center=(0.0, 0.0))
 
     @override
-    def add_spring(self, spring: Spring, ends: Sequence[Any], entity: int) -> None:
-        hertz, damping = self.frequency(entity, spring)
-        self.space.CreateDistanceJoint(
-            bodyA=ends[0], bodyB=ends[1], localAnchorA=tuple(spring.anchor_a),
-            localAnchorB=tuple(spring.anchor_b), length=spring.rest_length, frequencyHz=hertz,
-            dampingRatio=damping, collideConnected=True,
-        )  # fmt: skip
+    def join(self, kind: str, **numbers: Any) -> None:
+        """Add a joint; its numbers have other names here."""
+        names = {name: name.title().replace("_", "") for name in numbers} | {"hertz": "FrequencyHz"}
+        named = {names[name][0].lower() + names[name][1:]: number for name, number in numbers.items()}
+        getattr(self.space, f"Create{kind.title()}Joint")(**named)
 
     @override
-    def add_joint(self, joint: PeerJoint) -> None:
-        held = {
-            "bodyA": joint.ends[0], "bodyB": joint.ends[1], "localAnchorA": joint.anchors[0],
-            "localAnchorB": joint.anchors[1], "collideConnected": joint.collide,
-        }  # fmt: skip
-        bounds = {
-            "enableLimit": joint.is_limited, "enableMotor": joint.strongest > 0.0, "motorSpeed": joint.speed,
-        }  # fmt: skip
-        lower, upper = max(joint.lower, -STRONG), min(joint.upper, STRONG)
-        strongest = min(joint.strongest, STRONG)
-        match joint.kind:
-            case "rod":
-                self.space.CreateDistanceJoint(length=joint.length, frequencyHz=0.0, **held)
-            case "rope":
-                self.space.CreateRopeJoint(maxLength=joint.length, **held)
-            case "pin":
-                self.space.CreateRevoluteJoint(
-                    referenceAngle=0.0,
-                    lowerAngle=lower,
-                    upperAngle=upper,
-                    maxMotorTorque=strongest,
-                    **held,
-                    **bounds,
-                )
-            case "slot":
-                if joint.angle is None:
-                    raise CannotBuild("no slot in which a body turns")
-                self.space.CreatePrismaticJoint(
-                    localAxisA=joint.axis, referenceAngle=joint.angle, lowerTranslation=lower,
-                    upperTranslation=upper, maxMotorForce=strongest, **held, **bounds,
-                )  # fmt: skip
-            case "weld":
-                self.space.CreateWeldJoint(referenceAngle=joint.angle, **held)
+    def tie(self, length: float, held: dict[str, Any]) -> None:
+        self.join("rope", max_length=length, **held)
 
     @override
     def positions(self) -> list[tuple[float, float]]:
@@ -239,7 +270,7 @@ class Box2DMirror(Peer):
         return place.x, place.y, linear.x, linear.y, body.angle, body.angularVelocity
 
 
-class Box2D3Mirror(Peer):
+class Box2D3Mirror(_Box2D):
     """A world in one of Box2D 3's, each step in its usual 4 substeps, with its usual contact stiffness.
 
     Box2D takes the larger restitution of a pair, the world the smaller: they must all be alike.
@@ -247,6 +278,7 @@ class Box2D3Mirror(Peer):
 
     title, module = "Box2D 3", "pyb2d3"
     settings = (4,)
+    turn = 0.99 * math.pi
 
     @override
     def make_space(self) -> None:
@@ -293,49 +325,15 @@ class Box2D3Mirror(Peer):
         body.mass_data = data
 
     @override
-    def add_spring(self, spring: Spring, ends: Sequence[Any], entity: int) -> None:
-        hertz, damping = self.frequency(entity, spring)
-        self.space.create_distance_joint(
-            body_a=ends[0], body_b=ends[1], local_anchor_a=tuple(spring.anchor_a),
-            local_anchor_b=tuple(spring.anchor_b), length=spring.rest_length, enable_spring=True,
-            hertz=hertz, damping_ratio=damping, collide_connected=True,
-        )  # fmt: skip
+    def join(self, kind: str, **numbers: Any) -> None:
+        spring = {"enable_spring": True} if "hertz" in numbers else {}
+        getattr(self.space, f"create_{kind}_joint")(**numbers, **spring)
 
     @override
-    def add_joint(self, joint: PeerJoint) -> None:
-        held = {
-            "body_a": joint.ends[0], "body_b": joint.ends[1], "local_anchor_a": joint.anchors[0],
-            "local_anchor_b": joint.anchors[1], "collide_connected": joint.collide,
-        }  # fmt: skip
-        bounds = {
-            "enable_limit": joint.is_limited, "enable_motor": joint.strongest > 0.0,
-            "motor_speed": joint.speed,
-        }  # fmt: skip
-        strongest = min(joint.strongest, STRONG)
-        match joint.kind:
-            case "rod":
-                self.space.create_distance_joint(length=joint.length, **held)
-            case "rope":  # a spring without stiffness, which stops at its limit
-                self.space.create_distance_joint(
-                    length=joint.length, enable_spring=True, hertz=0.0, enable_limit=True, min_length=0.0,
-                    max_length=joint.length, **held,
-                )  # fmt: skip
-            case "pin":
-                turn = 0.99 * math.pi  # the largest limit that it takes
-                self.space.create_revolute_joint(
-                    lower_angle=max(joint.lower, -turn), upper_angle=min(joint.upper, turn),
-                    max_motor_torque=strongest, **held, **bounds,
-                )  # fmt: skip
-            case "slot":
-                if joint.angle is None:
-                    raise CannotBuild("no slot in which a body turns")
-                self.space.create_prismatic_joint(
-                    local_axis_a=joint.axis, reference_angle=joint.angle, max_motor_force=strongest,
-                    lower_translation=max(joint.lower, -STRONG), upper_translation=min(joint.upper, STRONG),
-                    **held, **bounds,
-                )  # fmt: skip
-            case "weld":
-                self.space.create_weld_joint(reference_angle=joint.angle, **held)
+    def tie(self, length: float, held: dict[str, Any]) -> None:
+        """Add a spring without stiffness, which stops at its limit."""
+        bounds = {"enable_limit": True, "min_length": 0.0, "max_length": length}
+        self.join("distance", length=length, hertz=0.0, **bounds, **held)
 
     @override
     def positions(self) -> list[tuple[float, float]]:

@@ -82,23 +82,22 @@ class PygameCanvas:
 
     def discs(self, centre: Points, radius: Numbers, angle: Numbers, look: Look) -> None:
         """Draw discs, each with a rim, and a wedge that shows its angle where it is not flat."""
-        paint_discs = _painter("paint_discs")
-        if paint_discs is None:
-            draw_discs(self.surface, centre, radius, angle, look, RIM)
-            return
-        fill, rim = self._packed(look.fill), self._packed(look.rim)
-        centre, radius, angle = _plain(centre), _plain(radius), _plain(angle)
-        paint_discs(self._pixels(), centre, radius, angle, fill, rim, look.finish, RIM, look.shadow)
+        self._bodies("paint_discs", draw_discs, (centre, radius, angle), look)
 
     def boxes(self, centre: Points, extent: Points, angle: Numbers, look: Look) -> None:
         """Draw boxes of the given widths and heights, each with a rim."""
-        paint_boxes = _painter("paint_boxes")
-        if paint_boxes is None:
-            draw_boxes(self.surface, centre, 0.5 * extent, angle, look, RIM)
+        self._bodies("paint_boxes", draw_boxes, (centre, 0.5 * extent, angle), look)
+
+    def _bodies(
+        self, name: str, draw: Callable[..., None], placed: tuple[NDArray[np.float64], ...], look: Look
+    ) -> None:
+        """Draw bodies by a loop of the rasteriser, or plainly while it is to be interpreted."""
+        paint = _painter(name)
+        if paint is None:
+            draw(self.surface, *placed, look, RIM)
             return
         fill, rim = self._packed(look.fill), self._packed(look.rim)
-        centre, half, angle = _plain(centre), _plain(0.5 * extent), _plain(angle)
-        paint_boxes(self._pixels(), centre, half, angle, fill, rim, look.finish, RIM, look.shadow)
+        paint(self._pixels(), *map(_plain, placed), fill, rim, look.finish, RIM, look.shadow)
 
     def rounded(self, shapes: Rounded, look: Look) -> None:
         """Draw rounded polygons, each with a rim."""

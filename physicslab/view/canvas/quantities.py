@@ -24,16 +24,20 @@ def quantity(value: float, unit: str) -> str:
     """
     if not math.isfinite(value):
         return f"not finite, {unit}"
+    return f"{_figures(value, 3)} {unit}"
+
+
+def _figures(value: float, behind: int, *, last: int = 5, most: int = 4, slack: float = 0.0) -> str:
+    """Return a number with so many figures ``behind`` its first one, from 10^``last`` on as a power of ten.
+
+    There are at most so many decimals; a number below a power of ten by a share of ``slack`` has that power.
+    """
     if value == 0.0:
-        return f"0 {unit}"
-    power = math.floor(math.log10(abs(value)))
-    if -3 <= power <= 5:
-        return f"{value:.{min(max(3 - power, 0), 4)}f} {unit}"
-    return f"{_scientific(value, 3)} {unit}"
-
-
-def _scientific(value: float, decimals: int) -> str:
-    digits, _, exponent = f"{value:.{decimals}e}".partition("e")
+        return "0"
+    power = math.floor(math.log10(abs(value) * (1.0 + slack)))
+    if -3 <= power <= last:
+        return f"{value:.{min(max(behind - power, 0), most)}f}"
+    digits, _, exponent = f"{value:.{behind}e}".partition("e")
     return f"{digits}·10{str(int(exponent)).translate(_RAISED)}"
 
 
@@ -75,12 +79,7 @@ def round_quantity(value: float, unit: str) -> str:
     >>> round_quantity(-9.6e-10, "J"), round_quantity(0.0, "m")
     ('-1·10⁻⁹ J', '0 m')
     """
-    if value == 0.0:
-        return f"0 {unit}"
-    power = math.floor(math.log10(abs(value) * (1.0 + 1e-12)))
-    if -3 <= power <= 5:
-        return f"{value:.{max(-power, 0)}f} {unit}"
-    return f"{_scientific(value, 0)} {unit}"
+    return f"{_figures(value, 0, slack=1e-12)} {unit}"
 
 
 def vector_quantity(value: Vector2, unit: str) -> str:
@@ -112,13 +111,7 @@ def percentage(share: float) -> str:
     """
     if not math.isfinite(share):
         return "not finite"
-    if share == 0.0:
-        return "0 %"
-    percent = 100.0 * share
-    power = math.floor(math.log10(abs(percent)))
-    if -3 <= power <= 4:
-        return f"{percent:.{min(max(2 - power, 0), 5)}f} %"
-    return f"{_scientific(percent, 2)} %"
+    return f"{_figures(100.0 * share, 2, last=4, most=5)} %"
 
 
 _NAMES = {"J/s": "W", "kg m/s^2": "N", "kg m^2/s^2": "N m", "N m/s": "W", "N s/kg": "m/s", "N/kg": "m/s^2"}

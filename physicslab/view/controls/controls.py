@@ -12,7 +12,6 @@ from physicslab.components import Strobe, Trail
 from physicslab.view.canvas.canvas import is_within
 from physicslab.view.controls import (
     actions,
-    controls,
     copies,
     dashboard_actions,
     file_actions,
@@ -263,11 +262,11 @@ CONTROLS: tuple[Control, ...] = (
             tip="Paste the copy at the cursor"),
     Control("Ctrl+A", "select all", "ctrl+a", actions.select_all, group="edit", tip="Select all bodies"),
     Control("N", "next body", "n", actions.select_next, group="edit", tip="Select the next body"),
-    Control("Arrows", "move the selection", "left", controls.ARROWS["left"], group="edit",
+    Control("Arrows", "move the selection", "left", ARROWS["left"], group="edit",
             tip="Move the selection by a pixel; without one, the cursor"),
-    Control("Enter", "edit, or click", "return", controls.enter, also=("enter",), group="edit",
+    Control("Enter", "edit, or click", "return", enter, also=("enter",), group="edit",
             tip="Edit the numbers of the selection; without one, click with the tool at the cursor"),
-    Control("Shift+Arrows", "turn the selection", "shift+left", controls.ARROWS["shift+left"],
+    Control("Shift+Arrows", "turn the selection", "shift+left", ARROWS["shift+left"],
             group="edit", tip="Turn the selection by a degree; by 15 degrees if angles snap"),
     Control("Q", "snap", "q", actions.toggle_snapping, group="edit",
             state=lambda _, window: window.snapping.on,
@@ -390,9 +389,9 @@ CONTROLS: tuple[Control, ...] = (
             also=("ctrl+[-]",), group="window", tip="All text smaller"),
     Control("F2", "other colours", "f2", actions.next_theme, group="window",
             tip="Colours: dark, light, high contrast, projector"),
-    Control("F6", "next panel", "f6", controls.walk, group="window",
+    Control("F6", "next panel", "f6", walk, group="window",
             tip="Go through the buttons and fields of the next panel with Tab and arrows; Esc goes back"),
-    Control("F10", "menus", "f10", controls.open_menu, group="window",
+    Control("F10", "menus", "f10", open_menu, group="window",
             tip="Open the menus: arrows, Enter, Esc. So does Alt alone"),
     Control("F7", "reset layout", "f7", actions.reset_layout, group="window",
             tip="Reset the layout of windows"),
@@ -417,7 +416,7 @@ KEYS: dict[str, Action] = {
     if key and control.action is not None
 }
 """The action of each key when it is pressed, by its name in SDL."""
-KEYS |= controls.ARROWS
+KEYS |= ARROWS
 KEYS |= {key: partial(actions.choose_tool, tool=tools.TOOLS[name]) for key, name in tools.DIGITS.items()}
 
 RELEASES: dict[str, Action] = {

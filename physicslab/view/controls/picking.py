@@ -18,11 +18,6 @@ from physicslab.view.picture.joints import gaps_to, joint_at
 from physicslab.view.picture.springs import ends_of
 from physicslab.world import World
 
-type Rows = NDArray[np.int64]
-"""Row numbers (n,)."""
-type Numbers = NDArray[np.float64]
-"""A float64 array, of rows (n,)."""
-
 _MAX_FROM_SPRING = 6.0
 """How near to the line between its ends a click on a spring need be [px]."""
 _MAX_DISTANCE = 7.0
@@ -56,10 +51,8 @@ def bodies_at(world: World, camera: Camera, pixel: tuple[float, float], reach: f
     hit: list[int] = entities[everything[near]].tolist()
     if hit:
         return hit
-    distance = _distance(world, everything, place)
-    if len(distance) and np.fmin.reduce(distance) <= _MAX_DISTANCE / camera.scale:
-        return [int(entities[everything[int(np.nanargmin(distance))]])]
-    return []
+    nearest = _nearest(world, everything, place, _MAX_DISTANCE / camera.scale)
+    return [] if nearest is None else [nearest]
 
 
 def spring_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
@@ -82,12 +75,16 @@ def link_at(world: World, camera: Camera, pixel: tuple[float, float]) -> int | N
 
 def centre_near(world: World, camera: Camera, pixel: tuple[float, float]) -> int | None:
     """Return the body whose middle is nearest to a place on the screen [px], if it is within a few pixels."""
-    place, rows = camera.to_world(pixel), body_rows(world)
-    everything = rows.all
-    distance = _distance(world, everything, place)
-    if not len(distance) or not np.fmin.reduce(distance) <= _MIDDLE / camera.scale:
+    return _nearest(world, body_rows(world).all, camera.to_world(pixel), _MIDDLE / camera.scale)
+
+
+def _nearest(world: World, rows: NDArray[np.int64], place: Vector2, reach: float) -> int | None:
+    """Return which of the bodies in rows (n,) has the nearest middle, if it is within a reach [m]."""
+    offset = world.table(Transform)["position"][rows] - (place.x, place.y)
+    distance = np.hypot(offset[:, 0], offset[:, 1])
+    if not len(distance) or not np.fmin.reduce(distance) <= reach:
         return None
-    return int(world.entity_index.entities[everything[int(np.nanargmin(distance))]])
+    return int(world.entity_index.entities[rows[int(np.nanargmin(distance))]])
 
 
 def directions_near(world: World, camera: Camera, place: Vector2) -> list[float]:
@@ -127,17 +124,4 @@ def point_at(one: Instrument, camera: Camera, pixel: tuple[float, float]) -> str
 def _line_gap(one: Instrument, camera: Camera, pixel: tuple[float, float]) -> float:
     """Return how far a place is from the lines of an instrument [px]; a note has none."""
     first, *others = (np.array(camera.to_screen(place)) for place in one.points.values())
-    gap, place = math.inf, np.array(pixel)
-    for other in others:
-        way = other - first
-        size = float(way @ way)
-        share = min(max(float((place - first) @ way) / size, 0.0), 1.0) if size > 0.0 else 0.0
-        gap = min(gap, float(np.hypot(*(place - first - share * way))))
-    return gap
-
-
-def _distance(world: World, rows: Rows, place: Vector2) -> Numbers:
-    """Return how far the middle of each body is [m]."""
-    offset = world.table(Transform)["position"][rows] - (place.x, place.y)
-    distance: Numbers = np.hypot(offset[:, 0], offset[:, 1])
-    return distance
+    return float(gaps_to(first, np.reshape(others, (-1, 2)), pixel).min(initial=math.inf))

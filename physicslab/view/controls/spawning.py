@@ -5,31 +5,11 @@ from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
 
+from physicslab import prefabs
 from physicslab.components import Pin, Transform
 from physicslab.ecs.vector import Vector2
-from physicslab.prefabs import (
-    BodyOptions,
-    binary,
-    box,
-    capsule,
-    circle,
-    container,
-    pendulum,
-    pile,
-    pyramid,
-    stack,
-)
+from physicslab.view.controls import measure
 from physicslab.view.controls.drawing import Drawn
-from physicslab.view.controls.measure import (
-    BRICK,
-    CORNERS,
-    DOMINO_SPACING,
-    DOMINOES,
-    HANGING,
-    MOST,
-    RADIUS,
-    WALL,
-)
 from physicslab.view.controls.polygons import build_polygon, build_ramp
 from physicslab.view.window.edits import Recipe
 from physicslab.world import World
@@ -56,19 +36,19 @@ def _size(length: float) -> float:
 
 def _check_number(number: float, things: str) -> None:
     """Refuse more bodies than one drag makes: a way across a view of kilometres has room for millions."""
-    if number > MOST:
-        raise ValueError(f"room for {number:,.0f} {things}; at most {MOST:,} are made")
+    if number > measure.MOST:
+        raise ValueError(f"room for {number:,.0f} {things}; at most {measure.MOST:,} are made")
 
 
 def _circle(world: World, places: Places, recipe: Recipe) -> None:
     radius = _size((places[1] - places[0]).magnitude)
-    circle(world, places[0], radius=radius, **recipe.body(math.pi * radius * radius))
+    prefabs.circle(world, places[0], radius=radius, **recipe.body(math.pi * radius * radius))
 
 
 def _box(world: World, places: Places, recipe: Recipe) -> None:
     way = places[1] - places[0]
     width, height = _size(abs(way.x)), _size(abs(way.y))
-    box(world, places[0] + way * 0.5, width=width, height=height, **recipe.body(width * height))
+    prefabs.box(world, places[0] + way * 0.5, width=width, height=height, **recipe.body(width * height))
 
 
 def _capsule(world: World, places: Places, recipe: Recipe) -> None:
@@ -77,7 +57,7 @@ def _capsule(world: World, places: Places, recipe: Recipe) -> None:
     length = way.magnitude - 2.0 * radius
     options = recipe.body(radius * (2.0 * length + math.pi * radius))
     options["angle"] = _along(way)
-    capsule(world, places[0] + way * 0.5, length=length, radius=radius, **options)
+    prefabs.capsule(world, places[0] + way * 0.5, length=length, radius=radius, **options)
 
 
 def _bar(world: World, places: Places, recipe: Recipe, *, static: bool) -> None:
@@ -88,7 +68,7 @@ def _bar(world: World, places: Places, recipe: Recipe, *, static: bool) -> None:
     options["angle"], options["static"] = _along(way), static
     if static and not recipe.material:
         options["friction"] = 0.6
-    box(world, places[0] + way * 0.5, width=length, height=height, **options)
+    prefabs.box(world, places[0] + way * 0.5, width=length, height=height, **options)
 
 
 def _along(way: Vector2) -> float:
@@ -100,7 +80,7 @@ def _pendulum(world: World, places: Places, recipe: Recipe) -> None:
     way = places[1] - places[0]
     length, angle = way.magnitude, math.remainder(way.angle + 0.5 * math.pi, 2.0 * math.pi)
     radius = min(_THICKNESS, 0.25 * length)
-    pendulum(world, places[0], length=length, angle=angle, radius=radius)
+    prefabs.pendulum(world, places[0], length=length, angle=angle, radius=radius)
 
 
 def _chain(world: World, places: Places, recipe: Recipe) -> None:
@@ -112,7 +92,7 @@ def _chain(world: World, places: Places, recipe: Recipe) -> None:
     options = recipe.body(radius * (2.0 * link.magnitude + math.pi * radius))
     before, held = None, places[0]
     for n in range(count):
-        one = capsule(
+        one = prefabs.capsule(
             world, places[0] + link * (n + 0.5), length=link.magnitude, radius=radius,
             **(options | {"angle": way.angle}),
         )  # fmt: skip
@@ -122,17 +102,17 @@ def _chain(world: World, places: Places, recipe: Recipe) -> None:
 
 
 CIRCLE = Drawn(
-    "circle", "Circle", "drag from its middle, or click", build=_circle, measure=RADIUS,
+    "circle", "Circle", "drag from its middle, or click", build=_circle, measure=measure.RADIUS,
     ways=tuple(Vector2(radius, 0.0) for radius in _RADII), per_size=Vector2(1.0, 0.0), by_recipe=True,
 )  # fmt: skip
 BOX = Drawn(
-    "box", "Box", "drag from corner to corner, or click", build=_box, measure=CORNERS,
+    "box", "Box", "drag from corner to corner, or click", build=_box, measure=measure.CORNERS,
     ways=tuple(Vector2(*size) for size in _SIZES), per_size=Vector2(2.0, 2.0), is_centred=True,
     by_recipe=True,
 )  # fmt: skip
 PENDULUM = Drawn(
-    "pendulum", "Pendulum", "drag from its pin to its bob, or click", build=_pendulum, measure=HANGING,
-    ways=(Vector2(0.0, -1.5).rotated(0.7),),
+    "pendulum", "Pendulum", "drag from its pin to its bob, or click", build=_pendulum,
+    measure=measure.HANGING, ways=(Vector2(0.0, -1.5).rotated(0.7),),
 )  # fmt: skip
 BODIES = (
     CIRCLE,
@@ -164,7 +144,7 @@ _JOINT = 1e-3
 """Left between the bricks of a row [m]."""
 
 
-def _still(recipe: Recipe, area: float) -> BodyOptions:
+def _still(recipe: Recipe, area: float) -> prefabs.BodyOptions:
     """Return the options of what is to stand: it does not bounce, unless its material was chosen."""
     options = recipe.body(area)
     if not recipe.material:
@@ -174,9 +154,9 @@ def _still(recipe: Recipe, area: float) -> BodyOptions:
 
 def _wall(world: World, places: Places, recipe: Recipe) -> None:
     """Make rows of bricks between two corners; in every second row they lie over the joints of the first."""
-    width, height = BRICK
+    width, height = measure.BRICK
     way = places[1] - places[0]
-    columns, rows = (round(number) for number in WALL.numbers(way))
+    columns, rows = (round(number) for number in measure.WALL.numbers(way))
     _check_number(columns * rows, "bricks")
     left, low = min(places[0].x, places[1].x), min(places[0].y, places[1].y)
     for row in range(rows):
@@ -185,47 +165,47 @@ def _wall(world: World, places: Places, recipe: Recipe) -> None:
         for begin, end in pairwise(edges):
             size = (end - begin) * width - _JOINT
             middle = Vector2(left + 0.5 * (begin + end) * width, low + (row + 0.5) * height)
-            box(world, middle, width=size, height=height, **_still(recipe, size * height))
+            prefabs.box(world, middle, width=size, height=height, **_still(recipe, size * height))
 
 
 def _dominoes(world: World, places: Places, recipe: Recipe) -> None:
     """Make dominoes that stand along a line, from the foot of the first one."""
     width, height = _DOMINO
     way = places[1] - places[0]
-    (count,) = DOMINOES.numbers(way)
+    (count,) = measure.DOMINOES.numbers(way)
     _check_number(count, "dominoes")
     along = way.normalized if way else Vector2(1.0, 0.0)
     up = Vector2(-along.y, along.x) if along.x >= 0.0 else Vector2(along.y, -along.x)
     for n in range(round(count)):
         options = _still(recipe, width * height)
         options["angle"] = up.angle - 0.5 * math.pi
-        middle = places[0] + along * (n * DOMINO_SPACING) + up * (0.5 * height)
-        box(world, middle, width=width, height=height, **options)
+        middle = places[0] + along * (n * measure.DOMINO_SPACING) + up * (0.5 * height)
+        prefabs.box(world, middle, width=width, height=height, **options)
 
 
 def _discs(world: World, places: Places, recipe: Recipe) -> None:
     for place in places:
-        circle(world, place, radius=recipe.grain, **recipe.body(math.pi * recipe.grain**2))
+        prefabs.circle(world, place, radius=recipe.grain, **recipe.body(math.pi * recipe.grain**2))
 
 
 def _stack(world: World, places: Places, recipe: Recipe) -> None:
-    stack(world, 5, places[0], width=0.5, height=0.4, mass=_DENSITY * 0.2)
+    prefabs.stack(world, 5, places[0], width=0.5, height=0.4, mass=_DENSITY * 0.2)
 
 
 def _pyramid(world: World, places: Places, recipe: Recipe) -> None:
-    pyramid(world, 5, places[0], size=0.4, gap=0.04, mass=_DENSITY * 0.16)
+    prefabs.pyramid(world, 5, places[0], size=0.4, gap=0.04, mass=_DENSITY * 0.16)
 
 
 def _heap(world: World, places: Places, recipe: Recipe) -> None:
-    pile(world, 24, places[0], columns=6, radius=0.12, density=_DENSITY)
+    prefabs.pile(world, 24, places[0], columns=6, radius=0.12, density=_DENSITY)
 
 
 def _pit(world: World, places: Places, recipe: Recipe) -> None:
-    container(world, places[0], width=2.4, height=1.2, thickness=0.15)
+    prefabs.container(world, places[0], width=2.4, height=1.2, thickness=0.15)
 
 
 def _binary(world: World, places: Places, recipe: Recipe) -> None:
-    for planet in binary(world, (20.0, 10.0), separation=1.6):
+    for planet in prefabs.binary(world, (20.0, 10.0), separation=1.6):
         transform = world.component(planet, Transform)
         transform.position = transform.position + places[0]
 
@@ -234,10 +214,11 @@ GROUPS = (
     Drawn("brush", "Pour discs", "hold the button and move; type a number for so many", 1, build=_discs,
           pours=True, by_recipe=True, prompts=("Hold to pour",)),
     Drawn("wall", "Wall", "drag from corner to corner, or click; type 10 x 6 for so many bricks",
-          build=_wall, measure=WALL, ways=(Vector2(6 * BRICK[0], 4 * BRICK[1]),), by_recipe=True,
-          stands=True),
+          build=_wall, measure=measure.WALL, ways=(Vector2(6 * measure.BRICK[0], 4 * measure.BRICK[1]),),
+          by_recipe=True, stands=True),
     Drawn("dominoes", "Dominoes", "drag along the floor, or click; type 40 for so many", build=_dominoes,
-          measure=DOMINOES, ways=(Vector2(9 * DOMINO_SPACING, 0.0),), by_recipe=True, stands=True),
+          measure=measure.DOMINOES, ways=(Vector2(9 * measure.DOMINO_SPACING, 0.0),), by_recipe=True,
+          stands=True),
     Drawn("stack", "Stack", "click at its foot", 1, build=_stack, stands=True),
     Drawn("pyramid", "Pyramid", "click at its foot", 1, build=_pyramid, stands=True),
     Drawn("heap", "Heap of discs", "click where it is to fall", 1, build=_heap),

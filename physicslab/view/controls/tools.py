@@ -169,7 +169,8 @@ DRAWING = {drawn.name: drawing_tool(drawn) for drawn in (*BODIES, *JOINTS, *GROU
 """A tool for each thing that is drawn."""
 HAND = DRAWING["circle"]
 """The tool at the start: that of a new window."""
-REMOVE = Tool("remove", "Erase", "Erase: click a body to remove it with its springs, or a spring.", remove)
+_ERASING = "Erase: click a body, a spring, a rope or a joint; what ends at a body goes with it."
+REMOVE = Tool("remove", "Erase", _ERASING, remove)
 _USAGE = "Select: click a body to see its numbers; drag to move or throw it."
 SELECT = Tool("select", "Select", _USAGE, select, end_select)
 PAN = Tool("pan", "Move view", "Move the view: drag anywhere.", pans=True, drags=True)

@@ -104,6 +104,8 @@ _SIDES: tuple[tuple[int, int], ...] = ((-1, 0), (1, 0), (0, -1), (0, 1))
 """Left, right, up and down on the screen."""
 _STEP = 4
 """How far an arrow makes way at a time [px]."""
+_GAP = 3
+"""How far it stays from what is in its way [px]."""
 
 
 def draw_edge_arrows(world: World, on: Drawing, room: Rect, taken: Sequence[Rect]) -> None:
@@ -191,18 +193,11 @@ def _free_place(rect: Rect, side: tuple[int, int], obstacles: Sequence[Rect], ro
     left, top, width, height = rect
     right, bottom = room[0] + room[2], room[1] + room[3]
     while left >= room[0] and top >= room[1] and left + width <= right and top + height <= bottom:
-        if not any(_meet((left, top, width, height), obstacle) for obstacle in obstacles):
+        around = left - _GAP, top - _GAP, width + 2 * _GAP, height + 2 * _GAP
+        if not any(overlap(around, obstacle) for obstacle in obstacles):
             return left, top, width, height
         left, top = left - _STEP * side[0], top - _STEP * side[1]
     return None
-
-
-def _meet(a: Rect, b: Rect) -> bool:
-    gap = 3
-    return (
-        a[0] < b[0] + b[2] + gap and b[0] < a[0] + a[2] + gap
-        and a[1] < b[1] + b[3] + gap and b[1] < a[1] + a[3] + gap
-    )  # fmt: skip
 
 
 def _draw_arrow(rect: Rect, aim: NDArray[np.float64], words: str, style: TextStyle, on: Drawing) -> None:

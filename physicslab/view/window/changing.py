@@ -3,31 +3,7 @@
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
 
-from physicslab.components import (
-    Charge,
-    Colour,
-    Drag,
-    Held,
-    Layer,
-    MadeOf,
-    Mass,
-    Material,
-    Medium,
-    Molecule,
-    Name,
-    Pin,
-    Rod,
-    Rope,
-    Shape,
-    Slot,
-    Spring,
-    Strobe,
-    Thrust,
-    Trail,
-    Transform,
-    Velocity,
-    Weld,
-)
+from physicslab.components import Held, MadeOf, Name, Pin, Rod, Rope, Shape, Slot, Spring, Transform, Weld
 from physicslab.components.vertices import regular
 from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue
@@ -125,13 +101,14 @@ def plain_kind(kind: type[Component]) -> str:
     >>> plain_kind(Spring), plain_kind(Transform)
     ('Spring', 'Place')
     """
-    words = _PLAIN.get(kind, in_words(kind.__name__))
+    words = _PLAIN.get(kind.__name__, in_words(kind.__name__))
     return words[:1].upper() + words[1:]
 
 
 def _meaning(kind: type[Component]) -> str:
     """Return what a component means; without plain words for it, the first sentence of its description."""
-    return _MEANINGS.get(kind) or (kind.__doc__ or "").strip().split("\n")[0].split(": ")[0].rstrip(".")
+    described = (kind.__doc__ or "").strip().split("\n")[0].split(": ")[0].rstrip(".")
+    return _MEANINGS.get(kind.__name__, described)
 
 
 def makers(world: World, kind: type[Component]) -> Iterator[tuple[str, Callable[[int], Component]]]:
@@ -177,31 +154,31 @@ def _above(world: World, entity: int) -> Vector2:
     return world.component(entity, Transform).position + Vector2(0.0, _ABOVE)
 
 
-_PLAIN: dict[type[Component], str] = {
-    Transform: "place", Velocity: "motion", Material: "surface", Drag: "air resistance",
+_PLAIN: dict[str, str] = {
+    "Transform": "place", "Velocity": "motion", "Material": "surface", "Drag": "air resistance",
 }  # fmt: skip
 """Plainer names of components."""
-_MEANINGS: dict[type[Component], str] = {
-    Transform: "its position and angle",
-    Velocity: "it can move; without it, it is fixed",
-    Mass: "forces move it; without mass, a moving body is infinitely heavy",
-    Shape: "it can touch others",
-    Material: "its restitution and friction",
-    Colour: "it has a colour of its own",
-    Layer: "it touches some bodies and not others",
-    Charge: "it acts on other charges, and electric and magnetic fields on it",
-    Drag: "a medium slows it, as air does",
-    Medium: "it is filled with a fluid: bodies pass through, float and are slowed",
-    Spring: "it hangs from a point that can be dragged",
-    Rod: "a rod keeps its distance from a point above it",
-    Rope: "a rope holds it below a point, which may be slack",
-    Pin: "it turns about a fixed point",
-    Slot: "it slides along a fixed rail",
-    Weld: "it is fixed to the world",
-    Thrust: "it is pushed and turned from within, as by a rocket or a motor",
-    Molecule: "near ones attract each other, and repel each other when they are too near",
-    Strobe: "it leaves pictures of its past positions",
-    Trail: "its past path is shown",
+_MEANINGS: dict[str, str] = {
+    "Transform": "its position and angle",
+    "Velocity": "it can move; without it, it is fixed",
+    "Mass": "forces move it; without mass, a moving body is infinitely heavy",
+    "Shape": "it can touch others",
+    "Material": "its restitution and friction",
+    "Colour": "it has a colour of its own",
+    "Layer": "it touches some bodies and not others",
+    "Charge": "it acts on other charges, and electric and magnetic fields on it",
+    "Drag": "a medium slows it, as air does",
+    "Medium": "it is filled with a fluid: bodies pass through, float and are slowed",
+    "Spring": "it hangs from a point that can be dragged",
+    "Rod": "a rod keeps its distance from a point above it",
+    "Rope": "a rope holds it below a point, which may be slack",
+    "Pin": "it turns about a fixed point",
+    "Slot": "it slides along a fixed rail",
+    "Weld": "it is fixed to the world",
+    "Thrust": "it is pushed and turned from within, as by a rocket or a motor",
+    "Molecule": "near ones attract each other, and repel each other when they are too near",
+    "Strobe": "it leaves pictures of its past positions",
+    "Trail": "its past path is shown",
 }
 """Meanings of components for their body."""
 

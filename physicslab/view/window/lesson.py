@@ -204,11 +204,7 @@ class OpenLesson:
 
     def open_to(self, run: Run) -> bool:
         """Whether a run may be made: all that is to be predicted of it is locked in."""
-        return all(one.name in self.given for one in self.predictions(run))
-
-    def predictions(self, run: Run) -> list[Question]:
-        """Return what is to be predicted of a run."""
-        return [one for one in self.lesson.questions("predict") if one.run and one.run.line == run.line]
+        return all(one.name in self.given for one in self.lesson.predictions(run))
 
     def made(self, run: Run | None, case: Case = AS_IT_IS) -> Trial | None:
         """Return a run that was made to its end."""

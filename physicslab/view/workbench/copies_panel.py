@@ -21,9 +21,12 @@ class CopiesPanel:
         self._numbers = NumberFields()
 
     def build(self, ui: Ui, world: World, window: Window) -> None:
-        """Build it at the left of the world."""
+        """Build it at the left of the world; it closes where nothing is selected any more."""
         copying = window.copying
         if copying is None:
+            return
+        if not window.selection.bodies(world):
+            window.do_next(lambda _, window: window.put("copying", None))
             return
         left, top, _, height = ui.room
         place = left + (0.5 * _WIDTH + 1.5) * ui.size, top + height - _FROM_BELOW * ui.size

@@ -6,20 +6,7 @@ from functools import partial
 import numpy as np
 from imgui_bundle import imgui
 
-from physicslab.components import (
-    Drag,
-    Held,
-    MadeOf,
-    Mass,
-    Material,
-    Name,
-    Shape,
-    Spring,
-    Strobe,
-    Trail,
-    Transform,
-    Velocity,
-)
+from physicslab.components import Held, MadeOf, Mass, Material, Name, Shape, Spring, Transform, Velocity
 from physicslab.components.made_of import SUBSTANCES
 from physicslab.components.material import friction_of_pair, restitution_of_pair
 from physicslab.components.name import why_no_id
@@ -27,7 +14,7 @@ from physicslab.diagnostics.free_body import LastStep
 from physicslab.diagnostics.joints import JointState, joint_states
 from physicslab.diagnostics.period import SpringState, gives_way, period_of, spring_state
 from physicslab.diagnostics.scales import scales_of
-from physicslab.ecs.component import Component
+from physicslab.ecs.component import COMPONENTS, Component
 from physicslab.ecs.fields import Field, InvalidValue
 from physicslab.ecs.vector import Vector2
 from physicslab.languages.sentence import Sentence
@@ -198,12 +185,12 @@ _SECOND_COLUMN = 0.52
 """The begin of the second column of boxes to tick, as a share of the panel's width."""
 _NAME = Field("id", "text", owner="Name", meaning="its name; without one it is called by its kind")
 _MADE_OF = Field("made of", "choice", meaning="sets density, restitution, friction and colour")
-_SWITCHES: tuple[tuple[type[Component], str, str], ...] = (
-    (Velocity, "Can move", "Without it the body is fixed"),
-    (Mass, "Has mass", "A body that can move and has none is infinitely heavy"),
-    (Drag, "Air resistance", "A force against its motion"),
-    (Trail, "Leaves a trail", "Shows where it was"),
-    (Strobe, "Strobe pictures", "Its outline every 0.1 s stays in the picture"),
+_SWITCHES = (
+    ("Velocity", "Can move", "Without it the body is fixed"),
+    ("Mass", "Has mass", "A body that can move and has none is infinitely heavy"),
+    ("Drag", "Air resistance", "A force against its motion"),
+    ("Trail", "Leaves a trail", "Shows where it was"),
+    ("Strobe", "Strobe pictures", "Its outline every 0.1 s stays in the picture"),
 )
 """Components that are one click away; all others are in a list."""
 
@@ -299,9 +286,10 @@ def _build_components(ui: Ui, world: World, window: Window) -> None:
         return
     ui.rule(0.2)
     width = imgui.get_content_region_avail().x
-    for n, (kind, words, tip) in enumerate(_SWITCHES):
+    for n, (name, words, tip) in enumerate(_SWITCHES):
         if n % 2 and _SECOND_COLUMN * width + ui.checkbox_width(words) <= width:
             imgui.same_line(_SECOND_COLUMN * width + imgui.get_style().window_padding.x)
+        kind = COMPONENTS[name]
         on = _all_have(world, chosen, kind)
         if ui.checkbox(words, on, tip):
             if on:

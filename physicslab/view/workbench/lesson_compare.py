@@ -6,7 +6,6 @@ from imgui_bundle import imgui
 
 from physicslab.ecs.quantity_text import InvalidText, evaluate, factor_of
 from physicslab.files.checks import SceneError
-from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence
 from physicslab.lessons.check import Row, row_of
 from physicslab.lessons.lesson import Compare
@@ -35,7 +34,7 @@ type Rows = dict[tuple[str, object, int], Row | str]
 
 def build_compare(ui: Ui, lesson: OpenLesson, part: Compare, rows_of: Rows) -> None:
     """Build theory beside the runs in a table, a row a case, and as a graph where there are several."""
-    own = language(lesson.lesson.language)
+    own = lesson.lesson.own
     ui.text(f"Theory: {formula(own, part.theory.text)}", wrapped=True)
     domain = condition(own, part.holds.text)
     holds = Sentence("It holds for {domain}", domain=domain)
@@ -86,12 +85,14 @@ def _build_row(
     ui: Ui, lesson: OpenLesson, part: Compare, number: int, case: Case,
     row: Row | str | None, predicted: float | None, width: float,
 ) -> None:  # fmt: skip
-    own = language(lesson.lesson.language)
+    own = lesson.lesson.own
     values = ", ".join(f"{name} = {formula(own, text)}" for name, text in case.values)
     imgui.table_next_row()
     imgui.table_next_column()
     what = values if case.values else Sentence("as run")
     words = Sentence("{n}. {case}", n=number, case=what)
+    if row is None:
+        imgui.align_text_to_frame_padding()  # a button stands beside it
     ui.text(Sentence("{case}: {note}", case=words, note=case.note) if case.note else words, wrapped=True)
     if row is None:
         button, tip = f"Run {part.name} {number}", f"Run it with {values}"
@@ -138,9 +139,8 @@ def _figure(value: float, unit: str) -> str:
 
 def _predicted(lesson: OpenLesson, part: Compare) -> float | None:
     """Return the number that was predicted of what is compared, in the unit of that, if there is one."""
-    for one in lesson.predictions(part.run):
-        same = one.answer is not None and one.answer.text == part.measured.text
-        if one.form == "number" and same and one.name in lesson.given:
+    for one in lesson.lesson.predicted(part.run, "number", part.measured.text):
+        if one.name in lesson.given:
             given = evaluate(str(lesson.given[one.name]["value"]), one.unit)
             return factor_of(one.unit) / factor_of(part.unit or "1") * given
     return None

@@ -8,7 +8,6 @@ from imgui_bundle import ImVec2, imgui
 
 from physicslab.ecs.quantity_text import InvalidText, evaluate, factor_of
 from physicslab.ecs.text import printable
-from physicslab.languages.language import language
 from physicslab.languages.sentence import Sentence, proper
 from physicslab.lessons.answers import Graded
 from physicslab.lessons.lesson import SURENESS, Compare, Explain, Lesson, Part, Prose, Question, Recall, Run
@@ -162,12 +161,12 @@ class LessonPanel:
         _title(ui, _PREDICT if answer is None else _LOCKED, "Predict" if answer is None else "You predicted")
         ui.text(part.prompt, wrapped=True)
         if answer is not None:
-            confidence = sureness_words(language(lesson.lesson.language)).get(str(answer.get("sure")), "")
+            confidence = sureness_words(lesson.lesson.own).get(str(answer.get("sure")), "")
             ui.text(f"{ui.said(_given_words(part, answer))} ({confidence})", wrapped=True)
             return
         found = self._build_room(ui, lesson, part, part.name)
-        ui.faint(language(lesson.lesson.language).say("How sure?"), wrapped=False)
-        words = sureness_words(language(lesson.lesson.language))
+        ui.faint(lesson.lesson.own.say("How sure?"), wrapped=False)
+        words = sureness_words(lesson.lesson.own)
         for n, word in enumerate(SURENESS):
             if n:
                 ui.same_line_if_room(words[word])
@@ -222,7 +221,7 @@ class LessonPanel:
         ui.text(written_unit(part.unit))
         if not draft.strip():
             return None
-        if language(lesson.lesson.language).say(".") == ",":
+        if lesson.lesson.own.say(".") == ",":
             draft = _DECIMAL_COMMA.sub(".", draft)  # 2,006 are no thousands there
         try:
             evaluate(draft, part.unit)
@@ -247,7 +246,7 @@ class LessonPanel:
             ui.text(f"It is: {graded.expected}", wrapped=True)
         shown = next((one.shown_by for one in part.replies if one.feedback == graded.feedback), None)
         if shown is not None and part.run is not None and kind != "recall" and not graded.right:
-            own = language(lesson.lesson.language)
+            own = lesson.lesson.own
             told = Sentence("{icon}  Show it: {what}", icon=RUN, what=formula(own, shown.text))
             words = told if shown.values else Sentence("{icon}  Show it again", icon=RUN)
             if ui.button(f"Show {name}", "A run that shows it", lesson_actions.begin_run, part.run, shown,
@@ -273,7 +272,7 @@ class LessonPanel:
     # ---- run -----------------------------------------------------------------------------------------------
 
     def _build_run(self, ui: Ui, window: Window, lesson: OpenLesson, part: Run) -> None:
-        own = language(lesson.lesson.language)
+        own = lesson.lesson.own
         if part.seconds is not None:
             text = part.seconds.text
             time = formula(own, text if any(map(str.isalpha, text)) else f"{text} s")
@@ -296,7 +295,7 @@ class LessonPanel:
         if shown is None:
             return
         _build_trial(ui, lesson, shown)
-        for question in lesson.predictions(part) if made is not None else ():
+        for question in lesson.lesson.predictions(part) if made is not None else ():
             if question.name in lesson.given:
                 self._build_verdict(ui, lesson, question, question.name, "predict")
                 ui.gap(0.2)
@@ -345,7 +344,7 @@ class LessonPanel:
     # ---- compare, explain ----------------------------------------------------------------------------------
 
     def _build_compare(self, ui: Ui, window: Window, lesson: OpenLesson, part: Compare) -> None:
-        compare = language(lesson.lesson.language).say("Compare")
+        compare = lesson.lesson.own.say("Compare")
         _title(ui, _COMPARE, f"{compare}: {part.quantity}")
         build_compare(ui, lesson, part, self._rows)
         own = ui.said("Your own values")
@@ -380,7 +379,7 @@ def _build_trial(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
         imgui.progress_bar(trial.share, ImVec2(-1.0, 0.5 * ui.size), "")
     ui.refusal(trial.failure)
     if trial.case.values:
-        own = language(lesson.lesson.language)
+        own = lesson.lesson.own
         values = (f"{name} = {formula(own, text)}" for name, text in trial.case.values)
         ui.faint(f"Shown: {', '.join(values)}")
     plot_run(ui, lesson, trial)

@@ -66,9 +66,9 @@ def plot_run(ui: Ui, lesson: OpenLesson, trial: Trial) -> None:
 
 def _has_more(lesson: OpenLesson, trial: Trial, curve: Curve) -> bool:
     """Whether a graph shows more than what is measured."""
-    drawn = [one.answer.text for one in lesson.predictions(trial.run) if one.form == "curve" and one.answer]
     theory = [one.measured.text for one in lesson.lesson.compares() if one.name in trial.theory]
-    return curve.along.text in (*drawn, *theory)
+    text = curve.along.text
+    return text in theory or bool(lesson.lesson.predicted(trial.run, "curve", text))
 
 
 def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve, usual: Curve | None) -> None:
@@ -81,21 +81,16 @@ def _plot_lines(ui: Ui, lesson: OpenLesson, trial: Trial, curve: Curve, usual: C
     x, y = np.array(curve.x), np.array(curve.y)
     theme = ui.theme
     if curve.against.text == "time":
-        for question in lesson.predictions(trial.run):
-            if (
-                question.answer is not None
-                and question.answer.text == curve.along.text
-                and question.form == "curve"
-            ):
-                drawn = np.array(lesson.given.get(question.name, {}).get("curve", []), dtype=float)
-                if len(drawn) > 1:
-                    predicted = np.interp(x, drawn[:, 0], drawn[:, 1] * factor_of(question.unit))
-                    shade = _look(ui, theme.notice, _SHADE)
-                    shade.fill_color, shade.fill_alpha = as_vector(theme.notice), _SHADE
-                    implot.plot_shaded("##gap", x, predicted, y, shade)
-                    values = drawn[:, 1] * factor_of(question.unit)
-                    own = _look(ui, theme.notice)
-                    implot.plot_line(ui.written(PREDICTED), drawn[:, 0].copy(), values, own)
+        for question in lesson.lesson.predicted(trial.run, "curve", curve.along.text):
+            drawn = np.array(lesson.given.get(question.name, {}).get("curve", []), dtype=float)
+            if len(drawn) > 1:
+                values = drawn[:, 1] * factor_of(question.unit)
+                predicted = np.interp(x, drawn[:, 0], values)
+                shade = _look(ui, theme.notice, _SHADE)
+                shade.fill_color, shade.fill_alpha = as_vector(theme.notice), _SHADE
+                implot.plot_shaded("##gap", x, predicted, y, shade)
+                own = _look(ui, theme.notice)
+                implot.plot_line(ui.written(PREDICTED), drawn[:, 0].copy(), values, own)
     implot.plot_line(ui.said(MEASURED), x, y, _look(ui, theme.accent))
     for compare in lesson.lesson.compares():
         if compare.name in trial.theory and compare.measured.text == curve.along.text:

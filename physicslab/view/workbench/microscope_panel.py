@@ -12,13 +12,7 @@ from physicslab.view.controls import impact_actions
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.impacts import FRAMES
 from physicslab.view.window.window import Action, Window
-from physicslab.view.workbench.collision_drawing import (
-    build_losses,
-    draw_bodies,
-    draw_contact,
-    draw_energies,
-    draw_momenta,
-)
+from physicslab.view.workbench import collision_drawing
 from physicslab.view.workbench.collision_words import AGREES, Step, body_name, law_steps, story
 from physicslab.world import World
 
@@ -56,12 +50,12 @@ def _build(ui: Ui, world: World, window: Window, wide: float) -> None:
     for sentence in told[:_FIRST]:
         ui.text(sentence, wrapped=True)
     _build_momentum(ui, seen)
-    build_losses(ui, seen)
+    collision_drawing.build_losses(ui, seen)
     ui.gap(0.3)
-    draw_bodies(ui, world, seen, (wide, min(_LOW * ui.size, _FLAT * wide)))
+    collision_drawing.draw_bodies(ui, world, seen, (wide, min(_LOW * ui.size, _FLAT * wide)))
     ui.faint("Thin and dashed: before. Thick: after (with ').")
     ui.faint("Kinetic energy", wrapped=False)
-    draw_energies(ui, world, seen, wide)
+    collision_drawing.draw_energies(ui, world, seen, wide)
     ui.gap(0.3)
     more = window.level == "Engineer" if microscope.shows_more is None else microscope.shows_more
     if ui.button("More", "Other observers, turning, friction, and the law with its numbers", on=more):
@@ -113,9 +107,9 @@ def _build_more(ui: Ui, world: World, window: Window, told: Sequence[str], wide:
     imgui.same_line(left + half + gap)
     both = seen.a.is_free and seen.b.is_free
     ui.faint("Momenta, tip to tail" if both else "Momentum and impulse", wrapped=False)
-    draw_contact(ui, world, seen, (half, high))
+    collision_drawing.draw_contact(ui, world, seen, (half, high))
     imgui.same_line(0.0, gap)
-    draw_momenta(ui, world, seen, (half, high))
+    collision_drawing.draw_momenta(ui, world, seen, (half, high))
     ui.gap(0.3)
     _build_law(ui, window)
 

@@ -164,16 +164,14 @@ def _build_number(ui: Ui, words: str, unit: str, size: float) -> None:
 
 
 def _build_menu(ui: Ui, world: World, window: Window, meter: MeterShown) -> None:
-    def choose(key: Key) -> None:
-        made = Meter(key[1], key[0], meter.corner)
-        window.do_next(dashboard_actions.change, meter.entity, made)
+    def change(key: Key, corner: str = meter.corner) -> None:
+        window.do_next(dashboard_actions.change, meter.entity, Meter(key[1], key[0], corner))
 
-    build_quantities(ui, world, window, [meter.key], choose)
+    build_quantities(ui, world, window, [meter.key], change)
     ui.rule()
     corner = build_corners(ui, meter.corner, CORNERS)
     if corner is not None:
-        made = Meter(meter.key[1], meter.key[0], corner)
-        window.do_next(dashboard_actions.change, meter.entity, made)
+        change(meter.key, corner)
     ui.item("Remove the meter", dashboard_actions.remove, meter.entity)
 
 
