@@ -16,6 +16,8 @@ LEGIBLE = 4.5
 """Least contrast of a body's rim to what is behind: its fill is lit on one side, and dim on the other."""
 FLUID = 0.5
 """Share of its colour in the rim of a medium: bodies within it are to stand out."""
+WITHIN_FLUID = 0.4
+"""Share of that rim in the inside of a medium."""
 RIM = 2.0
 """Width of the rims of bodies [px]."""
 COORDINATE = 0.5
@@ -171,6 +173,11 @@ class Theme:
     def fluid(self) -> Colour:
         """The rim of a medium."""
         return mixed(self.background, self.bodies[0], FLUID)
+
+    @property
+    def within_fluid(self) -> Colour:
+        """The inside of a medium: so pale that the rims of what floats stand out from it."""
+        return mixed(self.background, self.fluid, WITHIN_FLUID)
 
     @property
     def coordinate(self) -> Colour:

@@ -155,6 +155,29 @@ def test_mass_and_speed_are_typed_with_the_size_and_known_by_their_units(desk: D
     assert made(desk, Mass).mass == 3.0 and made(desk, Shape).radius == pytest.approx(0.5, abs=0.01)
 
 
+@pytest.mark.parametrize("tool", ["circle", "box"])
+@pytest.mark.parametrize("by_key", [True, False])
+def test_a_click_makes_a_body_of_the_last_size_and_of_the_mass_that_is_typed(
+    desk: Desk, tool: str, by_key: bool
+) -> None:
+    """It was refused: "a length is above 0"."""
+    desk.window.tool = tool
+    desk.move(0.0, 0.0)
+    desk.press(0.0, 0.0)
+    desk.frames()
+    for letter in "3 kg; 2 m/s":
+        pygame.event.post(pygame.Event(pygame.KEYDOWN, key=0, mod=0, unicode=letter, scancode=0))
+    desk.frames()
+    assert words(desk) == "3 kg; 2 m/s_"
+    if by_key:
+        desk.key("return")
+    desk.frames()
+    desk.release(0.0, 0.0)
+    desk.frames()
+    assert only(desk.world, Mass).mass == 3.0 and tuple(only(desk.world, Velocity).linear) == (2.0, 0.0)
+    assert only(desk.world, Transform).position == Vector2() and only(desk.world, Shape).reach > 0.1
+
+
 def test_numbers_that_cannot_be_meant_are_refused_and_not_left_out(desk: Desk) -> None:
     draw(desk, "circle", (0.0, 0.0), (0.5, 0.0), "0.4 m, 30 deg")
     assert (

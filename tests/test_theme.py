@@ -174,7 +174,8 @@ def test_rims_of_bodies_stand_out_all_around_from_sky_and_ground(theme: Theme) -
     for rim in (*theme.bodies, theme.kinematic, theme.held, *chosen):
         assert min(contrast(rim, sky) for sky in (theme.sky_top, theme.sky_bottom)) >= LEGIBLE
     for rim in (*theme.bodies, theme.kinematic, theme.held):
-        assert contrast(rim, theme.earth) >= LEGIBLE
+        assert min(contrast(rim, theme.earth), contrast(rim, theme.within_fluid)) >= LEGIBLE
+    assert min(contrast(theme.within_fluid, sky) for sky in (theme.sky_top, theme.sky_bottom)) >= 1.25
     canvas = PygameCanvas(pygame.Surface((60, 60), 0, 32))
     canvas.clear(theme.sky_top, theme.sky_bottom)
     for n, rim in enumerate(theme.bodies):

@@ -74,21 +74,23 @@ def positive_count(text: str) -> int:
     return _whole(text, 1)
 
 
-def _seconds(text: str, least: float, range_: str) -> float:
+def _read[N: (int, float)](kind: Callable[[str], N], text: str, otherwise: N) -> N:
+    """Return the number that a text says, or another where it says none."""
     try:
-        seconds = float(text)
+        return kind(text)
     except ValueError:
-        seconds = math.nan
+        return otherwise
+
+
+def _seconds(text: str, least: float, range_: str) -> float:
+    seconds = _read(float, text, math.nan)
     if not least <= seconds < math.inf:
         raise ArgumentTypeError(f"{text!r}: must be a finite number {range_} s")
     return seconds
 
 
 def _whole(text: str, least: int) -> int:
-    try:
-        number = int(text)
-    except ValueError:
-        number = least - 1
+    number = _read(int, text, least - 1)
     if not least <= number <= STEP_LIMIT:
         raise ArgumentTypeError(f"{text!r}: must be a whole number >= {least}, at most {STEP_LIMIT:g}")
     return number
@@ -96,10 +98,7 @@ def _whole(text: str, least: int) -> int:
 
 def rate(text: str) -> float:
     """Return how many pictures are shown a second."""
-    try:
-        number = float(text)
-    except ValueError:
-        number = 0.0
+    number = _read(float, text, 0.0)
     if not 0.0 < number <= _MAX_RATE:
         raise ArgumentTypeError(f"{text!r}: must be a number > 0, at most {_MAX_RATE:g} a second")
     return number

@@ -234,8 +234,6 @@ class ImpactReader:
         If there were more than the log holds, the oldest are missing.
         """
         self.follow(state)
-        contacts = state.contacts
-        first = max(min(self._read, contacts.logged), contacts.logged - len(contacts.log))
-        self._read = contacts.logged
-        new: NDArray[Any] = contacts.log[np.arange(first, contacts.logged) % len(contacts.log)]
+        new = state.contacts.impacts_since(self._read)
+        self._read = state.contacts.logged
         return new

@@ -181,9 +181,7 @@ def _undetermined(world: World) -> Iterator[ModelWarning]:
     after the other, is a choice: together where pairs approach together, in turn where one passes it on.
     Bodies welded together count as one.
     """
-    log, logged = world.contacts.log, world.contacts.logged
-    count = min(logged, len(log), _LATEST)
-    records = log[np.arange(logged - count, logged) % max(len(log), 1)]
+    records = world.contacts.impacts_since(world.contacts.logged - _LATEST)
     records = records[records["restitution"] > 0.0]
     records = records[np.argsort(records["time"], kind="stable")]
     apart = _SAME_TIME * world.simulation.dt + 1e-15 * abs(world.time)

@@ -192,9 +192,8 @@ def _fields_before(world: World) -> dict[str, NDArray[np.float64]]:
 
 def _impacts(world: World, entity: int) -> dict[str, Vector2]:
     """Return the impulses of the impacts of the last step on a body [N s], by the other body."""
-    contacts, found = world.contacts, dict[str, Vector2]()
-    first = max(world.checkpoint.counts[2], contacts.logged - len(contacts.log))
-    for record in contacts.log[np.arange(first, contacts.logged) % len(contacts.log)]:
+    found = dict[str, Vector2]()
+    for record in world.contacts.impacts_since(world.checkpoint.counts[2]):
         a, b = int(record["entity_a"]), int(record["entity_b"])
         if entity not in (a, b):
             continue

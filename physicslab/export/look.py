@@ -8,6 +8,7 @@ from physicslab.theme import DARK, LIGHT, Colour, Theme
 _OWN = {
     "background", "sky_top", "sky_bottom", "panel", "text", "faint", "accent", "grid", "axis", "static",
     "earth", "kinematic", "spring", "rod", "rope", "pin", "shine", "spark",
+    "fluid", "within_fluid",
 }  # fmt: skip
 """Colours that a page calls as the window does."""
 _LIGHTS = ("LIGHT_", "BRIGHT", "DIM", "SHADOW_", "WEDGE", "DEEP", "HATCH")
@@ -20,7 +21,7 @@ _SIZES = (
 def _colours(of: Theme) -> dict[str, str]:
     """Return the colours of a page by name, each as "#rrggbb"."""
     found: dict[str, Colour] = {name: getattr(of, name) for name in sorted(_OWN)}
-    found |= {"line": of.outline, "on-accent": of.background, "arrow": of.velocity, "fluid": of.fluid}
+    found |= {"line": of.outline, "on-accent": of.background, "arrow": of.velocity}
     found |= {f"b{n}": colour for n, colour in enumerate(of.bodies)}
     return {name: _written(colour) for name, colour in found.items()}
 

@@ -2,20 +2,7 @@
 
 from typing import Any
 
-from physicslab.components import (
-    Charge,
-    Gate,
-    Graph,
-    GraphLine,
-    Note,
-    Pulley,
-    Rod,
-    Rope,
-    Slot,
-    Spring,
-    Thrust,
-    Transform,
-)
+from physicslab import components
 from physicslab.components.graph import TIME
 from physicslab.components.quantities import QUANTITIES
 from physicslab.systems.gate import GateSystem
@@ -27,15 +14,16 @@ type Key = tuple[int | None, str]
 
 def places(world: World) -> dict[int, int]:
     """Return the place of each entity with a Transform among these, by its number."""
-    return {entity: number for number, entity in enumerate(world.batch(Transform).entities.tolist())}
+    entities = world.batch(components.Transform).entities.tolist()
+    return {entity: number for number, entity in enumerate(entities)}
 
 
 def springs_of(world: World) -> list[dict[str, Any]]:
     """Return every spring: its ends by place among the bodies, and its anchors; no B is a fixed point."""
-    place, batch = places(world), world.batch(Spring)
+    place, batch = places(world), world.batch(components.Spring)
     found = []
     for own in batch.entities.tolist():
-        spring = world.component(own, Spring)
+        spring = world.component(own, components.Spring)
         found.append(
             {
                 "a": place[spring.a or own], "b": None if spring.b is None else place.get(spring.b),
@@ -56,14 +44,14 @@ def joints_of(world: World) -> list[dict[str, Any]]:
         }
         anchors = {name: getattr(world.joints, name)[n].tolist() for name in ("anchor_a", "anchor_b")}
         one: dict[str, Any] = {"kind": joint.kind.__name__} | ends | anchors
-        if joint.kind in (Rod, Rope, Pulley, Slot):
+        if joint.kind in (components.Rod, components.Rope, components.Pulley, components.Slot):
             part = world.component(joint.entity, joint.kind)
-            if isinstance(part, Rope):
+            if isinstance(part, components.Rope):
                 one["length"] = part.length
-            elif isinstance(part, Pulley):
+            elif isinstance(part, components.Pulley):
                 one["anchor_a"], one["anchor_b"] = [*part.anchor_a], [*part.anchor_b]
                 one["wheels"] = [[*part.wheel_a], [*part.wheel_b]]
-            elif isinstance(part, Slot):
+            elif isinstance(part, components.Slot):
                 one |= {"axis": [*part.axis], "lower": part.lower, "upper": part.upper}
         found.append(one)
     return found
@@ -72,7 +60,7 @@ def joints_of(world: World) -> list[dict[str, Any]]:
 def fields_of(world: World) -> dict[str, Any] | None:
     """Return the fields that act on charges; ``None`` where none does."""
     physics = world.physics
-    if not len(world.batch(Charge)) or not (physics.magnetic_field or physics.electric_field):
+    if not len(world.batch(components.Charge)) or not (physics.magnetic_field or physics.electric_field):
         return None
     return {"magnetic": physics.magnetic_field, "electric": [*physics.electric_field]}
 
@@ -85,8 +73,8 @@ def thrusts_of(world: World) -> list[dict[str, Any]]:
             "body": place[entity], "force": [*part.force], "at": [*part.at], "turns": part.frame == "body",
             "frequency": part.frequency, "phase": part.phase,
         }
-        for entity in world.batch(Thrust, Transform).entities.tolist()
-        for part in (world.component(entity, Thrust),)
+        for entity in world.batch(components.Thrust, components.Transform).entities.tolist()
+        for part in (world.component(entity, components.Thrust),)
     ]  # fmt: skip
 
 
@@ -95,8 +83,8 @@ def notes_of(world: World) -> list[dict[str, Any]]:
     place = places(world)
     return [
         {"text": note.text, "at": [*note.place], "body": _of(place, note.place_body)}
-        for entity in world.batch(Note).entities.tolist()
-        for note in (world.component(entity, Note),)
+        for entity in world.batch(components.Note).entities.tolist()
+        for note in (world.component(entity, components.Note),)
     ]
 
 
@@ -115,8 +103,8 @@ def gates_of(world: World, start: float) -> list[dict[str, Any]]:
                 if one.gate == entity and one.time >= start
             ],
         }
-        for entity in sorted(world.batch(Gate).entities.tolist())
-        for gate in (world.component(entity, Gate),)
+        for entity in sorted(world.batch(components.Gate).entities.tolist())
+        for gate in (world.component(entity, components.Gate),)
     ]
 
 
@@ -127,13 +115,13 @@ def _of(place: dict[int, int], body: int | None) -> int | None:
 def graphs_of(world: World) -> list[tuple[Key | None, list[Key]]]:
     """Return of every graph what stands across, ``None`` for the time, and its lines."""
     lines: dict[int, list[Key]] = {}
-    for entity in sorted(world.batch(GraphLine).entities.tolist()):
-        line = world.component(entity, GraphLine)
+    for entity in sorted(world.batch(components.GraphLine).entities.tolist()):
+        line = world.component(entity, components.GraphLine)
         if line.graph is not None:
             lines.setdefault(line.graph, []).append((line.body, line.quantity))
     found: list[tuple[Key | None, list[Key]]] = []
-    for entity in sorted(world.batch(Graph).entities.tolist()):
-        graph = world.component(entity, Graph)
+    for entity in sorted(world.batch(components.Graph).entities.tolist()):
+        graph = world.component(entity, components.Graph)
         across = None if graph.across == TIME else (graph.body, graph.across)
         if entity in lines:
             found.append((across, lines[entity]))

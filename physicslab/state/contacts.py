@@ -121,9 +121,13 @@ class Contacts:
 
         At most ``LOGGED`` of them.
         """
-        if self.logged <= len(self.log):
-            return self.log[: self.logged].copy()
-        return np.roll(self.log, -self.logged % len(self.log))
+        return self.impacts_since(0)
+
+    def impacts_since(self, first: int) -> NDArray[Any]:
+        """Return the impacts from number ``first`` on that are still in the log: an array of IMPACT (n,)."""
+        number = np.arange(max(first, self.logged - len(self.log), 0), self.logged)
+        found: NDArray[Any] = self.log[number % len(self.log)]
+        return found
 
     @property
     def step_log(self) -> NDArray[Any]:
@@ -132,9 +136,8 @@ class Contacts:
 
     def lengthen_log(self, length: int) -> None:
         """Let the log hold so many impacts, no fewer than now; those in it stay."""
-        last = np.arange(max(0, self.logged - len(self.log)), self.logged)
-        log: NDArray[Any] = np.zeros(length, IMPACT)
-        log[last % length] = self.log[last % len(self.log)]
+        last, log = self.impacts, np.zeros(length, IMPACT)
+        log[np.arange(self.logged - len(last), self.logged) % length] = last
         self.log = log
 
     def make_room(self, capacity: int) -> None:

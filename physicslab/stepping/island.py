@@ -230,12 +230,8 @@ def rows_changed(numbers: Sequence[NDArray[Any]], left: bytes) -> NDArray[np.boo
 
 def join_logs(state: State, parts: list[State], logged: list[int]) -> None:
     """Add the impacts of all parts, from numbers ``logged`` on, to the log of the whole, in order of time."""
-    new = [
-        part.contacts.log[np.arange(first, part.contacts.logged) % len(part.contacts.log)]
-        for part, first in zip(parts, logged, strict=True)
-        if part.contacts.logged > first
-    ]
-    if new:
+    new = [part.contacts.impacts_since(first) for part, first in zip(parts, logged, strict=True)]
+    if any(map(len, new)):
         log, first = state.contacts.log, state.contacts.logged
         impacts = np.concatenate(new)
         impacts = impacts[np.argsort(impacts["time"], kind="stable")][-len(log) :]

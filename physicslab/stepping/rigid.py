@@ -335,7 +335,7 @@ class RigidRecords:
         ends = {
             (int(entities[a]), int(entities[b])): (a, b) for a, b, _ in self._pairs[self._chained].tolist()
         }
-        for impact in _last_impacts(state, made.impacts):
+        for impact in state.contacts.impacts_since(state.contacts.logged - made.impacts):
             if impact["wall"] < -1:
                 touched.add((*ends[int(impact["entity_a"]), int(impact["entity_b"])], int(impact["wall"])))
         listed = sorted([*map(tuple, self._pairs[~self._chained].tolist()), *touched])
@@ -349,7 +349,7 @@ class RigidRecords:
         if not impacts:
             return
         records, position = contacts.manifolds[: contacts.recorded], state.table(Transform)["position"]
-        log = _last_impacts(state, impacts)
+        log = contacts.impacts_since(contacts.logged - impacts)
         number = {key: p for p, key in enumerate(_pairs_of(records))}
         pairs = np.array([number[key] for key in _pairs_of(log)])
         np.add.at(records["impact_count"], pairs, 1)
@@ -365,14 +365,6 @@ class RigidRecords:
                 place = np.array((impact["x"], impact["y"]))
                 point["arm_ax"], point["arm_ay"] = place - position[record["a"]]
                 point["arm_bx"], point["arm_by"] = place - position[record["b"]]
-
-
-def _last_impacts(state: State, impacts: int) -> NDArray[Any]:
-    """Return the last records (n,) of the log."""
-    contacts = state.contacts
-    last = np.arange(max(0, contacts.logged - min(impacts, len(contacts.log))), contacts.logged)
-    log: NDArray[Any] = contacts.log[last % len(contacts.log)]
-    return log
 
 
 def _pairs_of(records: NDArray[Any]) -> Iterator[tuple[int, int, int]]:

@@ -37,7 +37,8 @@ function paintBodies() {
     body.rim = body.edges && !point ? body.edges[darkly.matches ? 0 : 1] : body.paint;
     body.star = run.space && point && body.mass > law.star * (all - body.mass);
     if (body.star) body.paint = body.rim = colours.spark;
-    const fill = ground ? colours.earth : body.colour || point ? body.paint : mixed(colours.background, body.paint, law.fill);
+    const fill = ground ? colours.earth : body.colour || point ? body.paint
+      : body.fluid ? colours.within_fluid : mixed(colours.background, body.paint, law.fill);
     const flat = body.fluid || body.star || point && !run.space, light = ground ? fill : mixed(fill, "#ffffff", law.bright);
     const shade = mixed(fill, "#000000", ground ? law.dim_deep : law.dim);
     body.light = flat ? [fill] : body.core.length > 1 ? [light, shade] : [0, 1, 2, 3, 4].map(k => mixed(light, shade, k * k / 16));

@@ -46,8 +46,10 @@ _START, _SPEED = complex(0.3, 0.1), complex(1.0, 0.5)
 _charged = partial(Problem, group="charges", good=1e-6, excellent=1e-11, ladder=Ladder(512))
 
 
-def _in_fields(name: str, title: str, mass: float, charge: float, laws: PhysicsConfig) -> Problem:
-    """Return the problem of one charge in uniform fields."""
+def _in_fields(name: str, title: str, electric_field: Vector2) -> Problem:
+    """Return the problem of one charge in uniform fields, the magnetic one of 0.8 T."""
+    mass, charge = 2.0, 3.0
+    laws = PhysicsConfig(gravity_mode="none", electric_field=electric_field, magnetic_field=0.8)
     rate, share = charge * laws.magnetic_field / mass, charge / mass
     pull = complex(*laws.electric_field) * share
 
@@ -119,19 +121,9 @@ FIELDS = (
     _driven(0.5, "A damped mass on a spring, driven at half its own frequency"),
     _driven(1.0, "The same at resonance"),
     _driven(2.0, "The same at twice its own frequency"),
+    _in_fields("cyclotron", "A charge that circles in a magnetic field, 19 times", Vector2()),
     _in_fields(
-        "cyclotron",
-        "A charge that circles in a magnetic field, 19 times",
-        2.0,
-        3.0,
-        PhysicsConfig(gravity_mode="none", magnetic_field=0.8),
-    ),
-    _in_fields(
-        "crossed_fields",
-        "A charge on a cycloid, in an electric and a magnetic field",
-        2.0,
-        3.0,
-        PhysicsConfig(gravity_mode="none", electric_field=Vector2(0.5, -1.0), magnetic_field=0.8),
+        "crossed_fields", "A charge on a cycloid, in an electric and a magnetic field", Vector2(0.5, -1.0)
     ),
     _charged(
         name="rutherford",

@@ -5,6 +5,7 @@ Ropes go taut and over wheels, a motor stalls.
 """
 
 import math
+from functools import partial
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from physicslab.components import Gear, Mass, Pin, Pulley, Rod, Rope, Shape, Slo
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import rotated
 from physicslab.lab.accuracy.figures import number
-from physicslab.lab.accuracy.problem import Ladder, Problem, state_error
+from physicslab.lab.accuracy.problem import Ladder, Problem, on_record, state_error
 from physicslab.lab.worlds import GRAVITY, empty_world, place, spawn_point, velocity
 from physicslab.world import World
 
@@ -57,12 +58,6 @@ def _compound_pendulum(simulation: SimulationConfig) -> World:
     bar = world.spawn(*parts, name="bar")
     world.spawn(Pin(b=bar, anchor_b=(0.0, half)))
     return world
-
-
-def _error(world: World, i: int) -> float:
-    moment = ("t=1", "t=10")[i]
-    x, y, vx, vy = (number("compound_pendulum", moment, key) for key in ("x", "y", "vx", "vy"))
-    return state_error(world, "bar", (x, y), (vx, vy), _RATE)
 
 
 def _chain(simulation: SimulationConfig, links: int, angle: float, *, bars: bool) -> World:
@@ -153,12 +148,26 @@ def _hoist_error(world: World, i: int, key: str, ratio: float) -> float:
     return max(errors)
 
 
+_mechanism = partial(
+    Problem, group="mechanism", times=_MOMENTS, good=1e-6, excellent=1e-10, ladder=Ladder(1024)
+)
+
+
+def _weights(name: str, title: str, key: str, ratio: float) -> Problem:
+    """Return the problem of two weights of which the second moves ``ratio`` times as fast."""
+    return _mechanism(
+        name=name, source="hoist", title=title, compared="y, vy of both weights after 1 and 10 s",
+        measure="largest error of x, y, vx, vy over the way [m]", good=1e-9, excellent=1e-13,
+        build=lambda simulation: _hoist(simulation, ratio), ladder=Ladder(64),
+        error=lambda world, i: _hoist_error(world, i, key, ratio),
+    )  # fmt: skip
+
+
 def _links(name: str, title: str, links: int, angle: float, excellent: float, *, bars: bool) -> Problem:
     """Return a chain that is let go at an angle from below, and of which the end is compared."""
     arm = (0.0, -0.5 if bars else 0.0)
-    return Problem(
-        name=name, title=title, group="mechanism", times=_MOMENTS, good=1e-6, excellent=excellent,
-        compared="x, y, vx, vy of its end after 1 and 10 s", ladder=Ladder(1024),
+    return _mechanism(
+        name=name, title=title, excellent=excellent, compared="x, y, vx, vy of its end after 1 and 10 s",
         measure="largest error of x, y and of vx, vy over sqrt(g / 1 m) [m]",
         build=lambda simulation: _chain(simulation, links, angle, bars=bars),
         error=lambda world, i: _tip_error(world, "end", arm, name, i, _SWING),
@@ -170,49 +179,34 @@ JOINED = (
         name="compound_pendulum", title="A bar on a pin, let go 143 degrees from below", group="pendulum",
         compared="x, y, vx, vy of its middle after 1 and 10 s", times=(1.0, 10.0),
         measure="largest error of x, y and of vx, vy over sqrt(m g l / I) [m]",
-        build=_compound_pendulum, error=_error, good=1e-6, excellent=1e-10, ladder=Ladder(512),
+        build=_compound_pendulum, good=1e-6, excellent=1e-10, ladder=Ladder(512),
+        error=on_record("compound_pendulum", moments=("t=1", "t=10"), body="bar", rate=_RATE),
     ),
     _links("rod_pendulum", "A mass on a rod, let go 143 degrees from below", 1, 2.5, 1e-10, bars=False),
     _links("double_pendulum", "Two masses on rods, let go at 57 degrees", 2, 1.0, 1e-9, bars=False),
     _links("double_bars", "Two bars on pins, let go at 57 degrees", 2, 1.0, 1e-9, bars=True),
     _links("ten_links", "Ten bars on pins, let go at 29 degrees", 10, 0.5, 1e-9, bars=True),
-    Problem(
-        name="four_bar", title="Two four-bar linkages in a row, which lie flat five times", group="mechanism",
-        compared="x, y, vx, vy of a crank's top, and that all are parallel, after 1 and 10 s", times=_MOMENTS,
+    _mechanism(
+        name="four_bar", title="Two four-bar linkages in a row, which lie flat five times",
+        compared="x, y, vx, vy of a crank's top, and that all are parallel, after 1 and 10 s",
         measure="largest error of x, y, angles and of vx, vy over sqrt(g / 1 m) [m]",
-        build=_four_bar, error=_four_bar_error, good=1e-5, excellent=1e-7, ladder=Ladder(1024),
+        build=_four_bar, error=_four_bar_error, good=1e-5, excellent=1e-7,
         note="Where a linkage lies flat it could go on in two ways (IFToMM benchmark A02).",
     ),
-    Problem(
+    _mechanism(
         name="slider_crank_driven", source="slider_crank", title="A slider-crank that a motor turns",
-        group="mechanism", compared="x, vx of the slider after 1 and 10 s", times=_MOMENTS,
+        compared="x, vx of the slider after 1 and 10 s", error=_driven_error, keeps=frozenset(),
         measure="largest error of x, y and of vx, vy over the spin [m]",
-        build=lambda simulation: _slider_crank(simulation, _DRIVE, driven=True), error=_driven_error,
-        good=1e-6, excellent=1e-10, ladder=Ladder(1024), keeps=frozenset(),
+        build=lambda simulation: _slider_crank(simulation, _DRIVE, driven=True),
     ),
-    Problem(
-        name="slider_crank", title="A slider-crank that goes by itself, from 4 rad/s on", group="mechanism",
-        compared="x, vx of the slider and the crank's angle after 1 and 10 s", times=_MOMENTS,
+    _mechanism(
+        name="slider_crank", title="A slider-crank that goes by itself, from 4 rad/s on", error=_free_error,
+        compared="x, vx of the slider and the crank's angle after 1 and 10 s",
         measure="largest error of x, y, the angle and of vx, vy over sqrt(g / 1 m) [m]",
-        build=lambda simulation: _slider_crank(simulation, 4.0, driven=False), error=_free_error,
-        good=1e-6, excellent=1e-10, ladder=Ladder(1024),
+        build=lambda simulation: _slider_crank(simulation, 4.0, driven=False),
     ),
-    Problem(
-        name="atwood_wheel", source="hoist", title="Two weights over a wheel that has inertia",
-        group="mechanism", compared="y, vy of both weights after 1 and 10 s", times=_MOMENTS,
-        measure="largest error of x, y, vx, vy over the way [m]",
-        build=lambda simulation: _hoist(simulation, -1.0),
-        error=lambda world, i: _hoist_error(world, i, "atwood", -1.0),
-        good=1e-9, excellent=1e-13, ladder=Ladder(64),
-    ),
-    Problem(
-        name="block_and_tackle", source="hoist", title="Two weights, of which one moves a quarter",
-        group="mechanism", compared="y, vy of both weights after 1 and 10 s", times=_MOMENTS,
-        measure="largest error of x, y, vx, vy over the way [m]",
-        build=lambda simulation: _hoist(simulation, -0.25),
-        error=lambda world, i: _hoist_error(world, i, "tackle", -0.25),
-        good=1e-9, excellent=1e-13, ladder=Ladder(64),
-    ),
+    _weights("atwood_wheel", "Two weights over a wheel that has inertia", "atwood", -1.0),
+    _weights("block_and_tackle", "Two weights, of which one moves a quarter", "tackle", -0.25),
 )  # fmt: skip
 """Every problem with joints."""
 
@@ -228,11 +222,6 @@ def _slack(simulation: SimulationConfig) -> World:
     bob = spawn_point(world, (0.6, 0.0), mass=2.0, name="bob")
     world.spawn(Rope(b=bob, length=1.0))
     return world
-
-
-def _slack_error(world: World, i: int) -> float:
-    x, y, vx, vy = (number("rope_taut", ("t=1", "t=3")[i], key) for key in ("x", "y", "vx", "vy"))
-    return state_error(world, "bob", (x, y), (vx, vy), math.sqrt(GRAVITY))
 
 
 def _slack_energy(t: float) -> float:
@@ -288,7 +277,8 @@ def _lifted_error(world: World, i: int) -> float:
 LIMITED = (
     Problem(
         name="rope_taut", title="A mass on a slack rope, which goes taut", group="rope", times=(1.0, 3.0),
-        compared="x, y, vx, vy after 1 and 3 s", build=_slack, error=_slack_error,
+        compared="x, y, vx, vy after 1 and 3 s", build=_slack,
+        error=on_record("rope_taut", moments=("t=1", "t=3"), body="bob", rate=math.sqrt(GRAVITY)),
         measure="largest error of x, y and of vx, vy over sqrt(g / l) [m]", good=1e-6, excellent=1e-10,
         ladder=_LADDER, exact_energy=_slack_energy, keeps=_NOTHING_KEPT, not_used=_NOT_USED, touches=True,
     ),

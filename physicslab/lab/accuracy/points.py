@@ -9,7 +9,7 @@ from physicslab.components import Drag, Spring
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import SimulationConfig
 from physicslab.lab.accuracy.figures import number, record
-from physicslab.lab.accuracy.problem import Ladder, Problem, state_error
+from physicslab.lab.accuracy.problem import Ladder, Problem, on_record, state_error
 from physicslab.lab.closed_forms import dragged_energy
 from physicslab.lab.worlds import GRAVITY, Surface, empty_world, place, spawn_point, velocity
 from physicslab.prefabs import box, circle
@@ -38,19 +38,6 @@ def _point(
         return world
 
     return build
-
-
-def _state(figures: tuple[str, ...], *axes: str, rate: float = 1.0) -> Callable[[World, int], float]:
-    """Return the error of place and velocity beside the figures of a problem, velocities over a rate [1/s].
-
-    ``axes`` are the keys of x, y, vx and vy; an empty one stands for 0.
-    """
-
-    def error(world: World, i: int) -> float:
-        x, y, vx, vy = (number(*figures, key) if key else 0.0 for key in axes)
-        return state_error(world, "body", (x, y), (vx, vy), rate)
-
-    return error
 
 
 # ---- thrown and dropped ------------------------------------------------------------------------------------
@@ -108,7 +95,7 @@ _BALLISTIC = (
         name="drag_linear", title="A throw in a viscous medium", compared="x, y, vx, vy after 3 s",
         measure="largest error [m], [m/s]", times=(3.0,), good=1e-6, excellent=1e-13, ladder=_damped_ladder,
         build=_point((0.0, 0.0), (10, 15), partial(Drag, linear=0.5), mass=2.0),
-        error=_state(("drag_linear",), "x", "y", "vx", "vy"),
+        error=on_record("drag_linear"),
         exact_energy=lambda t: 2.0 * dragged_energy(0.25, 10.0, 15.0, GRAVITY, t),
     ),
     _ballistic(
@@ -129,7 +116,7 @@ def _damped(name: str, title: str, damping: float) -> Problem:
         name=name, title=title, source=name, compared="x and v after 0.7 s",
         measure="largest error of x and of v / omega [m]", times=(0.7,), good=1e-6, excellent=1e-13,
         build=_point((1, 0), (0.0, 0.0), spring, gravity=None), ladder=Ladder(32, 9),
-        error=_state((name,), "x", "", "v", "", rate=_DAMPED_RATE),
+        error=on_record(name, axes=("x", "", "v", ""), rate=_DAMPED_RATE),
         exact_energy=partial(_damped_energy, 0.5 * damping),
     )  # fmt: skip
 
@@ -149,11 +136,6 @@ def _damped_energy(decay: float, t: float) -> float:
     return 0.5 * v * v + 50.0 * x * x
 
 
-def _elastic_pendulum_error(world: World, i: int) -> float:
-    moment = ("t=1", "t=5", "t=10")[i]
-    return _state(("elastic_pendulum", moment), "x", "y", "vx", "vy", rate=math.sqrt(40.0))(world, i)
-
-
 _OSCILLATORS = (
     _oscillator(
         name="harmonic", title="A mass on a spring, 100 1/4 periods",
@@ -162,7 +144,7 @@ _OSCILLATORS = (
         build=_point(
             (1, 0), (0.0, 0.0), partial(Spring, rest_length=0, stiffness=4.0 * math.pi**2), gravity=None
         ),
-        error=_state(("harmonic",), "x", "", "v", "", rate=2.0 * math.pi), ladder=Ladder(8192),
+        error=on_record("harmonic", axes=("x", "", "v", ""), rate=2.0 * math.pi), ladder=Ladder(8192),
         keeps={"energy", "angular_momentum"},
     ),
     _damped("damped_under", "A mass on a spring with weak damping (0.1 of critical)", 2.0),
@@ -173,7 +155,8 @@ _OSCILLATORS = (
         compared="x, y, vx, vy after 1, 5 and 10 s", times=(1.0, 5.0, 10.0),
         measure="largest error of x, y and of vx, vy over sqrt(k / m) [m]",
         build=_point((1.2, 0), (0.0, 0.0), partial(Spring, rest_length=1, stiffness=40)),
-        error=_elastic_pendulum_error, good=1e-5, excellent=1e-11, ladder=Ladder(512),
+        error=on_record("elastic_pendulum", moments=("t=1", "t=5", "t=10"), rate=math.sqrt(40.0)),
+        good=1e-5, excellent=1e-11, ladder=Ladder(512),
     ),
 )  # fmt: skip
 

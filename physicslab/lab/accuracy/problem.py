@@ -10,6 +10,7 @@ from physicslab.diagnostics.step_warnings import fastest_force
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators import Integrator
+from physicslab.lab.accuracy.figures import number
 from physicslab.lab.case import Case
 from physicslab.lab.worlds import place, velocity
 from physicslab.world import World
@@ -169,6 +170,23 @@ def state_error(
     off = place(world, name) - Vector2(*where)
     slip = (velocity(world, name) - Vector2(*how)) / rate
     return max(abs(off.x), abs(off.y), abs(slip.x), abs(slip.y))
+
+
+def on_record(
+    name: str, *, moments: Sequence[str] = (), axes: Sequence[str] = ("x", "y", "vx", "vy"),
+    body: str = "body", rate: float = 1.0,
+) -> Callable[[World, int], float]:  # fmt: skip
+    """Return the error of place and velocity beside the figures of a problem, velocities over a rate [1/s].
+
+    ``axes`` are the keys of x, y, vx and vy, below those of the ``moments`` if there are several; an empty
+    one stands for 0.
+    """
+
+    def error(world: World, i: int) -> float:
+        x, y, vx, vy = (number(name, *moments[i : i + 1], key) if key else 0.0 for key in axes)
+        return state_error(world, body, (x, y), (vx, vy), rate)
+
+    return error
 
 
 _TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15, 1e-16, 1e-17)

@@ -168,10 +168,10 @@ def hovered(world: World, drawn: Drawn, window: Window) -> int | None:
     return _grip(world, drawn, window, _at_cursor(world, drawn, window)).body
 
 
-def is_dragged(window: Window) -> bool:
-    """Whether the cursor is far from where the last point was put down, or numbers stand in its place."""
+def is_dragged(drawn: Drawn, window: Window) -> bool:
+    """Whether the cursor is far from where the last point was put down, or a size stands in its place."""
     (x, y), (at_x, at_y) = window.sketch.begin, window.pointer
-    return bool(window.sketch.typed) or math.hypot(x - at_x, y - at_y) > _CLICK
+    return bool(drawn.measure.sizes(window.sketch.typed)) or math.hypot(x - at_x, y - at_y) > _CLICK
 
 
 # ---- presses and releases ----------------------------------------------------------------------------------
@@ -186,6 +186,9 @@ def press(world: World, window: Window, drawn: Drawn, button: int = 0) -> None:
     if sketch.name != drawn.name:
         sketch.cancel()
         sketch.name, sketch.spot = drawn.name, window.target
+    if sketch.grips and drawn.ways and not is_dragged(drawn, window):  # Enter, while the button is held
+        release(world, window, drawn)
+        return
     if _is_refused(world, drawn, window):
         return
     if drawn.pours and sketch.held:
@@ -211,14 +214,15 @@ def release(world: World, window: Window, drawn: Drawn) -> None:
         _build(world, window, drawn, places, checked=True)
     elif drawn.is_open and is_stroke(sketch.stroke) and not sketch.typed:
         _finish(world, window, drawn, [Grip(None, place) for place in simplified(sketch.stroke)])
-    elif _is_refused(world, drawn, window):
-        sketch.cancel()
-    elif is_dragged(window):
-        _put(world, window, drawn, _at_cursor(world, drawn, window))
+    elif is_dragged(drawn, window):
+        if _is_refused(world, drawn, window):
+            sketch.cancel()
+        else:
+            _put(world, window, drawn, _at_cursor(world, drawn, window))
     elif drawn.ways:
-        places = _clicked(drawn, window, sketch.spot)
+        places, given = _clicked(drawn, window, sketch.spot), drawn.measure.given(sketch.typed)
         sketch.cancel()
-        _build(world, window, drawn, places)
+        _build(world, window, drawn, places, given=given)
 
 
 def _put(world: World, window: Window, drawn: Drawn, place: Vector2) -> None:
@@ -393,7 +397,7 @@ def ghost(world: World, drawn: Drawn, window: Window) -> tuple[Outlines, bool] |
         places = [grip.anchor for grip in sketch.grips]
         if is_stroke(sketch.stroke):
             places = simplified(sketch.stroke)
-        elif drawn.is_open or is_dragged(window):
+        elif drawn.is_open or is_dragged(drawn, window):
             cursor = _at_cursor(world, drawn, window)
             places = places if drawn.is_open and _is_closed(window, cursor) else [*places, cursor]
         else:
@@ -410,7 +414,7 @@ def ghost(world: World, drawn: Drawn, window: Window) -> tuple[Outlines, bool] |
 def lines(world: World, drawn: Drawn, window: Window) -> list[tuple[Vector2, Vector2]]:
     """Return the lines of a joint or a polygon in the making, to the point at the cursor [m]."""
     places = [grip.place(world) for grip in window.sketch.grips]
-    if drawn.hangs and not is_dragged(window):
+    if drawn.hangs and not is_dragged(drawn, window):
         return []
     if is_stroke(window.sketch.stroke):
         return list(pairwise(window.sketch.stroke))
@@ -431,10 +435,12 @@ def reading(world: World, drawn: Drawn, window: Window) -> str:
         return f"{sketch.typed}_   {count}" if sketch.typed else count
     if is_stroke(sketch.stroke):
         return "Let go to close it"
-    if (begun % 2 or drawn.is_open) and begun and drawn.points != 1 and is_dragged(window):
+    if (begun % 2 or drawn.is_open) and begun and drawn.points != 1 and is_dragged(drawn, window):
         if _is_refused(world, drawn, window, told=False):
             return f"{sketch.typed}_"
         first, place = sketch.grips[-1].place(world), _at_cursor(world, drawn, window)
         size = drawn.measure.said(place - first)
         return f"{sketch.typed}_   {size}" if sketch.typed else size
+    if begun and sketch.typed:
+        return f"{sketch.typed}_"
     return drawn.prompts[min(begun, len(drawn.prompts) - 1)] if drawn.prompts else ""

@@ -52,9 +52,7 @@ class Measure(NamedTuple):
         InvalidText
             If they are no such numbers.
         """
-        parts = [part for part in _BETWEEN.split(text) if _of_body(part, self.units) is None]
-        while parts and not parts[-1].strip():
-            del parts[-1]
+        parts = self.sizes(text)
         if len(parts) > len(self.units):
             raise InvalidText(f"it takes {len(self.units)} number{'s' * (len(self.units) > 1)} at most")
         numbers = list(self.numbers(way))
@@ -68,6 +66,13 @@ class Measure(NamedTuple):
         if "1" in self.units and math.prod(numbers) > MOST:
             raise InvalidText(f"at most {MOST:,} in all")
         return self.way(numbers, way)
+
+    def sizes(self, text: str) -> list[str]:
+        """Return the texts between separators but for a mass, a speed, and empty ones at the end."""
+        parts = [part for part in _BETWEEN.split(text) if _of_body(part, self.units) is None]
+        while parts and not parts[-1].strip():
+            del parts[-1]
+        return parts
 
     def _placed(self, part: str, first: int) -> tuple[int, float]:
         """Return which number a text is, and its value: by its unit, the angle may be typed alone.

@@ -131,7 +131,7 @@ class WindowEvents:
         self._follow_snapping(world)
         window.hand.move(window.target, window.now)
         window.hand.lead(world, window.coming(world), window.pace.paused)
-        if self._right is not None and window.sketch.grips and drawing.is_dragged(window):
+        if self._right is not None and window.sketch.grips and drawing.is_dragged(BOX, window):
             self._right = None
         if self._right is not None and window.now - self._right > _HELD:
             self._right = None

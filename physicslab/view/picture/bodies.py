@@ -71,7 +71,7 @@ def body_rows(world: World) -> BodyRows:
 def _palette(theme: Theme) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
     """Return rims and fills: of static, kinematic and held bodies, of media, then of all others in turn."""
     rims = (theme.kinematic, theme.held, theme.fluid, *theme.bodies)
-    fills = [theme.earth, *(theme.fill(rim) for rim in rims)]
+    fills = [theme.earth, *(theme.within_fluid if rim == theme.fluid else theme.fill(rim) for rim in rims)]
     return np.array((theme.static, *rims), np.uint8), np.array(fills, np.uint8)
 
 
