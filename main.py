@@ -20,9 +20,9 @@ def run() -> int:
         print(f"physicslab: needs Python 3.12 or later, and this is {found}: {REMEDY}", file=sys.stderr)
         return USAGE
     try:
-        from physicslab.cli import main
+        from physicslab.__main__ import run as run_command
 
-        return main()
+        return run_command()
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
         if package in ("", "physicslab"):

@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError
 
 import physicslab
 from physicslab.commands import FAILED, USAGE, CommandError, command, require_window
-from physicslab.commands.interrupts import interrupts_kept
+from physicslab.commands.interrupts import INTERRUPTED
 from physicslab.commands.parsers import WindowParser, completion, manual, parser_of
 from physicslab.commands.usage import COMMANDS
 from physicslab.ecs.text import printable, shortened, suggestion
@@ -16,7 +16,6 @@ from physicslab.scenes import SCENES
 
 _LINE_LIMIT = 4_000
 """Characters of what is said on stderr: names of files and values come from outside."""
-_INTERRUPTED = 130
 _PIPE_CLOSED = 141
 """The exit status that a shell reports for a program that a signal ended: 128 plus the signal's number."""
 
@@ -39,8 +38,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 errors="backslashreplace"
             )  # a terminal may not be able to show every letter of a title
     try:
-        with interrupts_kept():
-            status = _dispatch(list(sys.argv[1:] if argv is None else argv))
+        status = _dispatch(list(sys.argv[1:] if argv is None else argv))
         if sys.stdout is not None:
             sys.stdout.flush()
         return status
@@ -53,7 +51,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except ImportError as error:  # a package that is not there, or a setting with which none of this works
         return _complain(str(error), FAILED)
     except KeyboardInterrupt:
-        return _complain("interrupted", _INTERRUPTED)
+        return _complain("interrupted", INTERRUPTED)
     except BrokenPipeError:
         _let_go_of_stdout()
         return _PIPE_CLOSED

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+INTERRUPTED = 130
+"""The exit status that a shell reports for a program that Ctrl+C ended: 128 plus the signal's number."""
 _AGAIN_S = 0.05
 """Time [s] after which what was interrupted is back in Python that passes exceptions on."""
 
