@@ -151,3 +151,12 @@ def test_what_has_no_solution_has_none() -> None:
     touching = [(Transform((x, 0)), Velocity(), Mass(1), Shape.circle(1)) for x in (2, 9)]
     assert reference_solution(world_of(*touching, integrator="auto")) is None
     assert reference_solution(World()) is None
+
+
+def test_orbits_near_the_largest_numbers_are_moved_by_a_method_that_can() -> None:
+    world = world_of(
+        (Transform((0, 0)), Mass(1e300)), (Transform((1e150, 0)), Velocity((0, 1e10)), Mass(1)),
+        integrator="auto", gravity_mode="planet",
+    )  # fmt: skip
+    world.run(steps=3)
+    assert world.time == pytest.approx(3 * world.simulation.dt)

@@ -12,7 +12,7 @@ from physicslab.components import Gear, Mass, Pin, Rod, Slot, Transform, Velocit
 from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import find_warnings
-from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, GRAVITY, HAND, JOINTS, MOTORS, PX
 from physicslab.kernels.joints import layout
 from physicslab.stepping.flow import Flow
@@ -180,6 +180,24 @@ def test_rods_that_contradict_each_other_explode_nothing() -> None:
     assert "contradicts other joints" in find_warnings(world)[0].what
     assert measure_energy(world).kinetic < 1e3
     assert np.abs(world.table(Transform)["position"]).max() < 5.0
+
+
+@pytest.mark.parametrize(("spin", "dt"), [(3.0, 1 / 60), (3.0, 1.5), (300.0, 1 / 60), (3e-3, 100.0)])
+def test_a_linkage_turns_as_often_at_any_speed_and_step(spin: float, dt: float) -> None:
+    world, rods = World(simulation=SimulationConfig(dt=dt), physics=PhysicsConfig(gravity_mode="none")), []
+    for x in (0.0, 1.0):
+        rods.append(body(world, x, 1.0, vx=-spin, spin=spin))
+        world.spawn(Pin(b=rods[-1], anchor_a=(x, 0.0), anchor_b=(0.0, -1.0)))
+    top = body(world, 0.5, 1.0, vx=-spin)
+    for x, rod in zip((-0.5, 0.5), rods, strict=True):
+        world.spawn(Pin(rod, top, anchor_b=(x, 0.0)))
+    steps = math.ceil(60.0 / spin / dt)
+    world.run(steps=steps)
+    for rod in rods:
+        assert world.component(rod, Transform).angle == pytest.approx(spin * steps * dt, abs=1e-8), (
+            "20 times flat"
+        )
+    assert world.component(top, Transform).angle == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("dt", [1 / 60, 1.5])

@@ -24,10 +24,6 @@ SLOW = {
 }  # fmt: skip
 """Cases that take more than a second of processor time each."""
 SHORT = {
-    "piston_0.2_speed_rigid": "where discs overlap by nine tenths, soft contacts go on: one slips out",
-    "piston_0.2_speed_soft": "one slips past others in one step: 1 to 4 where the stiffness differs by 5 %",
-    "piston_2_speed_soft": "the same",
-    "piston_2_speed_rigid": "the same",
     "wedges_100_depth_soft": "they come 0.4 m in a substep",
 }  # fmt: skip
 """Cases that fall short so far, and why: they stand in the table of docs/stability.md."""

@@ -141,9 +141,9 @@ def test_a_stack_that_exploded_comes_to_rest() -> None:
 
 def test_energy_that_contacts_have_made_is_told_with_the_bodies_and_what_to_change() -> None:
     world = soft_world("none")
-    for _ in range(5):
+    for _ in range(12):
         circle(world, (0.0, 0.0), radius=0.1)
-    world.run(steps=10)
+    world.run(steps=20)
     (told,) = [advice for advice in find_warnings(world) if FROM_NOWHERE in advice.what]
     assert told.unit == "J"
     assert told.value == pytest.approx(measure_account(world).energy["contact"])

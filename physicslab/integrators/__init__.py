@@ -4,13 +4,13 @@ from physicslab.integrators.blanes_moan import BLANES_MOAN
 from physicslab.integrators.dop853 import DOP853
 from physicslab.integrators.exact import EXACT
 from physicslab.integrators.implicit_midpoint import IMPLICIT_MIDPOINT
-from physicslab.integrators.integrator import Integrator, StepTooSmall
+from physicslab.integrators.integrator import Exhausted, Integrator, StepTooSmall
 from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.integrators.rk4 import RK4
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.integrators.symplectic_euler import SYMPLECTIC_EULER
 
-__all__ = ["INTEGRATORS", "SPLIT_METHODS", "Integrator", "StepTooSmall"]
+__all__ = ["INTEGRATORS", "SPLIT_METHODS", "Exhausted", "Integrator", "StepTooSmall"]
 
 INTEGRATORS: dict[str, Integrator] = {
     method.name: method

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.ecs.sentences import sentence
-from physicslab.integrators.integrator import Integrator, StepTooSmall
+from physicslab.integrators.integrator import Exhausted, Integrator, StepTooSmall
 from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853, dop853_samples
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
@@ -37,7 +37,7 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     if made == NOT_FINITE:
         raise StepTooSmall(sentence("forces_not_finite", time=f"{state.time:.9g}"))
     if made == EXHAUSTED:
-        raise StepTooSmall(
+        raise Exhausted(
             sentence(
                 "evaluations_exhausted",
                 most=f"{most:,}", step=f"{state.simulation.dt:g}", tolerance=f"{tolerance:g}",
@@ -49,6 +49,8 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
 
 
 def _most(ode: OdeSystem) -> int:
+    if ode.most is not None:
+        return ode.most
     return _MAX_COSTLY if ode.interpreted or ode.joined else _MAX_EVALUATIONS
 
 

@@ -68,6 +68,10 @@ class StepTooSmall(ArithmeticError):
     """No step is short enough for the required accuracy: the motion is singular."""
 
 
+class Exhausted(StepTooSmall):
+    """It takes more evaluations than it may."""
+
+
 @dataclass(frozen=True, slots=True)
 class Integrator:
     """One method: how it advances, and its properties as data for reports.

@@ -108,9 +108,10 @@ class Log(NamedTuple):
 
 
 class Softness(NamedTuple):
-    """The contact spring: the share of overlap corrected in a substep, stiffness, fastest push [m/s].
+    """The contact spring: the share of overlap corrected in a substep, stiffness, largest push.
 
-    Stiffness is that of a spring over a substep h with one sweep: effective masses over h^2.
+    Stiffness is that of a spring over a substep h with one sweep: effective masses over h^2. Deep overlap is
+    corrected by at most ``max_push`` of a body's reach in a substep.
     """
 
     push: float

@@ -103,4 +103,4 @@ def two_bodies(state: State) -> TwoBodies | None:
     form = TwoBodies(pair, moves, share, physics.G * pulls, sentence("attraction_of_two"))
     position, velocity = form.motion(state)
     (x, y), (u, v) = (position[1] - position[0]).tolist(), (velocity[1] - velocity[0]).tolist()
-    return form if (x * v - y * u) ** 2 > _HEAD_ON * form.mu * math.hypot(x, y) else None
+    return form if abs(x * v - y * u) > math.sqrt(_HEAD_ON * form.mu) * math.sqrt(math.hypot(x, y)) else None

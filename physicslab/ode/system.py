@@ -76,6 +76,8 @@ class OdeSystem:
         The numbers that masses and packed forces were made of; ``None`` where a force does not tell.
     tolerance : float
         Relative error a step for methods that choose their steps.
+    most : int, optional
+        The most evaluations of a flow by one of these, where it is not to be their own limit.
     forces : tuple of ForceSystem
         The forces that act.
     interpreted : bool
@@ -124,6 +126,7 @@ class OdeSystem:
         self.near: tuple[NDArray[np.int64], int] | None = None
         self.form: tuple[Any, Any] | None = None
         self.tolerance = state.simulation.tolerance
+        self.most: int | None = None
         self._error: BaseException | None = None
         self._clock = np.zeros(1)
         self._settings = self._look(state)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from physicslab.integrators import StepTooSmall
+from physicslab.integrators import Exhausted, StepTooSmall
 from physicslab.ode.system import OdeSystem, steady_turn
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.samples import Samples
@@ -25,9 +25,11 @@ from physicslab.systems.schedule import Schedule
 _PROJECTED = 16
 """Steps after which what joints hold together is put there again, by a method that chooses its steps: it is
 apart by no more than the method errs by then."""
-_LONGEST = 0.27
-"""The longest span [s] after which that is done, be steps longer: linkages that lie flat on their way would
-else go on wrongly."""
+_SPAN = 256
+"""The most evaluations after which that is done: some two radians of turning, whatever the unit of time.
+Linkages that lie flat on their way would else go on wrongly."""
+_FINEST = 1024
+"""Parts of a step, of which as many are taken together as such a span can have."""
 
 
 class NotSmooth(ArithmeticError):
@@ -65,28 +67,34 @@ class Flow(Stepper):
         return self._method.chooses_steps and not self._joined
 
     def advance(self, state: State, h: float, steps: int) -> Advance:
-        """Make all of the steps in one compiled loop."""
+        """Make all of the steps in one compiled loop; where joints are put together, in several."""
         exact = self._method.chooses_steps or math.isinf(self._method.order)
         parts = 1 if exact else divisions(state, h)
-        if self._joined and self._method.chooses_steps:
-            parts = max(1, math.ceil(h / _LONGEST))
-        together = parts * steps
-        if self._joined:
-            spans = int(_LONGEST * parts / h) if self._method.chooses_steps else 1
-            together = max(1, min(_PROJECTED, spans))
-        start = state.time
+        begun, start = state.force_evaluations, state.time
+        adaptive = self._joined and self._method.chooses_steps
+        whole = _FINEST if adaptive else 1  # in a part
+        longest = _PROJECTED * whole if adaptive else 1 if self._joined else parts * steps
+        made, span = 0, longest
         try:
-            for made in range(0, parts * steps, together):
-                state.time = start + made * h / parts
-                count = min(together, parts * steps - made)
+            while made < parts * steps * whole:
+                state.time = start + made * h / (parts * whole)
+                span = min(span, parts * steps * whole - made)
+                self._ode.most = _SPAN if adaptive and span > 1 else None
                 try:
-                    self._flow(state, h / parts, count)
+                    self._flow(state, h / parts * span / whole, max(1, span // whole))
+                except Exhausted:
+                    span //= 2
+                    continue
                 except NotSmooth:
-                    if made and parts == 1:
-                        return Advance(made)  # the next call begins where it fails
+                    if made and parts == 1 and made % whole == 0:
+                        return Advance(made // whole)  # the next call begins where it fails
                     raise
+                made += span
                 if state.samples is not None:
-                    state.samples.take(state, start + (made + count) * h / parts)
+                    state.samples.take(state, start + made * h / (parts * whole))
+                if state.force_evaluations - begun < _SPAN // 4:
+                    span = min(2 * span, longest)
+                begun = state.force_evaluations
         finally:
             state.time = start
         check_finite(state, state.time + h * steps)
@@ -110,22 +118,25 @@ class Flow(Stepper):
 
         return make
 
-    def _flow(self, state: State, h: float, steps: int) -> None:
+    def _flow(self, state: State, span: float, steps: int) -> None:
         method, ode = self._method, self._ode
         ode.gather(state)
         put_together(state, self._schedule.forces, ode)
         parts = 1 if method.chooses_steps else self._plan.substeps
-        span, count = (h * steps, 1) if method.chooses_steps else (h / parts, parts * steps)
+        count = 1 if method.chooses_steps else parts * steps
         start = time.perf_counter_ns()
         if state.samples is not None:
-            self._sample(state, state.samples, h * steps)
+            self._sample(state, state.samples, span)
         try:
-            made = method.flow(state, ode, span, count)
+            made = method.flow(state, ode, span / count, count)
         except StepTooSmall as error:
+            if isinstance(error, Exhausted) and ode.most is not None:
+                ode.undo(state)
+                raise
             if (ode.undo(state) or self._joined) and state.simulation.integrator == "auto":
                 raise NotSmooth(str(error)) from error
             raise changes_fast(state, self._schedule.forces, error) from error
-        ode.scatter(state, h * steps)
+        ode.scatter(state, span)
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - start)
         for system in ode.forces:
             self._schedule.note(system.name, made, 0)  # their time is part of the loop's

@@ -20,13 +20,14 @@ class ResolveSystem(System):
         Stiffness of the contact spring, in effective masses over the substep squared. With n sweeps over the
         contacts it is n^1.25 times as much: what rests sinks by its load h^2 / (m push stiffness n^1.25).
     max_push : float
-        Largest speed [m/s] at which deep overlap is corrected.
+        Largest way by which a body is moved in a substep where overlap is deep, as a share of its reach from
+        its centre.
     """
 
     engine = True
     kernels = (soft.advance,)
 
-    def __init__(self, push: float = 0.17, stiffness: float = 7.0, max_push: float = 1.5) -> None:
+    def __init__(self, push: float = 0.17, stiffness: float = 7.0, max_push: float = 0.02) -> None:
         self.push, self.stiffness, self.max_push = push, stiffness, max_push
 
     def fresh(self) -> "ResolveSystem":
@@ -46,7 +47,7 @@ class ResolveSystem(System):
         as much stiffer: so bodies sink as deep, and are not thrown up by what longer substeps have left.
         """
         finer = max(1, state.substeps // state.simulation.substeps)
-        return self.push / finer, self.stiffness * finer, self.max_push
+        return self.push / finer, self.stiffness * finer, self.max_push / finer
 
     @at(Stage.IMPACT)
     def resolve_impacts(self, state: State, h: float) -> None:

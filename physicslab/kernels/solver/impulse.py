@@ -36,6 +36,8 @@ _STIFFENED = 8
 """Sweeps up to which contacts become stiffer faster than sweeps become more."""
 _CONTACT_SWEEPS = 512
 """Contacts times sweeps of a substep, where the number of sweeps is not set."""
+_GIVE = 0.5
+"""Share of an impulse beyond that of all forces that a deep overlap gives up in a sweep."""
 HEAVY_RATIO = 10.0
 """Ratio of masses from which the lighter body of a pair may have to carry many times its weight."""
 MAX_SUBSTEP_FACTOR = 16
@@ -91,7 +93,7 @@ def _soft_constraint(softness: Softness, acting: Acting, h: float, sweeps: int) 
     few = min(sweeps, _STIFFENED)
     stiffness = softness.stiffness * sweeps * math.sqrt(math.sqrt(few))
     return SoftConstraint(
-        1.0 / h, softness.push / h, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), force_cap
+        1.0 / h, softness.push / h, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), force_cap, _GIVE
     )
 
 
@@ -170,7 +172,7 @@ def relax(
     crowd = near.counts[WIDE_COUNT] > 0
     if crowd:
         take_means(near, motion)
-    rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0), h
+    rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0), h
     joined, loose, stiff = len(joints.impulse) > 0, False, JointSoftness(h, 0.0, 1.0)
     if joined:
         begin_joints(joints, motion, near.rotations, inverse, acting, 0.0)

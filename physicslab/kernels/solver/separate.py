@@ -164,9 +164,12 @@ def _book(near: Near, motion: Motion, before: Vectors, inverse_mass: Numbers, ac
 
 @allocating
 def separate(
-    contacts: Contacts, near: Near, motion: Motion, inverse_mass: Numbers, acting: Acting, farthest: float
-) -> None:
-    """Move bodies apart where :func:`any_deep`, six tenths of the way and by at most ``farthest`` [m].
+    contacts: Contacts, near: Near, motion: Motion, reach: Numbers, inverse_mass: Numbers, acting: Acting,
+    max_push: float,
+) -> None:  # fmt: skip
+    """Move bodies apart where :func:`any_deep`, six tenths of the way.
+
+    Each is moved by at most ``max_push`` of its ``reach`` [m].
 
     Only positions change: however many bodies are on one spot, separating them gives them no speed. A body
     beyond the world's bounds, or within a fixed body, is put back at once, so that the heaviest body cannot
@@ -181,6 +184,7 @@ def separate(
     for i in range(len(inverse_mass)):
         x, y = position[i, 0] - before[i, 0], position[i, 1] - before[i, 1]
         way = math.sqrt(x * x + y * y)
+        farthest = max_push * reach[i]
         if way > farthest:
             position[i, 0] = before[i, 0] + x * farthest / way
             position[i, 1] = before[i, 1] + y * farthest / way

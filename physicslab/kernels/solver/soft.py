@@ -280,7 +280,7 @@ def _advance(
             elif what == IMPACTS:
                 moment = plan.time + done * plan.dt + (substep + course.middle) * h
                 came = resolve_all_impacts(
-                    near, motion, shapes, materials, inverse, acting, Log(impacts, moment, account), span,
+                    near, motion, shapes, inverse, acting, Log(impacts, moment, account), span,
                     course.start * span, course.end * span,
                 )  # fmt: skip
                 bounced += came
@@ -315,7 +315,7 @@ def _advance(
                     for i in range(len(angle)):
                         packed.state[2, 2 * i], packed.state[2, 2 * i + 1] = position[i, 0], position[i, 1]
                 half = 0.5 * impulse_dt
-                relax(near, joints, motion, inverse, acting, softness, span, half, plan.iterations)
+                relax(near, joints, motion, shapes, inverse, acting, softness, span, half, plan.iterations)
                 weighed = False
                 now = charge(cost, RESOLVE, now)
             elif what == HOOK or _moved(motion, packed.state[2]):

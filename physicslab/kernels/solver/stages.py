@@ -87,8 +87,8 @@ def find_touching(
 
 @always_inlined
 def resolve_all_impacts(
-    near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, acting: Acting,
-    log: Log, h: float, start: float, end: float,
+    near: Near, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting, log: Log, h: float,
+    start: float, end: float,
 ) -> int:  # fmt: skip
     """Bounce what meets between ``start`` and ``end`` [s] from now; return how many impacts there were.
 
@@ -160,8 +160,8 @@ def press(
 
 @always_inlined
 def relax(
-    near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
-    h: float, half: float, iterations: int,
+    near: Near, joints: Joints, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting,
+    softness: Softness, h: float, half: float, iterations: int,
 ) -> None:  # fmt: skip
     """Remove the velocity that came from correcting errors, ``h`` seconds after :func:`press`.
 
@@ -177,4 +177,4 @@ def relax(
         pressed, friction_work = pressed - push, friction_work - rub
     book_work_of_contacts(near, pressed, friction_work)
     if any_deep(contacts, near):  # to count references to all these arrays takes as long as ten contacts
-        separate(contacts, near, motion, inverse.mass, acting, softness.max_push * h)
+        separate(contacts, near, motion, shapes.reach, inverse.mass, acting, softness.max_push)

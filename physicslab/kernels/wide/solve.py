@@ -45,7 +45,8 @@ class SoftConstraint(NamedTuple):
     """How contacts are corrected in an iteration.
 
     One over the substep [1/s], the share of the overlap that is corrected a second, the shares of the
-    effective mass and of the impulse so far that take part, and the impulse of all forces [N s].
+    effective mass and of the impulse so far that take part, the impulse of all forces [N s], and the share
+    that a deep overlap gives up in a sweep of what presses it by more than that.
     """
 
     inverse_h: float
@@ -53,6 +54,7 @@ class SoftConstraint(NamedTuple):
     mass_scale: float
     impulse_scale: float
     force_cap: float
+    give: float
 
 
 class Mean(NamedTuple):
@@ -75,13 +77,16 @@ def free_change[N: (float, Wide)](
     Then the effective mass that goes with it [kg]. The impulse may come to pull. What overlaps is held by a
     stiff, overdamped spring that corrects ``push_rate`` of the overlap a second, no faster than balances
     twice the load: else a pile of overlapping bodies would burst. Bodies that are apart may close the
-    separation within the substep, and not more.
+    separation within the substep, and not more. Deep overlap gives way to what no force presses: a driven
+    body would press what it cannot move ever harder, until that flies to the side.
     """
     load = lesser(impulse, soft.force_cap) * (2.0 * soft.impulse_scale / soft.mass_scale)
     limit = mass * size * (soft.push_rate * SOFT) + load
     push = greater(mass * soft.push_rate * lesser(separation, 0.0), -limit)
-    push = choose(separation < -DEEPER * size, 0.0, push)
-    corrected = -soft.mass_scale * (mass * v + push) - soft.impulse_scale * impulse
+    deep = separation < -DEEPER * size
+    push = choose(deep, 0.0, push)
+    yielding = choose(deep, soft.give * greater(impulse - soft.force_cap, 0.0), 0.0)
+    corrected = -soft.mass_scale * (mass * v + push) - soft.impulse_scale * impulse - yielding
     hard = -mass * (v + separation * soft.inverse_h)
     apart = separation > -_NO_OVERLAP * size
     change: N = choose(apart, hard, corrected)
