@@ -23,6 +23,7 @@ from physicslab.files.replace import reason_of
 from physicslab.files.scene import SceneError
 from physicslab.kernels.tiers import Tiers
 from physicslab.lab.jobs import in_processes
+from physicslab.lab.processes import ProcessEnded
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World
@@ -176,10 +177,13 @@ def _runs(names: Sequence[str], progress: Progress) -> list[dict[str, Any]]:
     """Make all runs, in processes where there are many; return what came of each."""
     found: list[dict[str, Any]] = []
     with progress:
-        for done in in_processes(make_run, names, [[name] for name in names]):
-            if isinstance(done, dict):
-                found.append(done)
-            progress.show(len(found) / len(names) if isinstance(done, dict) else done)
+        try:
+            for done in in_processes(make_run, names, [[name] for name in names]):
+                if isinstance(done, dict):
+                    found.append(done)
+                progress.show(len(found) / len(names) if isinstance(done, dict) else done)
+        except ProcessEnded as error:
+            raise CommandError(str(error), FAILED) from None
     return found
 
 

@@ -23,9 +23,8 @@ def execute(arguments: Namespace) -> int:
         for one, figures in zip(cases, found, strict=True):
             outcomes.append(case.Outcome(one, *figures))
             run.show(case.row_text(outcomes[-1], aligned))
-    except ProcessEnded:
-        reason = "a process was ended from outside; is there enough memory?"
-        raise CommandError(f"{cases[len(outcomes)].name}: {reason}", FAILED) from None
+    except ProcessEnded as error:
+        raise CommandError(f"{cases[len(outcomes)].name}: {error}", FAILED) from None
     run.show(case.summary_text(outcomes))
     run.write(case.document(outcomes))
     if short := case.short_names(outcomes):

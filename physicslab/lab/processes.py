@@ -30,7 +30,7 @@ class ProcessEnded(BrokenExecutor):
     """
 
     def __init__(self, status: int | None) -> None:
-        super().__init__(f"a process ended before its work did, with status {status}")
+        super().__init__("a process was ended from outside; is there enough memory?")
         self.status = status
 
 
