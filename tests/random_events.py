@@ -244,7 +244,8 @@ class Hands:
         window = desk.window
         at_end, history = self._quiet(), desk.sandbox.history
         window.tool, window.picking, window.context = name, None, None
-        count, before = len(history.entries), self._state()
+        before = self._state()  # a press that was begun may end in its frame
+        count = len(history.entries)
         start, end = self._pixel(), self._pixel()
         typed = self._random.choice(("", "", "", "2", "1.5\t30", "1/0", "-3", "1e9", "0", "5 kg", "40", "2m"))
         self.done[-1] += f" {name} {typed!a} {start} {end}"
@@ -316,7 +317,8 @@ class Hands:
         """Make copies of what is selected, as their panel does."""
         desk = self._desk
         at_end, world, window = self._quiet(), desk.world, desk.window
-        count, before = len(desk.sandbox.history.entries), self._state()
+        before = self._state()
+        count = len(desk.sandbox.history.entries)
         begin_copies(world, window)
         desk.frames(2)
         if window.copying is not None:
