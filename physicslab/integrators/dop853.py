@@ -15,7 +15,7 @@ _MAX_EVALUATIONS = 1_000_000
 """Force evaluations a step of the world. The most that ``auto`` gives it, 500 rad in a step, takes
 120,000 at the finest tolerance; a million take 0.2 s for two bodies."""
 
-_MAX_COSTLY = 100_000
+MAX_COSTLY = 100_000
 """The same where Python computes a force, or joints are solved: they take a second or two."""
 
 
@@ -28,11 +28,11 @@ def _floor(state: State, ode: OdeSystem) -> float:
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     q_low, v_low = ode.remainders(state)
-    tolerance, most = ode.tolerance, _most(ode)
+    tolerance = ode.tolerance
     made = dop853(
         ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.damped_calls, ode.places,
-        steps * h, tolerance, state.simulation.dt, most, ode.free_bodies, ode.steepness, _floor(state, ode),
-        np.zeros(1),
+        steps * h, tolerance, state.simulation.dt, _most(ode), ode.free_bodies, ode.steepness,
+        _floor(state, ode), np.zeros(1),
     )  # fmt: skip
     if made == NOT_FINITE:
         raise StepTooSmall(sentence("forces_not_finite", time=f"{state.time:.9g}"))
@@ -40,7 +40,7 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         raise Exhausted(
             sentence(
                 "evaluations_exhausted",
-                most=f"{most:,}", step=f"{state.simulation.dt:g}", tolerance=f"{tolerance:g}",
+                most=f"{_limit(ode):,}", step=f"{state.simulation.dt:g}", tolerance=f"{tolerance:g}",
             )
         )  # fmt: skip
     if made < 0:
@@ -49,9 +49,11 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
 
 
 def _most(ode: OdeSystem) -> int:
-    if ode.most is not None:
-        return ode.most
-    return _MAX_COSTLY if ode.interpreted or ode.joined else _MAX_EVALUATIONS
+    return _limit(ode) if ode.most is None else ode.most
+
+
+def _limit(ode: OdeSystem) -> int:
+    return MAX_COSTLY if ode.interpreted or ode.joined else _MAX_EVALUATIONS
 
 
 def _sample(state: State, ode: OdeSystem, spans: NDArray[np.float64], into: NDArray[np.float64]) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from physicslab.integrators import Exhausted, StepTooSmall
+from physicslab.integrators.dop853 import MAX_COSTLY
 from physicslab.ode.system import OdeSystem, steady_turn
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.samples import Samples
@@ -28,6 +29,9 @@ apart by no more than the method errs by then."""
 _SPAN = 256
 """The most evaluations after which that is done: some two radians of turning, whatever the unit of time.
 Linkages that lie flat on their way would else go on wrongly."""
+_COSTLY_S = 0.27
+"""The length of a step [s] for which a method may spend what one costs at most; in proportion for longer
+ones. Joints whose forces grow without limit take as much for no motion at all."""
 _FINEST = 1024
 """Parts of a step, of which as many are taken together as such a span can have."""
 
@@ -74,16 +78,19 @@ class Flow(Stepper):
         adaptive = self._joined and self._method.chooses_steps
         whole = _FINEST if adaptive else 1  # in a part
         longest = _PROJECTED * whole if adaptive else 1 if self._joined else parts * steps
-        made, span = 0, longest
+        most = MAX_COSTLY * max(1, math.ceil(h / _COSTLY_S))
+        made, span, left = 0, longest, most  # evaluations that are left to the step that is being made
         try:
             while made < parts * steps * whole:
                 state.time = start + made * h / (parts * whole)
                 span = min(span, parts * steps * whole - made)
-                self._ode.most = _SPAN if adaptive and span > 1 else None
+                left = most if made % whole == 0 else left
+                divides = adaptive and span > 1 and left > _SPAN
+                self._ode.most = _SPAN if divides else left if adaptive else None
                 try:
-                    self._flow(state, h / parts * span / whole, max(1, span // whole))
+                    self._flow(state, h / parts * span / whole, max(1, span // whole), divides=divides)
                 except Exhausted:
-                    span //= 2
+                    span, left = span // 2, left - _SPAN
                     continue
                 except NotSmooth:
                     if made and parts == 1 and made % whole == 0:
@@ -92,9 +99,8 @@ class Flow(Stepper):
                 made += span
                 if state.samples is not None:
                     state.samples.take(state, start + made * h / (parts * whole))
-                if state.force_evaluations - begun < _SPAN // 4:
-                    span = min(2 * span, longest)
-                begun = state.force_evaluations
+                spent, begun = state.force_evaluations - begun, state.force_evaluations
+                span, left = min(2 * span, longest) if spent < _SPAN // 4 else span, left - spent
         finally:
             state.time = start
         check_finite(state, state.time + h * steps)
@@ -118,7 +124,7 @@ class Flow(Stepper):
 
         return make
 
-    def _flow(self, state: State, span: float, steps: int) -> None:
+    def _flow(self, state: State, span: float, steps: int, *, divides: bool) -> None:
         method, ode = self._method, self._ode
         ode.gather(state)
         put_together(state, self._schedule.forces, ode)
@@ -130,7 +136,7 @@ class Flow(Stepper):
         try:
             made = method.flow(state, ode, span / count, count)
         except StepTooSmall as error:
-            if isinstance(error, Exhausted) and ode.most is not None:
+            if isinstance(error, Exhausted) and divides:
                 ode.undo(state)
                 raise
             if (ode.undo(state) or self._joined) and state.simulation.integrator == "auto":
