@@ -154,6 +154,12 @@ def planets() -> None:
         measure_energy(world)
     sun: Entity = {"Transform": {"position": [9.0, 0.5]}, "Mass": {"mass": 2.0}}
     scene(sun, *rocks, physics={"gravity_mode": "planet"}).run(steps=2)
+    for fling in (0.8, 3.0):  # an ellipse, in whole and in short spans, and a hyperbola
+        planet = body(3.0, 0.0) | {"Velocity": {"linear": [0.1, fling]}}
+        for count in (1, 40, 400):
+            world = scene(sun, planet, physics={"gravity_mode": "planet", "G": 5.0})
+            world.simulation = replace(world.simulation, integrator="exact")
+            world.run(steps=count)
     touching = [body(2.0 * i, 0.0, "disc") for i in range(5)]
     world = scene(*touching, physics={"gravity_mode": "planet"})
     world.step()

@@ -123,7 +123,7 @@ def test_the_mark_says_that_every_kernel_is_kept(tmp_path: Path, monkeypatch: py
 def test_the_mark_depends_on_the_sources(monkeypatch: pytest.MonkeyPatch) -> None:
     before = cache.mark()
     other = keys.current_folders() | {"motion": "motion-0"}
-    monkeypatch.setattr(cache, "current_folders", lambda level: other)
+    monkeypatch.setattr(keys, "current_folders", lambda level: other)
     assert cache.mark() != before
 
 

@@ -241,17 +241,25 @@ class Figures:
             total += weight * column[i]
         return total
 
+    def _bends_alike(self, series: Sequence[float], nodes: range) -> bool:
+        """Whether samples bend one way, at none half or twice as strongly as at the last."""
+        bends = [series[i - 1] - 2.0 * series[i] + series[i + 1] for i in nodes[1:-1]]
+        return len(bends) > 1 and bends[-1] != 0.0 and all(0.5 < bend / bends[-1] < 2.0 for bend in bends)
+
     def extreme(self, series: Sequence[float], sample: int, sign: float) -> float:
         """Return the extreme value of samples near one of them, ``sign`` 1 for the greatest, -1 the least.
 
-        Where they bend as strongly before and after it, the polynomial through these has it, and through no
-        others: an impact may be next to them. At a kink, as at an impact, or at an end it is the sample.
+        Where they bend as strongly before and after it, the polynomial through these has it, and through
+        others only as far as they bend alike: an impact may be next to them. At a kink, as at an impact, or
+        at an end it is the sample.
         """
-        bent = range(max(sample - 1, 1), min(sample + 2, len(series) - 1))
-        near = [series[i - 1] - 2.0 * series[i] + series[i + 1] for i in bent]
-        if len(near) < 2 or not near[-1] or not all(0.5 < bend / near[-1] < 2.0 for bend in near):
+        times = self.record.times[: len(series)]
+        nodes = range(max(sample - 2, 0), min(sample + 3, len(series)))
+        if not self._bends_alike(series, nodes):
             return series[sample]
-        times, nodes = self.record.times[: len(series)], range(bent[0] - 1, bent[-1] + 2)
+        first = max(0, min(sample - AROUND // 2, len(times) - AROUND))
+        wide = range(first, min(first + AROUND, len(times)))
+        nodes = wide if self._bends_alike(series, wide) else nodes
         low, high = times[max(sample - 1, 0)], times[min(sample + 1, len(times) - 1)]
         for _ in range(_HALVINGS):
             third = (high - low) / 3.0

@@ -5,8 +5,9 @@ import math
 from physicslab.kernels import Numbers, inlined, kernel
 
 _MAX_ITERATIONS = 100
-_TERMS = 11
-"""Terms of the series of Stumpff's functions: below z = .1 the next is 1e-30 of the sum."""
+_BY_SERIES, _TERMS = 4.0, 12
+"""The z below which Stumpff's functions are summed as series, whose next term is then 1e-18 of the sum: by
+sines x - sin x would lose up to two digits."""
 
 
 @kernel
@@ -99,7 +100,7 @@ def _bracket(r: float, radial: float, mu: float, alpha: float, t: float) -> tupl
 def _functions(alpha: float, s: float) -> tuple[float, float, float]:
     """Return G1, G2 and G3: s^k times Stumpff's c_k of alpha s^2."""
     z = alpha * s * s
-    if abs(z) < 0.1:
+    if abs(z) < _BY_SERIES:
         c2, c3, term = 0.0, 0.0, 0.5
         for k in range(1, _TERMS + 1):
             c2 += term
