@@ -47,8 +47,8 @@ def bits(world: World) -> list[bytes]:
     return [column.tobytes() for column in columns]
 
 
-def state_hash(world: World) -> bytes:
-    """Return a hash of all columns, of the laws, the names and what sleeps."""
+def state_hash(world: World, *, planned: bool = True) -> bytes:
+    """Return a hash of all columns, of the laws, the names and what sleeps, and of the plan."""
     digest = blake2b(b"".join(bits(world)), digest_size=16)
     index = world.entity_index
     rows = np.flatnonzero(index.entities)
@@ -59,7 +59,7 @@ def state_hash(world: World) -> bytes:
             for column in table.columns:
                 digest.update(column[rows].tobytes())
     names = [(entity, world.label(entity)) for entity in world.entities()]
-    counts = world.collisions, world.steps, world.plan.kept
+    counts = world.collisions, world.steps, world.plan.kept if planned else None
     digest.update(repr((names, world.physics, world.simulation, counts)).encode())
     return digest.digest()
 

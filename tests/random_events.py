@@ -267,9 +267,12 @@ class Hands:
             self._taken_back_at_once(count, before)
 
     def _state(self) -> bytes:
-        """Return a hash of the world as the next frame shows it; trails follow their switch, not edits."""
+        """Return a hash of the world as the next frame shows it; trails follow their switch, not edits.
+
+        A plan holds until the motion is edited (``planning.outlived``): what is taken back has been.
+        """
         self._desk.frames(1, 0.0)
-        return state_hash(self._desk.world)
+        return state_hash(self._desk.world, planned=False)
 
     def _taken_back_at_once(self, count: int, before: bytes) -> None:
         """Check that what was done is one entry at most, and that one undo takes it back."""
