@@ -73,10 +73,21 @@ def tiny(shape: dict[str, Any]) -> dict[str, Any]:
     return {"format": "physicslab-scene/1", "entities": [disc, body]}
 
 
+def far_apart() -> dict[str, Any]:
+    """Return two discs so far apart that a count of strips between them times their width overflowed."""
+    disc = {"kind": "circle", "radius": 1.0}
+    bodies: list[dict[str, Any]] = [
+        {"id": "a", "Shape": disc, "Transform": {"position": [1e9, 1e300]}},
+        {"id": "b", "Shape": disc, "Transform": {}, "Velocity": {}},
+    ]
+    return {"format": "physicslab-scene/1", "entities": bodies}
+
+
 @settings(suppress_health_check=list(HealthCheck))
 @given(scenes())
 @example(tiny({"kind": "box", "width": 5e-324, "height": 1.0}))
 @example(tiny({"kind": "circle", "radius": 5e-324}))
+@example(far_apart())
 def test_a_scene_is_refused_in_one_line_or_runs_with_finite_numbers(document: dict[str, Any]) -> None:
     with deadline(document):
         run_or_refuse(document)

@@ -153,7 +153,8 @@ def _neighbours(low: NDArray[np.float64], high: NDArray[np.float64]) -> Iterator
     those of its own and of the next strip.
     """
     width, height = (high - low).max(axis=0)
-    strip = np.floor((low[:, 1] - low[:, 1].min()) / height)
+    strips, row = np.unique(np.floor((low[:, 1] - low[:, 1].min()) / height), return_inverse=True)
+    strip = np.cumsum(np.minimum(np.diff(strips, prepend=strips[0]), 2.0))[row]  # no two far ones in turn
     across = 2.0 * (high[:, 0].max() - low[:, 0].min())  # the next strip begins so far to the right
     left = strip * across + low[:, 0]
     order = np.argsort(left, kind="stable")
