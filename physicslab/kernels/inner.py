@@ -15,6 +15,8 @@ from numba.core.compiler import Compiler
 from numba.core.compiler_machinery import PassManager, register_pass
 from numba.core.typed_passes import NativeLowering, NopythonRewrites
 
+from physicslab.kernels.lowering import InnerLower, KernelLower, caller_of
+
 
 class _InnerLibrary(JITCodeLibrary):  # type: ignore[misc]
     """The code of one function, to be copied into kernels together with that of all that it calls."""
@@ -51,6 +53,11 @@ class _InnerLowering(NativeLowering):
 
     _name = "inner_lowering"
 
+    @property
+    def lowering_class(self) -> Any:
+        """What writes the code."""
+        return InnerLower
+
     def run_pass(self, state: Any) -> bool:
         """Lower a function; its entry is a name for what calls it, and nothing that could run."""
         library = _InnerLibrary(state.targetctx.codegen(), state.func_id.func_qualname)
@@ -60,10 +67,22 @@ class _InnerLowering(NativeLowering):
             raise TypeError(f"{state.func_id.func_name} returns arrays: what counts references frees them")
         super().run_pass(state)
         library.finalize()
-        entry = object()
-        state.targetctx.insert_user_function(entry, state.cr.fndesc, [library])
+        entry, call = object(), caller_of(state.cr.fndesc, library, short=not state.flags.nrt)
+        state.targetctx.insert_func_defn([(call, entry, call.signature)])
         state.cr = state.cr._replace(cfunc=entry)
         return True
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class _KernelLowering(NativeLowering):
+    """Makes intermediate code of a kernel, and machine code of that."""
+
+    _name = "kernel_lowering"
+
+    @property
+    def lowering_class(self) -> Any:
+        """What writes the code."""
+        return KernelLower
 
 
 class _Passes(PassManager):  # type: ignore[misc]
@@ -78,7 +97,7 @@ class _Passes(PassManager):  # type: ignore[misc]
 class KernelCompiler(Compiler):  # type: ignore[misc]
     """Compiles a kernel, which has no closures, no ``with`` and no exceptions."""
 
-    lowering: type = NativeLowering
+    lowering: type = _KernelLowering
 
     def define_pipelines(self) -> list[Any]:
         """Return numba's passes without those that change nothing in kernels."""
