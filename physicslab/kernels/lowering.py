@@ -20,9 +20,11 @@ from numba.core import cgutils, types
 from numba.core.analysis import compute_cfg_from_blocks, compute_use_defs, must_use_alloca
 from numba.core.datamodel import DataModelManager, default_manager
 from numba.core.datamodel.models import ArrayModel
-from numba.core.ir import Assign
+from numba.core.ir import UNDEFINED, Assign
 from numba.core.lowering import Lower
 from numba.np.numpy_support import as_dtype
+
+from physicslab.kernels.inference import signature_of_call
 
 _DATA, _SHAPE = 4, 5
 """Where the address and the lengths are in numba's structure of an array."""
@@ -211,9 +213,10 @@ class KernelLower(Lower):  # type: ignore[misc]
 
     def _find_singly_assigned_variable(self) -> None:
         """Find variables that need no place in memory: assigned once, on every way to where they are used."""
-        super()._find_singly_assigned_variable()
         if self.flags.nrt:
-            return  # what counts references goes by places
+            super()._find_singly_assigned_variable()  # what counts references goes by places
+            return
+        self._singly_assigned_vars, self._blk_local_varmap = set(), {}
         blocks = self.func_ir.blocks
         found, in_memory = compute_use_defs(blocks), must_use_alloca(blocks)
         dominators = compute_cfg_from_blocks(blocks).dominators()
@@ -254,6 +257,20 @@ class KernelLower(Lower):  # type: ignore[misc]
                 value = self._load_item(array, self._address_of(expr.value, index, numbers))
                 return self.context.cast(self.builder, value, array.dtype, resty)
         return super().lower_expr(resty, expr)
+
+    def lower_binop(self, resty: Any, expr: Any, op: Any) -> Any:
+        """Write what an operator does with two numbers."""
+        if expr.static_lhs is not UNDEFINED or expr.static_rhs is not UNDEFINED:
+            return super().lower_binop(resty, expr, op)
+        context, signature = self.context.typing_context, self.fndesc.calltypes[expr]
+        function, sides = context.resolve_value_type(op), (expr.lhs, expr.rhs)
+        values = [
+            self.context.cast(self.builder, self.loadvar(side.name), self.typeof(side.name), kind)
+            for side, kind in zip(sides, signature.args, strict=True)
+        ]
+        found = signature_of_call(context, function, signature.args)
+        value = self.context.get_function(function, found)(self.builder, values)
+        return self.context.cast(self.builder, value, signature.return_type, resty)
 
     def lower_setitem(self, target: Any, index: Any, value: Any, signature: Any) -> Any:
         """Write what changes an item."""
