@@ -6,9 +6,10 @@ a quarter of the time that compiling took.
 
 from typing import Any
 
-from numba.core import types
+from numba.core import types as _types
 from numba.core.typeinfer import TypeInferer
 
+types: Any = _types  # its type hints know few of the classes
 _SIMPLE = (types.Number, types.Boolean)
 _found: dict[tuple[int, tuple[Any, ...]], tuple[Any, Any]] = {}
 
@@ -21,18 +22,10 @@ def signature_of_call(context: Any, function: Any, arguments: tuple[Any, ...]) -
     return _found[key][1]
 
 
-def _is_operator(function: Any, arguments: tuple[Any, ...]) -> bool:
-    """Whether a function is one of Python's operators, on numbers or on items of arrays."""
-    return (
-        isinstance(function, types.Function)
-        and getattr(function.typing_key, "__module__", "") == "_operator"
-        and all(_is_simple(argument) for argument in arguments)
-    )
-
-
 def _is_simple(kind: Any) -> bool:
+    """Whether a type is that of a number, of several, or of an array."""
     if isinstance(kind, types.BaseTuple):
-        return all(isinstance(part, _SIMPLE) for part in kind)
+        return all(isinstance(part, _SIMPLE) for part in kind.types)
     return isinstance(kind, _SIMPLE) or type(kind) is types.Array
 
 
@@ -42,6 +35,6 @@ class KernelInferer(TypeInferer):  # type: ignore[misc]
     def resolve_call(self, fnty: Any, pos_args: Any, kw_args: Any) -> Any:
         """Return the signature of a call."""
         arguments = tuple(pos_args)
-        if not kw_args and _is_operator(fnty, arguments):
+        if isinstance(fnty, types.Function) and not kw_args and all(map(_is_simple, arguments)):
             return signature_of_call(self.context, fnty, arguments)
         return super().resolve_call(fnty, pos_args, kw_args)

@@ -10,12 +10,11 @@ from collections.abc import Callable
 from typing import Any
 
 from llvmlite.binding import Linkage
-from numba.core import untyped_passes
+from numba.core import errors, untyped_passes
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
-from numba.core.errors import NumbaWarning, WarningsFixer
 from numba.core.ir_utils import build_definitions
-from numba.core.rewrites import rewrite_registry
+from numba.core.rewrites.registry import rewrite_registry
 from numba.core.ssa import reconstruct_ssa
 from numba.core.transforms import canonicalize_cfg
 from numba.core.typed_passes import (
@@ -26,8 +25,10 @@ from numba.core.typed_passes import (
     PreLowerStripPhis,
 )
 
-from physicslab.kernels.lowering import InnerLower, KernelLower, caller_of
 from physicslab.kernels.inference import KernelInferer
+from physicslab.kernels.lowering import InnerLower, KernelLower, caller_of
+
+_errors: Any = errors  # not all of it is typed
 
 
 class _InnerLibrary(JITCodeLibrary):  # type: ignore[misc]
@@ -91,11 +92,11 @@ class _KernelLowering(NativeLowering):  # type: ignore[misc]
         return KernelLower
 
 
-# Numba's passes follow the lives of variables, five times: where references are not counted, nothing needs that.
+# Numba's passes follow the lives of variables, five times; without reference counts nothing needs that.
 
 
 def _process(state: Any) -> None:
-    """Bring the blocks of a function into the form that is expected, and make constants of what is constant."""
+    """Bring the blocks of a function into the form that is expected; make constants where that is known."""
     if state.func_ir.is_generator:
         raise TypeError(f"{state.func_id.func_name} is a generator")
     blocks = state.func_ir.blocks = canonicalize_cfg(state.func_ir.blocks)
@@ -116,7 +117,7 @@ def _assign_once(state: Any) -> None:
 
 def _infer(state: Any) -> None:
     """Find the types of all variables."""
-    warnings = WarningsFixer(NumbaWarning)
+    warnings = _errors.WarningsFixer(_errors.NumbaWarning)
     infer = KernelInferer(state.typingctx, state.func_ir, warnings)
     stack, target = state.typingctx.callstack, state.targetctx.target
     with stack.register(target, infer, state.func_id, state.args), warnings:

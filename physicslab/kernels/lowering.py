@@ -9,17 +9,26 @@ assigned once is no variable in memory; and what was taken apart to be put toget
 The bits of results are the same: every operation on numbers is as numba writes it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from llvmlite import ir
 from llvmlite.ir.instructions import (
-    CastInstr, ExtractValue, GEPInstr, ICMPInstr, InsertValue, LoadInstr, PhiInstr, SelectInstr, SwitchInstr,
+    CastInstr,
+    ExtractValue,
+    GEPInstr,
+    ICMPInstr,
+    InsertValue,
+    LoadInstr,
+    PhiInstr,
+    SelectInstr,
+    SwitchInstr,
 )  # fmt: skip
 from numba.core import cgutils, types
 from numba.core.analysis import compute_cfg_from_blocks, compute_use_defs, must_use_alloca
-from numba.core.datamodel import DataModelManager, default_manager
+from numba.core.datamodel.manager import DataModelManager
 from numba.core.datamodel.models import ArrayModel
+from numba.core.datamodel.registry import default_manager
 from numba.core.ir import UNDEFINED, Assign
 from numba.core.lowering import Lower
 from numba.np.numpy_support import as_dtype
@@ -30,7 +39,7 @@ _DATA, _SHAPE = 4, 5
 """Where the address and the lengths are in numba's structure of an array."""
 
 
-# ---- values that are put together and taken apart -----------------------------------------------------------
+# ---- values that are put together and taken apart ----------------------------------------------------------
 
 
 class _Builder(ir.IRBuilder):  # type: ignore[misc]
@@ -83,7 +92,7 @@ def _operands(instruction: Any) -> list[Any]:
     return list(instruction.operands)
 
 
-# ---- arrays as arguments ------------------------------------------------------------------------------------
+# ---- arrays as arguments -----------------------------------------------------------------------------------
 
 
 class _AddressAndLengths(ArrayModel):  # type: ignore[misc]
@@ -134,7 +143,7 @@ def with_short_arguments(context: Any) -> Any:
     return context.subtarget(data_model_manager=_short_models)
 
 
-def caller_of(fndesc: Any, library: Any, short: bool) -> Callable[..., Any]:
+def caller_of(fndesc: Any, library: Any, short: bool) -> Any:
     """Return what writes a call of a function that only kernels call; if it fails what calls it does too."""
 
     def call(context: Any, builder: Any, signature: Any, values: Any) -> Any:
@@ -153,7 +162,7 @@ def caller_of(fndesc: Any, library: Any, short: bool) -> Callable[..., Any]:
     return call
 
 
-# ---- items of arrays ----------------------------------------------------------------------------------------
+# ---- items of arrays ---------------------------------------------------------------------------------------
 
 
 def _is_plain(array: Any) -> bool:
@@ -163,7 +172,7 @@ def _is_plain(array: Any) -> bool:
 
 def _numbers_of(array: Any, index: Any) -> Sequence[Any]:
     """Return the types of as many numbers as an index consists of, if it is that of an item; else nothing."""
-    numbers = index.types if isinstance(index, types.BaseTuple) else (index,)
+    numbers: Any = getattr(index, "types", (index,))
     plain = _is_plain(array) and len(numbers) == array.ndim
     return numbers if plain and all(isinstance(number, types.Integer) for number in numbers) else ()
 
@@ -230,9 +239,10 @@ class KernelLower(Lower):  # type: ignore[misc]
                 used.setdefault(name, []).append(offset)
         for name, places in assigned.items():
             (place, *more), users = places, used.get(name, [])
-            if not more and name not in in_memory:
-                if all(place < user and place in dominators[user] for user in users):
-                    self._singly_assigned_vars.add(name)
+            if more or name in in_memory:
+                continue
+            if all(place < user and place in dominators[user] for user in users):
+                self._singly_assigned_vars.add(name)
 
     def storevar(self, value: Any, name: str, argidx: int | None = None) -> None:
         """Assign a value to a variable."""
@@ -303,5 +313,5 @@ class InnerLower(KernelLower):
 
     @property
     def convention(self) -> Any:
-        """The context by which this function is given its arguments: short ones if it counts no references."""
+        """The context by which this function is given its arguments: short, if it counts no references."""
         return self.context if self.flags.nrt else with_short_arguments(self.context)
