@@ -27,7 +27,7 @@ def _items(numbers: Numbers, vectors: Vectors, rows: Rows, flags: Flags, i: int)
     flags[i] = not flags[i]
     vectors[i, -1] += 2.0
     found += len(vectors) + vectors.shape[1] + vectors.size
-    return found + (10.0 if flags[i] and flags[0] else 20.0)
+    return float(found + (10.0 if flags[i] and flags[0] else 20.0))
 
 
 @pytest.mark.parametrize("i", [0, 2, -1])
@@ -47,7 +47,7 @@ def _exchanged(one: Numbers, two: Numbers, times: int) -> float:
             last = first
         one, two = two, one
         total = 2.0 * total + one[k] - last[0] + first[-1]
-    return total + one[0] + 3.0 * two[0]
+    return float(total + one[0] + 3.0 * two[0])
 
 
 @pytest.mark.parametrize("times", [0, 1, 2, 3])
@@ -57,7 +57,8 @@ def test_variables_keep_their_values_in_loops(times: int) -> None:
 
 @allocating
 def _part(vectors: Vectors, numbers: Numbers) -> Numbers:
-    return vectors[1] + numbers[1:4] + numbers.reshape(2, 3)[:, 0].sum()
+    made: Numbers = vectors[1] + numbers[1:4] + numbers.reshape(2, 3)[:, 0].sum()
+    return made
 
 
 def test_parts_of_arrays_that_were_passed_are_those_of_python() -> None:
@@ -68,7 +69,7 @@ def test_parts_of_arrays_that_were_passed_are_those_of_python() -> None:
 
 def test_an_item_takes_few_instructions(monkeypatch: pytest.MonkeyPatch) -> None:
     written: list[str] = []
-    add = CPUCodeLibrary.add_ir_module
+    add: Any = CPUCodeLibrary.add_ir_module
 
     def note(library: Any, module: Any) -> None:
         written.append(str(module))

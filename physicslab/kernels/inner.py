@@ -65,7 +65,7 @@ class _InnerLowering(NativeLowering):  # type: ignore[misc]
 
     @property
     def lowering_class(self) -> Any:
-        """What writes the code."""
+        """The class that writes the code."""
         return InnerLower
 
     def run_pass(self, state: Any) -> bool:
@@ -88,7 +88,7 @@ class _KernelLowering(NativeLowering):  # type: ignore[misc]
 
     @property
     def lowering_class(self) -> Any:
-        """What writes the code."""
+        """The class that writes the code."""
         return KernelLower
 
 
