@@ -1,7 +1,7 @@
-"""Pairs so far apart that they are not looked at again within the step.
+"""Pairs so far apart that they are not looked at again for a while.
 
 Most near pairs do not touch, and the record of one takes several lines of the cache. In the first substep of
-a step it is noted how far each is from having points; later it is looked at again only once its two bodies
+a call it is noted how far each is from having points; later it is looked at again only once its two bodies
 together have come as far. To look again earlier would find the same, so that no bit depends on it.
 """
 
@@ -14,7 +14,7 @@ from physicslab.kernels.near_counts import FOLLOWED, RECORDED
 
 LAST_X, LAST_Y, LAST_ANGLE, PATH, REACH = range(5)
 """The rows of ``Near.travels``: where each body last was [m, rad]; how far any point of it can have come in
-the step [m]; that, and how far it comes at most in the substep at hand."""
+the call [m]; that, and how far it comes at most in the substep at hand."""
 _WORTH_IT = 4
 """Number of bodies a pair that is apart from which all are followed."""
 _ROUNDING = 1e-12
@@ -22,11 +22,15 @@ _ROUNDING = 1e-12
 
 
 @inlined
-def forget(near: Near) -> None:
-    """Let all pairs be looked at, as in the first substep of a step."""
-    near.counts[FOLLOWED] = 0
-    for p in range(near.counts[RECORDED]):
+def begin_step(near: Near, goes_on: bool) -> None:
+    """Let all pairs be looked at, or only new ones where a step before this one ``goes_on``."""
+    counts = near.counts
+    if not goes_on:
+        counts[FOLLOWED] = 0
+    for p in range(counts[FOLLOWED], counts[RECORDED]):
         near.apart[p].clearance = -math.inf
+    if counts[FOLLOWED] > 0:
+        counts[FOLLOWED] = counts[RECORDED]
 
 
 @inlined
@@ -40,7 +44,7 @@ def note(near: Near, p: int, a: int, b: int, clearance: float, motion: Motion) -
 
 
 @inlined
-def begin(near: Near, motion: Motion, apart: int) -> None:
+def begin_to_follow(near: Near, motion: Motion, apart: int) -> None:
     """Follow the bodies from where they are, if enough pairs are ``apart``."""
     rows, travels = len(motion.angle), near.travels
     if apart * _WORTH_IT < rows:

@@ -324,7 +324,7 @@ def _has_few_rows(entities: Rows) -> bool:
 @always_inlined
 def find_contacts(
     near: Near, count: int, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse,
-    bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
+    bounds: Bounds, first: bool, goes_on: bool, h: float, start: float, speculative_margin: float,
 ) -> int:  # fmt: skip
     """Find or refresh the contact points of the ``count`` scalar pairs; return how many have any.
 
@@ -332,14 +332,15 @@ def find_contacts(
     that has hardly moved keeps its points. The substep spans ``h`` seconds from ``start`` h before or after
     now: a pair that meets within it has points with the normal of that moment and the separation, along it,
     of now. Pairs whose count is negative are moved by event-driven stepping, and passed over. ``first`` marks
-    the first substep of a step, in which records of impacts are cleared; ``speculative_margin`` is how far
-    [m] the forces may bring two bodies together within the substep.
+    the first substep of a step, in which records of impacts are cleared, and in which it ``goes_on`` from
+    another one of the same call; ``speculative_margin`` is how far [m] the forces may bring two bodies
+    together within the substep.
     """
     position, linear, touching = motion.position, motion.linear, near.touching
     found, held, far = 0, count, 0
     if first:
-        apart.forget(near)
-    elif near.counts[FOLLOWED] > 0:
+        apart.begin_step(near, goes_on)
+    if near.counts[FOLLOWED] > 0:
         apart.follow(near.travels, motion, shapes, h)
     # The arms of kept points are those of the pose in which they were found.
     tolerance = 1.0 if first else TOLERANCE_WITHIN_STEP
@@ -370,7 +371,7 @@ def find_contacts(
         if round_pair:
             clearance = _clearance_of_disc(manifold, way, motion, shapes, bounds, speculative_margin)
             if clearance > -math.inf:
-                apart.note(near, p, a, b, clearance, motion)
+                apart.note(near, p, a, b, clearance if manifold.impact_count == 0 else -math.inf, motion)
                 far += 1
                 continue
         manifold.offset_x, manifold.offset_y = way.dx, way.dy
@@ -408,7 +409,8 @@ def find_contacts(
             if polygons > 0:
                 clearance = _clearance(manifold, way, motion, shapes, size, speculative_margin)
                 far += 1
-            apart.note(near, p, a, b, clearance, motion)
-    if first:
-        apart.begin(near, motion, far)
+            # What has bounced is looked at when the next step begins.
+            apart.note(near, p, a, b, clearance if manifold.impact_count == 0 else -math.inf, motion)
+    if first and near.counts[FOLLOWED] == 0:
+        apart.begin_to_follow(near, motion, far)
     return _put_last(touching, found, held, count)

@@ -263,6 +263,7 @@ def _advance(
                     inverse,
                     bounds,
                     first,
+                    done > 0,
                     span,
                     course.start,
                     gravity.margin,
