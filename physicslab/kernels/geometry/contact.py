@@ -409,7 +409,7 @@ def find_contacts(
             if polygons > 0:
                 clearance = _clearance(manifold, way, motion, shapes, size, speculative_margin)
                 far += 1
-            # What has bounced is looked at when the next step begins.
+            # A pair that has bounced is looked at when the next step begins.
             apart.note(near, p, a, b, clearance if manifold.impact_count == 0 else -math.inf, motion)
     if first and near.counts[FOLLOWED] == 0:
         apart.begin_to_follow(near, motion, far)
