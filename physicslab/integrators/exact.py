@@ -26,14 +26,14 @@ def _form(state: State, ode: OdeSystem) -> ClosedForm | TwoBodies:
     if ode.form is None or ode.laws is None or ode.form[0] is not ode.laws or len(state.batch(Spring)):
         ode.form = ode.laws, closed_form(state, ode.forces)
     form: ClosedForm | TwoBodies = ode.form[1]
-    if isinstance(form, TwoBodies) and not form.holds(state):
-        raise NoClosedForm(sentence("attraction"))
     return form
 
 
 def _follow(form: TwoBodies, state: State, ode: OdeSystem, spans: NDArray[np.float64]) -> Motion:
     """Move two bodies, and what rounding left out of them; return where they are after each span."""
-    motion, moves, n = form.motion(state), form.moves, 2 * len(ode.layout.moving)
+    motion, moves, n = form.motion(state), form.moves, 2 * len(form.rows)
+    if not form.holds(motion):
+        raise NoClosedForm(sentence("attraction"))
     kept = ode.remainders(state)
     for now, low in zip(motion, kept, strict=True):
         now[2:][moves] = low[:n].reshape(-1, 2)
@@ -44,12 +44,11 @@ def _follow(form: TwoBodies, state: State, ode: OdeSystem, spans: NDArray[np.flo
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
-    form = _form(state, ode)
+    form, n = _form(state, ode), 2 * len(ode.layout.moving)
     for cause, given in form.given(state, steps * h).items():
         slot = ode.slots.get(cause)
         if slot is not None:
             ode.v[slot : slot + ACCOUNTS] = given
-    n = 2 * len(ode.layout.moving)
     if isinstance(form, TwoBodies):
         position, velocity = _follow(form, state, ode, np.array((steps * h,)))
     else:
