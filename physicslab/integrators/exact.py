@@ -5,9 +5,6 @@ the solution has its own energy, of which dampers and drag take what is lost
 (:mod:`physicslab.kernels.ode.closed_form_account`).
 """
 
-import numpy as np
-from numpy.typing import NDArray
-
 from physicslab.components import Spring
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.forces.budget import ACCOUNTS
@@ -35,6 +32,11 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         if slot is not None:
             ode.v[slot : slot + ACCOUNTS] = given
     n, start = 2 * len(ode.layout.moving), form.motion(state)
+    turning = slice(n, ode.layout.moving_count)
+    for after, q, v in zip(*ode.wanted, strict=True):
+        position, velocity = form.after(start, float(after))
+        q[:n], v[:n] = position.ravel(), velocity.ravel()
+        q[n:], v[n:] = ode.q[turning] + after * ode.v[turning], ode.v[turning]
     if isinstance(form, TwoBodies):
         moved, gained = form.change(start, steps * h)
         q_low, v_low = ode.remainders(state)
@@ -43,19 +45,8 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     else:
         position, velocity = form.after(start, steps * h)
         ode.q[:n], ode.v[:n] = position.ravel(), velocity.ravel()
-    turning = slice(n, ode.layout.moving_count)
     ode.q[turning] += steps * h * ode.v[turning]
     return 0
-
-
-def _sample(state: State, ode: OdeSystem, spans: NDArray[np.float64], into: NDArray[np.float64]) -> None:
-    form, n = _form(state, ode), 2 * len(ode.layout.moving)
-    start = form.motion(state)
-    for k, after in enumerate(np.cumsum(spans).tolist()):
-        position, velocity = form.after(start, after)
-        into[0, k], into[1, k] = ode.q, ode.v
-        into[0, k, :n], into[1, k, :n] = position.ravel(), velocity.ravel()
-        into[0, k, n : ode.layout.moving_count] += after * ode.v[n : ode.layout.moving_count]
 
 
 EXACT = Integrator(
@@ -68,5 +59,5 @@ EXACT = Integrator(
     flow=_flow,
     kernels=(propagate, give_in_closed_form, kepler_change, add_all),
     chooses_steps=True,
-    sample=_sample,
+    samples=True,
 )
