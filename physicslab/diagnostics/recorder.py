@@ -233,7 +233,7 @@ class _Watch:
 
 
 class _Replay:
-    """What is found of a run when it is first read: in a copy of its world, which is put to its instants.
+    """Finds parts of a run when they are first read: in a copy of its world, which is put to its instants.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ BODY_COLUMNS = {"x": "m", "y": "m", "angle": "rad", "vx": "m/s", "vy": "m/s", "o
 
 
 class Replay(Protocol):
-    """What finds the parts of a run that take time, when they are first read."""
+    """The object that finds parts of a run which take time, when they are first read."""
 
     def impacts(self) -> dict[str, NDArray[Any]]:
         """Return the table of impacts, by columns."""

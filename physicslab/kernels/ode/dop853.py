@@ -219,7 +219,7 @@ def _bend(rates: Vectors, pushes: Vectors, h: float, bends: Vectors) -> None:
     """Find the terms (n, 14) by which the motion within a step departs from a steady one."""
     for i in range(len(bends)):
         for values, first in ((rates, 0), (pushes, 7)):
-            # Of the rates, the speed at the start is left out: they begin with zero.
+            # Rates are without the speed at the start: they begin with zero.
             begins = 0.0 if first == 0 else h * values[i, 0]
             gained, _ = total(values[i])
             ends = h * values[i, LAST]
