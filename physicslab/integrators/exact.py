@@ -5,15 +5,17 @@ the solution has its own energy, of which dampers and drag take what is lost
 (:mod:`physicslab.kernels.ode.closed_form_account`).
 """
 
+import numpy as np
+
 from physicslab.components import Spring
+from physicslab.ecs.sentences import sentence
 from physicslab.integrators.integrator import Integrator
 from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.ode.closed_form_account import give_in_closed_form
-from physicslab.kernels.ode.compensated import add_all
-from physicslab.kernels.ode.kepler import kepler_change
+from physicslab.kernels.ode.kepler import move_two
 from physicslab.kernels.ode.propagate import propagate
-from physicslab.ode.closed_form import ClosedForm, closed_form
-from physicslab.ode.kepler import TwoBodies
+from physicslab.ode.closed_form import ClosedForm, NoClosedForm, closed_form
+from physicslab.ode.kepler import Motion, TwoBodies
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 
@@ -22,7 +24,18 @@ def _form(state: State, ode: OdeSystem) -> ClosedForm | TwoBodies:
     """Return the closed form; it is kept while the laws are, where it depends on these alone."""
     if ode.form is None or ode.laws is None or ode.form[0] is not ode.laws or len(state.batch(Spring)):
         ode.form = ode.laws, closed_form(state, ode.forces)
-    return ode.form[1]
+    form: ClosedForm | TwoBodies = ode.form[1]
+    if isinstance(form, TwoBodies) and not form.holds(state):
+        raise NoClosedForm(sentence("attraction"))
+    return form
+
+
+def _start(form: TwoBodies, state: State, ode: OdeSystem) -> Motion:
+    """Return how two bodies move, with what rounding left out of that."""
+    motion, n = form.motion(state), 2 * len(ode.layout.moving)
+    for now, low in zip(motion, ode.remainders(state), strict=True):
+        now[2:][form.moves] = low[:n].reshape(-1, 2)
+    return motion
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
@@ -31,20 +44,26 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         slot = ode.slots.get(cause)
         if slot is not None:
             ode.v[slot : slot + ACCOUNTS] = given
-    n, start = 2 * len(ode.layout.moving), form.motion(state)
+    n, (after, q, v) = 2 * len(ode.layout.moving), ode.wanted
     turning = slice(n, ode.layout.moving_count)
-    for after, q, v in zip(*ode.wanted, strict=True):
-        position, velocity = form.after(start, float(after))
-        q[:n], v[:n] = position.ravel(), velocity.ravel()
-        q[n:], v[n:] = ode.q[turning] + after * ode.v[turning], ode.v[turning]
     if isinstance(form, TwoBodies):
-        moved, gained = form.change(start, steps * h)
-        q_low, v_low = ode.remainders(state)
-        add_all(ode.q, q_low, moved.ravel())
-        add_all(ode.v, v_low, gained.ravel())
+        if len(after):
+            places, rates = form.follow(_start(form, state, ode), np.diff(after, prepend=0.0))
+            q[:, :n], v[:, :n] = places.reshape(-1, n), rates.reshape(-1, n)
+        motion = _start(form, state, ode)
+        position, velocity = form.follow(motion, np.array((steps * h,)))
+        for now, low in zip(motion, ode.remainders(state), strict=True):
+            low[:n] = now[2:][form.moves].ravel()
     else:
+        start = form.motion(state)
+        for k, t in enumerate(after.tolist()):
+            position, velocity = form.after(start, t)
+            q[k, :n], v[k, :n] = position.ravel(), velocity.ravel()
         position, velocity = form.after(start, steps * h)
-        ode.q[:n], ode.v[:n] = position.ravel(), velocity.ravel()
+    if len(after):
+        q[:, n:] = ode.q[turning] + after[:, None] * ode.v[turning]
+        v[:, n:] = ode.v[turning]
+    ode.q[:n], ode.v[:n] = position.ravel(), velocity.ravel()
     ode.q[turning] += steps * h * ode.v[turning]
     return 0
 
@@ -57,7 +76,7 @@ EXACT = Integrator(
     symplectic=True,
     source="Landau & Lifshitz, Mechanics, 1976, sections 5, 15, 21, 25",
     flow=_flow,
-    kernels=(propagate, give_in_closed_form, kepler_change, add_all),
+    kernels=(propagate, give_in_closed_form, move_two),
     chooses_steps=True,
     samples=True,
 )
