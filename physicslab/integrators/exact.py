@@ -25,14 +25,14 @@ def _form(state: State, ode: OdeSystem) -> ClosedForm | TwoBodies:
     if ode.form is None or ode.laws is None or ode.form[0] is not ode.laws or len(state.batch(Spring)):
         ode.form = ode.laws, closed_form(state, ode.forces)
     form: ClosedForm | TwoBodies = ode.form[1]
-    if isinstance(form, TwoBodies) and not form.holds(state):
-        raise NoClosedForm(sentence("attraction"))
     return form
 
 
 def _start(form: TwoBodies, state: State, ode: OdeSystem) -> Motion:
     """Return how two bodies move, with what rounding left out of that."""
     motion, n = form.motion(state), 2 * len(ode.layout.moving)
+    if not form.holds(motion):
+        raise NoClosedForm(sentence("attraction"))
     for now, low in zip(motion, ode.remainders(state), strict=True):
         now[2:][form.moves] = low[:n].reshape(-1, 2)
     return motion

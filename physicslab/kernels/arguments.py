@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined, inlined_by_numba
 from physicslab.kernels.forces.force_calls import Calls
-from physicslab.kernels.records import Couples, Impacts, Manifolds, Points
+from physicslab.kernels.records import Aparts, Couples, Impacts, Manifolds, Points
 from physicslab.kernels.wide_layout import Slots
 
 
@@ -67,6 +67,8 @@ class Near(NamedTuple):
     noted of points (points, 4), and for the velocities (rows, 2) and angular velocities from before the
     impulses of a substep (:mod:`physicslab.kernels.solver.work`); and for when each body last met another
     one in the substep, and when it meets the next [s from now] (:mod:`physicslab.kernels.solver.meet_again`).
+    Last, how far apart pairs are, and how far bodies have come (5, rows)
+    (:mod:`physicslab.kernels.geometry.apart`).
     """
 
     counts: Rows
@@ -85,6 +87,8 @@ class Near(NamedTuple):
     linear_before: Vectors
     angular_before: Numbers
     moments: Vectors
+    apart: Aparts
+    travels: Vectors
 
 
 class Contacts(NamedTuple):
@@ -237,12 +241,12 @@ def named_near(plain: Plain[Near]) -> Near:
     """Give names to a tuple, and to the slots within it."""
     (
         counts, manifolds, points, scalar, touching, discs, boxes, proximity, activation_distance, entities,
-        rotations, account, noted, linear_before, angular_before, moments,
+        rotations, account, noted, linear_before, angular_before, moments, apart, travels,
     ) = plain  # fmt: skip
     return Near(
         counts, manifolds, points, scalar, touching, Slots(*discs), Slots(*boxes),
         proximity, activation_distance, entities, rotations, account, noted, linear_before, angular_before,
-        moments,
+        moments, apart, travels,
     )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from physicslab.integrators import Exhausted, StepTooSmall
 from physicslab.integrators.dop853 import MAX_COSTLY
+from physicslab.ode.closed_form import NoClosedForm
 from physicslab.ode.system import OdeSystem, steady_turn
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.samples import Samples
@@ -122,7 +123,7 @@ class Flow(Stepper):
                 for began, h, steps in stretches:
                     state.time = began
                     self.advance(state, h, steps)
-            except (Diverged, NotSmooth):
+            except (Diverged, NotSmooth, NoClosedForm):
                 return False
             return True
 

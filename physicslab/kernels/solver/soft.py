@@ -35,7 +35,7 @@ from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
-from physicslab.kernels.near_counts import ACTIVE, LEFT, OUTSIDE, ROUND, WIDE_COUNT
+from physicslab.kernels.near_counts import ACTIVE, FOLLOWED, LEFT, OUTSIDE, ROUND, WIDE_COUNT
 from physicslab.kernels.ode.damped_flow import flow_forces
 from physicslab.kernels.ode.spring_flow import flow_at, rows_in
 from physicslab.kernels.records import Impacts
@@ -266,10 +266,13 @@ def _advance(
                     inverse,
                     bounds,
                     first,
+                    done > 0,
                     span,
                     course.start,
                     gravity.margin,
                 )
+                if course.hooked:
+                    counts[FOLLOWED] = 0  # what acts in between may change shapes
                 now = charge(cost, CONTACT, now)
             elif what == WIDEN:
                 if substep == plan.first:
