@@ -9,6 +9,7 @@ from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.records import APART
 from physicslab.kernels.solver import soft
+from physicslab.state.samples import NOTHING_SAMPLED
 from physicslab.state.state import State
 
 
@@ -124,5 +125,6 @@ def do_stage(
         state.bodies.sub_integrated, acting or acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
         (0.0, 0.0), np.zeros((8, 0)), bounds_of(state), near, joints_in(state), contacts.opened, softness,
         contacts.impulse_dt, contacts.step_log, np.zeros(soft.COSTS, np.int64),
+        NOTHING_SAMPLED,
     )  # fmt: skip
     return int(impacts)

@@ -6,7 +6,7 @@ instead of 15); what Python calls gives them their names: ``Motion(*motion)``.
 
 from typing import NamedTuple
 
-from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined_by_numba
+from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined, inlined_by_numba
 from physicslab.kernels.forces.force_calls import Calls
 from physicslab.kernels.records import Aparts, Couples, Impacts, Manifolds, Points
 from physicslab.kernels.wide_layout import Slots
@@ -159,6 +159,18 @@ class Course(NamedTuple):
     hooked: bool
 
 
+class Sampled(NamedTuple):
+    """Rows of which samples are taken (moving,), and room (n, 6 moving) for x, y, the angle and their rates.
+
+    The first is due after so many steps of a call, and then one every ``stride`` steps, while there is room.
+    """
+
+    rows: Rows
+    room: Vectors
+    first: int
+    stride: int
+
+
 class Springs(NamedTuple):
     """Bodies on springs (:mod:`physicslab.kernels.ode.spring_flow`), in two arrays: each costs 0.1 us."""
 
@@ -236,3 +248,16 @@ def named_near(plain: Plain[Near]) -> Near:
         proximity, activation_distance, entities, rotations, account, noted, linear_before, angular_before,
         moments, apart, travels,
     )  # fmt: skip
+
+
+@inlined
+def take_sample(motion: Motion, sampled: Sampled, made: int) -> None:
+    """Take the sample that is due after so many steps of a call, if one is."""
+    late = made - sampled.first
+    place = late // sampled.stride
+    if late < 0 or late % sampled.stride > 0 or place >= len(sampled.room):
+        return
+    for k in range(len(sampled.rows)):
+        i, sample = sampled.rows[k], sampled.room[place, 6 * k : 6 * k + 6]
+        sample[0], sample[1], sample[2] = motion.position[i, 0], motion.position[i, 1], motion.angle[i]
+        sample[3], sample[4], sample[5] = motion.linear[i, 0], motion.linear[i, 1], motion.angular[i]
