@@ -2,7 +2,7 @@
 
 numba writes for ``a[i, j]`` some forty instructions: the array is stored and loaded again, one word after the
 other. It passes 7 or 9 words for an array, and stores variables again and again. LLVM removes all of that,
-but to write, read and remove it took more than half of the time that compiling took. Here an item is read in
+but to write, read and remove it took much of the time that compiling took. Here an item is read in
 ten instructions; functions that only kernels call are passed an array as its address and lengths; what is
 assigned once is no variable in memory; and what was taken apart to be put together again is left out.
 
