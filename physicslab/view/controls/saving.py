@@ -33,7 +33,7 @@ def begin_new(world: World, window: Window) -> None:
     made.view = -6.0, -1.5, 6.0, 5.5
     made.synchronise()
     window.scenes.next_world, window.scenes.source = made, None
-    window.pace.paused = True
+    window.pace.paused, window.tool = True, "circle"
     window.notify("A new scene, at t = 0: Space lets time run", 5.0)
 
 
