@@ -29,7 +29,7 @@ def begin_new(world: World, window: Window) -> None:
     """Show an empty scene with a floor, at t = 0 and paused; undo brings unsaved work back."""
     made = World()
     width, height = _FLOOR
-    box(made, (0.0, -0.5 * height), width=width, height=height, static=True, name="floor")
+    box(made, (0.0, -0.5 * height), width=width, height=height, static=True, restitution=1.0, name="floor")
     made.view = -6.0, -1.5, 6.0, 5.5
     made.synchronise()
     window.scenes.next_world, window.scenes.source = made, None
