@@ -438,6 +438,17 @@ def test_settings_take_expressions_with_units(key: str) -> None:
     assert any("this is in" in words or words.startswith("must be") for words in desk.ui.words)
 
 
+@pytest.mark.parametrize(
+    ("tool", "shown"), [("capsule", "size density"), ("beam", "density"), ("block", ""), ("ramp", "")]
+)
+def test_what_is_made_next_has_the_numbers_that_it_is_made_by(tool: str, shown: str) -> None:
+    desk = opened(empty_world())
+    desk.window.tool = tool
+    desk.frames(SETTLED)
+    own = [name for name in ("size", "density") if f"new {name}" in desk.ui.places]
+    assert " ".join(own) == shown and "new friction" in desk.ui.places
+
+
 def test_what_is_made_next_takes_expressions_with_units() -> None:
     desk = opened(empty_world())
     desk.window.tool = "circle"

@@ -177,6 +177,33 @@ def test_windows_are_tabs_of_each_other(desk: Desk) -> None:
     assert rect_of(desk, GRAPH) == rect_of(desk, "History")
 
 
+@pytest.mark.parametrize(("key", "title"), [("u", "History"), ("c", "Stopwatch")])
+def test_a_window_that_opens_again_joins_what_stands_at_its_side_by_now(key: str, title: str) -> None:
+    desk = sized(SIZE)
+    for pressed in (key, "m", "m", key):  # the graphs came while it was closed
+        tap(desk, pressed)
+        desk.frames(SETTLED)
+        if pressed == key and not desk.window.dashboard.graphs:
+            tap(desk, key)
+            desk.frames(SETTLED)
+    assert rect_of(desk, title).left == rect_of(desk, GRAPH).left, "one column, not two"
+    assert desk.sandbox.interface.room()[2] > SIZE[0] // 3
+
+
+def test_a_new_graph_comes_to_the_front_though_another_tab_was_clicked() -> None:
+    desk = sized(SIZE)
+    for _ in range(3):
+        tap(desk, "m")
+        desk.frames(SETTLED)
+    windows = [window for window in imgui.get_current_context().windows if GRAPH in window.name]
+    shown = next(window for window in windows if window.dock_id == windows[-1].dock_id and not window.hidden)
+    click_at(desk, (round(shown.pos.x) + 20, round(shown.pos.y + 0.9 * shown.size.y)))
+    tap(desk, "m")
+    desk.frames(SETTLED + 2)
+    newest = window_of(desk, f"{GRAPH} {desk.window.dashboard.graphs[-1].entity}")
+    assert newest.dock_id == shown.dock_id and not newest.hidden and shown.hidden
+
+
 def test_no_window_can_be_docked_over_the_world(desk: Desk) -> None:
     room = desk.sandbox.interface.room()
     dock(desk, "History", at_middle(room))

@@ -273,6 +273,19 @@ def test_the_right_button_draws_a_box_whatever_tool_is_in_hand(desk: Desk) -> No
     assert only(desk.world, Shape).kind == "box"
 
 
+def test_a_box_that_enter_made_while_the_right_button_is_held_opens_no_menu(desk: Desk) -> None:
+    desk.press(0.0, 0.0, "right")
+    desk.frames()
+    for letter in "2kg":
+        pygame.event.post(pygame.Event(pygame.KEYDOWN, key=ord(letter), mod=0, unicode=letter, scancode=0))
+    desk.key("return")
+    desk.frames(2)
+    assert only(desk.world, Mass).mass == 2.0
+    desk.release(0.0, 0.0, "right")
+    desk.frames(60)
+    assert desk.window.context is None
+
+
 def test_a_spring_is_drawn_by_two_clicks_as_well(desk: Desk) -> None:
     ball = circle(desk.world, (0.0, 0.0))
     draw(desk, "spring", (2.0, 0.0), (2.0, 0.0))
@@ -560,4 +573,7 @@ def test_files_with_instruments_open_with_select_in_hand() -> None:
         desk.window.scenes.next_world = load_scene(scene)
         desk.frames()
         assert desk.window.tool == tool
+    desk.key("n", pygame.KMOD_CTRL)
+    desk.frames(2)
+    assert desk.window.tool == "circle", "a new scene is to be drawn in"
     pygame.display.quit()

@@ -84,6 +84,15 @@ def test_escape_closes_the_cards_and_the_help_brings_them_back() -> None:
     assert desk.window.shows_cards
 
 
+def test_the_cards_go_with_the_scene_that_they_are_over() -> None:
+    desk = sized(SIZE)
+    for starts_again in (True, False):
+        desk.window.shows_cards = True
+        desk.window.scenes.next_world, desk.window.scenes.starts_again = empty_world(), starts_again
+        desk.frames()
+        assert desk.window.shows_cards is starts_again
+
+
 def test_cards_that_were_used_are_remembered(tmp_path: Path) -> None:
     desk, path = sized(SIZE), tmp_path / "preferences.json"
     for welcomed in (False, True):

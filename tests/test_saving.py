@@ -8,7 +8,7 @@ from desk import SETTLED, Desk, bits, click, empty_world, tap, write
 from test_hud import frame, recorded
 
 from physicslab import World
-from physicslab.components import Graph, Held, Transform, Velocity
+from physicslab.components import Graph, Held, Material, Transform, Velocity
 from physicslab.desktop import session_window
 from physicslab.files.scene import load_scene, save_scene
 from physicslab.prefabs import circle
@@ -263,6 +263,8 @@ def test_new_is_empty_with_a_floor_at_zero_and_undo_brings_unsaved_work_back(fol
     assert made is not left and [made.label(entity) for entity in made.entities()] == ["floor"]
     assert (made.time, made.title, made.description) == (0.0, "", "") and desk.window.pace.paused
     assert (made.steps, made.collisions) == (0, 0) and not desk.window.has_unsaved
+    (floor,) = made.entities()
+    assert made.component(floor, Material).restitution == 1.0, "a pair has the smaller one: that of the body"
     tap(desk, "s", CTRL)
     assert desk.window.scenes.naming is not None, "the file of the scene that was left is not written"
     tap(desk, "escape")

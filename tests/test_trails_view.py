@@ -10,12 +10,13 @@ from recording import RecordingCanvas
 
 from physicslab.components import Trail, Velocity
 from physicslab.files.scene import load_scene
-from physicslab.history import AddComponent, SetField
+from physicslab.history import AddComponent, RemoveComponent, SetField
 from physicslab.prefabs import box, circle
 from physicslab.systems.frame.render import RenderSystem
 from physicslab.systems.system import Stage
 from physicslab.systems.trail import TrailSystem
 from physicslab.theme import DARK, mixed
+from physicslab.view.window.changing import take
 from physicslab.view.window.window import Window
 from physicslab.view.workbench.world_view import WorldView
 from physicslab.world import World
@@ -105,6 +106,33 @@ def test_trails_are_as_they_were_set_last_wherever_undo_goes() -> None:
     history.do(AddComponent(ball, Trail()))
     desk.frames(2)
     assert worn(desk.world) == [ball], "one that is given to a body stays"
+
+
+def test_an_edit_of_a_trail_that_the_switch_gave_is_done_again_where_there_is_none() -> None:
+    desk = Desk(empty_world(gravity=(0, 0)))
+    ball = circle(desk.world, (0, 0))
+    desk.frames(2)
+    desk.window.trails.toggle(desk.world)
+    desk.window.edits.do(SetField(ball, "Trail", "length", 2.0))
+    desk.window.edits.do(RemoveComponent(ball, "Trail"))
+    for key, mod in (("z", pygame.KMOD_LCTRL), ("z", pygame.KMOD_LCTRL), ("t", 0), ("y", pygame.KMOD_LCTRL)):
+        desk.key(key, mod)
+        desk.frames(3)
+    desk.key("y", pygame.KMOD_LCTRL)
+    desk.frames(3)
+    history = desk.window.edits.history
+    assert worn(desk.world) == [] and history.position == len(history.entries)
+
+
+def test_the_switch_gives_trails_to_what_moves_alone() -> None:
+    desk = Desk(empty_world(gravity=(0, 0)))
+    ball = circle(desk.world, (0, 0))
+    desk.window.trails.toggle(desk.world)
+    take(desk.world, desk.window, (ball,), Trail)
+    assert worn(desk.world) == [ball] and "T turns that off" in desk.window.notice
+    take(desk.world, desk.window, (ball,), Velocity)
+    desk.frames(2)
+    assert worn(desk.world) == []
 
 
 def test_a_trail_is_drawn_from_where_the_body_was_and_fades() -> None:

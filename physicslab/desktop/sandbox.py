@@ -199,6 +199,7 @@ class Sandbox:
     def _go_on_to(self, world: World) -> None:
         """Show another world; the one that is left can be had back if there are unsaved edits in it."""
         window, back, lesson = self.window, self.window.scenes.left, self.window.lesson
+        window.shows_cards &= window.scenes.starts_again  # they speak of the scene that is left
         window.hand.drop(self.world)
         window.edits.keep()
         if lesson is not None and lesson.world is world:

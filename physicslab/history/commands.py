@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, ClassVar, Protocol, Self, runtime_checkable
 
-from physicslab.components import Name
+from physicslab.components import Name, Trail, Transform
 from physicslab.ecs.component import COMPONENTS, Component, Field
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.text import shortened
@@ -91,6 +91,11 @@ class Remove:
         return self
 
 
+def _is_left_out(world: World, entity: int, kind: type[Component]) -> bool:
+    """Whether an edit is of a trail that is not there: a window gives and takes them without edits."""
+    return kind is Trail and world.has(entity, Transform) and not world.has(entity, Trail)
+
+
 @dataclass(frozen=True, slots=True)
 class SetField:
     """Give a field of an entity's component another value.
@@ -121,6 +126,8 @@ class SetField:
         """Set the field."""
         kind = _kind(self.component)
         spec = _field(kind, self.field)
+        if _is_left_out(world, self.entity, kind):
+            return self
         part = world.component(self.entity, kind)
         setattr(part, self.field, self.value)
         part.validate()
@@ -170,7 +177,7 @@ class RemoveComponent:
     def carry_out(self, world: World) -> RemoveComponent:
         """Take the component."""
         kind = _kind(self.component)
-        if world.discard(self.entity, kind) is None:
+        if world.discard(self.entity, kind) is None and not _is_left_out(world, self.entity, kind):
             raise KeyError(f"{world.label(self.entity)} has no {self.component}")
         return self
 

@@ -69,9 +69,10 @@ class Drawn:
         Prompts beside the cursor, by the number of points that were put down.
     remark : str
         Remark where gravity does not act between bodies.
-    by_recipe, stands, pours : bool
-        Whether it is made as the recipe for the next body says; whether it is put on what is just below; and
-        whether as many are made as fit around the way of the cursor while the button is held.
+    by_recipe, stands, pours, is_fixed : bool
+        Whether it is made as the recipe for the next body says; whether it is put on what is just below;
+        whether as many are made as fit around the way of the cursor while the button is held; and whether it
+        is fixed, and has no mass.
     """
 
     name: str
@@ -89,6 +90,7 @@ class Drawn:
     by_recipe: bool = False
     stands: bool = False
     pours: bool = False
+    is_fixed: bool = False
 
     @property
     def by_click(self) -> bool:

@@ -40,7 +40,7 @@ def open_lesson(world: World, window: Window, name: str) -> str:
         window.notify(reason, 8.0, failed=True)
         return reason
     window.lesson = opened
-    window.scenes.opening, window.scenes.shows_gallery, window.shows_cards = None, False, False
+    window.scenes.opening, window.scenes.shows_gallery = None, False
     window.scenes.tag = ""
     shown = frozenset(lesson.setup.shown) | ({"grid"} if window.grid else set())
     restore_desk(window, Desk(LEVELS[0], shown))

@@ -29,11 +29,11 @@ def begin_new(world: World, window: Window) -> None:
     """Show an empty scene with a floor, at t = 0 and paused; undo brings unsaved work back."""
     made = World()
     width, height = _FLOOR
-    box(made, (0.0, -0.5 * height), width=width, height=height, static=True, name="floor")
+    box(made, (0.0, -0.5 * height), width=width, height=height, static=True, restitution=1.0, name="floor")
     made.view = -6.0, -1.5, 6.0, 5.5
     made.synchronise()
     window.scenes.next_world, window.scenes.source = made, None
-    window.pace.paused = True
+    window.pace.paused, window.tool = True, "circle"
     window.notify("A new scene, at t = 0: Space lets time run", 5.0)
 
 

@@ -235,7 +235,8 @@ class WindowEvents:
             self._tool = TOOLS[self._window.tool]
             self._tool.press(world, self._window)
         elif event.button == pygame.BUTTON_RIGHT and self._window.lesson is None and not self._is_busy:
-            self._right = self._window.now
+            # Enter ends what is drawn while the button is held: letting that go opens no menu of it.
+            self._right = None if getattr(event, "by_key", False) else self._window.now
             if thing_at(world, self._window) is None:
                 drawing.press(world, self._window, BOX, pygame.BUTTON_RIGHT)
         by_tool = event.button == pygame.BUTTON_LEFT and self._tool is not None and self._tool.pans

@@ -87,6 +87,8 @@ class TrailSwitch:
             return
         moving = world.batch(Transform, Velocity).entities
         with_trail = world.batch(Transform, Velocity, Trail).entities
+        for entity in np.setdiff1d(world.batch(Trail).entities, with_trail).tolist():
+            world.discard(entity, Trail)  # it was fixed meanwhile, and would have none if it came again
         if len(moving) == len(with_trail):
             return
         for entity in np.setdiff1d(moving, with_trail).tolist():

@@ -218,30 +218,43 @@ class Windows:
         when = imgui.Cond_.always if again else self._when_put(name)
         internal = imgui.internal
         titled = self._titled(name)
-        known = internal.find_window_by_name(titled) or internal.find_window_settings_by_id(
-            internal.im_hash_str(titled)
-        )
-        if known is not None and when != imgui.Cond_.always:
-            return
+        before = internal.find_window_by_name(titled)
+        known = before or internal.find_window_settings_by_id(internal.im_hash_str(titled))
         world = internal.dock_builder_get_central_node(self._sides)
         fits = keeps_side and world is not None and world.size.x >= (least + LEAST_WORLD) * self.size
         side = "below" if self._is_narrow and not fits else side
+        if known is not None and when != imgui.Cond_.always:
+            if before is None or before.was_active or not before.dock_id or self._side_of(before) != side:
+                return
+            last = self._last_at(side, stacks=stacks)
+            if last is None or last.id_ == before.dock_id:
+                return
+            when = imgui.Cond_.always  # it comes back where others stand by now: as one more of them
         imgui.set_next_window_dock_id(self._node(side, share, least * self.size, stacks=stacks), when)
         self._put.add(name)
+
+    def _side_of(self, thing: imgui.internal.Window | imgui.internal.DockNode) -> str:
+        """Return at which side of the world something lies."""
+        world = imgui.internal.dock_builder_get_central_node(self._sides)
+        if thing.pos.y >= world.pos.y + world.size.y:
+            return "below"
+        return "right" if thing.pos.x > world.pos.x + 0.5 * world.size.x else "left"
+
+    def _last_at(self, side: str, *, stacks: bool) -> imgui.internal.DockNode | None:
+        """Return the place at a side that one more window shares; none where no window stands there."""
+        last = None
+        for window in imgui.get_current_context().windows:
+            node = imgui.internal.dock_builder_get_node(window.dock_id) if window.dock_id else None
+            if node is None or not (window.active or window.was_active) or self._side_of(node) != side:
+                continue
+            if last is None or _rank(node, stacks=stacks) >= _rank(last, stacks=stacks):
+                last = node
+        return last
 
     def _node(self, side: str, share: float, least: float, *, stacks: bool) -> int:
         """Return the place at a side for one more window; ``least`` is in pixels."""
         internal, is_below = imgui.internal, side == "below"
-        world = internal.dock_builder_get_central_node(self._sides)
-        x, y = world.pos.x + 0.5 * world.size.x, world.pos.y + world.size.y
-        last = None
-        for window in imgui.get_current_context().windows:
-            node = internal.dock_builder_get_node(window.dock_id) if window.dock_id else None
-            if node is None or not (window.active or window.was_active):
-                continue
-            lies = "below" if node.pos.y >= y else "right" if node.pos.x > x else "left"
-            if lies == side and (last is None or _rank(node, stacks=stacks) >= _rank(last, stacks=stacks)):
-                last = node
+        world, last = internal.dock_builder_get_central_node(self._sides), self._last_at(side, stacks=stacks)
         if last is not None and stacks:
             if (last.size.x if is_below else last.size.y) < 2.0 * least:
                 return last.id_
@@ -261,6 +274,9 @@ class Windows:
             self._raised[str(window.name)] = shows
             if window.dock_node is not None and window.dock_node.tab_bar is not None:
                 window.dock_node.tab_bar.next_selected_tab_id = window.tab_id
+                before = imgui.get_current_context().nav_window
+                if before is not None and before.dock_id == window.dock_id:
+                    imgui.set_window_focus()  # the one that was clicked last would stay in front
 
     @contextmanager
     def floating(

@@ -90,6 +90,9 @@ def take(world: World, window: Window, entities: Sequence[int], kind: type[Compo
     if kind is Transform:
         window.notify("Every body has a position: delete the body instead", 6.0, failed=True)
         return
+    if kind.__name__ == "Trail" and window.trails.on:
+        window.notify("All that moves leaves a trail now: T turns that off")
+        return
     window.edits.do_all(
         [RemoveComponent(entity, kind.__name__) for entity in entities if world.has(entity, kind)]
     )

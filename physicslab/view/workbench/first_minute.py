@@ -36,16 +36,10 @@ def learn(world: World, window: Window) -> None:
     window.scenes.tag, window.scenes.shows_gallery = LESSON_TAG, True
 
 
-def build(world: World, window: Window) -> None:
-    """Show an empty bench."""
-    play(world, window)
-    saving.begin_new(world, window)
-
-
 _CARDS = (
     ("Play", "this sandbox", "Throw, draw, stop time: Ctrl+Z takes everything back", play),
     ("Learn", "lessons, and scenes", "Predict, run, compare, explain: lessons of half an hour", learn),
-    ("Build", "an empty bench", "A floor and all the tools, at t = 0", build),
+    ("Build", "an empty bench", "A floor and all the tools, at t = 0", saving.begin_new),
 )
 
 

@@ -340,7 +340,7 @@ class Interface:
                     world_panel.build_world(ui, world, figures, window)
                     drawn = TOOLS[window.tool].draws
                     if drawn is not None and drawn.by_recipe:
-                        world_panel.build_recipe(ui, self._numbers, drawn.title.split()[-1], window)
+                        world_panel.build_recipe(ui, self._numbers, drawn, window)
                     if window.level == "Engineer":
                         world_panel.build_settings(ui, self._numbers, world, window)
                 imgui.end_disabled()

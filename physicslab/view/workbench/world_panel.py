@@ -19,6 +19,7 @@ from physicslab.languages.sentence import Sentence
 from physicslab.theme import Colour, Theme
 from physicslab.view.canvas.quantities import quantity, round_quantity, without_rounding
 from physicslab.view.controls.actions import gravity_in_words, has_gravity
+from physicslab.view.controls.drawing import Drawn
 from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.desk import LEVELS
@@ -379,15 +380,18 @@ _ZERO = {"size": "in turn"}
 """Words for a 0 that is no number: sizes that differ from one body to the next."""
 
 
-def build_recipe(ui: Ui, numbers: NumberFields, title: str, window: Window) -> None:
-    """Build a row for each property of what is made next, under a title."""
+def build_recipe(ui: Ui, numbers: NumberFields, drawn: Drawn, window: Window) -> None:
+    """Build a row for each property that what is drawn next has by the recipe, under its title."""
     ui.rule(0.2)
-    ui.heading(f"Next {title.lower()}")
+    ui.heading(f"Next {drawn.title.split()[-1].lower()}")
+    has = {"size": bool(drawn.per_size) or drawn.pours, "density": not drawn.is_fixed}
     numbers.label(ui, "new material", "Made of", _MADE_OF)
     now = window.recipe.material or _UNSAID
     if (chosen := ui.choice("new material", now, (*SUBSTANCES, _UNSAID))) != now:
         window.do_next(lambda _, window: window.put("recipe", window.recipe.of(chosen)))
     for spec in Recipe.FIELDS:
+        if not has.get(spec.name, True):
+            continue
 
         def commit(new: float, spec: Field = spec) -> None:
             spec.check(new)
