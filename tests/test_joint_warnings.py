@@ -8,11 +8,12 @@ import pytest
 
 from physicslab import World, load_scene, save_scene
 from physicslab.components import Mass, Pin, Rod, Shape, Slot, Transform, Velocity, Weld
-from physicslab.diagnostics.energy import measure_account
+from physicslab.diagnostics.energy import measure_account, measure_energy
 from physicslab.diagnostics.joints import joint_states
 from physicslab.diagnostics.warnings import find_warnings
 from physicslab.ecs.component import InvalidValue
-from physicslab.ecs.config import SimulationConfig
+from physicslab.ecs.config import PhysicsConfig, SimulationConfig
+from physicslab.ecs.vector import Vector2
 from physicslab.files.assignments import assign
 from physicslab.files.checks import SceneError
 from physicslab.prefabs import box, circle
@@ -275,3 +276,25 @@ def test_a_body_that_stands_with_a_far_heavier_one_welded_on_is_named(
     advices = [one for one in told(world) if "welded on" in one]
     assert len(advices) == warns
     assert all("mass ratio): 1e+04" in one and 'contacts = "rigid"' in one for one in advices)
+
+
+@pytest.mark.parametrize("contacts", ["soft", "rigid"])
+def test_what_soft_joints_take_of_bodies_that_bounce_is_told(contacts: str) -> None:
+    """Eight elastic pairs of discs on rods fly at one of their own, across the rods."""
+    world = World(physics=PhysicsConfig(gravity=Vector2()), simulation=SimulationConfig(contacts=contacts))
+    for n in range(8):
+        for x, vx in ((-1.0, 1.0), (1.0, -1.0)):
+            low = 3.0 * n if x < 0.0 else 3.0 * n + 0.4
+            one, other = (
+                circle(world, (x, y), radius=0.15, velocity=(vx, 0.0), restitution=1.0, friction=0.0)
+                for y in (low, low + 0.5)
+            )
+            world.spawn(Rod(one, other))
+    before = measure_energy(world).total
+    world.run(seconds=1.5)
+    kept = measure_energy(world).total / before
+    assert kept == pytest.approx(1.0, rel=1e-9) if contacts == "rigid" else kept < 0.95
+    warned = [advice for advice in find_warnings(world) if "without its joints" in str(advice)]
+    assert bool(warned) == (contacts == "soft")
+    if warned:
+        assert warned[0].setting == 'simulation.contacts = "rigid"'

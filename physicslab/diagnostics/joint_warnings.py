@@ -5,7 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from physicslab.components import Held, Rod, Transform
+from physicslab.components import Held, Material, Rod, Transform
+from physicslab.diagnostics.contact_warnings import contact_graph, rigid_setting
+from physicslab.diagnostics.energy import measure_account, measure_kinetic
 from physicslab.diagnostics.step_warnings import ModelWarning
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.joints.blocks import ACTIVE, GIVES, ROW, STATE
@@ -30,6 +32,9 @@ STRETCH_LIMIT = 0.01
 LEVERAGE_LIMIT = 1e6
 """Mass times arm squared over the moment of inertia up to which the equations of joints keep seven digits of
 the energy and more; each tenfold beyond costs four, until a row is taken for that of a flat linkage."""
+LOST_LIMIT = 0.1
+"""Share of the energy exchanged that joints may have taken where bodies that they hold bounce: elastic discs
+in pairs on rods lose half of theirs in a second, and nothing where contacts are rigid."""
 _MOST_ROWS, _TURNS = 100, 12
 """Number of rows up to which it is looked for contradictions, and how often it is tried to close them."""
 
@@ -47,6 +52,7 @@ def joint_warnings(world: World) -> Iterator[ModelWarning]:
     if not moves.any():
         return
     yield from _light_to_turn(world)
+    yield from _bounces(world)
     figures, dependent = figures_of(world), _dependent(world) & _acts(world)
     worst = int(np.argmax(np.where(moves, figures.stretch / figures.size, -1.0)))
     stretch, limit = float(figures.stretch[worst]), STRETCH_LIMIT * float(figures.size[worst])
@@ -115,6 +121,28 @@ def _light_to_turn(world: World) -> Iterator[ModelWarning]:
         setting = f"Mass.inertia = {1.01 * leverage[worst] / (LEVERAGE_LIMIT * inertia[worst]):.3g}"
         entity = int(world.entity_index.entities[ends[worst]])
         yield ModelWarning.about(world, entity, what, float(leverage[worst]), "", LEVERAGE_LIMIT, setting)
+
+
+def _bounces(world: World) -> Iterator[ModelWarning]:
+    """Yield the energy that joints have taken where impacts bounce bodies without their joints.
+
+    Soft joints act after the impacts of a substep, and take what those have left along them.
+    """
+    if not (isinstance(world.stepper, Soft) and world.collisions):
+        return
+    joints = world.joints
+    holds = joints.role[rows_of_terms(world)] == Role.HOLD
+    ends = np.unique(np.concatenate((joints.a[holds], joints.b[holds])))
+    bouncing = ends[
+        (world.table(Material)["restitution"][ends] > 0.0) & (world.bodies.inverse_mass[ends] > 0.0)
+    ]
+    changes = measure_account(world).energy
+    lost, exchanged = -changes["joints"], sum(measure_kinetic(world)) + sum(map(abs, changes.values()))
+    limit = LOST_LIMIT * exchanged
+    if len(bouncing) and lost > limit:
+        setting = rigid_setting(world, len(contact_graph(world).touching))
+        body = int(world.entity_index.entities[bouncing[0]])
+        yield ModelWarning.about(world, body, sentence("bounces_alone"), lost, "J", limit, setting)
 
 
 def _contradict(world: World, limit: float) -> bool:

@@ -234,6 +234,7 @@ SENTENCES = {
     "contradicts": "contradicts other joints: not all can be kept",
     "does_not_hold": "does not hold what it joins",
     "gives_way": "gives way as a spring does: more joints hold each other than are solved at once",
+    "bounces_alone": "bounces as if without its joints, which take the energy that this leaves along them",
     "redundant": "holds what other joints hold already: how they share the load is not determined (rows)",
     "blocked_motor": "has a motor that does nothing, as other joints hold what it would move",
     "mass_at_one_end": "a Mass and a Velocity at one end",
