@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from physicslab.diagnostics.impact_table import read_impacts
 from physicslab.ensembles import rollout
 from physicslab.ensembles.runs import task_of
 from physicslab.ensembles.task import Runner
@@ -82,9 +83,9 @@ def made(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     run = rollout.Rollout.run
 
     def counted(*arguments: Any) -> Any:
-        ends, done = run(*arguments)
+        ends, impacts, done = run(*arguments)
         found.append(int(np.count_nonzero(done)))
-        return ends, done
+        return ends, impacts, done
 
     monkeypatch.setattr(rollout.Rollout, "run", counted)
     return found
@@ -126,7 +127,31 @@ def test_a_block_goes_on_where_one_row_cannot_be(made: list[int]) -> None:
     assert "no real number" in block.failures[undefined[0]]
 
 
-@pytest.mark.parametrize("measure", ["max(ball.y)", "first_impact.time", "collisions", "account.impacts"])
+@pytest.mark.parametrize("case", ["drop", "rest of a step", "box", "some come to rest", "two that may meet"])
+def test_impacts_of_rows_made_together_have_the_bits_of_fresh_worlds(case: str, made: list[int]) -> None:
+    scene, space, seconds = (TOGETHER | PARTLY)[case]
+    columns = ("time", "x", "speed", "energy_lost")
+    ends = [f"{which}_impact.{name}" for which in ("first", "last") for name in columns]
+    measure = {name: name for name in ("collisions", *ends)}
+    task = task_of(scene, space, samples=12, seed=4, measure=measure, seconds=seconds)
+    runner = Runner(task)
+    block = runner.block(0, len(task.space))
+    assert (made == [len(task.space)]) == (case in TOGETHER)
+    for row, values in enumerate(block.values):
+        world = task.world(row)
+        world.run(seconds=seconds)
+        found = world.contacts.impacts
+        assert values[0] == world.collisions == len(found)
+        if not len(found):
+            assert np.isnan(values[1:]).all()
+            continue
+        speeds = -read_impacts(found).vn_before, read_impacts(found).energy_lost
+        for k, number in ((0, 0), (1, -1)):
+            true = [found["time"][number], found["x"][number], *(each[number] for each in speeds)]
+            assert values[1 + 4 * k : 5 + 4 * k].tolist() == true, row
+
+
+@pytest.mark.parametrize("measure", ["max(ball.y)", "account.impacts"])
 def test_a_measure_of_more_than_the_end_is_made_row_by_row(measure: str, made: list[int]) -> None:
     task = task_of("drop", {E: [0.5, 0.9]}, measure={"it": measure, "y": "ball.y"}, seconds=1.2)
     block = Runner(task).block(0, 2)

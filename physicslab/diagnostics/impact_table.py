@@ -32,6 +32,10 @@ LAWS = {NEWTON: "Newton", ENERGETIC: "Stronge", LOWERED: "Newton, restitution lo
 """The laws of :mod:`physicslab.kernels.constraint.impact_law` in words."""
 NO_IMPACTS = np.zeros(0, IMPACT)
 """An empty log, with all its columns."""
+_NEITHER = np.zeros(2, IMPACT)
+for _name in IMPACT.names or ():
+    if IMPACT[_name].kind == "f":
+        _NEITHER[_name] = np.nan
 _STICKS = 1e-9
 """Share of the speeds before an impact up to which the sliding after it is treated as zero."""
 _GROWS_FROM = 0.25
@@ -128,6 +132,18 @@ def read_impacts(records: NDArray[Any]) -> ImpactColumns:
         vn_before, vn_after, vt_before, vt_after, e_found, none & (records["friction"] > 0.0),
         0.0 - 0.5 * work,
     )  # fmt: skip
+
+
+def first_and_last(state: State, since: int) -> NDArray[Any]:
+    """Return the first impact from number ``since`` on and the last (2,): of NaN where there is none.
+
+    There is none either where others have taken its place in the log.
+    """
+    contacts, found = state.contacts, _NEITHER.copy()
+    for place, number in enumerate((since, contacts.logged - 1)):
+        if max(since, contacts.logged - len(contacts.log)) <= number < contacts.logged:
+            found[place] = contacts.log[number % len(contacts.log)]
+    return found
 
 
 def since_last(records: NDArray[Any], last: LastTimes) -> Floats:

@@ -12,12 +12,16 @@ from __future__ import annotations
 import ast
 import math
 import pickle
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.components.quantities import ENERGY_CAUSES
 from physicslab.diagnostics.figures import COLLISIONS, FUNCTIONS, Figures, Record, quantity_of, quoted
-from physicslab.diagnostics.impact_table import read_impacts
+from physicslab.diagnostics.impact_table import first_and_last, read_impacts
 from physicslab.ecs.quantity_text import (
     Expression,
     InvalidText,
@@ -121,22 +125,21 @@ class _Canonical(ast.NodeTransformer):
         return ast.Name(name)
 
 
+def _impact_columns(ends: NDArray[Any]) -> dict[str, list[float]]:
+    """Return the quantities of the first and the last impact (n, 2) of runs, by their names."""
+    found: dict[str, list[float]] = {}
+    for which, records in zip(_WHICH, ends.T, strict=True):
+        derived = read_impacts(records)
+        columns = (records["time"], records["x"], records["y"], -derived.vn_before, derived.energy_lost)
+        found |= {f"{which}.{name}": each.tolist() for name, each in zip(_IMPACTS, columns, strict=True)}
+    return found
+
+
 class _Impacts:
     """The first and the last impact of a run, as names of expressions."""
 
-    def __init__(self, world: World | None, since: int) -> None:
-        self._found: dict[str, float] = {}
-        contacts = None if world is None else world.contacts
-        if contacts is None or contacts.logged <= since:
-            return
-        for which, number in zip(_WHICH, (since, contacts.logged - 1), strict=True):
-            if number < contacts.logged - len(contacts.log):
-                continue  # overwritten by later ones
-            record = contacts.log[[number % len(contacts.log)]]
-            found = read_impacts(record)
-            columns = (record["time"], record["x"], record["y"], -found.vn_before, found.energy_lost)
-            for name, column in zip(_IMPACTS, columns, strict=True):
-                self._found[f"{which}.{name}"] = float(column[0])
+    def __init__(self, found: Mapping[str, float]) -> None:
+        self._found = found
 
     def named(self, name: str) -> Quantity | None:
         which, _, column = name.partition(".")
@@ -162,6 +165,8 @@ class Measures:
     ----------
     needs_path : bool
         Whether one of them looks at the whole run, which is sampled then after each step.
+    of_impacts : bool
+        Whether one is of the first or the last impact.
 
     Raises
     ------
@@ -188,8 +193,8 @@ class Measures:
         self._end = _quantities(self._expressions[name] for name in self._expressions.keys() - path)
         self._on_path = path
         self._since, named = 0, (name for one in self._expressions.values() for name in one.names())
-        self._impacts = any(name.startswith(_WHICH) for name in named)
-        world.contacts.read |= self._impacts
+        self.of_impacts = any(name.startswith(_WHICH) for name in named)
+        world.contacts.read |= self.of_impacts
         self.units = {name: self._tried(name) for name in self._names}
         self._record, self._ends = Record(world, self._path), Record(world, self._end)
 
@@ -211,8 +216,8 @@ class Measures:
 
     @property
     def read_at_end(self) -> list[tuple[int, str]] | None:
-        """Entities and what is read of their motion at the end, where no measure needs anything else."""
-        return None if self._functions or self.needs_path or self._impacts else self._motion(self._ends)
+        """Entities and what is read of their motion at the end, where no measure needs more than impacts."""
+        return None if self._functions or self.needs_path else self._motion(self._ends)
 
     def _motion(self, record: Record) -> list[tuple[int, str]] | None:
         """Return the entities that move, and what of their motion, that are all of a record's columns."""
@@ -220,6 +225,9 @@ class Measures:
         found: list[tuple[int, str]] = []
         for name in record.columns:
             body, _, quantity = name.rpartition(".")
+            if name == COLLISIONS and record is self._ends:
+                found.append((0, quantity))
+                continue
             if quantity not in MOTION or body not in ids:
                 return None
             if not all(self._world.has(ids[body], kind) for kind in (Transform, Velocity)):
@@ -234,16 +242,31 @@ class Measures:
                 run.times.tolist(), [run.columns[name].tolist() for name in self._record.columns]
             )
 
-    def values_at(self, time: float, read: Sequence[float]) -> tuple[list[float], str]:
-        """Return the measures of a run that ended at a time [s], where this was read, and why one is NaN."""
-        self._ends.take([time], [[value] for value in read])
-        return self._evaluated(_Impacts(None, 0))
+    def values_at(
+        self, time: float, ends: NDArray[np.float64], impacts: NDArray[Any]
+    ) -> Iterator[tuple[list[float], str]]:
+        """Yield the measures of runs that ended at a time [s], and why one is NaN.
+
+        Parameters
+        ----------
+        time : float
+            The time of the world.
+        ends : float64 array (n, quantities)
+            Readings at the end, in the order of ``read_at_end``.
+        impacts : array of IMPACT (n, 2)
+            The first and the last of each run.
+        """
+        columns = _impact_columns(impacts) if self.of_impacts else {}
+        for number, read in enumerate(ends.tolist()):
+            self._ends.take([time], [[value] for value in read])
+            yield self._evaluated(_Impacts({name: column[number] for name, column in columns.items()}))
 
     def values(self) -> tuple[list[float], str]:
         """Return the measures of the run that has ended [SI], and why one of them is NaN."""
         self._ends.clear()
         self._ends.add()
-        return self._evaluated(_Impacts(self._world if self._impacts else None, self._since))
+        found = _impact_columns(first_and_last(self._world, self._since)[None]) if self.of_impacts else {}
+        return self._evaluated(_Impacts({name: value for name, (value,) in found.items()}))
 
     def _evaluated(self, impacts: _Impacts) -> tuple[list[float], str]:
         path, end = Figures(self._record, impacts), Figures(self._ends, impacts)
@@ -270,7 +293,7 @@ class Measures:
         record.columns = {column: [1.0] * _TRIAL for column in record.columns}
         record.end = record.times[-1]
         try:
-            quantity = expression.value(Figures(record, _Impacts(None, 0)))
+            quantity = expression.value(Figures(record, _Impacts({})))
         except Undefined:
             return ""
         except InvalidText as error:

@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
 from physicslab.contacts.arguments import motion_of
+from physicslab.diagnostics.impact_table import first_and_last
 from physicslab.ensembles.space import Values
 from physicslab.files.places import Place
+from physicslab.kernels.records import IMPACT
 from physicslab.state.masses import derive_masses, quiet
 from physicslab.stepping.event_driven import EventDriven
 from physicslab.stepping.flow import Flow
@@ -46,9 +48,11 @@ class Rollout:
     places : mapping of str to Place
         In what they differ, by column.
     read : sequence of tuple of int and str
-        Readings at the end: an entity that moves, and a name of ``MOTION``.
+        Readings at the end: an entity that moves, and a name of ``MOTION``; or the number of collisions.
     chooses_the_same : callable
         Tells whether the world, as it is then, is stepped by the systems and the method that it has.
+    of_impacts : bool
+        Whether the first and the last impact are read too.
     """
 
     def __init__(
@@ -57,15 +61,16 @@ class Rollout:
         places: Mapping[str, Place],
         read: Sequence[tuple[int, str]],
         chooses_the_same: Callable[[], bool],
+        of_impacts: bool,
     ) -> None:
-        self._world, self._places, self._read = world, places, read
+        self._world, self._places, self._read, self._of_impacts = world, places, read, of_impacts
         self._chooses_the_same = chooses_the_same
         self._fields = {(place.kind.__name__, place.spec.name) for place in places.values()}
 
     @quiet
     def run(
         self, columns: Mapping[str, Values], length: RunLength
-    ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    ) -> tuple[NDArray[np.float64], NDArray[Any], NDArray[np.bool_]]:
         """Make those of the runs that can be made so, from where :meth:`World.reset` leads.
 
         Parameters
@@ -79,25 +84,27 @@ class Rollout:
         -------
         ends : float64 array (n, quantities)
             The readings at the end of each [SI].
+        impacts : array of IMPACT (n, 2)
+            The first and the last impact of each, where they are read.
         made : bool array (n,)
             Which runs were made.
         """
         given = np.array([columns[name] for name in self._places], np.float64)
         ends, made = np.full((given.shape[1], len(self._read)), np.nan), self._allowed(given)
-        world = self._world
+        impacts, world = np.zeros((len(made), 2), IMPACT), self._world
         world.reset()
         world.synchronise()
         stepper = world.stepper_for(length.dt)
         if not made.any() or not isinstance(stepper, Repeatable) or not self._repeats(stepper, length):
             made[:] = False
-            return ends, made
+            return ends, impacts, made
         world.compile(stepper.kernels)
         world.steppers.use(stepper)
-        start = world.time
+        start, collisions, logged = world.time, world.collisions, world.contacts.logged
         with world.active():
-            self._run_each(stepper, _stretches(stepper, length, start), given.T.tolist(), ends, made)
-        world.time = start
-        return ends, made
+            self._run_each(stepper, _stretches(stepper, length, start), given.T.tolist(), ends, impacts, made)
+        world.time, world.collisions, world.contacts.logged = start, collisions, logged
+        return ends, impacts, made
 
     def _repeats(self, stepper: Repeatable, length: RunLength) -> bool:
         """Whether runs of a length are calls of this stepper, from the moment at which the world is."""
@@ -123,6 +130,7 @@ class Rollout:
         stretches: Sequence[Stretch],
         given: list[list[float]],
         ends: NDArray[np.float64],
+        impacts: NDArray[Any],
         made: NDArray[np.bool_],
     ) -> None:
         """Make the runs of rows that are allowed, and note which could not be made."""
@@ -134,8 +142,12 @@ class Rollout:
             (world.table(place.kind)[place.spec.name], _index(row_of[place.entity], place.part))
             for place in self._places.values()
         ]
-        read = []
+        read: list[tuple[NDArray[Any], Any]] = []
+        counted, logged = np.zeros(1), world.contacts.logged
         for entity, name in self._read:
+            if name not in MOTION:
+                read.append((counted, 0))
+                continue
             kind, field, part = MOTION[name]
             read.append((world.table(kind)[field], _index(row_of[entity], part)))
         weighs = ("Mass", "mass") in self._fields
@@ -149,6 +161,9 @@ class Rollout:
                 derive_masses(world)
             made[row] = self._chooses_the_same() and stepper.holds(world) and run()
             if made[row]:
+                counted[0] = world.collisions
+                if self._of_impacts:
+                    impacts[row] = first_and_last(world, logged)
                 ends[row] = [column[index] for column, index in read]
 
 

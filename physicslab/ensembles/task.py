@@ -175,7 +175,9 @@ class Runner:
         self._rollout: Rollout | None = None
         rolls = self._in_place and self._alone and not laws and task.until is None
         if rolls and self._places and read is not None:
-            self._rollout = Rollout(world, self._places, read, self._chooses_the_same)
+            self._rollout = Rollout(
+                world, self._places, read, self._chooses_the_same, self._measures.of_impacts
+            )
 
     def block(self, first: int, last: int) -> Block:
         """Run the rows from ``first`` up to ``last``."""
@@ -199,10 +201,10 @@ class Runner:
             return np.zeros(len(block.wall_s), np.bool_)
         began, world = time.perf_counter(), self._world
         length = run_length(world, self.task.seconds, self.task.steps)
-        ends, made = self._rollout.run(columns, length)
-        end = world.time + length.seconds
-        for number in np.flatnonzero(made).tolist():
-            block.values[number], why = self._measures.values_at(end, ends[number].tolist())
+        ends, impacts, made = self._rollout.run(columns, length)
+        found = self._measures.values_at(world.time + length.seconds, ends[made], impacts[made])
+        for number, (values, why) in zip(np.flatnonzero(made).tolist(), found, strict=True):
+            block.values[number] = values
             block.note(number, why)
         block.wall_s[made] = (time.perf_counter() - began) / max(1, int(made.sum()))
         return made

@@ -10,13 +10,16 @@ from physicslab.components import Mass, Transform, Velocity
 from physicslab.ecs.sentences import sentence
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, GRAVITY, PX, PY
 from physicslab.kernels.forces.budget import ACCOUNTS
-from physicslab.kernels.ode.kepler import kepler_change
+from physicslab.kernels.ode.kepler import move_two
 from physicslab.state.state import State
 
 type Motion = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Positions [m] and velocities [m/s] of bodies, (n, 2) each."""
-_HEAD_ON = 1e-12
-"""Half-width of an orbit, as a share of the distance, below which the two fall straight into each other."""
+_HEAD_ON = 1e-16
+"""Half-width of an orbit, as a share of the distance, below which the two fall straight into each other: the
+closest passage is then half of this."""
+_LARGEST = 1e60
+"""The largest distance, speed and attraction of which powers have all digits, and one over the smallest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,18 +32,18 @@ class TwoBodies:
         The rows that attract each other.
     moves : bool array (2,)
         Which of them move: n of the two.
-    share : float64 array (2,)
-        The share of each in the mass of both; a fixed body counts for all of it.
-    mu : float
-        G times the mass that attracts [m^3/s^2].
+    weight : float64 array (2,)
+        Their masses [kg]; 0 of one that moves about a fixed one.
+    constant : float
+        G [m^3/(kg s^2)].
     what : str
         The motion that it covers, in words.
     """
 
     pair: NDArray[np.int64]
     moves: NDArray[np.bool_]
-    share: NDArray[np.float64]
-    mu: float
+    weight: NDArray[np.float64]
+    constant: float
     what: str
 
     @property
@@ -49,23 +52,25 @@ class TwoBodies:
         return self.pair[self.moves]
 
     def motion(self, state: State) -> Motion:
-        """Return copies of the present positions [m] and velocities [m/s] of both (2, 2)."""
-        linear = state.table(Velocity)["linear"][self.pair]
-        linear[~self.moves] = 0.0
-        return state.table(Transform)["position"][self.pair], linear
+        """Return the present positions [m] and velocities [m/s] of both, and remainders of zero (4, 2)."""
+        places, rates = np.zeros((4, 2)), np.zeros((4, 2))
+        places[:2] = state.table(Transform)["position"][self.pair]
+        rates[:2][self.moves] = state.table(Velocity)["linear"][self.rows]
+        return places, rates
 
-    def change(self, start: Motion, t: float) -> Motion:
-        """Return the changes of positions [m] and velocities [m/s] of what moves (n, 2) in a time t [s]."""
-        position, velocity = start
-        moved, gained = np.zeros(2), np.zeros(2)
-        kepler_change(position[1] - position[0], velocity[1] - velocity[0], self.mu, t, moved, gained)
-        arms = np.array((-self.share[1], self.share[0]))[self.moves, None]
-        return self.share @ velocity * t + arms * moved, arms * gained
+    def follow(self, motion: Motion, spans: NDArray[np.float64]) -> Motion:
+        """Move on both and their remainders (4, 2), in place, through spans of time [s] (k,).
+
+        Return positions [m] and velocities [m/s] of what moves after each (k, n, 2).
+        """
+        q, v = np.zeros((len(spans), 4)), np.zeros((len(spans), 4))
+        move_two(*motion, self.weight, self.constant, spans, q, v)
+        return q.reshape(-1, 2, 2)[:, self.moves], v.reshape(-1, 2, 2)[:, self.moves]
 
     def after(self, start: Motion, t: float) -> Motion:
         """Return positions [m] and velocities [m/s] of what moves (n, 2) a time t [s] after a start."""
-        moved, gained = self.change(start, t)
-        return start[0][self.moves] + moved, start[1][self.moves] + gained
+        (position,), (velocity,) = self.follow((start[0].copy(), start[1].copy()), np.array((t,)))
+        return position, velocity
 
     def given(self, state: State, t: float) -> dict[int, NDArray[np.float64]]:
         """Return what comes in by a body that is fixed within a time t [s].
@@ -75,10 +80,21 @@ class TwoBodies:
         """
         row = np.zeros(ACCOUNTS)
         if not self.moves.all():
-            start, other = self.motion(state), int(self.moves[0])
-            row[[PX, PY]] = self.change(start, t)[1][0] * state.table(Mass)["mass"][self.pair[1 - other]]
-            row[ANGULAR_MOMENTUM] = start[0][other, 0] * row[PY] - start[0][other, 1] * row[PX]
+            start, fixed = self.motion(state), int(self.moves[0])
+            gained = self.after(start, t)[1][0] - start[1][1 - fixed]
+            row[[PX, PY]] = gained * state.table(Mass)["mass"][self.pair[1 - fixed]]
+            row[ANGULAR_MOMENTUM] = start[0][fixed, 0] * row[PY] - start[0][fixed, 1] * row[PX]
         return {GRAVITY: row}
+
+    def holds(self, state: State) -> bool:
+        """Whether it does: the two do not fall straight into each other, and numbers are of usual size."""
+        places, rates = self.motion(state)
+        (x, y), (u, v) = (places[1] - places[0]).tolist(), (rates[1] - rates[0]).tolist()
+        mu, r, speed = self.constant * float(self.weight.sum()), math.hypot(x, y), math.hypot(u, v)
+        if not (min(mu, r) > 1.0 / _LARGEST and max(mu, r, speed) < _LARGEST):
+            return False
+        leaves = x * u + y * v >= 0.0 and speed * speed * r >= 2.0 * mu
+        return leaves or abs(x * v - y * u) > math.sqrt(_HEAD_ON * mu * r)
 
 
 def two_bodies(state: State) -> TwoBodies | None:
@@ -90,17 +106,13 @@ def two_bodies(state: State) -> TwoBodies | None:
     physics, pair, speeds = state.physics, state.batch(Transform, Mass).rows, state.table(Velocity)
     if len(pair) != 2 or physics.softening or physics.linear_damping or physics.G <= 0.0:
         return None
-    moves, mass = speeds.present[pair], state.table(Mass)["mass"][pair]
+    moves, weight = speeds.present[pair], state.table(Mass)["mass"][pair]
     count = np.count_nonzero(moves)
     if not count or count != np.count_nonzero(speeds.present):
         return None
     if 0.0 in state.bodies.inverse_mass[pair][moves]:
         return None
-    one, other = mass.tolist()
-    pulls, share = one + other, mass / (one + other)
     if count == 1:
-        pulls, share = (other if moves[0] else one), (~moves).astype(np.float64)
-    form = TwoBodies(pair, moves, share, physics.G * pulls, sentence("attraction_of_two"))
-    position, velocity = form.motion(state)
-    (x, y), (u, v) = (position[1] - position[0]).tolist(), (velocity[1] - velocity[0]).tolist()
-    return form if abs(x * v - y * u) > math.sqrt(_HEAD_ON * form.mu) * math.sqrt(math.hypot(x, y)) else None
+        weight[moves] = 0.0
+    form = TwoBodies(pair, moves, weight, physics.G, sentence("attraction_of_two"))
+    return form if form.holds(state) else None

@@ -238,17 +238,23 @@ class EventDriven(Stepper):
         arrays = contacts.manifolds[: contacts.recorded], contacts.points[: 2 * contacts.recorded]
         records = [array.view(np.uint8) for array in arrays]
         blank = [record.copy() for record in records]
-        fixed, nothing, logged = self._arguments(state), np.zeros((0, 0)), contacts.logged
+        fixed, nothing = self._arguments(state), np.zeros((0, 0))
+        collisions, logged = state.collisions, contacts.logged
 
         def make() -> bool:
             self.forget()
             self._take_masses(state)
             for record, then in zip(records, blank, strict=True):
                 record[:] = then
+            count = 0
             for began, h, steps in stretches:
-                made, _, _, _ = _run_events(*fixed, logged, began, h, steps, moving, steps + 1, 1, nothing)
+                made, impacts, _, _ = _run_events(
+                    *fixed, logged + count, began, h, steps, moving, steps + 1, 1, nothing
+                )
+                count += impacts
                 if made < steps:
                     return False
+            state.collisions, contacts.logged = collisions + count, logged + count
             try:
                 check_finite(state, state.time)
             except Diverged:

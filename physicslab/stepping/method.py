@@ -16,7 +16,6 @@ from physicslab.integrators.rk4 import RK4
 from physicslab.integrators.spring_splitting import SPRING_SPLITTING
 from physicslab.languages.sentence import Sentence
 from physicslab.ode.closed_form import NoClosedForm, closed_form
-from physicslab.ode.kepler import TwoBodies
 from physicslab.state.packed import spring_rates
 from physicslab.state.state import State
 from physicslab.stepping.forces import MAX_STEPS, fastest_rate, steps_needed
@@ -73,10 +72,8 @@ def best_method(state: State, schedule: Schedule) -> StepPlan:
     if python:
         return _in_python(state, schedule)
     try:
-        form = closed_form(state, schedule.smooth_forces)
-        why: str = form.what
-        if not isinstance(form, TwoBodies):  # which loses digits in a close passage that dop853 keeps
-            return StepPlan(EXACT, sentence("closed_form", forces=why), 1, smooth=True)
+        forces_alone = closed_form(state, schedule.smooth_forces).what
+        return StepPlan(EXACT, sentence("closed_form", forces=forces_alone), 1, smooth=True)
     except NoClosedForm as error:
         (why,) = error.args
     attractors = max((force.attractors for force in forces), default=0)

@@ -108,7 +108,7 @@ class Repeatable(Advancer, Protocol):
 
         It returns whether it has made all of them: others are to make some where it has not. What is kept of
         contacts, and what rounding has left out, is that of the moment at which this method is called, before
-        the first of them.
+        the first of them. Impacts are logged and counted from there on, in each.
         """
 
 

@@ -1,6 +1,11 @@
-"""Sums that keep what rounding leaves out."""
+"""Sums that keep what rounding leaves out, and arithmetic with twice the digits."""
 
-from physicslab.kernels import Numbers, inlined, kernel
+import math
+
+from physicslab.kernels import inlined
+
+type Pair = tuple[float, float]
+"""A number and the remainder that it cannot hold: twice the digits."""
 
 
 @inlined
@@ -13,13 +18,6 @@ def add(value: float, low: float, change: float) -> tuple[float, float]:
     total = value + change
     part = total - value
     return total, (value - (total - part)) + (change - part)
-
-
-@kernel
-def add_all(value: Numbers, low: Numbers, change: Numbers) -> None:
-    """Add changes (n,) to numbers (n,) with remainders (n,), in place."""
-    for i in range(len(change)):
-        value[i], low[i] = add(value[i], low[i], change[i])
 
 
 @inlined
@@ -44,3 +42,44 @@ def multiply(x: float, y: float) -> tuple[float, float]:
     low_x, low_y = x - high_x, y - high_y
     rest = ((high_x * high_y - product) + high_x * low_y + low_x * high_y) + low_x * low_y
     return product, rest
+
+
+@inlined
+def plus(a: Pair, b: Pair) -> Pair:
+    """Return a sum to twice the digits of the larger term."""
+    return add_pair(a[0], a[1], b[0], b[1])
+
+
+@inlined
+def times(a: Pair, b: Pair) -> Pair:
+    """Return a product to twice the digits."""
+    high, low = multiply(a[0], b[0])
+    low += a[0] * b[1] + a[1] * b[0]
+    total = high + low
+    return total, low - (total - high)
+
+
+@inlined
+def scaled(a: Pair, factor: float) -> Pair:
+    """Return a number by a power of two, which is exact."""
+    return a[0] * factor, a[1] * factor
+
+
+@inlined
+def over(a: Pair, b: Pair) -> Pair:
+    """Return a quotient to twice the digits."""
+    share = a[0] / b[0]
+    high, low = times(b, (share, 0.0))
+    rest = ((a[0] - high) - low + a[1]) / b[0]
+    total = share + rest
+    return total, rest - (total - share)
+
+
+@inlined
+def root(a: Pair) -> Pair:
+    """Return the square root of a number above 0 to twice the digits."""
+    found = math.sqrt(a[0])
+    high, low = multiply(found, found)
+    rest = 0.5 * ((a[0] - high) - low + a[1]) / found
+    total = found + rest
+    return total, rest - (total - found)
