@@ -18,7 +18,9 @@ from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.files.scene import load_scene
 from physicslab.integrators.leapfrog import LEAPFROG
 from physicslab.kernels.geometry.contact import AS_FOUND
+from physicslab.kernels.near_counts import FOLLOWED
 from physicslab.lab.bench.catalogue import SCENES as BENCH
+from physicslab.lab.bench.random_scenes import random_scene
 from physicslab.prefabs import box, circle
 from physicslab.scenes import SCENES
 from physicslab.state import masses
@@ -173,6 +175,19 @@ def test_it_leaves_for_the_blocks_in_the_middle_of_a_step() -> None:
     stepped.run(steps=STEPS)
     ran.run(steps=STEPS)
     assert ran.contacts.wide.filled > 0
+    assert_alike(stepped, ran)
+
+
+@pytest.mark.parametrize("seed", [(163, 3), (163, 14), (162, 7)])
+def test_pairs_that_stay_apart_in_a_step_are_passed_over_with_the_same_bits(
+    seed: tuple[int, int],
+) -> None:
+    """Where a system looks at substeps, all pairs are looked at in each of them."""
+    stepped, ran = watched(random_scene(*seed)[0].build()), random_scene(*seed)[0].build()
+    stepped.run(steps=90)
+    ran.run(steps=90)
+    assert ran.contacts.counts[FOLLOWED] > 0
+    assert stepped.contacts.counts[FOLLOWED] == 0
     assert_alike(stepped, ran)
 
 

@@ -373,6 +373,8 @@ def joints_fields_and_chains() -> None:
     world.run(steps=2)
     world.simulation = replace(world.simulation, integrator="dop853")
     world.record(4.0 * world.simulation.dt)
+    for name in ("drop", "sandbox"):
+        load_scene(name).record(4.0 * world.simulation.dt)
 
 
 def lone_sweeps() -> None:

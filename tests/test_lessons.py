@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import math
 import re
 from pathlib import Path
 
@@ -144,6 +145,34 @@ def test_an_impact_beside_a_peak_is_no_part_of_it(peak: float, jump: int) -> Non
     smooth = [10.0 - (t - peak) ** 2 for t in range(9)]
     broken = [x if (t < jump) == (peak < jump) else -5.0 for t, x in enumerate(smooth)]
     assert Expression("greatest(b.x)").value(recorded(broken)).value == pytest.approx(10.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("jump", [1, 4, 7])
+@pytest.mark.parametrize("kink", [0.0, 30.0])
+def test_values_on_both_sides_of_an_impact_lie_on_no_curve_through_it(jump: int, kink: float) -> None:
+    def flown(t: float) -> float:
+        return 3.0 * t - t * t + (20.0 + kink * (t - jump) if t > jump - 0.5 else 0.0)
+
+    figures = recorded([flown(t) for t in range(9)])
+    for t in (0.3, 1.6, 2.7, 3.2, 4.4, 5.7, 6.3, 7.9):
+        value = Expression(f"at({t} s, b.x)").value(figures).value
+        low, high = sorted((flown(jump - 1), flown(jump)))
+        if jump - 1 < t < jump:
+            assert low <= value <= high
+        elif jump not in (1, 7) or abs(t - jump) > 2.0:
+            assert value == pytest.approx(flown(t), abs=1e-9)
+    level = 0.5 * (flown(jump - 1) + flown(jump))
+    crossing = Expression(f"when(b.x > {level} m)").value(figures).value
+    assert jump - 1 < crossing < jump
+
+
+@pytest.mark.parametrize("per_period", [10, 20, 40])
+def test_what_swings_is_one_curve_everywhere(per_period: int) -> None:
+    w = 2.0 * math.pi / per_period
+    figures = recorded([3.0 + math.sin(w * t) for t in range(3 * per_period)])
+    for t in range(5, 3 * per_period - 6):
+        value = Expression(f"at({t + 0.4} s, b.x)").value(figures).value
+        assert value == pytest.approx(3.0 + math.sin(w * (t + 0.4)), abs=0.01 * w**6)
 
 
 @pytest.mark.parametrize("text", ["period(b.x)", "when(b.x > 99)", "peak(3, b.x)", "at(9 s, b.x)", "slope()"])

@@ -12,11 +12,15 @@ import numpy as np
 import pytest
 from desk import bits
 
-from physicslab import InvalidValue, PhysicsConfig, Run, World, circle, load_scene
-from physicslab.components import Drag, Transform, Velocity
+from physicslab import InvalidValue, PhysicsConfig, Run, SimulationConfig, World, box, circle, load_scene
+from physicslab.components import Drag, Mass, Name, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.scenes import SCENES
+from physicslab.state.state import State
+from physicslab.stepping.islands import Islands
 from physicslab.stepping.rigid_motion import RigidMotion
+from physicslab.systems.integrate import IntegrateSystem
+from physicslab.systems.system import ForceSystem, Stage, at
 
 EXACT = ("drop", "bounces", "stack", "newtons_cradle", "pyramid", "pile", "gas", "ragdoll")
 """Scenes whose motion has the same bits however it is divided."""
@@ -51,6 +55,95 @@ def test_an_instant_is_the_state_after_its_steps(name: str) -> None:
             assert np.array_equal(run.motion[number, :, 0:2], position)
         assert run.motion[number, :, 0:2] == pytest.approx(position, abs=1e-9)
         assert run.times[number] == pytest.approx(other.time, abs=1e-13)
+
+
+class Counted(ForceSystem):
+    """A spring to the origin, in Python, which counts how often it is evaluated."""
+
+    needs = (Velocity, Mass)
+    evaluations = 0
+
+    @at(Stage.FORCE)
+    def pull(self, world: State, h: float) -> None:
+        self.evaluations += 1
+        rows = world.batch(*self.needs).rows
+        world.bodies.force[rows] -= 4.0 * world.table(Transform)["position"][rows]
+
+
+def held(tolerance: float) -> tuple[World, Counted]:
+    spring = Counted()
+    simulation = SimulationConfig(integrator="dop853", tolerance=tolerance)
+    world = World(spring, IntegrateSystem(), simulation=simulation)
+    world.spawn(Transform((1.0, 0.0)), Velocity((0.0, 2.0)), Mass(1.0), Name("ball"))
+    return world, spring
+
+
+@pytest.mark.parametrize("tolerance", [1e-5, 1e-8, 1e-11, 1e-14])
+def test_instants_within_the_steps_of_a_method_are_as_good_as_these(tolerance: float) -> None:
+    world, _ = held(tolerance)
+    run = world.record(3.0)
+    assert world.plan.integrator.name == "dop853"
+    x, y = run.columns["ball.x"], run.columns["ball.y"]
+    assert x == pytest.approx(np.cos(2.0 * run.times), abs=40.0 * tolerance + 1e-15)
+    assert y == pytest.approx(np.sin(2.0 * run.times), abs=40.0 * tolerance + 1e-15)
+    assert run.columns["ball.vy"] == pytest.approx(2.0 * x, abs=100.0 * tolerance + 2e-15)
+
+
+def test_instants_cost_no_steps_of_a_method() -> None:
+    (world, spring), (other, alone) = held(1e-8), held(1e-8)
+    world.record(5.0)
+    other.run(seconds=5.0)
+    assert bits(world) == bits(other) and len(world.record(5.0).times) == 301
+    assert alone.evaluations > 200 and spring.evaluations < 2 * 1.3 * alone.evaluations
+
+
+def test_an_orbit_is_recorded_as_exactly_as_it_is_followed() -> None:
+    def planets() -> World:
+        world = World(physics=PhysicsConfig(gravity_mode="planet"))
+        world.spawn(Transform((0.0, 0.0)), Velocity(), Mass(1.0), Name("sun"))
+        world.spawn(Transform((0.2, 0.0)), Velocity((0.0, 3.0)), Mass(1e-9), Name("planet"))
+        return world
+
+    world, other = planets(), planets()
+    run = world.record(12.0)
+    assert world.plan.smooth and world.plan.integrator.name == "exact"
+    assert run.energies["world.energy"] == pytest.approx(run.energies["world.energy"][0], rel=2e-14)
+    places = [other.component("planet", Transform).position.x for _ in other.stepping(seconds=12.0)]
+    assert run.columns["planet.x"][1:] == pytest.approx(np.array(places), abs=1e-13)
+
+
+@pytest.mark.parametrize("every", [None, 0.05])
+def test_islands_are_recorded_without_a_call_for_each_instant(
+    every: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def apart() -> World:
+        world = World()
+        box(world, (0.0, -0.5), width=400.0, height=1.0, static=True)
+        for n in range(3):
+            circle(world, (60.0 * n, 2.0), radius=0.3, velocity=(0.5, 0.0), restitution=0.7)
+        hung = world.spawn(Transform((-80.0, 30.0)), Velocity(), Mass(1.0))
+        world.add(hung, Spring(a=hung, anchor_b=(-80.0, 33.0), rest_length=2.0, stiffness=50.0, damping=0.1))
+        return world
+
+    calls = 0
+    advance = Islands.advance
+
+    def counted(islands: Islands, *arguments: Any) -> Any:
+        nonlocal calls
+        calls += 1
+        return advance(islands, *arguments)
+
+    world, other, single = apart(), apart(), apart()
+    monkeypatch.setattr(Islands, "advance", counted)
+    run = world.record(1.0, every=every)
+    assert len(world.islands.members) == 4 and calls < 5
+    other.run(seconds=1.0)
+    assert bits(world) == bits(other)
+    for number, _ in enumerate(single.stepping(seconds=1.0, stride=1 if every is None else 3), start=1):
+        rows = single.batch(Transform, Velocity).rows
+        assert run.motion[number, :, 0:2] == pytest.approx(
+            single.table(Transform)["position"][rows], abs=1e-12
+        )
 
 
 @pytest.mark.parametrize("every", [None, 0.05])

@@ -70,6 +70,7 @@ PARTLY: dict[str, tuple[Any, dict[str, Any], float]] = {
     "a box that turns or not": (BLOCK, {"ball.Velocity.angular": [0.0, 2.0]}, 0.8),
     "some come to rest": ("drop", {E: ("uniform", 0.0, 0.9)}, 2.5),
     "two that may meet": (TWO, {"ball.Velocity.linear.x": ("uniform", 1, 3)}, 1.5),
+    "one falls straight in": (ORBIT, {"earth.Velocity.linear.y": [0.0, 0.5, 1.0]}, 1.0),
     "a radius": ("drop", {"ball.Shape.radius": ("uniform", 0.1, 0.3)}, 1.0),
     "a law": ("drop", {"physics.gravity.y": ("uniform", -12, -3)}, 1.0),
 }

@@ -7,7 +7,9 @@ from physicslab.kernels import Plain
 from physicslab.kernels.arguments import ActingTuple, Bounds, Inverse, Materials, Motion, Near, Softness
 from physicslab.kernels.geometry.shapes import ShapesTuple
 from physicslab.kernels.joints.blocks import Joints
+from physicslab.kernels.records import APART
 from physicslab.kernels.solver import soft
+from physicslab.state.samples import NOTHING_SAMPLED
 from physicslab.state.state import State
 
 
@@ -63,15 +65,16 @@ def near_in(state: State) -> Plain[Near]:
     if len(contacts.rotations) != rows:
         contacts.rotations = np.full((rows, 3), np.nan)
         contacts.linear_before, contacts.angular_before = np.zeros((rows, 2)), np.zeros(rows)
-        contacts.moments = np.full((rows, 2), -np.inf)
+        contacts.moments, contacts.travels = np.full((rows, 2), -np.inf), np.zeros((5, rows))
     if len(contacts.noted) < len(contacts.points):
         contacts.noted = np.zeros((len(contacts.points), 4))
+        contacts.apart = np.zeros(len(contacts.manifolds), APART)
     return (
         contacts.counts, contacts.manifolds, contacts.points, contacts.scalar, contacts.touching,
         contacts.wide.discs.slots, contacts.wide.boxes.slots,
         contacts.proximity, contacts.activation_distance, state.entity_index.entities,
         contacts.rotations, state.account.table, contacts.noted, contacts.linear_before,
-        contacts.angular_before, contacts.moments,
+        contacts.angular_before, contacts.moments, contacts.apart, contacts.travels,
     )  # fmt: skip
 
 
@@ -122,5 +125,6 @@ def do_stage(
         state.bodies.sub_integrated, acting or acting_in(state), gravity, packed, (_NOTHING, rows), sleepers,
         (0.0, 0.0), np.zeros((8, 0)), bounds_of(state), near, joints_in(state), contacts.opened, softness,
         contacts.impulse_dt, contacts.step_log, np.zeros(soft.COSTS, np.int64),
+        NOTHING_SAMPLED,
     )  # fmt: skip
     return int(impacts)

@@ -9,6 +9,7 @@ from physicslab.components import Material
 from physicslab.contacts.arguments import inverse_in, materials_of, motion_of, near_in, shapes_of
 from physicslab.kernels import direct_entry
 from physicslab.kernels.broad import near_pairs
+from physicslab.kernels.near_counts import FOLLOWED
 from physicslab.kernels.records import MANIFOLD, POINT
 from physicslab.kernels.wide import graph_colour, restore_slots, slots
 from physicslab.kernels.wide.graph_colour import MIN_WIDE
@@ -74,6 +75,7 @@ def _relist(state: State, pairs: NDArray[np.int64], count: int, *, noted: bool) 
     contacts.manifolds, contacts.spare_manifolds = contacts.spare_manifolds, contacts.manifolds
     contacts.points, contacts.spare_points = contacts.spare_points, contacts.points
     contacts.recorded, contacts.active, contacts.stale = count, 0, False
+    contacts.counts[FOLLOWED] = 0  # records have other numbers
     if len(contacts.touching) < needed:
         contacts.touching, contacts.scalar, contacts.sleeping = np.zeros((3, needed + needed // 4), np.int64)
     if contacts.restoring:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.components.quantities import ENERGY_CAUSES, MOMENTUM_CAUSES, UNMEASURED_MOMENTA
 from physicslab.ecs.vector import Vector2
@@ -106,9 +107,50 @@ def _given[V: (float, Vector2)](now: Mapping[str, V], before: Mapping[str, V]) -
     return {name: value - before[name] for name, value in now.items() if name != "numerical"}
 
 
-@np.errstate(all="ignore")  # an energy may be infinite: what is left is then not a number
+@dataclass(frozen=True, slots=True)
+class Booked:
+    """The account books at a moment, of which :class:`Accounts` are made.
+
+    Attributes
+    ----------
+    since : float
+        When they began [s].
+    start, now : Balance
+        Energy and momentum then and now.
+    sums : float64 array (CAUSES, 4)
+        Energy, momentum and angular momentum given by each cause in between.
+    parts : Energy
+        The energy of now.
+    """
+
+    since: float
+    start: Balance
+    now: Balance
+    sums: NDArray[np.float64]
+    parts: Energy
+
+    @np.errstate(all="ignore")
+    def accounts(self) -> Accounts:
+        """Return the accounts by the names of causes."""
+        left = np.subtract(self.now, self.start) - self.sums.sum(axis=0)
+        rows = self.sums.tolist()
+        energy = {name: rows[row][0] for name, row in ENERGY_ACCOUNTS.items()}
+        energy["numerical"] = float(left[0])
+        momentum = {name: Vector2(rows[row][1], rows[row][2]) for name, row in MOMENTUM_ACCOUNTS.items()}
+        momentum["numerical"] = Vector2(float(left[1]), float(left[2]))
+        angular = {name: rows[row][3] for name, row in MOMENTUM_ACCOUNTS.items()}
+        angular["numerical"] = float(left[3])
+        return Accounts(self.since, self.start, self.now, energy, momentum, angular, self.parts)
+
+
 def measure_account(world: World) -> Accounts:
     """Return the accounts as they are now; an edit since the last step is booked as one."""
+    return read_books(world).accounts()
+
+
+@np.errstate(all="ignore")  # an energy may be infinite: what is left is then not a number
+def read_books(world: World) -> Booked:
+    """Return what :func:`measure_account` tells, in a tenth of the time."""
     world.synchronise()
     account, sums = world.account, world.account.sums.copy()
     stored: dict[str, float] = {}
@@ -121,16 +163,9 @@ def measure_account(world: World) -> Accounts:
     elif now != account.last:
         cause, change = account.pending(now, held)
         sums[cause] += change
-    left = np.subtract(now, start) - sums.sum(axis=0)
-    rows = sums.tolist()
-    energy = {name: rows[row][0] for name, row in ENERGY_ACCOUNTS.items()}
-    energy["numerical"] = float(left[0])
-    momentum = {name: Vector2(rows[row][1], rows[row][2]) for name, row in MOMENTUM_ACCOUNTS.items()}
-    momentum["numerical"] = Vector2(float(left[1]), float(left[2]))
-    angular = {name: rows[row][3] for name, row in MOMENTUM_ACCOUNTS.items()}
-    angular["numerical"] = float(left[3])
     since = account.since if account.start is not None else world.time
-    return Accounts(since, start, now, energy, momentum, angular, Energy(*measure_kinetic(world), stored))
+    translation, rotation, *_ = motion_totals_of(world)
+    return Booked(since, start, now, sums, Energy(translation, rotation, stored))
 
 
 _LEAST_OF_EXCHANGED = 1e-12

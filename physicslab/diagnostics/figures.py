@@ -1,7 +1,8 @@
 """Runs as samples, and the figures that expressions read from them.
 
-Samples are taken after each step. Between them a quantity is the polynomial through the six samples around
-it, so that a moment is not bound to steps: the error is of the sixth power of a step if nothing collides.
+Samples are taken after each step. Between them a quantity is the polynomial through six samples around it
+that lie on one curve, so that a moment is not bound to steps: the error is of the sixth power of a step. An
+impact ends a curve: through it no polynomial leads, and within its step there is a straight line.
 """
 
 from __future__ import annotations
@@ -30,8 +31,14 @@ from physicslab.ecs.quantity_text import (
 from physicslab.ecs.text import suggestion
 from physicslab.world import World
 
-AROUND = 6
-"""Samples that an interpolation goes through."""
+AROUND, _FEW = 6, 4
+"""Samples that an interpolation goes through, and where no six of them lie on one curve."""
+_ROUGH, _BENDS = 0.5, 2.0
+"""The largest fourth difference of six samples on one curve, as a share of the second and third ones: across
+an impact it is 1 to 3, of an oscillation 0.5 at nine samples a period. Of four samples, the largest ratio of
+the second differences."""
+_ROUNDED = 1e-12
+"""Share of the largest value below which differences are rounding."""
 _LISTED = 20
 """Names of entities that a refusal lists."""
 _HALVINGS = 60
@@ -227,8 +234,7 @@ class Figures:
             return column[place]
         if not (times and times[0] <= time <= times[-1]):
             raise Undefined(f"the run has no time {time:.6g} s")
-        first = max(0, min(place - AROUND // 2, len(times) - AROUND))
-        return self._through(range(first, min(first + AROUND, len(times))), column, time)
+        return self._through(self._curve(column, place), column, time)
 
     def _through(self, nodes: Sequence[int], column: Sequence[float], time: float) -> float:
         """Return the value at a time [s] of Lagrange's polynomial through some samples."""
@@ -241,32 +247,49 @@ class Figures:
             total += weight * column[i]
         return total
 
-    def _bends_alike(self, series: Sequence[float], nodes: range) -> bool:
-        """Whether samples bend one way, at none half or twice as strongly as at the last."""
-        bends = [series[i - 1] - 2.0 * series[i] + series[i + 1] for i in nodes[1:-1]]
-        return len(bends) > 1 and bends[-1] != 0.0 and all(0.5 < bend / bends[-1] < 2.0 for bend in bends)
+    def _curve(self, column: Sequence[float], place: int) -> range:
+        """Return the samples on one curve with that at a place and the one before, the nearest if possible.
+
+        They are these two where an impact is between them.
+        """
+        for count in (AROUND, _FEW):
+            middle = place - count // 2
+            for first in sorted(range(place - count + 1, place), key=lambda first: abs(first - middle)):
+                nodes = range(first, first + count)
+                if first >= 0 and nodes.stop <= len(column) and self._is_one_curve(column, nodes):
+                    return nodes
+        return range(len(column)) if len(column) < _FEW else range(place - 1, place + 1)
+
+    def _is_one_curve(self, column: Sequence[float], nodes: range) -> bool:
+        """Whether neighbouring samples lie on one smooth curve, as far as their differences tell."""
+        times, values = self.record.times[nodes.start : nodes.stop], column[nodes.start : nodes.stop]
+        step, orders = (times[-1] - times[0]) / (len(nodes) - 1), []
+        for k in range(1, 5):  # divided differences, as equal steps would have them
+            pairs = range(len(values) - 1)
+            values = [k * step * (values[i + 1] - values[i]) / (times[i + k] - times[i]) for i in pairs]
+            orders.append(values)
+        rounding = _ROUNDED * max(map(abs, column[nodes.start : nodes.stop]))
+        if len(nodes) == _FEW:
+            least, most = sorted(orders[1], key=abs)
+            return abs(most) <= rounding or 0.0 < least * most >= most * most / _BENDS
+        bends = max(abs(value) for order in orders[1:3] for value in order)
+        return max(map(abs, orders[3])) <= max(_ROUGH * bends, rounding)
 
     def extreme(self, series: Sequence[float], sample: int, sign: float) -> float:
         """Return the extreme value of samples near one of them, ``sign`` 1 for the greatest, -1 the least.
 
-        Where they bend as strongly before and after it, the polynomial through these has it, and through
-        others only as far as they bend alike: an impact may be next to them. At a kink, as at an impact, or
-        at an end it is the sample.
+        It is that of the curves before and after the sample; at an impact, or at an end, often the sample.
         """
-        times = self.record.times[: len(series)]
-        nodes = range(max(sample - 2, 0), min(sample + 3, len(series)))
-        if not self._bends_alike(series, nodes):
-            return series[sample]
-        first = max(0, min(sample - AROUND // 2, len(times) - AROUND))
-        wide = range(first, min(first + AROUND, len(times)))
-        nodes = wide if self._bends_alike(series, wide) else nodes
-        low, high = times[max(sample - 1, 0)], times[min(sample + 1, len(times) - 1)]
-        for _ in range(_HALVINGS):
-            third = (high - low) / 3.0
-            left, right = (self._through(nodes, series, time) for time in (low + third, high - third))
-            low, high = (low + third, high) if sign * left < sign * right else (low, high - third)
-        best = self._through(nodes, series, 0.5 * (low + high))
-        return sign * max(sign * best, sign * series[sample])
+        best = sign * series[sample]
+        for place in range(max(sample, 1), min(sample + 2, len(series))):
+            nodes = self._curve(series, place)
+            low, high = self.record.times[place - 1 : place + 1]
+            for _ in range(_HALVINGS):
+                third = (high - low) / 3.0
+                left, right = (self._through(nodes, series, time) for time in (low + third, high - third))
+                low, high = (low + third, high) if sign * left < sign * right else (low, high - third)
+            best = max(best, sign * self._through(nodes, series, 0.5 * (low + high)))
+        return sign * best
 
 
 def _like(of: Figures, expression: Expression, value: float) -> Quantity:

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform, Velocity
-from physicslab.diagnostics.energy import measure_account, measure_energy
+from physicslab.diagnostics.energy import Booked, measure_energy, read_books
 from physicslab.diagnostics.figures import Figures, Record, quoted
-from physicslab.diagnostics.impact_table import ImpactReader, impact_table
+from physicslab.diagnostics.impact_table import NO_IMPACTS, ImpactReader, impact_table
 from physicslab.diagnostics.run_report import body_names
 from physicslab.ecs.conditions import Condition
 from physicslab.ecs.fields import Field, InvalidValue
@@ -56,7 +56,7 @@ def record(
     world.synchronise()
     with world.active():
         names = body_names(world)
-    begin, reader = measure_account(world), ImpactReader(world)
+    begin, reader = read_books(world), ImpactReader(world)
     reads, world.contacts.read = world.contacts.read, True
     records: list[NDArray[Any]] = []
     found: float | None = None
@@ -67,13 +67,10 @@ def record(
             samples, found = _Watch(world, until, reader, records, again).go(length, stride)
     finally:
         world.samples, world.contacts.read = None, reads
-    table = impact_table(world, np.concatenate(records) if records else world.contacts.log[:0])
-    account = measure_account(world).after(begin).energy
     moving = world.entity_index.entities[samples.rows].tolist()
-    replay = _Replay(world)
     return Run(
         samples.times[: samples.count], samples.motion[: samples.count],
-        tuple(names[entity] for entity in moving), found, table, account, replay.sums, replay.page,
+        tuple(names[entity] for entity in moving), found, _Replay(world, records, begin),
     )  # fmt: skip
 
 
@@ -82,22 +79,13 @@ def _recorded(
 ) -> Samples:
     """Make a whole run; the world ends with the bits of :meth:`World.run`."""
     samples = Samples(world, world.time, length.dt, stride, length.steps)
-    if _has_smooth_islands(world):  # samples divide their motion, which is then made once more, undivided
-        start, world.samples = Keyframe(world), samples
-        world.run(seconds=length.seconds)
-        samples.finish(world, world.time)
-        world.samples = None
-        start.restore(world)
-        reader.skip()
-    else:
-        world.samples = samples
+    world.samples = samples
     undivided = _has_smooth_islands(world) or world.plan.smooth
     for _ in world.stepping(seconds=length.seconds, stride=sys.maxsize if undivided else _LOOK):
         records += reader.read()
     if reader.lost:
         _log.warning("record: %d impacts were not kept, more than the log holds", reader.lost)
-    if world.samples is not None:
-        samples.finish(world, world.time)
+    samples.finish(world, world.time)
     return samples
 
 
@@ -245,9 +233,20 @@ class _Watch:
 
 
 class _Replay:
-    """A copy of a world that is put to the instants of a run, for what is found afterwards."""
+    """Finds parts of a run when they are first read: in a copy of its world, which is put to its instants.
 
-    def __init__(self, world: World) -> None:
+    Parameters
+    ----------
+    world : World
+        The world at the end.
+    records : list of arrays of IMPACT (n,)
+        The impacts.
+    begin : Booked
+        The books at the beginning.
+    """
+
+    def __init__(self, world: World, records: list[NDArray[Any]], begin: Booked) -> None:
+        self._records, self._books = records, (begin, read_books(world))
         self._frame, self._name = Keyframe(world), world.title or world.name
         self._systems = world.schedule.systems[1:]
         self._view = world.view
@@ -255,7 +254,8 @@ class _Replay:
 
     def __getstate__(self) -> dict[str, Any]:
         """Return what goes to another process: the copy itself, as worlds do."""
-        return {"_name": self._name, "_made": self._copy()}
+        kept = {"_records": self._records, "_books": self._books}
+        return {"_name": self._name, "_made": self._copy(), **kept}
 
     def _copy(self) -> World:
         if self._made is None:
@@ -274,6 +274,15 @@ class _Replay:
             transform["position"][rows], velocity["linear"][rows] = bodies[:, 0:2], bodies[:, 3:5]
             transform["angle"][rows], velocity["angular"][rows] = bodies[:, 2], bodies[:, 5]
             yield world
+
+    def impacts(self) -> dict[str, NDArray[Any]]:
+        """Return the table of impacts."""
+        return impact_table(self._copy(), np.concatenate([NO_IMPACTS, *self._records]))
+
+    def account(self) -> dict[str, float]:
+        """Return the energy given by each cause [J]."""
+        begin, end = self._books
+        return end.accounts().after(begin.accounts()).energy
 
     def sums(self, run: Run) -> Mapping[str, Column]:
         """Return the energies of the world at each instant [J]."""

@@ -28,6 +28,7 @@ from physicslab.files.assignments import put
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.places import Place, entity_names, find_place
 from physicslab.files.reader import read_scene
+from physicslab.integrators.exact import EXACT
 from physicslab.kernels.keys import sources_key
 from physicslab.kernels.tiers import compile_first
 from physicslab.stepping.partition import is_one
@@ -175,9 +176,10 @@ class Runner:
         self._rollout: Rollout | None = None
         rolls = self._in_place and self._alone and not laws and task.until is None
         if rolls and self._places and read is not None:
-            self._rollout = Rollout(
-                world, self._places, read, self._chooses_the_same, self._measures.of_impacts
-            )
+            orbits = world.plan.smooth and world.plan.integrator is EXACT and not self._asked
+            orbits = orbits and any(force.attractors for force in world.schedule.smooth_forces)
+            same = (lambda: True) if orbits else self._chooses_the_same  # the flow itself refuses
+            self._rollout = Rollout(world, self._places, read, same, self._measures.of_impacts)
 
     def block(self, first: int, last: int) -> Block:
         """Run the rows from ``first`` up to ``last``."""

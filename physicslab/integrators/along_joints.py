@@ -16,7 +16,7 @@ from physicslab.kernels.forces.force_calls import add_forces
 from physicslab.kernels.joints import layout
 from physicslab.kernels.joints.soft import HOLD
 from physicslab.kernels.ode.dop853 import dop853
-from physicslab.ode.system import OdeSystem
+from physicslab.ode.system import NOTHING_WANTED, OdeSystem
 
 _TOLERANCE, _MOST = 1e-15, 100_000
 """Error of a drift, and its largest number of evaluations."""
@@ -60,7 +60,7 @@ def split_along_joints(
             ode.v[:n] *= sign
             made = dop853(
                 ode.q, ode.v, *low, ode.inverse_mass, ode.damping, joint, ode.places, abs(span), _TOLERANCE,
-                abs(span), _MOST, 0, np.zeros(1), 0.0, np.zeros(1),
+                abs(span), _MOST, 0, np.zeros(1), 0.0, *NOTHING_WANTED,
             )  # fmt: skip
             if made < 0:
                 return made

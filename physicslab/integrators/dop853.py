@@ -2,12 +2,9 @@
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from physicslab.ecs.sentences import sentence
 from physicslab.integrators.integrator import Exhausted, Integrator, StepTooSmall
-from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853, dop853_samples
+from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
 
@@ -32,7 +29,7 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     made = dop853(
         ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.damped_calls, ode.places,
         steps * h, tolerance, state.simulation.dt, _most(ode), ode.free_bodies, ode.steepness,
-        _floor(state, ode), np.zeros(1),
+        _floor(state, ode), *ode.wanted,
     )  # fmt: skip
     if made == NOT_FINITE:
         raise StepTooSmall(sentence("forces_not_finite", time=f"{state.time:.9g}"))
@@ -56,16 +53,6 @@ def _limit(ode: OdeSystem) -> int:
     return MAX_COSTLY if ode.interpreted or ode.joined else _MAX_EVALUATIONS
 
 
-def _sample(state: State, ode: OdeSystem, spans: NDArray[np.float64], into: NDArray[np.float64]) -> None:
-    q_low, v_low = ode.remainders(state)
-    state.compile((dop853_samples,))
-    dop853_samples(
-        ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.damped_calls, ode.places,
-        spans, ode.tolerance, state.simulation.dt, _most(ode), ode.free_bodies, ode.steepness,
-        _floor(state, ode), into[0], into[1],
-    )  # fmt: skip
-
-
 DOP853 = Integrator(
     name="dop853",
     title="Dormand-Prince 8(5,3), adaptive",
@@ -75,5 +62,5 @@ DOP853 = Integrator(
     flow=_flow,
     kernels=(dop853,),
     chooses_steps=True,
-    sample=_sample,
+    samples=True,
 )

@@ -6,7 +6,6 @@ the solution has its own energy, of which dampers and drag take what is lost
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from physicslab.components import Spring
 from physicslab.ecs.sentences import sentence
@@ -26,21 +25,17 @@ def _form(state: State, ode: OdeSystem) -> ClosedForm | TwoBodies:
     if ode.form is None or ode.laws is None or ode.form[0] is not ode.laws or len(state.batch(Spring)):
         ode.form = ode.laws, closed_form(state, ode.forces)
     form: ClosedForm | TwoBodies = ode.form[1]
-    if isinstance(form, TwoBodies) and not form.holds(state):
-        raise NoClosedForm(sentence("attraction"))
     return form
 
 
-def _follow(form: TwoBodies, state: State, ode: OdeSystem, spans: NDArray[np.float64]) -> Motion:
-    """Move two bodies, and what rounding left out of them; return where they are after each span."""
-    motion, moves, n = form.motion(state), form.moves, 2 * len(ode.layout.moving)
-    kept = ode.remainders(state)
-    for now, low in zip(motion, kept, strict=True):
-        now[2:][moves] = low[:n].reshape(-1, 2)
-    found = form.follow(motion, spans)
-    for now, low in zip(motion, kept, strict=True):
-        low[:n] = now[2:][moves].ravel()
-    return found
+def _start(form: TwoBodies, state: State, ode: OdeSystem) -> Motion:
+    """Return how two bodies move, with what rounding left out of that."""
+    motion, n = form.motion(state), 2 * len(ode.layout.moving)
+    if not form.holds(motion):
+        raise NoClosedForm(sentence("attraction"))
+    for now, low in zip(motion, ode.remainders(state), strict=True):
+        now[2:][form.moves] = low[:n].reshape(-1, 2)
+    return motion
 
 
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
@@ -49,30 +44,28 @@ def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
         slot = ode.slots.get(cause)
         if slot is not None:
             ode.v[slot : slot + ACCOUNTS] = given
-    n = 2 * len(ode.layout.moving)
-    if isinstance(form, TwoBodies):
-        position, velocity = _follow(form, state, ode, np.array((steps * h,)))
-    else:
-        position, velocity = form.after(form.motion(state), steps * h)
-    ode.q[:n], ode.v[:n] = position.ravel(), velocity.ravel()
+    n, (after, q, v) = 2 * len(ode.layout.moving), ode.wanted
     turning = slice(n, ode.layout.moving_count)
-    ode.q[turning] += steps * h * ode.v[turning]
-    return 0
-
-
-def _sample(state: State, ode: OdeSystem, spans: NDArray[np.float64], into: NDArray[np.float64]) -> None:
-    form, n, after = _form(state, ode), 2 * len(ode.layout.moving), np.cumsum(spans)
-    into[0], into[1] = ode.q, ode.v
     if isinstance(form, TwoBodies):
-        for found, motion in zip(into, _follow(form, state, ode, spans), strict=True):
-            found[:, :n] = motion.reshape(-1, n)
+        if len(after):
+            places, rates = form.follow(_start(form, state, ode), np.diff(after, prepend=0.0))
+            q[:, :n], v[:, :n] = places.reshape(-1, n), rates.reshape(-1, n)
+        motion = _start(form, state, ode)
+        position, velocity = form.follow(motion, np.array((steps * h,)))
+        for now, low in zip(motion, ode.remainders(state), strict=True):
+            low[:n] = now[2:][form.moves].ravel()
     else:
         start = form.motion(state)
         for k, t in enumerate(after.tolist()):
             position, velocity = form.after(start, t)
-            into[0, k, :n], into[1, k, :n] = position.ravel(), velocity.ravel()
-    turning = slice(n, ode.layout.moving_count)
-    into[0, :, turning] += after[:, None] * ode.v[turning]
+            q[k, :n], v[k, :n] = position.ravel(), velocity.ravel()
+        position, velocity = form.after(start, steps * h)
+    if len(after):
+        q[:, n:] = ode.q[turning] + after[:, None] * ode.v[turning]
+        v[:, n:] = ode.v[turning]
+    ode.q[:n], ode.v[:n] = position.ravel(), velocity.ravel()
+    ode.q[turning] += steps * h * ode.v[turning]
+    return 0
 
 
 EXACT = Integrator(
@@ -85,5 +78,5 @@ EXACT = Integrator(
     flow=_flow,
     kernels=(propagate, give_in_closed_form, move_two),
     chooses_steps=True,
-    sample=_sample,
+    samples=True,
 )

@@ -60,10 +60,6 @@ type Flow = Callable[[State, OdeSystem, float, int], int]
 """Advances the equations of a world by so many steps of so many seconds; returns the force evaluations."""
 
 
-type Sampling = Callable[[State, OdeSystem, NDArray[np.float64], NDArray[np.float64]], object]
-"""Advances by spans [s] (n,), and writes q and v after each into an array (2, n, coordinates)."""
-
-
 class StepTooSmall(ArithmeticError):
     """No step is short enough for the required accuracy: the motion is singular."""
 
@@ -110,8 +106,8 @@ class Integrator:
     phase_share, phase_order : float, int
         The share of omega t by which the phase of an oscillation is wrong is ``phase_share`` times omega h to
         the power ``phase_order``, for small omega h; 0 where it is not known.
-    sample : callable, optional
-        How it is advanced to several moments, if that takes less than a call of ``flow`` for each.
+    samples : bool
+        Whether ``flow`` fills what is ``wanted`` of the system: the motion at moments within its span.
     """
 
     name: str
@@ -129,7 +125,7 @@ class Integrator:
     chooses_steps: bool = False
     phase_share: float = 0.0
     phase_order: int = 2
-    sample: Sampling | None = None
+    samples: bool = False
 
     @property
     def kicks(self) -> bool:

@@ -6,9 +6,9 @@ instead of 15); what Python calls gives them their names: ``Motion(*motion)``.
 
 from typing import NamedTuple
 
-from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined_by_numba
+from physicslab.kernels import Flags, Numbers, Plain, Rows, Vectors, inlined, inlined_by_numba
 from physicslab.kernels.forces.force_calls import Calls
-from physicslab.kernels.records import Couples, Impacts, Manifolds, Points
+from physicslab.kernels.records import Aparts, Couples, Impacts, Manifolds, Points
 from physicslab.kernels.wide_layout import Slots
 
 
@@ -67,6 +67,8 @@ class Near(NamedTuple):
     noted of points (points, 4), and for the velocities (rows, 2) and angular velocities from before the
     impulses of a substep (:mod:`physicslab.kernels.solver.work`); and for when each body last met another
     one in the substep, and when it meets the next [s from now] (:mod:`physicslab.kernels.solver.meet_again`).
+    Last, how far apart pairs are, and how far bodies have come (5, rows)
+    (:mod:`physicslab.kernels.geometry.apart`).
     """
 
     counts: Rows
@@ -85,6 +87,8 @@ class Near(NamedTuple):
     linear_before: Vectors
     angular_before: Numbers
     moments: Vectors
+    apart: Aparts
+    travels: Vectors
 
 
 class Contacts(NamedTuple):
@@ -153,6 +157,18 @@ class Course(NamedTuple):
     end: float
     middle: float
     hooked: bool
+
+
+class Sampled(NamedTuple):
+    """Rows of which samples are taken (moving,), and room (n, 6 moving) for x, y, the angle and their rates.
+
+    The first is due after so many steps of a call, and then one every ``stride`` steps, while there is room.
+    """
+
+    rows: Rows
+    room: Vectors
+    first: int
+    stride: int
 
 
 class Springs(NamedTuple):
@@ -225,10 +241,23 @@ def named_near(plain: Plain[Near]) -> Near:
     """Give names to a tuple, and to the slots within it."""
     (
         counts, manifolds, points, scalar, touching, discs, boxes, proximity, activation_distance, entities,
-        rotations, account, noted, linear_before, angular_before, moments,
+        rotations, account, noted, linear_before, angular_before, moments, apart, travels,
     ) = plain  # fmt: skip
     return Near(
         counts, manifolds, points, scalar, touching, Slots(*discs), Slots(*boxes),
         proximity, activation_distance, entities, rotations, account, noted, linear_before, angular_before,
-        moments,
+        moments, apart, travels,
     )  # fmt: skip
+
+
+@inlined
+def take_sample(motion: Motion, sampled: Sampled, made: int) -> None:
+    """Take the sample that is due after so many steps of a call, if one is."""
+    late = made - sampled.first
+    place = late // sampled.stride
+    if late < 0 or late % sampled.stride > 0 or place >= len(sampled.room):
+        return
+    for k in range(len(sampled.rows)):
+        i, sample = sampled.rows[k], sampled.room[place, 6 * k : 6 * k + 6]
+        sample[0], sample[1], sample[2] = motion.position[i, 0], motion.position[i, 1], motion.angle[i]
+        sample[3], sample[4], sample[5] = motion.linear[i, 0], motion.linear[i, 1], motion.angular[i]

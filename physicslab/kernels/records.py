@@ -57,6 +57,9 @@ POINT = np.dtype(
 )
 """A contact point; the points of pair p are numbers 2 p and 2 p + 1."""
 
+APART = np.dtype([("clearance", np.float64), ("a", np.uint32), ("b", np.uint32)])
+"""How much nearer two rows would have to come to have points [m]; -infinity where that is not known."""
+
 IMPACT = np.dtype(
     [
         ("time", np.float64),  # [s]
@@ -88,6 +91,8 @@ Manifolds = Annotated[NDArray[np.void], from_dtype(MANIFOLD)[::1]]
 """An array of MANIFOLD (n,)."""
 Points = Annotated[NDArray[np.void], from_dtype(POINT)[::1]]
 """An array of POINT (2 n,)."""
+Aparts = Annotated[NDArray[np.void], from_dtype(APART)[::1]]
+"""An array of APART (n,)."""
 Impacts = Annotated[NDArray[np.void], from_dtype(IMPACT)[::1]]
 """An array of IMPACT (n,)."""
 Pairs = Annotated[NDArray[np.int64], int64[:, ::1]]

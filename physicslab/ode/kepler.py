@@ -30,7 +30,7 @@ class TwoBodies:
     ----------
     pair : int64 array (2,)
         The rows that attract each other.
-    moves : bool array (2,)
+    moves : slice
         Which of them move: n of the two.
     weight : float64 array (2,)
         Their masses [kg]; 0 of one that moves about a fixed one.
@@ -41,7 +41,7 @@ class TwoBodies:
     """
 
     pair: NDArray[np.int64]
-    moves: NDArray[np.bool_]
+    moves: slice
     weight: NDArray[np.float64]
     constant: float
     what: str
@@ -54,8 +54,8 @@ class TwoBodies:
     def motion(self, state: State) -> Motion:
         """Return the present positions [m] and velocities [m/s] of both, and remainders of zero (4, 2)."""
         places, rates = np.zeros((4, 2)), np.zeros((4, 2))
-        places[:2] = state.table(Transform)["position"][self.pair]
-        rates[:2][self.moves] = state.table(Velocity)["linear"][self.rows]
+        places[:2] = state.table(Transform)["position"].take(self.pair, axis=0)
+        rates[self.moves] = state.table(Velocity)["linear"].take(self.rows, axis=0)
         return places, rates
 
     def follow(self, motion: Motion, spans: NDArray[np.float64]) -> Motion:
@@ -79,17 +79,16 @@ class TwoBodies:
         force always leads through the fixed body. Gravity stores the energy.
         """
         row = np.zeros(ACCOUNTS)
-        if not self.moves.all():
-            start, fixed = self.motion(state), int(self.moves[0])
+        if len(self.rows) == 1:
+            start, fixed = self.motion(state), 1 - self.moves.start
             gained = self.after(start, t)[1][0] - start[1][1 - fixed]
             row[[PX, PY]] = gained * state.table(Mass)["mass"][self.pair[1 - fixed]]
             row[ANGULAR_MOMENTUM] = start[0][fixed, 0] * row[PY] - start[0][fixed, 1] * row[PX]
         return {GRAVITY: row}
 
-    def holds(self, state: State) -> bool:
-        """Whether it does: the two do not fall straight into each other, and numbers are of usual size."""
-        places, rates = self.motion(state)
-        (x, y), (u, v) = (places[1] - places[0]).tolist(), (rates[1] - rates[0]).tolist()
+    def holds(self, motion: Motion) -> bool:
+        """Whether the two do not fall straight into each other from there, and numbers are of usual size."""
+        (x, y), (u, v) = ((of[1] - of[0]).tolist() for of in motion)
         mu, r, speed = self.constant * float(self.weight.sum()), math.hypot(x, y), math.hypot(u, v)
         if not (min(mu, r) > 1.0 / _LARGEST and max(mu, r, speed) < _LARGEST):
             return False
@@ -107,12 +106,13 @@ def two_bodies(state: State) -> TwoBodies | None:
     if len(pair) != 2 or physics.softening or physics.linear_damping or physics.G <= 0.0:
         return None
     moves, weight = speeds.present[pair], state.table(Mass)["mass"][pair]
-    count = np.count_nonzero(moves)
+    count = int(np.count_nonzero(moves))
     if not count or count != np.count_nonzero(speeds.present):
         return None
     if 0.0 in state.bodies.inverse_mass[pair][moves]:
         return None
+    first = int(moves.argmax())
     if count == 1:
-        weight[moves] = 0.0
-    form = TwoBodies(pair, moves, weight, physics.G, sentence("attraction_of_two"))
-    return form if form.holds(state) else None
+        weight[first] = 0.0
+    form = TwoBodies(pair, slice(first, first + count), weight, physics.G, sentence("attraction_of_two"))
+    return form if form.holds(form.motion(state)) else None

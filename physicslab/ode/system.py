@@ -26,6 +26,9 @@ from physicslab.systems.system import ForceSystem, Stage
 _APART = 1e-6
 """Share of the coordinates by which joints are apart that were put so: what methods leave is far less."""
 
+NOTHING_WANTED = np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0))
+"""Moments at which the motion is wanted, of which there are none, and room for coordinates and rates."""
+
 _REAL = ctypes.POINTER(ctypes.c_double)
 _WHOLE = ctypes.POINTER(ctypes.c_int64)
 _CALLBACK = ctypes.CFUNCTYPE(None, _REAL, _REAL, ctypes.c_double, _REAL, _REAL, _WHOLE)
@@ -78,6 +81,9 @@ class OdeSystem:
         Relative error a step for methods that choose their steps.
     most : int, optional
         The most evaluations of a flow by one of these, where it is not to be their own limit.
+    wanted : tuple of float64 arrays (m,), (m, n) and (m, n)
+        Times after the start [s] within the next flow, ascending, and what receives the coordinates of what
+        moves, and their rates, at these; for methods that have them.
     forces : tuple of ForceSystem
         The forces that act.
     interpreted : bool
@@ -127,6 +133,7 @@ class OdeSystem:
         self.form: tuple[Any, Any] | None = None
         self.tolerance = state.simulation.tolerance
         self.most: int | None = None
+        self.wanted = NOTHING_WANTED
         self._error: BaseException | None = None
         self._clock = np.zeros(1)
         self._settings = self._look(state)
@@ -185,7 +192,7 @@ class OdeSystem:
         places = position[moving].ravel(), transform["angle"][turning], position[fixed].ravel()
         self.q = np.concatenate((*places, *self._behind))
         self.v = np.concatenate((linear[moving].ravel(), velocity["angular"][turning], self._still))
-        self._low = None
+        self._low, self.wanted = None, NOTHING_WANTED
         self._start = (self.q.copy(), self.v.copy()) if self.interpreted else None
 
     def remainders(self, state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from physicslab.kernels import compile_kernels, direct_entry, near_counts
 from physicslab.kernels.broad import near_pairs
 from physicslab.kernels.geometry.contact import AS_FOUND
-from physicslab.kernels.records import IMPACT, MANIFOLD, POINT
+from physicslab.kernels.records import APART, IMPACT, MANIFOLD, POINT
 from physicslab.kernels.solver import impulse
 from physicslab.kernels.wide import refresh, slots
 from physicslab.state.wide_contacts import WideContacts
@@ -153,6 +153,8 @@ class Contacts:
         self.linear_before: NDArray[np.float64] = np.zeros((0, 2))
         self.angular_before: NDArray[np.float64] = np.zeros(0)
         self.moments: NDArray[np.float64] = np.zeros((0, 2))
+        self.apart: NDArray[Any] = np.zeros(0, APART)
+        self.travels: NDArray[np.float64] = np.zeros((5, 0))
         self.table: NDArray[np.int64] = np.zeros(16, np.int64)
         self.sleeping: NDArray[np.int64] = np.zeros(capacity, np.int64)
         # Two sets of arrays take turns: new ones for every list would cost more in page faults than all else.

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,22 @@ type Column = NDArray[np.float64]
 
 BODY_COLUMNS = {"x": "m", "y": "m", "angle": "rad", "vx": "m/s", "vy": "m/s", "omega": "rad/s"}
 """Columns of each body that moves, in the order of samples, and their units."""
+
+
+class Replay(Protocol):
+    """The object that finds parts of a run which take time, when they are first read."""
+
+    def impacts(self) -> dict[str, NDArray[Any]]:
+        """Return the table of impacts, by columns."""
+
+    def account(self) -> dict[str, float]:
+        """Return the energy given by each cause [J]."""
+
+    def sums(self, run: "Run") -> Mapping[str, Column]:
+        """Return the energies of the world at each instant [J]."""
+
+    def page(self, run: "Run") -> bytes:
+        """Return the page that plays the run."""
 
 
 class Run:
@@ -33,13 +49,8 @@ class Run:
         The ids of what moves, or what it is and its number.
     found : float, optional
         When ``until`` was reached [s]; ``None`` where it was not, or there was none.
-    impacts : dict of str to array (impacts,)
-        The impacts: when, where, of what and how fast, and the kinetic energy that each took
-        (``energy_lost``).
-    account : dict of str to float
-        Energy given by each cause meanwhile [J]; ``numerical`` is the error of the method.
-    sums, page : callable
-        Functions that find the columns of the whole world, and that make the page that plays the run.
+    replay : Replay
+        The object that finds what is first read later.
 
     Examples
     --------
@@ -57,14 +68,10 @@ class Run:
         motion: NDArray[np.float64],
         bodies: tuple[str, ...],
         found: float | None,
-        impacts: dict[str, NDArray[Any]],
-        account: dict[str, float],
-        sums: Callable[["Run"], Mapping[str, Column]],
-        page: Callable[["Run"], bytes],
+        replay: Replay,
     ) -> None:
         self.times, self.motion, self.bodies, self.found = times, motion, bodies, found
-        self.impacts, self.account = impacts, account
-        self._sums, self._page = sums, page
+        self._replay = replay
 
     def __repr__(self) -> str:
         span = f"{len(self.times)} instants from {self.times[0]:g} s to {self.times[-1]:g} s"
@@ -85,7 +92,20 @@ class Run:
 
         They are found when they are first read, which takes some 50 us an instant.
         """
-        return dict(self._sums(self))
+        return dict(self._replay.sums(self))
+
+    @cached_property
+    def impacts(self) -> dict[str, NDArray[Any]]:
+        """The impacts as columns (impacts,): ``time``, where, of what and how fast, and ``energy_lost`` [J].
+
+        That is the kinetic energy which each took.
+        """
+        return self._replay.impacts()
+
+    @cached_property
+    def account(self) -> dict[str, float]:
+        """Energy given by each cause meanwhile [J]; ``numerical`` is the error of the method."""
+        return self._replay.account()
 
     @property
     def table(self) -> dict[str, Column]:
@@ -137,7 +157,7 @@ class Run:
 
     def page(self) -> bytes:
         """Return a page of HTML that plays the run without a network, in UTF-8."""
-        return self._page(self)
+        return self._replay.page(self)
 
     @cached_property
     def widget(self) -> Any:

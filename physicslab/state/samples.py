@@ -1,7 +1,8 @@
 """Samples of the motion of a world, which steppers take while they advance it."""
 
 import math
-from typing import Any
+from copy import copy
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ _LATE = 1e-6
 """Share of a step by which the end of one may be late: the clock is a sum of rounded steps."""
 _LONGER = 2e-3
 """Share of a step by which the last of a run may be longer."""
+NOTHING_SAMPLED = np.zeros(0, np.int64), np.zeros((0, 0)), 1, 1
+"""Samples of no row, as kernels take them (:class:`physicslab.kernels.arguments.Sampled`)."""
 
 
 class Samples:
@@ -49,8 +52,8 @@ class Samples:
     """
 
     def __init__(self, state: Entities, time: float, dt: float, stride: int, steps: int) -> None:
-        self.rows = np.flatnonzero(state.table(Transform).present & state.table(Velocity).present)
-        self._start, self.dt, self.stride = time, dt, stride
+        self.rows = _moving_rows(state)
+        self._start, self.dt, self.stride, self._first = time, dt, stride, 0
         room = steps // stride + 2
         self.times = np.full(room, np.nan)
         self.motion = np.full((room, len(self.rows), FIELDS), np.nan)
@@ -80,9 +83,30 @@ class Samples:
         """Return where the samples of some times [s] (n,) are to be written: (n, moving, 6)."""
         if not len(places):
             return self.motion[:0]
-        self.times[places] = times
-        self.count = int(places[-1]) + 1
-        return self.motion[places[0] : self.count]
+        first, self.count = int(places[0]) - self._first, int(places[-1]) + 1
+        self.times[first : self.count - self._first] = times
+        return self.motion[first : self.count - self._first]
+
+    def part(self, state: Entities, time: float, span: float) -> Self:
+        """Return samples of another world, such as an island, for ``span`` seconds from a time [s] on."""
+        places, _ = self.due(time, span)
+        part = copy(self)
+        part.rows = _moving_rows(state)
+        part._first = part.count = int(places[0]) if len(places) else 0
+        part.times = np.full(len(places), np.nan)
+        part.motion = np.full((len(places), len(part.rows), FIELDS), np.nan)
+        return part
+
+    def join(self, part: Self, own: NDArray[np.int64], there: NDArray[np.int64]) -> None:
+        """Take the samples of rows ``own`` (n,) of a part, which here are the rows ``there`` (n,)."""
+        places = np.arange(part._first, part.count)
+        columns = np.searchsorted(self.rows, there), np.searchsorted(part.rows, own)
+        self.put(places, part.times[: len(places)])[:, columns[0]] = part.motion[: len(places), columns[1]]
+
+    def repeat(self, state: Entities, time: float, span: float) -> None:
+        """Take the state as it is for all samples within ``span`` seconds from a time [s] on."""
+        places, after = self.due(time, span)
+        self.put(places, time + after)[:] = _motion_of(state, self.rows)
 
     def take(self, state: Entities, time: float) -> None:
         """Take a sample of the state as it is, at a time [s], if one is due then."""
@@ -96,12 +120,34 @@ class Samples:
         self._write(state, self.count - last, time)
 
     def _write(self, state: Entities, place: int, time: float) -> None:
-        transform, velocity = state.table(Transform), state.table(Velocity)
-        into = self.put(np.array([place]), np.array([time]))[0]
-        columns: tuple[Any, ...] = (transform["angle"], velocity["angular"])
-        into[:, 0:2], into[:, 3:5] = transform["position"][self.rows], velocity["linear"][self.rows]
-        into[:, 2], into[:, 5] = (column[self.rows] for column in columns)
+        self.put(np.array([place]), np.array([time]))[0] = _motion_of(state, self.rows)
 
     def _done(self, time: float) -> int:
         """Return how many steps are made at a time [s]."""
         return math.floor((time - self._start) / self.dt + _LATE)
+
+
+def _moving_rows(state: Entities) -> NDArray[np.int64]:
+    """Return the rows of what moves (moving,)."""
+    return np.flatnonzero(state.table(Transform).present & state.table(Velocity).present)
+
+
+def _motion_of(state: Entities, rows: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return x, y [m], the angle [rad] and their rates of rows (moving, 6)."""
+    transform, velocity, found = state.table(Transform), state.table(Velocity), np.empty((len(rows), FIELDS))
+    columns: tuple[Any, ...] = (transform["angle"], velocity["angular"])
+    found[:, 0:2], found[:, 3:5] = transform["position"][rows], velocity["linear"][rows]
+    found[:, 2], found[:, 5] = (column[rows] for column in columns)
+    return found
+
+
+def sampled(samples: Samples | None, time: float, span: float, steps: int) -> tuple[Any, ...]:
+    """Return what a compiled loop takes of ``steps`` steps of ``span`` seconds from a time [s] on.
+
+    It is :class:`physicslab.kernels.arguments.Sampled`, without names.
+    """
+    if samples is None:
+        return NOTHING_SAMPLED
+    places, after = samples.due(time, steps * span)
+    room = samples.put(places, time + after).reshape(len(places), FIELDS * len(samples.rows))
+    return samples.rows, room, samples.steps_ahead(time), samples.stride

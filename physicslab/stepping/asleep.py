@@ -14,6 +14,7 @@ class Asleep(Stepper):
     name: str = "asleep"
     title: str = "Everything sleeps: only time passes"
     leaves_forces: bool = True
+    samples: bool = True
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self.reason = sentence("everything_sleeps")
@@ -30,4 +31,6 @@ class Asleep(Stepper):
     def advance(self, state: State, h: float, steps: int) -> Advance:
         """Let the time go by."""
         state.substeps = state.simulation.substeps
+        if state.samples is not None:
+            state.samples.repeat(state, state.time, steps * h)
         return Advance(steps)

@@ -15,6 +15,7 @@ from physicslab.kernels.events import events, path
 from physicslab.kernels.wide import slots
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.remainders import Remainders, coordinate_keys
+from physicslab.state.samples import NOTHING_SAMPLED, sampled
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import pairs_that_may_meet, turning_rows, with_links
 from physicslab.stepping.plan import StepPlan
@@ -32,8 +33,6 @@ _LOW = (1, 3, 5, 7)
 """The columns of what rounding leaves out of a path's place and velocity."""
 _MASS = 12
 """The column of the mass that gravity accelerates."""
-_LONGER = 1e-2
-"""Share by which a step may be longer than the scene's own without being divided."""
 _run_events: Callable[..., tuple[int, int, int, float]] = events.run_events
 _IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 
@@ -200,15 +199,9 @@ class EventDriven(Stepper):
         began = time.perf_counter_ns()
         contacts = state.contacts
         self._take_masses(state)
-        samples, taken = state.samples, np.zeros((0, 0))
-        first, stride = steps + 1, 1
-        if samples is not None and span <= samples.dt * (1.0 + _LONGER):
-            places, after = samples.due(state.time, steps * span)
-            taken = samples.put(places, state.time + after).reshape(len(places), 6 * len(self._moving))
-            first, stride = samples.steps_ahead(state.time), samples.stride
         made, impacts, why, flown = _run_events(
             *self._arguments(state), contacts.logged, state.time, span, steps,
-            self._moving, first, stride, taken,
+            sampled(state.samples, state.time, span, steps),
         )  # fmt: skip
         contacts.logged += impacts
         state.collisions += impacts
@@ -234,12 +227,11 @@ class EventDriven(Stepper):
         """Return what makes steps from the present places, velocities and masses, as a new stepper does."""
         self.forget()
         self._begin(state)
-        contacts, moving = state.contacts, self._moving
+        contacts = state.contacts
         arrays = contacts.manifolds[: contacts.recorded], contacts.points[: 2 * contacts.recorded]
         records = [array.view(np.uint8) for array in arrays]
         blank = [record.copy() for record in records]
-        fixed, nothing = self._arguments(state), np.zeros((0, 0))
-        collisions, logged = state.collisions, contacts.logged
+        fixed, collisions, logged = self._arguments(state), state.collisions, contacts.logged
 
         def make() -> bool:
             self.forget()
@@ -248,9 +240,7 @@ class EventDriven(Stepper):
                 record[:] = then
             count = 0
             for began, h, steps in stretches:
-                made, impacts, _, _ = _run_events(
-                    *fixed, logged + count, began, h, steps, moving, steps + 1, 1, nothing
-                )
+                made, impacts, _, _ = _run_events(*fixed, logged + count, began, h, steps, NOTHING_SAMPLED)
                 count += impacts
                 if made < steps:
                     return False

@@ -7,9 +7,11 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from physicslab.integrators import Exhausted, StepTooSmall
 from physicslab.integrators.dop853 import MAX_COSTLY
+from physicslab.ode.closed_form import NoClosedForm
 from physicslab.ode.system import OdeSystem, steady_turn
 from physicslab.state.masses import Diverged, check_finite
 from physicslab.state.samples import Samples
@@ -32,6 +34,9 @@ Linkages that lie flat on their way would else go on wrongly."""
 _COSTLY_S = 0.27
 """The length of a step [s] for which a method may spend what one costs at most; in proportion for longer
 ones. Joints whose forces grow without limit take as much for no motion at all."""
+_FOLLOWED = 1e-13
+"""The largest tolerance, where it is not the configured one, with which samples are taken within steps. Their
+errors are some four times it, and do not die out, as those of the steps do where a larger one is chosen."""
 _FINEST = 1024
 """Parts of a step, of which as many are taken together as such a span can have."""
 
@@ -118,7 +123,7 @@ class Flow(Stepper):
                 for began, h, steps in stretches:
                     state.time = began
                     self.advance(state, h, steps)
-            except (Diverged, NotSmooth):
+            except (Diverged, NotSmooth, NoClosedForm):
                 return False
             return True
 
@@ -131,8 +136,17 @@ class Flow(Stepper):
         parts = 1 if method.chooses_steps else self._plan.substeps
         count = 1 if method.chooses_steps else parts * steps
         start = time.perf_counter_ns()
+        places, after = (np.zeros(0, np.int64), np.zeros(0))
         if state.samples is not None:
-            self._sample(state, state.samples, span)
+            places, after = state.samples.due(state.time, span)
+            if len(after) and after[-1] == span:  # taken at the end
+                places, after = places[:-1], after[:-1]
+        packed = np.full((2, len(places), ode.layout.moving_count), np.nan)
+        if len(places):
+            if method.samples and ode.tolerance <= max(_FOLLOWED, state.simulation.tolerance):
+                ode.wanted = after, *packed
+            else:
+                self._sample_aside(state, after, packed)
         try:
             made = method.flow(state, ode, span / count, count)
         except StepTooSmall as error:
@@ -142,36 +156,34 @@ class Flow(Stepper):
             if (ode.undo(state) or self._joined) and state.simulation.integrator == "auto":
                 raise NotSmooth(str(error)) from error
             raise changes_fast(state, self._schedule.forces, error) from error
+        if state.samples is not None:
+            self._keep(state, state.samples, places, after, packed)
         ode.scatter(state, span)
         self._schedule.note(IntegrateSystem.__name__, steps, time.perf_counter_ns() - start)
         for system in ode.forces:
             self._schedule.note(system.name, made, 0)  # their time is part of the loop's
         state.force_evaluations += made
 
-    def _sample(self, state: State, samples: Samples, span: float) -> None:
-        """Take the samples of the coming ``span`` seconds, aside: the motion itself is divided by none."""
-        places, after = samples.due(state.time, span)
-        if len(after) and after[-1] == span:  # taken at the end
-            places, after = places[:-1], after[:-1]
-        if not len(places):
-            return
-        ode, method, parts = self._ode, self._method, self._plan.substeps
-        packed = np.full((2, len(places), len(ode.q)), np.nan)
-        spans = np.diff(after, prepend=0.0)
+    def _sample_aside(self, state: State, after: NDArray[np.float64], packed: NDArray[np.float64]) -> None:
+        """Find coordinates and rates (2, m, n) at times after now (m,) [s]; the motion is divided by none."""
+        ode, n = self._ode, self._ode.layout.moving_count
+        parts = 1 if self._method.chooses_steps else self._plan.substeps
         with ode.aside(), suppress(StepTooSmall):  # the motion itself then tells why
-            if method.sample is not None:
-                method.sample(state, ode, spans, packed)
-            else:
-                own = 1 if method.chooses_steps else parts
-                for k, each in enumerate(spans.tolist()):
-                    steps = own * max(1, round(each / samples.dt))
-                    method.flow(state, ode, each / steps, steps)
-                    packed[0, k], packed[1, k] = ode.q, ode.v
-        layout, into = ode.layout, samples.put(places, state.time + after)
-        n, d = 2 * len(layout.moving), layout.moving_count
+            for k, span in enumerate(np.diff(after, prepend=0.0).tolist()):
+                steps = parts * max(1, round(span / state.simulation.dt))
+                self._method.flow(state, ode, span / steps, steps)
+                packed[0, k], packed[1, k] = ode.q[:n], ode.v[:n]
+
+    def _keep(
+        self, state: State, samples: Samples, places: NDArray[np.int64], after: NDArray[np.float64],
+        packed: NDArray[np.float64],
+    ) -> None:  # fmt: skip
+        """Keep what was found as samples."""
+        layout, into = self._ode.layout, samples.put(places, state.time + after)
+        n = 2 * len(layout.moving)
         turning, steady = (np.searchsorted(layout.moving, rows) for rows in (layout.turning, layout.steady))
         for numbers, first in ((packed[0], 0), (packed[1], 3)):
-            into[:, :, first : first + 2] = numbers[:, :n].reshape(len(places), -1, 2)
-            into[:, turning, first + 2] = numbers[:, n:d]
+            into[:, :, first : first + 2] = numbers[:, :n].reshape(-1, len(layout.moving), 2)
+            into[:, turning, first + 2] = numbers[:, n:]
         if len(steady):
             into[:, steady, 2], into[:, steady, 5] = steady_turn(state, layout.steady, after)

@@ -102,15 +102,17 @@ class Island:
         with own.active():
             return world.schedule.holds(own) and choose_plan(own, world.schedule) == world.plan
 
-    def go(self, state: State, time: float, h: float, steps: int) -> int:
+    def go(self, state: State, time: float, h: float, steps: int, driven: Rows) -> int:
         """Advance by ``steps`` steps of ``h`` seconds from ``time`` [s] on; return the parts of each.
 
-        Its bookings and counts are added to those of the whole world.
+        Its bookings and counts are added to those of the whole world, and samples are taken of its bodies and
+        of ``driven`` rows.
         """
-        own, done = self.state, 0
+        own, done, samples = self.state, 0, state.samples
+        part = None if samples is None else samples.part(own, time, steps * h)
         own.contacts.read = state.contacts.read
         counts, impacts = [getattr(own, name) for name in _COUNTED], own.contacts.counts[_IMPACTS]
-        own.time, sums = time, own.account.sums.copy()
+        own.time, own.samples, sums = time, part, own.account.sums.copy()
         with own.active():
             while done < steps:
                 self.world.synchronise()
@@ -118,6 +120,9 @@ class Island:
                 single = self.touches and isinstance(self.world.stepper_for(h), Flow)
                 done += self.world.advance(h, 1 if single else steps - done)
                 own.time = time + done * h
+        if samples is not None and part is not None:
+            samples.join(part, *self._with(state, driven))
+            own.samples = None
         state.account.sums += own.account.sums - sums
         for name, count in zip(_COUNTED, counts, strict=True):
             setattr(state, name, getattr(state, name) + getattr(own, name) - count)
@@ -127,13 +132,17 @@ class Island:
             state.fastest_rates[name] = max(rate, state.fastest_rates.get(name, 0.0))
         return own.step_divisions
 
+    def _with(self, state: State, driven: Rows) -> tuple[Rows, Rows]:
+        """Return its bodies' and ``driven`` rows, in its world and in the whole one."""
+        if not len(driven):
+            return self.own, self.there
+        entities = state.entity_index.entities[driven]
+        own = np.concatenate((self.own, self.state.entity_index.rows_of(entities)))
+        return own, np.concatenate((self.there, driven))
+
     def write_back(self, state: State, driven: Rows) -> None:
         """Write how its bodies move, and which sleep, to the whole world, and so ``driven`` rows of that."""
-        own, there = self.own, self.there
-        if len(driven):
-            entities = state.entity_index.entities[driven]
-            own = np.concatenate((own, self.state.entity_index.rows_of(entities)))
-            there = np.concatenate((there, driven))
+        own, there = self._with(state, driven)
         for column, part in zip(motion_of(state), motion_of(self.state), strict=True):
             column[there] = part[own]
         if self.state.sleep.on:

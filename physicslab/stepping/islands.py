@@ -79,7 +79,7 @@ class Islands:
     leaps: bool = False
     keeps_balance: bool = False
     leaves_forces: bool = False
-    samples: bool = False
+    samples: bool = True
 
     def __init__(self, schedule: Schedule, make: Make | None) -> None:
         self._schedule, self._make = schedule, make
@@ -158,13 +158,14 @@ class Islands:
         smooth = [island for island in self.members if not island.touches]
         try:
             for island in smooth:
-                parts = max(parts, island.go(state, start, h, steps))
+                parts = max(parts, island.go(state, start, h, steps, self._driven(state, island)))
             while made < steps and self.members:
                 touching = [island for island in self.members if island.touches]
                 count = min(self.steps_ahead(state, h), steps - made) if touching else steps - made
                 logged = [island.state.contacts.logged for island in touching]
                 for island in touching:
-                    parts = max(parts, island.go(state, state.time, h, count))
+                    driven = self._driven(state, island)
+                    parts = max(parts, island.go(state, state.time, h, count, driven))
                 join_logs(state, [island.state for island in touching], logged)
                 made += count
                 state.time = start + made * h
@@ -199,12 +200,17 @@ class Islands:
         self._apart_until = -math.inf
         self._join_near(state, state.simulation.dt)
 
+    def _driven(self, state: State, island: Island) -> Rows:
+        """Return the rows that no force moves, which the first island writes for all."""
+        if island is not self.members[0]:
+            return np.zeros(0, np.int64)
+        moves = state.table(Transform).present & state.table(Velocity).present
+        return np.flatnonzero(moves & ~partition.movable_in(state))
+
     def _write_back(self, state: State) -> None:
         """Write the motion of all islands into the whole world."""
-        driven = state.table(Transform).present & state.table(Velocity).present & ~partition.movable_in(state)
-        rows = np.flatnonzero(driven)
-        for n, island in enumerate(self.members):
-            island.write_back(state, rows if n == 0 else rows[:0])
+        for island in self.members:
+            island.write_back(state, self._driven(state, island))
             copy_joints(island.state, state)
         state.sleep.count = int(np.count_nonzero(state.sleep.asleep))
         self._left = b"".join(numbers_of(state))

@@ -46,6 +46,7 @@ class Soft(Stepper):
     name: str = "contact"
     title: str = "Steps stage by stage, contacts within them"
     leaves_forces: bool = True
+    samples: bool = True
 
     def __init__(self, state: State, schedule: Schedule, plan: StepPlan) -> None:
         self._schedule, self.substeps = schedule, Substeps(state, schedule, plan)
@@ -100,6 +101,8 @@ class Soft(Stepper):
         made = self.substeps.go_through(state, span, steps, cause)
         if self.hooks:
             self._end_step(state, h)
+            if state.samples is not None:
+                state.samples.take(state, state.time + made * h)
         keep_places(state)
         if len(state.joints):
             state.joints.force[:] = state.joints.impulse / (contacts.impulse_dt or span.h)

@@ -30,6 +30,7 @@ from physicslab.kernels.solver.finer import needed_factor
 from physicslab.kernels.wide import slots
 from physicslab.kernels.wide.graph_colour import MIN_WIDE
 from physicslab.state.masses import check_finite
+from physicslab.state.samples import sampled
 from physicslab.state.solid import solid_rows
 from physicslab.state.state import State
 from physicslab.stepping.bounds import return_inside
@@ -144,6 +145,8 @@ class Substeps:
                 elif why in (soft.SLEEP_PENDING, soft.WALL_PENDING):
                     part = 0
                     self._end_step(state, why, span)
+                    if state.samples is not None:
+                        state.samples.take(state, span.start + made * span.dt)
                     if span.finer or all_asleep(state):
                         break
                 elif why == soft.OTHER_SUBSTEPS:
@@ -221,8 +224,10 @@ class Substeps:
         began = time.perf_counter_ns()
         contacts, (substep, part, first, cause) = state.contacts, where
         plan, arguments = self._plan(state, span, made, first), self._arguments(state, span.h)
+        samples = None if self._hooked else state.samples
+        due = sampled(samples, span.start + made * span.dt, span.dt, steps)
         why, done, substep, part, finished_impacts, impacts, evaluations, contacts.impulse_dt = self._entry(
-            steps, substep, part, plan, self._course, cause, *arguments
+            steps, substep, part, plan, self._course, cause, *arguments, due
         )
         state.force_evaluations += evaluations
         contacts.changed()

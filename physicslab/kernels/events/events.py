@@ -10,9 +10,9 @@ two pairs with one body meet at one time the order would decide: the motion ends
 import math
 from typing import NamedTuple
 
-from physicslab.kernels import Numbers, Plain, Rows, Vectors, always_inlined, inlined, kernel
+from physicslab.kernels import Plain, Rows, Vectors, always_inlined, inlined, kernel
 from physicslab.kernels.accounts import IMPACTS
-from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion
+from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Sampled, take_sample
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of
 from physicslab.kernels.events.encounter import bend_of, gap_of, meeting_of, time_apart, touch_pair
 from physicslab.kernels.events.path import advance_to, begin, place, seen_from
@@ -233,24 +233,13 @@ def _end_all(flight: Flight, now: float, low: float) -> None:
             linear[i, 0], linear[i, 1] = paths[i, 4], paths[i, 6]
 
 
-@inlined
-def _take_sample(motion: Motion, moving: Rows, sample: Numbers) -> None:
-    """Write x, y, the angle and their rates of the rows that move (moving,) into a sample (6 moving,)."""
-    for k in range(len(moving)):
-        i = moving[k]
-        sample[6 * k], sample[6 * k + 1] = motion.position[i, 0], motion.position[i, 1]
-        sample[6 * k + 2] = motion.angle[i]
-        sample[6 * k + 3], sample[6 * k + 4] = motion.linear[i, 0], motion.linear[i, 1]
-        sample[6 * k + 5] = motion.angular[i]
-
-
 @kernel
 def run_events(
     manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, apart: Rows,
     due: Vectors, impact_position: Vectors, motion: Plain[Motion], shapes: ShapesTuple,
     materials: Plain[Materials], inverse: Plain[Inverse], bounds: Plain[Bounds],
     account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int,
-    moving: Rows, first_due: int, stride: int, samples: Vectors,
+    sampled: Plain[Sampled],
 ) -> tuple[int, int, int, float]:  # fmt: skip
     """Move bodies from impact to impact for ``steps`` times ``span`` s, or until one rests or meets two.
 
@@ -275,9 +264,8 @@ def run_events(
         To which the work and the momentum of impacts and gravity are added.
     log, logged : impact records (n,), int
         Impacts are logged from number ``logged`` on, with times from ``start`` [s].
-    moving, samples : int64 array (moving,), float64 array (n, 6 moving)
-        Receives x, y [m], the angle [rad] and their rates of these rows after ``first_due`` steps, and every
-        ``stride`` steps from there on.
+    sampled : tuple
+        The samples that are due.
 
     Returns
     -------
@@ -290,7 +278,7 @@ def run_events(
         manifolds, points, count, paths, mode, Motion(*motion), face, apart, due,
         impact_position, named_shapes(shapes), Inverse(*inverse), Bounds(*bounds), account,
     )  # fmt: skip
-    mixed = Materials(*materials)
+    mixed, samples = Materials(*materials), Sampled(*sampled)
     apart[:count] = 0
     while made < steps:
         if within > 0:
@@ -319,8 +307,7 @@ def run_events(
         if why != DONE:
             return made, impacts, why, now
         made += 1
-        if made >= first_due and (made - first_due) % stride == 0:
-            _take_sample(flight.motion, moving, samples[(made - first_due) // stride])
+        take_sample(flight.motion, samples, made)
     return made, impacts, why, 0.0
 
 

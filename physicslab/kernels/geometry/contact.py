@@ -5,12 +5,12 @@ import math
 from physicslab.kernels import Rows, Vectors, always_inlined, inlined
 from physicslab.kernels.arguments import Bounds, Inverse, Materials, Motion, Near
 from physicslab.kernels.constraint.pair import frame_of, inverse_mass_of, moment_arms, response
-from physicslab.kernels.geometry import pair
+from physicslab.kernels.geometry import apart, pair
 from physicslab.kernels.geometry.bend import note_bends
 from physicslab.kernels.geometry.cores import VERTICES
 from physicslab.kernels.geometry.outline import Way, is_segment, kept_outline, on_segment, swing_of
 from physicslab.kernels.geometry.shapes import Shapes, has_own_way, is_chain, segment_of
-from physicslab.kernels.near_counts import ACTIVE, SCALAR
+from physicslab.kernels.near_counts import ACTIVE, FOLLOWED, SCALAR
 from physicslab.kernels.records import Manifold, Point, Points
 
 ACTIVATION_RATIO = 1.02
@@ -70,20 +70,22 @@ def mix(manifold: Manifold, materials: Materials, bounds: Bounds) -> None:
 
 
 @always_inlined
-def _too_far(
+def _clearance_of_disc(
     manifold: Manifold, way: Way, motion: Motion, shapes: Shapes, bounds: Bounds, speculative_margin: float
-) -> bool:
-    """Whether a disc is too far from another one, or from a wall, for this substep, as most near ones are."""
-    dx, dy, ux, uy = way
-    a, b, wall = manifold.a, manifold.b, manifold.wall
+) -> float:
+    """Return how much nearer a disc would have to come to another one, or to a wall, to be looked at [m].
+
+    -infinity where it is in this substep, which few near ones are.
+    """
+    a, b, wall, travel = manifold.a, manifold.b, manifold.wall, abs(way.ux) + abs(way.uy)
     if wall < 0:
-        reach = ACTIVATION_RATIO * (shapes.radius[a] + shapes.radius[b]) + abs(ux) + abs(uy)
-        reach = reach + speculative_margin
-        return bool(dx * dx + dy * dy > reach * reach)
+        reach = ACTIVATION_RATIO * (shapes.radius[a] + shapes.radius[b]) + travel + speculative_margin
+        square = way.dx * way.dx + way.dy * way.dy
+        return math.sqrt(square) - reach + travel if square > reach * reach else -math.inf
     away = motion.position[b, wall % 2] - bounds.walls[wall]
     clear = (away if wall < 2 else -away) - shapes.radius[b]
-    margin = ACTIVATION_RATIO * pair.CONTACT_MARGIN * shapes.radius[b] + abs(ux) + abs(uy)
-    return bool(clear > margin + speculative_margin)
+    margin = ACTIVATION_RATIO * pair.CONTACT_MARGIN * shapes.radius[b] + speculative_margin
+    return clear - margin if clear - margin > travel else -math.inf
 
 
 @inlined
@@ -129,17 +131,44 @@ def _vertices_of(shapes: Shapes, i: int, wall: int) -> float:
 
 
 @always_inlined
+def _swings(shapes: Shapes, a: int, b: int, turn_a: float, turn_b: float) -> float:
+    """Return how far corners of both come at most, which turn [rad]."""
+    half_x, half_y = shapes.half_x, shapes.half_y
+    both: float = abs(turn_a) * (half_x[a] + half_y[a]) + abs(turn_b) * (half_x[b] + half_y[b])
+    return both
+
+
+@always_inlined
+def _clearance(
+    manifold: Manifold, way: Way, motion: Motion, shapes: Shapes, size: float, speculative_margin: float
+) -> float:
+    """Return how much nearer a pair with corners would have to come, at least, to have points [m].
+
+    It goes by the gap in its base pose, and by how far it has moved and turned since.
+    """
+    a, b, angle = manifold.a, manifold.b, motion.angle
+    x, y = way.dx - manifold.base_x, way.dy - manifold.base_y
+    moved = abs(x) + abs(y)
+    if manifold.wall == -1 and not (has_own_way(shapes, a) and has_own_way(shapes, b)):
+        # It is a gap of convex shapes along the normal.
+        moved = -(x * manifold.normal_x + y * manifold.normal_y)
+    turned = _swings(shapes, a, b, angle[a] - manifold.base_angle_a, angle[b] - manifold.base_angle_b)
+    nearest: float = manifold.gap - moved - turned - 0.0025 * size
+    return nearest - pair.CONTACT_MARGIN * size - speculative_margin
+
+
+@always_inlined
 def _look_up(
     manifold: Manifold, points: Points, p: int, way: Way, motion: Motion, shapes: Shapes,
     h: float, speculative_margin: float, tolerance: float, turns: bool, disc: bool,
-) -> int:  # fmt: skip
+) -> tuple[int, float]:  # fmt: skip
     """Use what was found of a pair with corners, if they have hardly moved against each other.
 
     That there are no points is kept of any pair with corners, points where neither is a ``disc``. Where the
     pair ``turns``, its points may be those of a later moment in the substep.
     ``tolerance`` is a share of :data:`CACHE_TOLERANCE` and :data:`CACHE_TURN_TOLERANCE`. Returns what is
-    known of them now. Where that is nothing, their present pose is recorded, for which their points are to be
-    found.
+    known of them now, and the size [m] of the smaller one. Where nothing is known, their present pose is
+    recorded, for which their points are to be found.
     """
     a, b, half_x, half_y, angle = manifold.a, manifold.b, shapes.half_x, shapes.half_y, motion.angle
     radius = shapes.radius
@@ -149,8 +178,7 @@ def _look_up(
         size = min(size, 2.0 * shapes.thin[a])
         of_both += 6.0 * half_x[a] + 10.0 * half_y[a]
     travel = abs(way.ux) + abs(way.uy)
-    swing = h * abs(motion.angular[a]) * (half_x[a] + half_y[a])
-    swing += h * abs(motion.angular[b]) * (half_x[b] + half_y[b])  # how far a corner comes
+    swing = _swings(shapes, a, b, h * motion.angular[a], h * motion.angular[b])
     ahead = travel + swing
     if turns:
         travel = ahead
@@ -165,15 +193,10 @@ def _look_up(
     slow = travel <= 0.5 * pair.CONTACT_MARGIN * size
     if manifold.found == 2 and manifold.base_sizes == of_both:
         if manifold.count == 0:
-            # A lower bound of their gap now, however they have moved since.
-            turned = abs(turn_a) * (half_x[a] + half_y[a]) + abs(turn_b) * (half_x[b] + half_y[b])
-            nearest = manifold.gap - abs(moved_x) - abs(moved_y) - turned - 0.0025 * size
-            if manifold.wall == -1 and not own_ways:  # it is a gap of convex shapes along the normal
-                nx, ny = manifold.normal_x, manifold.normal_y
-                nearest = manifold.gap + moved_x * nx + moved_y * ny - turned - 0.0025 * size
-                ahead = abs(way.ux * nx + way.uy * ny) + swing
-            if nearest > pair.CONTACT_MARGIN * size + ahead + speculative_margin:
-                return _APART
+            if manifold.wall == -1 and not own_ways:
+                ahead = abs(way.ux * manifold.normal_x + way.uy * manifold.normal_y) + swing
+            if _clearance(manifold, way, motion, shapes, size, speculative_margin) > ahead:
+                return _APART, size
         elif (
             not disc
             and abs(moved_x) + abs(moved_y) <= tolerance * CACHE_TOLERANCE * size
@@ -183,11 +206,11 @@ def _look_up(
             and not (turns and _to_be_swept(manifold, points, p, travel, size))
         ):
             follow_pose(manifold, points, p, moved_x, moved_y, turn_a, turn_b)
-            return _KEPT
+            return _KEPT, size
     note_pose(manifold, way.dx, way.dy, angle[a], angle[b])
     manifold.base_sizes = of_both
     manifold.found = 2 if slow else 1
-    return _OUTDATED
+    return _OUTDATED, size
 
 
 @always_inlined
@@ -301,7 +324,7 @@ def _has_few_rows(entities: Rows) -> bool:
 @always_inlined
 def find_contacts(
     near: Near, count: int, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse,
-    bounds: Bounds, first: bool, h: float, start: float, speculative_margin: float,
+    bounds: Bounds, first: bool, goes_on: bool, h: float, start: float, speculative_margin: float,
 ) -> int:  # fmt: skip
     """Find or refresh the contact points of the ``count`` scalar pairs; return how many have any.
 
@@ -309,19 +332,26 @@ def find_contacts(
     that has hardly moved keeps its points. The substep spans ``h`` seconds from ``start`` h before or after
     now: a pair that meets within it has points with the normal of that moment and the separation, along it,
     of now. Pairs whose count is negative are moved by event-driven stepping, and passed over. ``first`` marks
-    the first substep of a step, in which records of impacts are cleared; ``speculative_margin`` is how far
-    [m] the forces may bring two bodies together within the substep.
+    the first substep of a step, in which records of impacts are cleared, and in which it ``goes_on`` from
+    another one of the same call; ``speculative_margin`` is how far [m] the forces may bring two bodies
+    together within the substep.
     """
     position, linear, touching = motion.position, motion.linear, near.touching
-    found, held = 0, count
+    found, held, far = 0, count, 0
+    if first:
+        apart.begin_step(near, goes_on)
+    if near.counts[FOLLOWED] > 0:
+        apart.follow(near.travels, motion, shapes, h)
     # The arms of kept points are those of the pose in which they were found.
     tolerance = 1.0 if first else TOLERANCE_WITHIN_STEP
     if _has_few_rows(near.entities):
         tolerance = _NO_MOTION
     for number in range(count):
         p = near.scalar[number]
+        if apart.stays_apart(near, p):
+            continue
         manifold, one, two = near.manifolds[p], near.points[2 * p], near.points[2 * p + 1]
-        had_points = manifold.count > 0
+        had_points, size = manifold.count > 0, 0.0
         if manifold.count < 0:
             continue
         a, b = manifold.a, manifold.b
@@ -338,8 +368,12 @@ def find_contacts(
         rounded = not (has_own_way(shapes, a) and has_own_way(shapes, b))
         circular = not walled and polygons == 1
         round_pair = not had_points and polygons == 0
-        if round_pair and _too_far(manifold, way, motion, shapes, bounds, speculative_margin):
-            continue
+        if round_pair:
+            clearance = _clearance_of_disc(manifold, way, motion, shapes, bounds, speculative_margin)
+            if clearance > -math.inf:
+                apart.note(near, p, a, b, clearance if manifold.impact_count == 0 else -math.inf, motion)
+                far += 1
+                continue
         manifold.offset_x, manifold.offset_y = way.dx, way.dy
         known = _OUTDATED
         with_disc = not walled and polygons < 2
@@ -347,12 +381,10 @@ def find_contacts(
             one.separation = one.found_separation
             known = _KEPT
         elif polygons > 0:
-            known = _look_up(
+            known, size = _look_up(
                 manifold, near.points, p, way, motion, shapes, h, speculative_margin, tolerance,
                 circular or rounded, circular,
             )  # fmt: skip
-            if known == _APART:
-                continue
         if known == _OUTDATED:
             touch(
                 manifold, one, two, way, motion, shapes, bounds, near.rotations, h, start, speculative_margin
@@ -368,7 +400,17 @@ def find_contacts(
                 effective_masses(manifold, near.points, p, inverse)
             if first or not had_points:
                 mix(manifold, materials, bounds)
+                near.apart[p].clearance = -math.inf
             found, held = _list_pair(touching, p, manifold, inverse, found, held)
-        elif had_points:
-            forget_points(one, two)
+        else:
+            if had_points:
+                forget_points(one, two)
+            clearance = -math.inf
+            if polygons > 0:
+                clearance = _clearance(manifold, way, motion, shapes, size, speculative_margin)
+                far += 1
+            # A pair that has bounced is looked at when the next step begins.
+            apart.note(near, p, a, b, clearance if manifold.impact_count == 0 else -math.inf, motion)
+    if first and near.counts[FOLLOWED] == 0:
+        apart.begin_to_follow(near, motion, far)
     return _put_last(touching, found, held, count)

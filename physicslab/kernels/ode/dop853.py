@@ -16,8 +16,10 @@ from physicslab.kernels.ode.dop853_tableau import (
     LAST,
     NODES,
     NODES_LOW,
+    STAGES,
     WEIGHTS,
     WEIGHTS_LOW,
+    WITHIN,
 )
 
 TOO_SHORT = -1
@@ -212,11 +214,48 @@ def _book(
             v[clock + 1 + i - PY + ANGULAR_MOMENTUM] += origin[0] * taken * given
 
 
+@inlined
+def _bend(rates: Vectors, pushes: Vectors, h: float, bends: Vectors) -> None:
+    """Find the terms (n, 14) by which the motion within a step departs from a steady one."""
+    for i in range(len(bends)):
+        for values, first in ((rates, 0), (pushes, 7)):
+            # Rates are without the speed at the start: they begin with zero.
+            begins = 0.0 if first == 0 else h * values[i, 0]
+            gained, _ = total(values[i])
+            ends = h * values[i, LAST]
+            bends[i, first] = h * gained
+            bends[i, first + 1] = begins - h * gained
+            bends[i, first + 2] = 2.0 * h * gained - begins - ends
+            for term in range(4):
+                bend = WITHIN[term, 0] * values[i, 0]
+                for stage in range(FIRST[LAST], STAGES):
+                    bend += WITHIN[term, stage] * values[i, stage]
+                bends[i, first + 3 + term] = h * bend
+
+
+@inlined
+def _place_within(
+    q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, bends: Vectors, h: float, share: float,
+    bodies: int, origin: Numbers, q_sample: Numbers, v_sample: Numbers,
+) -> None:  # fmt: skip
+    """Write where all is, and how fast (n,), after a share of a step of ``h`` seconds from (q, v)."""
+    rest = 1.0 - share
+    for i in range(len(bends)):
+        moved, gained = 0.0, 0.0
+        for term in range(6, -1, -1):
+            along = share if term % 2 == 0 else rest
+            moved, gained = along * (moved + bends[i, term]), along * (gained + bends[i, 7 + term])
+        q_sample[i] = q[i] + (share * h * v[i] + moved + q_low[i])
+        v_sample[i] = v[i] + (gained + v_low[i])
+        if i < 2 * bodies:
+            q_sample[i] += origin[i % 2]
+
+
 @allocating_kernel
 def dop853(
     q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
     calls: Calls, places: Rows, span: float, tolerance: float, period: float, max_evaluations: int,
-    bodies: int, steepness: Numbers, floor: float, step: Numbers,
+    bodies: int, steepness: Numbers, floor: float, after: Numbers, q_samples: Vectors, v_samples: Vectors,
 ) -> int:  # fmt: skip
     """Advance by ``span`` seconds; return the number of force evaluations, or why it failed (negative).
 
@@ -238,7 +277,10 @@ def dop853(
     a part of the period need to be no better than that: what comes to rest at the origin leaves neither
     coordinate nor speed to measure errors by.
 
-    ``step`` (1,) is the first that is tried [s], or 0 to guess it; the one to be tried next is left there.
+    ``q_samples`` and ``v_samples`` (m, n) receive coordinates and rates at times ``after`` the start (m,)
+    [s], ascending and within the span. They are found to order 7 by three more evaluations for a step within
+    which one is due, which are not counted: the motion keeps its bits. Their error, besides that of the steps
+    before, is at most some four times the tolerance.
 
     Where no force depends on the origin, ``bodies`` is how many pairs of coordinates the first ones are, and
     else 0: in a close passage the origin is moved there, so that the distance has all its digits.
@@ -248,7 +290,7 @@ def dop853(
     n, clock = len(inverse_mass), places[CLOCK]
     start, booked = q[clock], places[END] - places[CLOCK] - 1
     stage_q, stage_v, acceleration = q.copy(), v.copy(), np.empty(len(q))
-    rates, pushes = np.zeros((n, 16)), np.zeros((n + booked, 16))
+    rates, pushes = np.zeros((n, STAGES)), np.zeros((n + booked, STAGES))
     q_scale, v_scale, steepest = largest(q, n), largest(v, n), steepness[0]
     steepness[0] = 0.0
     make_stages(
@@ -271,11 +313,12 @@ def dop853(
     if not all_finite(acceleration, stage_v, n):
         return NOT_FINITE
     evaluations, done, done_low = 1, 0.0, 0.0
-    h = step[0] if step[0] > 0.0 else first_step(pushes, n, q_scale, v_scale, span, tolerance)
+    h = first_step(pushes, n, q_scale, v_scale, span, tolerance)
     grow, last_error, last_taken, noise = _MAX_GROWTH, math.inf, 1.0, _NOISE / tolerance
     last_fall2 = steepness[0]
     spent, mark = 0, 0.0
     origin, moved_origin = np.zeros(4), False
+    sample, bends = 0, np.zeros((n if len(after) else 0, 14))
     while True:
         left = (span - done) - done_low
         if left <= 0.0:
@@ -335,6 +378,19 @@ def dop853(
             h = taken
         last_fall2, steepest = steepness[0], max(steepest, fall2)
         grow, last_error = _MAX_GROWTH, math.inf
+        if sample < len(after) and (after[sample] - done) - done_low <= taken:
+            make_stages(
+                q, v, stage_q, stage_v, acceleration, rates, pushes,
+                inverse_mass, damping, calls, clock, booked, taken, LAST + 1, STAGES,
+            )  # fmt: skip
+            _bend(rates, pushes, taken, bends)
+            while sample < len(after) and (after[sample] - done) - done_low <= taken:
+                share = ((after[sample] - done) - done_low) / taken
+                _place_within(
+                    q, v, q_low, v_low, bends, taken, share, bodies, origin, q_samples[sample],
+                    v_samples[sample],
+                )  # fmt: skip
+                sample += 1
         for i in range(n):
             moved, moved_low = total(rates[i])
             pushed, pushed_low = total(pushes[i])
@@ -350,30 +406,7 @@ def dop853(
         if last:
             break
         q_scale, v_scale = q_end, v_end
-    steepness[0], step[0] = steepest, h
+    steepness[0] = steepest
     if moved_origin:
         _restore_origin(q, q_low, bodies, origin)
     return evaluations
-
-
-@allocating_kernel
-def dop853_samples(
-    q: Numbers, v: Numbers, q_low: Numbers, v_low: Numbers, inverse_mass: Numbers, damping: Numbers,
-    calls: Calls, places: Rows, spans: Numbers, tolerance: float, period: float, max_evaluations: int,
-    bodies: int, steepness: Numbers, floor: float, q_samples: Vectors, v_samples: Vectors,
-) -> int:  # fmt: skip
-    """Advance by ``spans`` seconds (n,), one after the other, and keep q and v (n, coordinates) after each.
-
-    Each begins with the step with which the one before ended. The rest is as :func:`dop853` has it. Returns
-    how many spans were made.
-    """
-    step = np.zeros(1)
-    for k in range(len(spans)):
-        made = dop853(
-            q, v, q_low, v_low, inverse_mass, damping, calls, places, spans[k], tolerance, period,
-            max_evaluations, bodies, steepness, floor, step,
-        )  # fmt: skip
-        if made < 0:
-            return k
-        q_samples[k], v_samples[k] = q, v
-    return len(spans)

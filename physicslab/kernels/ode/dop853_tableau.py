@@ -2,7 +2,7 @@
 
 Dormand & Prince's method of order 8 with error estimates of order 5 and 3: Hairer, Norsett & Wanner, Solving
 Ordinary Differential Equations I, 1993, II.5 and the program of that name. Stages 0..11 make the step, stage
-12 is its end.
+12 is its end; with three more the motion within the step is known to order 7 (II.6).
 """
 
 import math
@@ -11,13 +11,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-LAST = 12
-"""The stage that is the end of the step."""
+LAST, STAGES = 12, 16
+"""The stage that is the end of the step, and all stages with those of the motion within it."""
 
 
 def _table(*rows: Sequence[float]) -> NDArray[np.float64]:
-    """Return rows as a table of 13 columns; what a row leaves out at its end is 0."""
-    return np.array([(*row, *(LAST + 1 - len(row)) * (0.0,)) for row in rows])
+    """Return rows as a table with a column for each stage; what a row leaves out at its end is 0."""
+    return np.array([(*row, *(STAGES - len(row)) * (0.0,)) for row in rows])
 
 
 WEIGHTS = _table(
@@ -40,8 +40,15 @@ WEIGHTS = _table(
      27.94888452941996, -2.8589982771350235, -8.87285693353063, 12.360567175794303, 0.6433927460157636),
     (0.054293734116568765, 0.0, 0.0, 0.0, 0.0, 4.450312892752409, 1.8915178993145003, -5.801203960010585,
      0.3111643669578199, -0.1521609496625161, 0.20136540080403034, 0.04471061572777259),
+    (0.056167502283047954, 0.0, 0.0, 0.0, 0.0, 0.0, 0.25350021021662483, -0.2462390374708025,
+     -0.12419142326381637, 0.15329179827876568, 0.00820105229563469, 0.007567897660545699, -0.008298),
+    (0.03183464816350214, 0.0, 0.0, 0.0, 0.0, 0.028300909672366776, 0.053541988307438566,
+     -0.05492374857139099, 0.0, 0.0, -0.00010834732869724932, 0.0003825710908356584, -0.00034046500868740456,
+     0.1413124436746325),
+    (-0.42889630158379194, 0.0, 0.0, 0.0, 0.0, -4.697621415361164, 7.683421196062599, 4.06898981839711,
+     0.3567271874552811, 0.0, 0.0, 0.0, -0.0013990241651590145, 2.9475147891527724, -9.15095847217987),
 )  # fmt: skip
-"""Weights of the stages before, for each stage (13, 13)."""
+"""Weights of the stages before, for each stage (16, 16)."""
 
 WEIGHTS_LOW = _table(
     (),
@@ -66,29 +73,46 @@ WEIGHTS_LOW = _table(
     (-2.564525917607828e-18, 0.0, 0.0, 0.0, 0.0, -2.737092775581909e-16, 6.581122499260484e-17,
      1.3317442893008373e-16, -1.0104455449341739e-17, 8.776696451848075e-18, 6.12257216002761e-18,
      3.1043973515105385e-18),
+    (), (), (),
 )  # fmt: skip
-"""Rounding remainders of the weights (13, 13): orbits would show the bias after 100 rounds."""
+"""Rounding remainders of the weights (16, 16): orbits would show the bias after 100 rounds."""
 
 FIRST = np.array([next((k for k in range(1, s) if row[k]), s) for s, row in enumerate(WEIGHTS)])
-"""The first stage after the start that has a weight in each (13,): those before it are left out."""
+"""The first stage after the start that has a weight in each (16,): those before it are left out."""
 
 NODES = np.array([math.fsum((*row, *low)) for row, low in zip(WEIGHTS, WEIGHTS_LOW, strict=True)])
-"""The time of each stage, as a share of the step (13,)."""
+"""The time of each stage, as a share of the step (16,)."""
 
 NODES_LOW = np.array(
     [math.fsum((*row, *low, -node)) for row, low, node in zip(WEIGHTS, WEIGHTS_LOW, NODES, strict=True)]
 )
-"""Its rounding remainders (13,)."""
+"""Its rounding remainders (16,)."""
 
 ESTIMATE_5 = _table(
     (0.01312004499419488, 0.0, 0.0, 0.0, 0.0, -1.2251564463762044, -0.4957589496572502,
      1.6643771824549864, -0.35032884874997366, 0.3341791187130175, 0.08192320648511571,
      -0.022355307863886294),
 )[0]  # fmt: skip
-"""Weights of the stages for the step's departure from one of order 5 (13,)."""
+"""Weights of the stages for the step's departure from one of order 5 (16,)."""
 
 ESTIMATE_3 = WEIGHTS[LAST] - _table(
     (0.24409448818897638, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.7338466882816119, 0.0, 0.0,
      0.022058823529411766),
 )[0]  # fmt: skip
-"""Weights of the stages for the step's departure from one of order 3 (13,)."""
+"""Weights of the stages for the step's departure from one of order 3 (16,)."""
+
+WITHIN = _table(
+    (-8.428938276109013, 0.0, 0.0, 0.0, 0.0, 0.5667149535193777, -3.0689499459498917, 2.38466765651207,
+     2.117034582445028, -0.871391583777973, 2.2404374302607883, 0.6315787787694688, -0.08899033645133331,
+     18.148505520854727, -9.194632392478356, -4.436036387594894),
+    (10.427508642579134, 0.0, 0.0, 0.0, 0.0, 242.28349177525817, 165.20045171727028, -374.5467547226902,
+     -22.113666853125306, 7.733432668472264, -30.674084731089398, -9.332130526430229, 15.697238121770845,
+     -31.139403219565178, -9.35292435884448, 35.81684148639408),
+    (19.985053242002433, 0.0, 0.0, 0.0, 0.0, -387.0373087493518, -189.17813819516758, 527.8081592054236,
+     -11.57390253995963, 6.8812326946963, -1.0006050966910838, 0.7777137798053443, -2.778205752353508,
+     -60.19669523126412, 84.32040550667716, 11.99229113618279),
+    (-25.69393346270375, 0.0, 0.0, 0.0, 0.0, -154.18974869023643, -231.5293791760455, 357.6391179106141,
+     93.40532418362432, -37.45832313645163, 104.0996495089623, 29.8402934266605, -43.53345659001114,
+     96.32455395918828, -39.17726167561544, -149.72683625798564),
+)  # fmt: skip
+"""Weights of the stages for the last four terms of the motion within the step (4, 16)."""

@@ -159,6 +159,7 @@ def _bounce_first(
         e = min(materials.restitution[a], materials.restitution[b]) if elastic else 0.0
         mu = math.sqrt(materials.friction[a] * materials.friction[b])
         manifold.restitution, manifold.friction = e, mu
+        near.apart[p].clearance = -math.inf  # it is looked at when the next step begins
         impacts += resolve_at(
             manifold, near.points[2 * p], at, t, motion, inverse, acting, forced, log,
             near.counts[LOGGED] + impacts,

@@ -20,11 +20,13 @@ from physicslab.kernels.arguments import (
     Near,
     Packed,
     Plan,
+    Sampled,
     Sleepers,
     Softness,
     Springs,
     named_acting,
     named_near,
+    take_sample,
 )
 from physicslab.kernels.broad.fat_boxes import all_inside
 from physicslab.kernels.energy import moments_of_mass, motion_totals
@@ -33,7 +35,7 @@ from physicslab.kernels.forces.gravity import uniform_gravity
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, named_shapes
 from physicslab.kernels.joints.blocks import Joints
 from physicslab.kernels.motion import FARTHEST, LARGEST, clear, drift, find_beyond, kick, pack_state, predict
-from physicslab.kernels.near_counts import ACTIVE, LEFT, OUTSIDE, ROUND, WIDE_COUNT
+from physicslab.kernels.near_counts import ACTIVE, FOLLOWED, LEFT, OUTSIDE, ROUND, WIDE_COUNT
 from physicslab.kernels.ode.damped_flow import flow_forces
 from physicslab.kernels.ode.spring_flow import flow_at, rows_in
 from physicslab.kernels.records import Impacts
@@ -183,6 +185,7 @@ def _advance(
     sub_integrated: Flags, acting: Acting, gravity: Gravity, packed: Packed, springs: Springs,
     sleepers: Sleepers, damping: tuple[float, float], fat: Vectors, bounds: Bounds, near: Near,
     joints: Joints, opened: Rows, softness: Softness, impulse_dt: float, impacts: Impacts, cost: Rows,
+    sampled: Sampled,
 ) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
     """Advance by steps, beginning at a part of a substep, as :func:`advance` describes."""
     position, angle, linear, angular = motion
@@ -263,10 +266,13 @@ def _advance(
                     inverse,
                     bounds,
                     first,
+                    done > 0,
                     span,
                     course.start,
                     gravity.margin,
                 )
+                if course.hooked:
+                    counts[FOLLOWED] = 0  # what acts in between may change shapes
                 now = charge(cost, CONTACT, now)
             elif what == WIDEN:
                 if substep == plan.first:
@@ -348,6 +354,7 @@ def _advance(
                 )
                 now = charge(cost, RESOLVE, now)
                 pending = ALL if needed == plan.finer else OTHER_SUBSTEPS
+            take_sample(motion, sampled, done)  # and again in Python where a step ends there
             if pending != ALL:
                 return pending, done, substep, part, finished, bounced, evaluations, impulse_dt
     return ALL, done, substep, part, finished, bounced, evaluations, impulse_dt
@@ -360,13 +367,13 @@ def advance(
     inverse: Plain[Inverse], sub_integrated: Flags, acting: ActingTuple, gravity: Plain[Gravity],
     packed: Plain[Packed], springs: Plain[Springs], sleepers: Plain[Sleepers], damping: tuple[float, float],
     fat: Vectors, bounds: Plain[Bounds], near: Plain[Near], joints: Plain[Joints], opened: Rows,
-    softness: Plain[Softness], impulse_dt: float, impacts: Impacts, cost: Rows,
+    softness: Plain[Softness], impulse_dt: float, impacts: Impacts, cost: Rows, sampled: Plain[Sampled],
 ) -> tuple[int, int, int, int, int, int, int, float]:  # fmt: skip
     """Advance by ``steps`` steps, beginning at a part of a substep.
 
     ``kept`` has the state now, and receives that in which the last step began. ``impacts`` is the log, and
     ``cost`` (COSTS,) gets ticks added for each system, and the number of steps. A change since the
-    last step is booked to ``cause``, unless that is negative.
+    last step is booked to ``cause``, unless that is negative. Samples that are due after steps are taken.
 
     Where some parts are Python's, the ends of steps are too: nothing is kept, and energy is not measured.
 
@@ -382,6 +389,7 @@ def advance(
         named_shapes(shapes), Materials(*materials), Inverse(*inverse), sub_integrated,
         named_acting(acting), masses, Packed(*packed), Springs(*springs), Sleepers(*sleepers), damping, fat,
         Bounds(*bounds), of, Joints(*joints), opened, Softness(*softness), impulse_dt, impacts, cost,
+        Sampled(*sampled),
     )  # fmt: skip
     if not along.hooked:
         _balance(of.account, moved, masses, -1)

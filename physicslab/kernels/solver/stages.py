@@ -56,12 +56,13 @@ def _solved(near: Near) -> Contacts:
 @always_inlined
 def find_touching(
     near: Near, motion: Motion, shapes: Shapes, materials: Materials, inverse: Inverse, bounds: Bounds,
-    first: bool, h: float, start: float, speculative_margin: float,
+    first: bool, goes_on: bool, h: float, start: float, speculative_margin: float,
 ) -> None:  # fmt: skip
     """Find where wide contacts touch now, activate proximity pairs, then find where scalar ones touch.
 
     The substep spans ``h`` seconds from ``start`` h before or after now. ``first`` marks the first substep of
-    a step; ``speculative_margin`` is how far [m] the forces may bring two bodies together within it.
+    a step, and that it ``goes_on`` from another one of the same call; ``speculative_margin`` is how far [m]
+    the forces may bring two bodies together within it.
     """
     counts, manifolds, points, scalar = near.counts, near.manifolds, near.points, near.scalar
     if counts[WIDE_COUNT] > 0:
@@ -81,8 +82,9 @@ def find_touching(
         near.touching,
     )  # fmt: skip
     counts[ACTIVE] = find_contacts(
-        near, counts[SCALAR], motion, shapes, materials, inverse, bounds, first, h, start, speculative_margin
-    )
+        near, counts[SCALAR], motion, shapes, materials, inverse, bounds, first, goes_on, h, start,
+        speculative_margin,
+    )  # fmt: skip
 
 
 @always_inlined

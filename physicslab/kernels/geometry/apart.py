@@ -1,0 +1,79 @@
+"""Pairs so far apart that they are not looked at again for a while.
+
+Most near pairs do not touch, and the record of one takes several lines of the cache. In the first substep of
+a call it is noted how far each is from having points; later it is looked at again only once its two bodies
+together have come as far. To look again earlier would find the same, so that no bit depends on it.
+"""
+
+import math
+
+from physicslab.kernels import Vectors, inlined
+from physicslab.kernels.arguments import Motion, Near
+from physicslab.kernels.geometry.shapes import Shapes
+from physicslab.kernels.near_counts import FOLLOWED, RECORDED
+
+LAST_X, LAST_Y, LAST_ANGLE, PATH, REACH = range(5)
+"""The rows of ``Near.travels``: where each body last was [m, rad]; how far any point of it can have come in
+the call [m]; that, and how far it comes at most in the substep at hand."""
+_WORTH_IT = 4
+"""Number of bodies a pair that is apart from which all are followed."""
+_ROUNDING = 1e-12
+"""Share of coordinates by which distances may be rounded."""
+
+
+@inlined
+def begin_step(near: Near, goes_on: bool) -> None:
+    """Let all pairs be looked at, or only new ones where a step before this one ``goes_on``."""
+    counts = near.counts
+    if not goes_on:
+        counts[FOLLOWED] = 0
+    for p in range(counts[FOLLOWED], counts[RECORDED]):
+        near.apart[p].clearance = -math.inf
+    if counts[FOLLOWED] > 0:
+        counts[FOLLOWED] = counts[RECORDED]
+
+
+@inlined
+def note(near: Near, p: int, a: int, b: int, clearance: float, motion: Motion) -> None:
+    """Note by how much nearer two bodies would have to come to have points: ``clearance`` [m]."""
+    pair, travels, position = near.apart[p], near.travels, motion.position
+    rounded = abs(position[a, 0]) + abs(position[a, 1]) + abs(position[b, 0]) + abs(position[b, 1])
+    if near.counts[FOLLOWED] > 0:
+        clearance += travels[PATH, a] + travels[PATH, b]
+    pair.clearance, pair.a, pair.b = clearance - _ROUNDING * rounded, a, b
+
+
+@inlined
+def begin_to_follow(near: Near, motion: Motion, apart: int) -> None:
+    """Follow the bodies from where they are, if enough pairs are ``apart``."""
+    rows, travels = len(motion.angle), near.travels
+    if apart * _WORTH_IT < rows:
+        return
+    near.counts[FOLLOWED] = near.counts[RECORDED]
+    for i in range(rows):
+        travels[LAST_X, i], travels[LAST_Y, i] = motion.position[i, 0], motion.position[i, 1]
+        travels[LAST_ANGLE, i], travels[PATH, i] = motion.angle[i], 0.0
+
+
+@inlined
+def follow(travels: Vectors, motion: Motion, shapes: Shapes, h: float) -> None:
+    """Add up how far bodies have come, and come at most in the ``h`` seconds at hand."""
+    position, angle, linear, angular = motion
+    for i in range(len(angle)):
+        arm = shapes.half_x[i] + shapes.half_y[i]
+        x, y, turned = position[i, 0], position[i, 1], angle[i]
+        way = abs(x - travels[LAST_X, i]) + abs(y - travels[LAST_Y, i])
+        way += abs(turned - travels[LAST_ANGLE, i]) * arm
+        travels[LAST_X, i], travels[LAST_Y, i], travels[LAST_ANGLE, i] = x, y, turned
+        travels[PATH, i] += way
+        ahead = h * (abs(linear[i, 0]) + abs(linear[i, 1]) + abs(angular[i]) * arm)
+        travels[REACH, i] = travels[PATH, i] + ahead
+
+
+@inlined
+def stays_apart(near: Near, p: int) -> bool:
+    """Whether a pair has no points in the substep at hand, as far as its bodies may have come."""
+    pair, travels = near.apart[p], near.travels
+    if p >= near.counts[FOLLOWED]:
+        return False
+    return bool(pair.clearance > travels[REACH, pair.a] + travels[REACH, pair.b])
