@@ -109,8 +109,9 @@ def test_trails_are_as_they_were_set_last_wherever_undo_goes() -> None:
 
 
 def test_an_edit_of_a_trail_that_the_switch_gave_is_done_again_where_there_is_none() -> None:
-    desk = Desk(empty_world(gravity=(0, 0)))
-    ball = circle(desk.world, (0, 0))
+    world = empty_world(gravity=(0, 0))
+    ball = circle(world, (0, 0))
+    desk = Desk(world)
     desk.frames(2)
     desk.window.trails.toggle(desk.world)
     desk.window.edits.do(SetField(ball, "Trail", "length", 2.0))
@@ -125,8 +126,9 @@ def test_an_edit_of_a_trail_that_the_switch_gave_is_done_again_where_there_is_no
 
 
 def test_the_switch_gives_trails_to_what_moves_alone() -> None:
-    desk = Desk(empty_world(gravity=(0, 0)))
-    ball = circle(desk.world, (0, 0))
+    world = empty_world(gravity=(0, 0))
+    ball = circle(world, (0, 0))
+    desk = Desk(world)
     desk.window.trails.toggle(desk.world)
     take(desk.world, desk.window, (ball,), Trail)
     assert worn(desk.world) == [ball] and "T turns that off" in desk.window.notice
