@@ -123,8 +123,9 @@ def pull(desk: Desk, start: tuple[float, float], end: tuple[float, float]) -> No
 
 def test_the_tour_goes_on_by_acts_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    desk = sized(SIZE, empty_world(bounds=(-8.0, -3.0, 8.0, 5.0)))
-    ball = desk.world.spawn(Transform((0.0, 2.0)), Velocity(), Mass(1.0), Shape(kind="circle", radius=0.5))
+    world = empty_world(bounds=(-8.0, -3.0, 8.0, 5.0))
+    ball = world.spawn(Transform((0.0, 2.0)), Velocity(), Mass(1.0), Shape(kind="circle", radius=0.5))
+    desk = sized(SIZE, world)
     desk.frames(SETTLED)
 
     def place() -> tuple[float, float]:
