@@ -135,9 +135,9 @@ def read_impacts(records: NDArray[Any]) -> ImpactColumns:
 
 
 def first_and_last(state: State, since: int) -> NDArray[Any]:
-    """Return the first impact from number ``since`` on and the last (2,): of NaN where there is none.
+    """Return the first impact from number ``since`` on and the last (2,): of NaN if there was no impact.
 
-    There is none either where others have taken its place in the log.
+    So is one whose place in the log others have taken.
     """
     contacts, found = state.contacts, _NEITHER.copy()
     for place, number in enumerate((since, contacts.logged - 1)):
