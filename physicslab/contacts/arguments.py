@@ -115,7 +115,8 @@ def do_stage(
     motion = motion or motion_of(state)
     none = np.zeros(0, np.bool_)
     course = np.array([part]), np.array([[1.0], [0.0], [0.0]]), *state.window, -1.0, True
-    plan = 2, state.simulation.iterations or 0, h, h, state.moment, h, 1 if first else 0, h, 0
+    loaded = int(state.bodies.unequal and state.has_forces)
+    plan = 2, state.simulation.iterations or 0, h, h, state.moment, h, 1 if first else 0, h, loaded
     gravity = _NOTHING, _NOTHING, *inverse, 0.0, 0.0, speculative_margin(state, h), 0
     packed = _NO_VECTORS, np.zeros((0, 3), np.int64)
     rows = np.zeros(0, np.int64)

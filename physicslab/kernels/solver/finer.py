@@ -14,12 +14,16 @@ from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import Inverse, Motion, Near, Plan, Softness, named_near
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents, named_shapes
 from physicslab.kernels.joints.blocks import ENDS, FIRST, TERM, TERMS, Joints
-from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, RECORDED
+from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, RECORDED, WIDE_COUNT
 from physicslab.kernels.records import Manifold
 from physicslab.kernels.solver.impulse import HEAVY_RATIO, MAX_SUBSTEP_FACTOR, MAX_SWEEPS, sweeps_of
 
-_SUNK = 0.1
+SUNK = 0.1
 """Share of the smaller body by which a load may press it in: half of what there is a warning from."""
+UNLIMITED = 1e30
+"""Share of its size by which a body may be pressed in where that has no limit."""
+_HARDER = 0.01
+"""Share of the contacts of a crowd that may be pressed harder than its substeps would hold."""
 _LIGHT_LOAD, _HARDLY_SUNK = 12.0, 1e-3
 """Multiple of its own load that a body carries where few contacts are swept most often, and the share of its
 size by which the load may press it in whatever that multiple is, as where its own load is next to nothing."""
@@ -32,33 +36,44 @@ six ragdolls, started six times 1e-6 apart, comes apart by 16 mm each time; with
 
 
 @inlined
-def _hardest_of_slots(slots: L.Slots, blocks: int) -> float:
-    """Return the same as :func:`_hardest_press` of wide contacts."""
-    data, rows, hardest = slots.data, L.rows_of(slots.kind), 0.0
-    for k in range(blocks):
-        for i in range(k * rows, k * rows + L.WIDE):
-            impulse = data[i + L.ONE + L.IMPULSE]
-            if slots.kind == L.BOX:
-                impulse += data[i + L.TWO + L.IMPULSE]
-            hardest = max(hardest, impulse * (data[i + L.MASS_A] + data[i + L.MASS_B]) / data[i + L.SIZE])
-    return hardest
+def _press_of_slot(slots: L.Slots, i: int) -> float:
+    """Return the impulse of a slot over its effective mass and the size of its smaller body [1/s]."""
+    data = slots.data
+    impulse = data[i + L.ONE + L.IMPULSE]
+    if slots.kind == L.BOX:
+        impulse += data[i + L.TWO + L.IMPULSE]
+    press: float = impulse * (data[i + L.MASS_A] + data[i + L.MASS_B]) / data[i + L.SIZE]
+    return press
 
 
 @inlined
-def _hardest_press(near: Near, inverse_mass: Numbers) -> float:
-    """Return the largest impulse of a pair over its effective mass and the size of its smaller body [1/s]."""
-    hardest = 0.0
+def _press_of(near: Near, p: int, inverse_mass: Numbers) -> float:
+    """Return the same of a scalar pair."""
+    manifold, impulse = near.manifolds[p], 0.0
+    for j in range(2 * p, 2 * p + manifold.count):
+        impulse += near.points[j].normal_impulse
+    press: float = impulse * (inverse_mass[manifold.a] + inverse_mass[manifold.b]) / manifold.size
+    return press
+
+
+@inlined
+def _count(pressed: tuple[int, float], press: float, allowed: float) -> tuple[int, float]:
+    """Return how many contacts are pressed harder than allowed, and the hardest, with one more."""
+    return pressed[0] + (1 if press > allowed else 0), max(pressed[1], press)
+
+
+@inlined
+def _pressed(near: Near, inverse_mass: Numbers, allowed: float) -> tuple[int, float]:
+    """Return how many contacts are pressed harder than ``allowed`` [1/s], and how hard the hardest is."""
+    found = 0, 0.0
     for k in range(near.counts[ACTIVE]):
-        p = near.touching[k]
-        manifold, impulse = near.manifolds[p], 0.0
-        for j in range(2 * p, 2 * p + manifold.count):
-            impulse += near.points[j].normal_impulse
-        if impulse > 0.0:
-            mass = inverse_mass[manifold.a] + inverse_mass[manifold.b]
-            hardest = max(hardest, impulse * mass / manifold.size)
+        found = _count(found, _press_of(near, near.touching[k], inverse_mass), allowed)
     for slots in (near.discs, near.boxes):
-        hardest = max(hardest, _hardest_of_slots(slots, near.counts[DISC_BLOCKS + slots.kind]))
-    return hardest
+        rows = L.rows_of(slots.kind)
+        for k in range(near.counts[DISC_BLOCKS + slots.kind]):
+            for i in range(k * rows, k * rows + L.WIDE):
+                found = _count(found, _press_of_slot(slots, i), allowed)
+    return found
 
 
 @inlined
@@ -206,6 +221,21 @@ def _fastest_whip(joints: Joints, angular: Numbers, inverse_mass: Numbers) -> fl
 
 
 @inlined
+def _times_too_hard(near: Near, inverse_mass: Numbers, allowed: float, sweeps: int) -> float:
+    """Return how many times as hard as ``allowed`` [1/s] contacts are pressed.
+
+    It is the hardest of a few; in a crowd that is swept once, all but :data:`_HARDER` of them: these have
+    springs as stiff as their load needs.
+    """
+    number, over, hardest = near.counts[ACTIVE] + near.counts[WIDE_COUNT], 0.5, 0.0
+    left, count = _HARDER * number if sweeps == 1 else 0.0, number
+    while count > left and over < MAX_SUBSTEP_FACTOR * MAX_SUBSTEP_FACTOR:
+        over *= 2.0
+        count, hardest = _pressed(near, inverse_mass, over * allowed)
+    return min(over, hardest / allowed)
+
+
+@inlined
 def factor_for(
     near: Near, joints: Joints, motion: Motion, shapes: Shapes, inverse: Inverse, force: Vectors, plan: Plan,
     softness: Softness, impulse_dt: float,
@@ -217,7 +247,7 @@ def factor_for(
     h, rows, over = plan.own_h, len(joints.impulse), 0.0
     sweeps, sunk = sweeps_of(near, rows, plan.iterations), h * h / (softness.push * softness.stiffness)
     if impulse_dt > 0.0:
-        over = _hardest_press(near, inverse.mass) / impulse_dt * sunk / _SUNK
+        over = _times_too_hard(near, inverse.mass, impulse_dt * SUNK / sunk, sweeps)
     if sweeps > 1:
         settled = sweeps / MAX_SWEEPS
         load = _heaviest_load(near, inverse.mass, force, sunk)

@@ -79,7 +79,9 @@ def sweeps_of(near: Near, rows: int, iterations: int) -> int:
 
 
 @always_inlined
-def _soft_constraint(softness: Softness, acting: Acting, h: float, sweeps: int) -> SoftConstraint:
+def _soft_constraint(
+    softness: Softness, acting: Acting, h: float, sweeps: int, sunk: float
+) -> SoftConstraint:
     """Return the contact spring of :class:`Softness`, integrated implicitly over h.
 
     (Catto, Soft Constraints, GDC 2011.) More ``sweeps`` carry a stiffer spring, by their number to the power
@@ -93,19 +95,26 @@ def _soft_constraint(softness: Softness, acting: Acting, h: float, sweeps: int) 
     few = min(sweeps, _STIFFENED)
     stiffness = softness.stiffness * sweeps * math.sqrt(math.sqrt(few))
     return SoftConstraint(
-        1.0 / h, softness.push / h, stiffness / (1.0 + stiffness), 1.0 / (1.0 + stiffness), force_cap, _GIVE
+        1.0 / h,
+        softness.push / h,
+        stiffness / (1.0 + stiffness),
+        1.0 / (1.0 + stiffness),
+        force_cap,
+        _GIVE,
+        sunk,
     )
 
 
 @always_inlined
 def solve(
     contacts: Contacts, near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting,
-    softness: Softness, h: float, warm_start_scale: float, sweeps: int,
+    softness: Softness, h: float, warm_start_scale: float, sweeps: int, sunk: float,
 ) -> None:  # fmt: skip
     """Start from the last substep's impulses, then go through all contacts, correcting overlap.
 
     ``warm_start_scale`` is the ratio of this substep to the last one: the impulses of resting contacts grow
-    by that factor. Work of those of contacts is booked by :func:`relax`, where points are looked at again.
+    by that factor. No load presses a body in by more than ``sunk``, a share of its size. Work of those of
+    contacts is booked by :func:`relax`, where points are looked at again.
     """
     joined, loose, stiff = len(joints.impulse) > 0, False, joint_softness(h)
     if joined:
@@ -115,7 +124,7 @@ def solve(
     _warm_start(contacts, motion, inverse, warm_start_scale)
     if near.counts[WIDE_COUNT] > 0:
         warm_start_wide(near, motion, warm_start_scale)
-    soft = _soft_constraint(softness, acting, h, sweeps)
+    soft = _soft_constraint(softness, acting, h, sweeps, sunk)
     for n in range(sweeps):
         if joined:
             loose = sweep_joints(joints, motion, inverse, stiff)
@@ -172,7 +181,7 @@ def relax(
     crowd = near.counts[WIDE_COUNT] > 0
     if crowd:
         take_means(near, motion)
-    rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0), h
+    rigid, drift = SoftConstraint(1.0 / h, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0), h
     joined, loose, stiff = len(joints.impulse) > 0, False, JointSoftness(h, 0.0, 1.0)
     if joined:
         begin_joints(joints, motion, near.rotations, inverse, acting, 0.0)

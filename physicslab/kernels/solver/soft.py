@@ -313,8 +313,9 @@ def _advance(
                 )  # fmt: skip
             elif what == SOLVE:
                 impulse_dt = press(
-                    near, joints, motion, inverse, acting, softness, span, impulse_dt, plan.iterations
-                )
+                    near, joints, motion, inverse, acting, softness, span, impulse_dt, plan.iterations,
+                    plan.finer > 0,
+                )  # fmt: skip
                 now = charge(cost, RESOLVE, now)
             elif what == RELAX:
                 if part + 1 < len(course.parts) and course.parts[part + 1] == OVERLAP:

@@ -32,6 +32,7 @@ from physicslab.kernels.near_counts import (
     WIDE_COUNT,
 )
 from physicslab.kernels.solver import impulse
+from physicslab.kernels.solver.finer import SUNK, UNLIMITED
 from physicslab.kernels.solver.impact import ImpactWindow, resolve_impacts
 from physicslab.kernels.solver.meet_again import any_swift, meet_again
 from physicslab.kernels.solver.separate import any_deep, separate
@@ -141,11 +142,12 @@ def resolve_later_impacts(
 @always_inlined
 def press(
     near: Near, joints: Joints, motion: Motion, inverse: Inverse, acting: Acting, softness: Softness,
-    h: float, impulse_dt: float, iterations: int,
+    h: float, impulse_dt: float, iterations: int, loaded: bool,
 ) -> float:  # fmt: skip
     """Find the impulses that keep bodies apart and joints together, and correct some of the error.
 
-    ``impulse_dt`` is the time [s] over which the impulses act; returns the new one.
+    ``impulse_dt`` is the time [s] over which the impulses act; returns the new one. Bodies may be ``loaded``
+    with far heavier ones.
     """
     if near.counts[LEFT] + near.counts[WIDE_COUNT] + len(joints.impulse) == 0:
         return impulse_dt
@@ -154,7 +156,8 @@ def press(
     sweeps = impulse.sweeps_of(near, len(joints.impulse), iterations)
     contacts = _solved(near)
     note_velocities(contacts, near, motion, inverse, acting, h)
-    impulse.solve(contacts, near, joints, motion, inverse, acting, softness, h, scale, sweeps)
+    sunk = SUNK if loaded and sweeps == 1 else UNLIMITED
+    impulse.solve(contacts, near, joints, motion, inverse, acting, softness, h, scale, sweeps, sunk)
     if near.counts[WIDE_COUNT] > 0:
         book_slots(near, motion, inverse, acting, 0.0, True)
     return h

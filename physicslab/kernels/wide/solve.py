@@ -46,7 +46,8 @@ class SoftConstraint(NamedTuple):
 
     One over the substep [1/s], the share of the overlap that is corrected a second, the shares of the
     effective mass and of the impulse so far that take part, the impulse of all forces [N s], and the share
-    that a deep overlap gives up in a sweep of what presses it by more than that.
+    that a deep overlap gives up in a sweep of what presses it by more than that. Last, the share of the
+    smaller body beyond which no load presses it in: from there on the spring is as stiff as the load needs.
     """
 
     inverse_h: float
@@ -55,6 +56,7 @@ class SoftConstraint(NamedTuple):
     impulse_scale: float
     force_cap: float
     give: float
+    sunk: float
 
 
 class Mean(NamedTuple):
@@ -86,7 +88,8 @@ def free_change[N: (float, Wide)](
     deep = separation < -DEEPER * size
     push = choose(deep, 0.0, push)
     yielding = choose(deep, soft.give * greater(impulse - soft.force_cap, 0.0), 0.0)
-    corrected = -soft.mass_scale * (mass * v + push) - soft.impulse_scale * impulse - yielding
+    given = lesser(soft.impulse_scale * impulse, mass * size * (soft.push_rate * soft.mass_scale * soft.sunk))
+    corrected = -soft.mass_scale * (mass * v + push) - given - yielding
     hard = -mass * (v + separation * soft.inverse_h)
     apart = separation > -_NO_OVERLAP * size
     change: N = choose(apart, hard, corrected)
