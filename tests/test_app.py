@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import pygame
 import pytest
@@ -25,6 +26,7 @@ from physicslab.systems.system import Stage, System, at
 from physicslab.theme import DARK, Theme
 from physicslab.view.canvas.canvas import Canvas
 from physicslab.view.canvas.display import Display
+from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
@@ -250,18 +252,24 @@ def test_no_screen_is_an_os_error(monkeypatch: pytest.MonkeyPatch) -> None:
         open_window("drop")
 
 
-def test_frames_come_at_the_configured_rate(each_frame: EachFrame) -> None:
-    times: list[float] = []
+def test_frames_are_due_at_fixed_times_and_a_late_one_delays_all_that_follow(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    now, waits = [100.0], []
 
-    def deed(display: Display, frame: int) -> None:
-        times.append(time.perf_counter())
-        if frame == 40:
-            press(pygame.K_ESCAPE)
+    def sleep(seconds: float) -> None:
+        waits.append(seconds)
+        now[0] += seconds + 0.003  # it wakes late, as schedulers do
 
-    each_frame(deed)
-    open_window("drop")
-    elapsed = sorted(after - before for before, after in itertools.pairwise(times))
-    assert 1 / 63 < elapsed[len(elapsed) // 2] < 1 / 40  # the median, for machines that are busy
+    clock = SimpleNamespace(perf_counter=lambda: now[0], sleep=sleep)
+    monkeypatch.setattr("physicslab.view.canvas.display.time", clock)
+    display = Display(PygameCanvas(pygame.Surface((8, 8))), fps=50)
+    elapsed = []
+    for work in (0.004, 0.004, 0.017, 0.05, 0.004):
+        now[0] += work
+        elapsed.append(display.wait())
+    assert waits == pytest.approx([0.016, 0.013, 0.0, 0.0, 0.013])
+    assert elapsed == pytest.approx([0.023, 0.02, 0.02, 0.053, 0.02])
 
 
 STARTS = """
