@@ -21,7 +21,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.json_text import json_text
 from physicslab.files.scene import read_scene, write_scene
 from physicslab.lab.worlds import floor, open_space
-from physicslab.prefabs import box, circle, container, pile, stack
+from physicslab.prefabs import box, circle, container, pendulum, pile, stack
 from physicslab.systems.standard import standard_systems
 from physicslab.systems.system import ForceSystem, Stage, System, at
 from physicslab.world import World
@@ -282,6 +282,16 @@ def test_what_is_spawned_elsewhere_wakes_nothing() -> None:
     world.spawn(Transform((0.0, 0.5)), Velocity())
     world.run(steps=10)
     assert sleepers(world) == set(boxes)
+
+
+def test_what_is_spawned_beside_a_joint_wakes_nothing() -> None:
+    world, boxes = resting_boxes(0.0)
+    pendulum(world, (-5.0, 5.0), length=1.0, angle=0.5)
+    world.run(seconds=1.0)
+    assert sleepers(world) == set(boxes)
+    circle(world, (8.0, 5.0), radius=0.2)
+    world.synchronise()
+    assert sleepers(world) == set(boxes), "the table of joints has another length, and the same joint"
 
 
 def change_velocity(world: World, first: int) -> None:

@@ -86,6 +86,7 @@ class Joints:
     def __init__(self) -> None:
         self._take([], [])
         self._settings, self.beside_contacts = list[bytes](), False
+        self._entities = np.zeros(0, np.int64)
         self._joined: tuple[Any, ...] = ()
         self.wholes: dict[int, int] = {}
 
@@ -164,7 +165,7 @@ class Joints:
             if before_it and len(before_it[0]) == joint.size:
                 for array, values in zip(self._carried, before_it, strict=True):
                     array[joint.own] = values
-        self._settings = self._columns(index)
+        self._settings, self._entities = self._columns(index), entities
         self._joined = tuple(
             (joint.entity, joint.kind, int(entities[joint.a]), int(entities[joint.b])) for joint in joints
         )
@@ -182,15 +183,18 @@ class Joints:
 
     def _columns(self, index: EntityIndex) -> list[bytes]:
         """Return the same column by column: in one piece they take many times as long."""
-        tables = [index.table(kind) for kind in KINDS if kind in self._kinds]
-        return [column.tobytes() for table in tables for column in table.columns]
+        parts = [(index.table(kind), index.batch(kind).rows) for kind in KINDS if kind in self._kinds]
+        return [column[rows].tobytes() for table, rows in parts for column in table.columns]
 
     def refresh(self, index: EntityIndex) -> bool:
-        """Take the numbers of joints where they were changed; return whether they were."""
-        if not self.joints or self._columns(index) == self._settings:
-            return False
-        self.rebuild(index)
-        return True
+        """Take the numbers of joints where they were changed; return whether they were.
+
+        That bodies have come or gone, so that rows are numbered again, is no change of a joint.
+        """
+        changed = bool(self.joints) and self._columns(index) != self._settings
+        if changed or (self.joints and self._entities is not index.entities):
+            self.rebuild(index)
+        return changed
 
     @property
     def solved(self) -> NDArray[np.bool_]:
