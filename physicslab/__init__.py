@@ -65,7 +65,10 @@ def __getattr__(name: str) -> object:
     if name == "__version__":
         return version(__name__)
     if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        if name[:1] == "_":
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        words = import_module(f"{__name__}.ecs.text").no_such(__name__, "name", name, __all__)
+        raise AttributeError(words, name=None)
     try:
         value = globals()[name] = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
     except AttributeError as error:  # of which Python would say that there is no such name

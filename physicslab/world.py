@@ -94,8 +94,8 @@ class World(Facade):
         physics: PhysicsConfig | None = None,
         simulation: SimulationConfig | None = None,
     ) -> None:
-        if just and systems is not None:
-            raise TypeError("World takes its systems one after the other, or as systems=...; not both")
+        if (just and systems is not None) or not isinstance(systems, Iterable | None):
+            raise TypeError("World takes systems one after the other, or a list as systems=[...]; not both")
         chosen = just or (standard_systems() if systems is None else tuple(systems))
         super().__init__(physics, simulation)
         self.schedule = Schedule((AccelerateSystem(), *chosen))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import logging
+import math
 import os
 import subprocess
 import sys
@@ -60,6 +61,43 @@ WRONG: dict[str, tuple[Callable[[World], object], type[Exception], str]] = {
     "gravity": (change("gravity", (0, -1)), AttributeError, "world.physics = dataclasses.replace("),
     "dt": (change("dt", 0.1), AttributeError, "world.simulation = dataclasses.replace("),
     "misspelt": (change("gravty", 1.0), AttributeError, "no attribute 'gravty'"),
+    "misspelt figure": (lambda world: world.enrgy, AttributeError, 'did you mean "energy"?'),  # type: ignore[attr-defined]
+    "figure that is measured": (change("energy", 3.0), AttributeError, "world.energy is measured and cannot"),
+    "clock": (change("time", "now"), InvalidValue, "world.time = 'now': must be a finite number s"),
+    "clock without end": (change("time", math.inf), InvalidValue, "world.time = inf: must be a finite"),
+    "language": (lambda world: world.describe("xx"), InvalidValue, 'must be one of "en", "de"'),
+    "misspelt law": (
+        lambda world: PhysicsConfig(gravty=(0, 1)), TypeError,  # type: ignore[call-arg]
+        "PhysicsConfig has no field 'gravty'; it has gravity_mode, gravity, ",
+    ),
+    "misspelt setting": (
+        lambda world: dataclasses.replace(world.simulation, substep=2), TypeError, 'did you mean "substeps"?'  # type: ignore[call-arg]
+    ),
+    "misspelt law, written": (
+        change("physics.gravty", 1), AttributeError, 'PhysicsConfig has no field \'gravty\'; it has'
+    ),
+    "misspelt field, read": (
+        lambda world: world.component("ball", Velocity).liner, AttributeError,  # type: ignore[attr-defined]
+        "Velocity has no field 'liner'; it has linear, angular; did you mean \"linear\"?",
+    ),
+    "misspelt field, written": (
+        change("transform.positon", (1, 2)), AttributeError,
+        "Transform has no field 'positon'; it has position, angle; did you mean \"position\"?",
+    ),
+    "misspelt name": (lambda world: physicslab.Wrld, AttributeError, 'did you mean "World"?'),
+    "column": (
+        lambda world: world.copy().record(0.1).columns["ball.z"], KeyError,
+        "has no column 'ball.z'; it has time, ball.x, ball.y, ",
+    ),
+    "one system as a list": (lambda world: World(systems=GravitySystem()), TypeError, "systems=[...]"),  # type: ignore[arg-type]
+    "size of another shape": (
+        lambda world: Shape("circle", width=3), InvalidValue,
+        "Shape.width = 3.0: must be left out: a circle has no width, it has radius",
+    ),
+    "coordinates apart": (
+        lambda world: circle(world, 0, 0), TypeError,  # type: ignore[arg-type, call-arg]
+        "circle(world, 0, 0): a position is one pair, as (0, 5); name all else",
+    ),
     "law": (change("physics.gravity", (0, 1)), dataclasses.FrozenInstanceError, "dataclasses.replace("),
     "setting": (change("simulation.dt", 1), dataclasses.FrozenInstanceError, "dataclasses.replace("),
     "part of a vector": (

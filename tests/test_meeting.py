@@ -45,7 +45,7 @@ def check(t: float, gap: NDArray[np.float64], gap_at: float, scale: float) -> No
 @given(away, turns, speeds, speeds, speeds, speeds, st.booleans())
 def test_circles(d: float, turn: float, ux: float, uy: float, wx: float, wy: float, pulled: bool) -> None:
     dx, dy, wx, wy = d * math.cos(turn), d * math.sin(turn), wx * pulled, wy * pulled
-    t = meet_circle(Course(dx, dy, ux, uy, wx, wy), 0.9, SPAN, 0.0)
+    t = meet_circle(Course(dx, dy, ux, uy, wx, wy), 0.9, SPAN, 0.0, 1.0)
 
     def gap(at: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.hypot(path(at, dx, ux, wx), path(at, dy, uy, wy)) - 0.9
@@ -157,8 +157,8 @@ def test_what_has_just_bounced_is_not_met_again() -> None:
     for gap in (0.0, 1e-17, -1e-17):
         assert meet_line(gap, 1.0, 0.0, 0.0) == math.inf
         assert abs(meet_line(gap, 1.0, -2.0, 0.0) - 1.0) < 1e-15
-        assert meet_circle(Course(1.0 + gap, 0.0, 1.0, 0.5, 0.0, 0.0), 1.0, SPAN, 0.0) == math.inf
-        later = meet_circle(Course(1.0 + gap, 0.0, 1.0, 0.0, -2.0, 0.0), 1.0, SPAN, 0.0)
+        assert meet_circle(Course(1.0 + gap, 0.0, 1.0, 0.5, 0.0, 0.0), 1.0, SPAN, 0.0, 1.0) == math.inf
+        later = meet_circle(Course(1.0 + gap, 0.0, 1.0, 0.0, -2.0, 0.0), 1.0, SPAN, 0.0, 1.0)
         assert abs(later - 1.0) < 1e-15
         manifold, paths = pair_on_paths((0.9 + gap, 0.1), [1.0, 0.0, 0.0, 0.0], -2.0, 0.0)
         for kinds in ((BOX, DISC), (DISC, BOX), (CAPSULE, BOX)):
@@ -171,11 +171,11 @@ def test_what_has_just_bounced_is_not_met_again() -> None:
 
 
 def test_the_fastest_and_the_faintest_meeting_are_found() -> None:
-    assert meet_circle(Course(1e6, 0.0, -1e12, 0.0, 0.0, 0.0), 1.0, SPAN, 0.0) == (1e6 - 1.0) / 1e12
+    assert meet_circle(Course(1e6, 0.0, -1e12, 0.0, 0.0, 0.0), 1.0, SPAN, 0.0, 1.0) == (1e6 - 1.0) / 1e12
     graze = 1.0 - 1e-12
-    assert abs(meet_circle(Course(10.0, graze, -5.0, 0.0, 0.0, 0.0), 1.0, SPAN, 0.0) - 2.0) < 1e-5
+    assert abs(meet_circle(Course(10.0, graze, -5.0, 0.0, 0.0, 0.0), 1.0, SPAN, 0.0, 1.0) - 2.0) < 1e-5
     # A parabola whose top dips into the circle from below.
-    t = meet_circle(Course(-2.0, -3.0, 1.0, math.sqrt(2 * (2.0 + 1e-9)), 0.0, -1.0), 1.0, SPAN, 0.0)
+    t = meet_circle(Course(-2.0, -3.0, 1.0, math.sqrt(2 * (2.0 + 1e-9)), 0.0, -1.0), 1.0, SPAN, 0.0, 1.0)
     assert 1.99 < t < 2.0
 
 

@@ -13,7 +13,7 @@ import pytest
 from desk import bits
 
 from physicslab import InvalidValue, PhysicsConfig, Run, SimulationConfig, World, box, circle, load_scene
-from physicslab.components import Drag, Mass, Name, Spring, Transform, Velocity
+from physicslab.components import Drag, Mass, Name, Rod, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy
 from physicslab.scenes import SCENES
 from physicslab.state.state import State
@@ -144,6 +144,25 @@ def test_islands_are_recorded_without_a_call_for_each_instant(
         assert run.motion[number, :, 0:2] == pytest.approx(
             single.table(Transform)["position"][rows], abs=1e-12
         )
+
+
+def test_smooth_islands_that_arise_on_the_way_are_not_divided() -> None:
+    def swinging() -> World:
+        world = World()
+        box(world, (0, -0.5), width=40, height=1, static=True)
+        box(world, (0, 0.25), name="box")
+        world.spawn(Transform((0, 1.6)), Velocity((2, 0)), Mass(), name="bob")
+        world.spawn(Rod("box", "bob", length=1.35, breaks=5.0))
+        world.spawn(Spring("bob", anchor_b=(0, 3), rest_length=1.0, stiffness=40))
+        world.synchronise()
+        assert not world.islands.members
+        return world
+
+    world, other = swinging(), swinging()
+    run = world.record(20.0)
+    other.run(seconds=20.0)
+    assert [island.touches for island in other.islands.members] == [True, False]
+    assert bits(world) == bits(other) and len(run.times) == 1201
 
 
 @pytest.mark.parametrize("every", [None, 0.05])

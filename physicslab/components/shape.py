@@ -148,13 +148,13 @@ class Shape(Component):
     def validate(self) -> None:
         """Check that the sizes are those of the kind and above zero, and that vertices are a polygon."""
         kind, fields = KINDS[self.kind], self.HAS[self.kind]
-        for spec in self.FIELDS[1:]:
-            value = getattr(self, spec.name)
-            if spec.name not in fields:
-                if value != spec.default:
-                    allowed = f"left out: a {self.kind} has no {spec.name}"
-                    raise InvalidValue("Shape", spec.name, plain(value), allowed)
-            elif spec.kind == "number" and value <= 0.0 and not kind.own[1]:
+        values = [(spec, getattr(self, spec.name)) for spec in self.FIELDS[1:]]
+        for spec, value in values:
+            if spec.name not in fields and value != spec.default:
+                allowed = f"left out: a {self.kind} has no {spec.name}, it has {' and '.join(fields)}"
+                raise InvalidValue("Shape", spec.name, plain(value), allowed)
+        for spec, value in values:
+            if spec.name in fields and spec.kind == "number" and value <= 0.0 and not kind.own[1]:
                 raise InvalidValue("Shape", spec.name, value, f"a finite number > 0 m for a {self.kind}")
         if kind.own[1]:
             self._check_vertices(kind)

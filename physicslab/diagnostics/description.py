@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from physicslab.components import Gear, Mass, Shape, Spring, Transform, Velocity
 from physicslab.diagnostics.energy import measure_energy, measure_momentum
 from physicslab.diagnostics.scales import scales_of
-from physicslab.ecs.component import Component
+from physicslab.ecs.component import Component, InvalidValue
 from physicslab.ecs.vector import Vector2
+from physicslab.languages.catalogue import languages
 from physicslab.languages.language import Language, language
 from physicslab.state.joint_rows import KINDS
 from physicslab.world import World
@@ -28,7 +29,12 @@ def describe(world: World, code: str = "en") -> str:
     world : World
         The world to describe at its present moment. Nothing in it changes.
     code : str
-        The language, as ``"de"``; one without a catalogue is said in English.
+        The language, as ``"de"``.
+
+    Raises
+    ------
+    InvalidValue
+        If there is no such language.
 
     Examples
     --------
@@ -36,6 +42,9 @@ def describe(world: World, code: str = "en") -> str:
     >>> print(describe(load_scene("drop")).splitlines()[3])
     ball: circle of radius 0.25 m, 1 kg, at x = -3 m, y = 4 m; it moves at 1 m/s to the right.
     """
+    if code not in (known := languages()):
+        words = ", ".join(f'"{one}"' for one in known)
+        raise InvalidValue("describe", "language", code, f"one of {words}")
     return "\n".join(_lines(world, language(code)))
 
 

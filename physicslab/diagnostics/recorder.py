@@ -26,7 +26,7 @@ from physicslab.state.run import BODY_COLUMNS, Column, Run
 from physicslab.state.samples import Samples
 from physicslab.stepping.breaks import first_time
 from physicslab.stepping.keyframe import Keyframe
-from physicslab.stepping.run import RunLength, run_length
+from physicslab.stepping.run import RunLength, run_length, strides_as_it_goes
 from physicslab.world import World
 
 _log = logging.getLogger(__name__)
@@ -80,8 +80,7 @@ def _recorded(
     """Make a whole run; the world ends with the bits of :meth:`World.run`."""
     samples = Samples(world, world.time, length.dt, stride, length.steps)
     world.samples = samples
-    undivided = _has_smooth_islands(world) or world.plan.smooth
-    for _ in world.stepping(seconds=length.seconds, stride=sys.maxsize if undivided else _LOOK):
+    for _ in strides_as_it_goes(world, length.seconds, None, lambda: _stride(world), math.inf):
         records += reader.read()
     if reader.lost:
         _log.warning("record: %d impacts were not kept, more than the log holds", reader.lost)
@@ -89,8 +88,10 @@ def _recorded(
     return samples
 
 
-def _has_smooth_islands(world: World) -> bool:
-    return any(not island.touches for island in world.islands.members)
+def _stride(world: World) -> int:
+    """Return after how many steps impacts are read: smooth motion, which may begin on the way, is whole."""
+    smooth = world.plan.smooth or any(not island.touches for island in world.islands.members)
+    return sys.maxsize if smooth else _LOOK
 
 
 class _Watch:

@@ -13,10 +13,11 @@ from contextlib import contextmanager
 from dataclasses import replace
 from inspect import Parameter, Signature
 from itertools import pairwise
-from typing import Any, ClassVar, cast, dataclass_transform, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, ClassVar, cast, dataclass_transform, get_origin, get_type_hints
 
 from physicslab.ecs.accessors import ABSENT, Derived, Entity, Maker, Number, Points, Vector, accessor, maker
 from physicslab.ecs.fields import REQUIRED, Field, InvalidValue, Kind, field
+from physicslab.ecs.text import no_such
 
 __all__ = [
     "COMPONENTS", "Component", "Derived", "Entity", "Field", "InvalidValue", "Number", "Points", "Vector",
@@ -29,6 +30,7 @@ _local = False
 """Whether a component may have the name of another: within a block of :func:`local_components`."""
 _BUILT_IN = "physicslab.components."
 _empty = Parameter.empty
+_set = object.__setattr__
 
 
 class Component:
@@ -54,8 +56,8 @@ class Component:
         # Loading a scene of 100,000 entities makes 500,000 components: nothing here is done twice.
         cls = type(self)
         given = self._named(args, kwargs) if args else kwargs
-        self._row = 0
-        self._views = views = []
+        _set_row(self, 0)
+        _set_views(self, views := [])
         left = len(given)
         for name, make in cls._makers:
             if name in given:
@@ -65,9 +67,27 @@ class Component:
                 views += make(ABSENT)
         if left:
             unknown = next(name for name in given if all(name != f.name for f in cls.FIELDS))
-            names = ", ".join(f.name for f in cls.FIELDS)
-            raise TypeError(f"{cls.__name__} has no field {unknown!r}; it has {names or 'none'}")
+            raise TypeError(cls._no_such(unknown))
         self.validate()
+
+    if not TYPE_CHECKING:  # type checkers know the fields
+
+        def __setattr__(self, name: str, value: object) -> None:
+            try:
+                _set(self, name, value)
+            except AttributeError as error:
+                if hasattr(type(self), name):
+                    raise
+                raise AttributeError(self._no_such(name), name=None) from error
+
+        def __getattr__(self, name: str) -> object:
+            if name[:1] == "_" or hasattr(type(self), name):
+                return super().__getattribute__(name)
+            raise AttributeError(self._no_such(name), name=None)
+
+    @classmethod
+    def _no_such(cls, name: str) -> str:
+        return no_such(cls.__name__, "field", name, (spec.name for spec in cls.FIELDS))
 
     @classmethod
     def _named(cls, args: tuple[object, ...], kwargs: dict[str, object]) -> dict[str, object]:
@@ -127,6 +147,9 @@ class Component:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), tuple(self.given().values())
+
+
+_set_row, _set_views = (vars(Component)[name].__set__ for name in Component.__slots__)
 
 
 @dataclass_transform(field_specifiers=(field,))

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import FrozenInstanceError, dataclass, fields, replace
+from functools import wraps
 from typing import Any, ClassVar, Literal
 
 from physicslab.ecs.fields import COORDINATE_LIMIT, Field, InvalidValue, Kind
+from physicslab.ecs.text import no_such
 from physicslab.ecs.vector import Vector2
 
 GRAVITY_MODES = ("linear", "planet", "none")
@@ -99,8 +102,29 @@ class PhysicsConfig:
             object.__setattr__(self, "bounds", checked_box(self.section, "bounds", self.bounds))
 
 
+def field_names(config: type[PhysicsConfig] | type[SimulationConfig]) -> tuple[str, ...]:
+    """Return the names of a record's fields, in order."""
+    return tuple(f.name for f in fields(config))
+
+
+def _takes_fields_only(kind: type[PhysicsConfig] | type[SimulationConfig]) -> Callable[..., None]:
+    """Return what makes a record as before, but says which fields there are where another is given."""
+    made, known = vars(kind)["__init__"], field_names(kind)
+
+    @wraps(made)
+    def make(config: PhysicsConfig | SimulationConfig, *args: Any, **given: Any) -> None:
+        for name in given:
+            if name not in known:
+                raise TypeError(no_such(kind.__name__, "field", name, known))
+        made(config, *args, **given)
+
+    return make
+
+
 def _refuse(config: PhysicsConfig | SimulationConfig, name: str, value: object) -> None:
     """Refuse to change a part: a world notes that its laws are others where a record is assigned."""
+    if name not in (known := field_names(type(config))):
+        raise AttributeError(no_such(type(config).__name__, "field", name, known), name=None)
     record = f"world.{config.section}"
     raise FrozenInstanceError(
         f"{config.section}.{name} cannot be changed by itself: "
@@ -209,11 +233,7 @@ class WindowConfig:
 
 for _kind in (PhysicsConfig, SimulationConfig):
     setattr(_kind, "__setattr__", _refuse)  # noqa: B010
+    setattr(_kind, "__init__", _takes_fields_only(_kind))  # noqa: B010
     _kind.FIELDS = tuple(
         replace(f.metadata["spec"], name=f.name, owner=_kind.section) for f in fields(_kind) if f.metadata
     )
-
-
-def field_names(config: type[PhysicsConfig] | type[SimulationConfig]) -> tuple[str, ...]:
-    """Return the names of a record's fields, in order."""
-    return tuple(f.name for f in fields(config))

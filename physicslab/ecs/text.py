@@ -12,6 +12,8 @@ SHORT = 60
 """Characters of a value, a key or a name that a message shows."""
 
 
+_LISTED = 80
+"""Characters of the known words that the refusal of a name lists."""
 _SUGGESTED_FROM = 2_000
 """Known words that a misspelt one is compared with."""
 
@@ -65,6 +67,17 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     # Comparing takes time with the square of a word's length, and with the number of words.
     likely = difflib.get_close_matches(word[:SHORT], list(itertools.islice(known, _SUGGESTED_FROM)), n=1)
     return f'; did you mean "{shortened(printable(likely[0]))}"?' if likely else ""
+
+
+def no_such(owner: str, sort: str, name: str, known: Iterable[str]) -> str:
+    """Return the refusal of a name: which there are, and the likeliest.
+
+    >>> print(no_such("Velocity", "field", "liner", ["linear", "angular"]))
+    Velocity has no field 'liner'; it has linear, angular; did you mean "linear"?
+    """
+    words = list(known)
+    listed = shortened(printable(", ".join(words)), _LISTED) or "none"
+    return f"{owner} has no {sort} {shortened(name)!r}; it has {listed}{suggestion(name, words)}"
 
 
 def table_cell(text: str) -> str:

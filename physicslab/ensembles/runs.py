@@ -23,7 +23,7 @@ from physicslab.files.json_text import json_bytes
 from physicslab.files.replace import check_writable, reason_of
 from physicslab.files.scene import load_scene
 from physicslab.files.writer import write_scene
-from physicslab.state.run import BODY_COLUMNS, library
+from physicslab.state.run import BODY_COLUMNS, Columns, library
 from physicslab.stepping.run import run_length
 from physicslab.world import World
 
@@ -195,7 +195,7 @@ def run_task(
         progress(1.0)
     columns, failures = _joined(task, sink)
     sink.write(columns, failures)
-    return EnsembleResult(columns, failures, task, sink.found)
+    return EnsembleResult(Columns(columns), failures, task, sink.found)
 
 
 def _check_out(out: Path) -> None:

@@ -1,11 +1,13 @@
 """Bodies: boxes, circles, and bodies of any shape."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import wraps
 from typing import TypedDict, Unpack
 
 from physicslab.components import Colour, MadeOf, Mass, Material, Shape, Transform, Velocity
 from physicslab.components.made_of import SUBSTANCES
 from physicslab.ecs.component import Component
+from physicslab.ecs.text import no_such
 from physicslab.ecs.vector import Vector2
 from physicslab.state.contents import Contents
 
@@ -64,7 +66,7 @@ def body(world: Contents, shape: Shape, position: Pair, **options: Unpack[BodyOp
     known = BodyOptions.__annotations__
     unknown = options.keys() - known.keys()
     if unknown:
-        raise TypeError(f"a body has no option {min(unknown)!r}; it has {', '.join(known)}")
+        raise TypeError(no_such("a body", "option", min(unknown), known))
     made = SUBSTANCES.get(options.get("material", ""))
     restitution, friction = (0.0, 0.5) if made is None else (made.restitution, made.friction)
     colour = options.get("colour", "" if made is None else made.colour)
@@ -83,6 +85,20 @@ def body(world: Contents, shape: Shape, position: Pair, **options: Unpack[BodyOp
     return world.spawn(*still, velocity, mass, name=name)
 
 
+def _all_else_by_name[**P](make: Callable[P, int]) -> Callable[P, int]:
+    """Return the same function; where it is given more than a world and a position, it says how."""
+
+    @wraps(make)
+    def checked(*args: P.args, **given: P.kwargs) -> int:
+        if len(args) > 2:
+            name, shown = make.__name__, ", ".join(map(repr, args[1:]))
+            raise TypeError(f"{name}(world, {shown}): a position is one pair, as (0, 5); name all else")
+        return make(*args, **given)
+
+    return checked
+
+
+@_all_else_by_name
 def box(
     world: Contents, position: Pair, *, width: float = 0.5, height: float = 0.5,
     **options: Unpack[BodyOptions],
@@ -100,6 +116,7 @@ def box(
     return body(world, Shape.box(width, height), position, **options)
 
 
+@_all_else_by_name
 def capsule(
     world: Contents, position: Pair, *, length: float = 0.5, radius: float = 0.2,
     **options: Unpack[BodyOptions],
@@ -122,6 +139,7 @@ def capsule(
     return body(world, Shape.capsule(length, radius), position, **options)
 
 
+@_all_else_by_name
 def circle(world: Contents, position: Pair, *, radius: float = 0.25, **options: Unpack[BodyOptions]) -> int:
     """Spawn a disc of a given radius [m] with its centre at ``position`` [m]; return its entity.
 

@@ -13,11 +13,20 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from physicslab.ecs.text import no_such
+
 type Column = NDArray[np.float64]
 """A float64 array (instants,)."""
 
 BODY_COLUMNS = {"x": "m", "y": "m", "angle": "rad", "vx": "m/s", "vy": "m/s", "omega": "rad/s"}
 """Columns of each body that moves, in the order of samples, and their units."""
+
+
+class Columns[T](dict[str, T]):
+    """Columns by name."""
+
+    def __missing__(self, name: str) -> T:
+        raise KeyError(no_such("the table", "column", name, self))
 
 
 class Replay(Protocol):
@@ -80,7 +89,7 @@ class Run:
     @cached_property
     def columns(self) -> dict[str, Column]:
         """The time and the motion by name, in SI units: ``time``, ``ball.x``, ``ball.vy`` and so on."""
-        found = {"time": self.times}
+        found = Columns(time=self.times)
         for number, body in enumerate(self.bodies):
             for k, name in enumerate(BODY_COLUMNS):
                 found[f"{body}.{name}"] = self.motion[:, number, k]
@@ -92,7 +101,7 @@ class Run:
 
         They are found when they are first read, which takes some 50 us an instant.
         """
-        return dict(self._replay.sums(self))
+        return Columns(self._replay.sums(self))
 
     @cached_property
     def impacts(self) -> dict[str, NDArray[Any]]:

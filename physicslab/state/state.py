@@ -1,9 +1,11 @@
 """The state of a world: entities, columns, laws, clock and arrays. It depends on no system and no stepper."""
 
+import math
 from collections.abc import Iterable
 from typing import Any
 
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig, field_names
+from physicslab.ecs.fields import Field
 from physicslab.kernels import compile_kernels, seconds_waited
 from physicslab.state.account import Account
 from physicslab.state.bodies import Bodies
@@ -15,14 +17,14 @@ from physicslab.state.remainders import NO_REMAINDERS, Remainders
 from physicslab.state.samples import Samples
 from physicslab.state.sleep import Sleep
 
+_TIME = Field("time", "number", unit="s", owner="world")
+
 
 class State(Contents):
     """Entities, the laws, the clock, and the arrays that systems and steppers share.
 
     Attributes
     ----------
-    time : float
-        The clock [s]. Within a step it is that of the state which a force or a stage sees.
     steps : int
         Steps made.
     substeps : int
@@ -75,6 +77,7 @@ class State(Contents):
     # An attribute that is misspelt, or belongs elsewhere, would be kept and do nothing.
     __slots__ = (
         "_forces_at",
+        "_time",
         "_waited_before",
         "account",
         "bodies",
@@ -99,7 +102,6 @@ class State(Contents):
         "step_divisions",
         "steps",
         "substeps",
-        "time",
         "uniform_forces",
         "window",
     )  # fmt: skip
@@ -123,6 +125,16 @@ class State(Contents):
         self.checkpoint = Checkpoint()
         self.account = Account()
         self.samples: Samples | None = None
+
+    @property
+    def time(self) -> float:
+        """The clock [s]. Within a step it is that of the state which a force or a stage sees."""
+        return self._time
+
+    @time.setter
+    def time(self, value: float) -> None:
+        is_finite = type(value) is float and -math.inf < value < math.inf
+        self._time: float = value if is_finite else _TIME.check(value)
 
     @property
     def counts(self) -> tuple[int, int, int]:

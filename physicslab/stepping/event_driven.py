@@ -19,7 +19,7 @@ from physicslab.state.samples import NOTHING_SAMPLED, sampled
 from physicslab.state.state import State
 from physicslab.stepping.ballistic import pairs_that_may_meet, turning_rows, with_links
 from physicslab.stepping.plan import StepPlan
-from physicslab.stepping.rigid import Rigid
+from physicslab.stepping.rigid import Rigid, numbers_of_pairs, write_impacts
 from physicslab.stepping.stepper import Advance, Stepper, Stretch, divisions
 from physicslab.systems.contact import ContactSystem
 from physicslab.systems.integrate import IntegrateSystem
@@ -33,7 +33,7 @@ _LOW = (1, 3, 5, 7)
 """The columns of what rounding leaves out of a path's place and velocity."""
 _MASS = 12
 """The column of the mass that gravity accelerates."""
-_run_events: Callable[..., tuple[int, int, int, float]] = events.run_events
+_run_events: Callable[..., tuple[int, int, int, int, float]] = events.run_events
 _IMPACT_FIELDS = ("approach_speed", "impact_normal", "impact_tangent")
 
 
@@ -74,7 +74,7 @@ class EventDriven(Stepper):
         self._face = np.zeros(len(self._pairs), np.int64)
         self._apart = np.zeros(len(self._pairs), np.int64)
         self._due = np.zeros((len(self._pairs), 5))
-        self._impact_positions = np.full((len(self._pairs), 2), np.nan)
+        self._numbers: dict[tuple[int, int, int], int] = {}
         self._bounds = bounds_of(state)
         uniform = [force.uniform_acceleration(state) for force in schedule.forces]
         gravity = np.array([(g.x, g.y) for g in uniform if g is not None] or [(0.0, 0.0)]).sum(axis=0)
@@ -87,7 +87,7 @@ class EventDriven(Stepper):
         self._together, self._kept, self._left, self._listed = None, None, -1, -1
         self._mode[:] = self._modes
         self._paths[:, : _ACCELERATION.start] = self._paths[:, _ACCELERATION.stop :] = 0.0
-        self._face[:], self._apart[:], self._due[:], self._impact_positions[:] = 0, 0, 0.0, np.nan
+        self._face[:], self._apart[:], self._due[:] = 0, 0, 0.0
 
     @classmethod
     def why_not(cls, state: State, schedule: Schedule, plan: StepPlan) -> str | None:
@@ -110,7 +110,6 @@ class EventDriven(Stepper):
         parts = divisions(state, h)
         made, why, begun = self._fly(state, h / parts, parts, steps)
         if made:
-            self._point_to_impacts(state)
             self._schedule.run_others(ResolveSystem, Stage.IMPACT, state, h)
             check_finite(state, state.time + h * made)
         elif why == events.TOGETHER and self._plan.contacts == "soft":
@@ -132,8 +131,9 @@ class EventDriven(Stepper):
         while steps:
             self._recall_remainders(state)
             self._begin(state)
-            made, ended, flown = self._run_events(state, span, parts * steps)
+            made, latest, ended, flown = self._run_events(state, span, parts * steps)
             if ended == events.DONE:
+                self._write_impacts(state, latest)
                 self._keep_remainders(state)
                 self._listed = state.steps + steps
                 return steps, why, 0.0
@@ -179,27 +179,23 @@ class EventDriven(Stepper):
             near["impact_count"] = 0
             for name in _IMPACT_FIELDS:
                 contacts.points[name][: 2 * contacts.recorded] = 0.0
-            self._impact_positions[:] = np.nan
 
-    def _point_to_impacts(self, state: State) -> None:
-        """Make the arms of ballistic impacts lead from the present place of B to that of the impact."""
-        pairs = np.flatnonzero(np.isfinite(self._impact_positions[:, 0]))
-        if len(pairs):
-            points = state.contacts.points
-            moved = self._impact_positions[pairs] - state.table(Transform)["position"][self._pairs[pairs, 1]]
-            for k in range(2):
-                points["arm_bx"][2 * pairs + k] += moved[:, 0]
-                points["arm_by"][2 * pairs + k] += moved[:, 1]
+    def _write_impacts(self, state: State, impacts: int) -> None:
+        """Write the latest impacts into the records of their pairs."""
+        if impacts:
+            self._numbers = self._numbers or numbers_of_pairs(state.contacts)
+            write_impacts(state, impacts, self._numbers)
 
-    def _run_events(self, state: State, span: float, steps: int) -> tuple[int, int, float]:
+    def _run_events(self, state: State, span: float, steps: int) -> tuple[int, int, int, float]:
         """Move bodies from impact to impact for ``steps`` times ``span`` s, or until an event.
 
-        Returns how many steps were made, why no more, and how far into the next one bodies are [s].
+        Returns how many steps were made, how many impacts were in the last, why there are no more, and how
+        far into the next one bodies are [s].
         """
         began = time.perf_counter_ns()
         contacts = state.contacts
         self._take_masses(state)
-        made, impacts, why, flown = _run_events(
+        made, impacts, latest, why, flown = _run_events(
             *self._arguments(state), contacts.logged, state.time, span, steps,
             sampled(state.samples, state.time, span, steps),
         )  # fmt: skip
@@ -207,7 +203,7 @@ class EventDriven(Stepper):
         state.collisions += impacts
         spent = time.perf_counter_ns() - began
         self._schedule.note_loop(IntegrateSystem.__name__, made, spent, self._within)
-        return made, why, flown
+        return made, latest, why, flown
 
     def _take_masses(self, state: State) -> None:
         """Take the masses that gravity accelerates."""
@@ -219,7 +215,7 @@ class EventDriven(Stepper):
         return (
             contacts.manifolds, contacts.points, contacts.recorded,
             self._paths, self._mode, self._face, self._apart, self._due,
-            self._impact_positions, motion_of(state), shapes_of(state), materials_of(state),
+            motion_of(state), shapes_of(state), materials_of(state),
             (bodies.inverse_mass, bodies.inverse_inertia), self._bounds, state.account.sums, contacts.log,
         )  # fmt: skip
 
@@ -228,19 +224,14 @@ class EventDriven(Stepper):
         self.forget()
         self._begin(state)
         contacts = state.contacts
-        arrays = contacts.manifolds[: contacts.recorded], contacts.points[: 2 * contacts.recorded]
-        records = [array.view(np.uint8) for array in arrays]
-        blank = [record.copy() for record in records]
         fixed, collisions, logged = self._arguments(state), state.collisions, contacts.logged
 
         def make() -> bool:
             self.forget()
             self._take_masses(state)
-            for record, then in zip(records, blank, strict=True):
-                record[:] = then
             count = 0
             for began, h, steps in stretches:
-                made, impacts, _, _ = _run_events(*fixed, logged + count, began, h, steps, NOTHING_SAMPLED)
+                made, impacts, _, _, _ = _run_events(*fixed, logged + count, began, h, steps, NOTHING_SAMPLED)
                 count += impacts
                 if made < steps:
                     return False

@@ -1,11 +1,13 @@
 """Figures of a world for people: its energy, its impacts, its motion in a run."""
 
+from collections.abc import Callable
 from importlib import import_module
 from types import FunctionType
-from typing import Any, Never, cast
+from typing import TYPE_CHECKING, Any, Never, cast
 
 from numpy.typing import NDArray
 
+from physicslab.ecs.text import no_such
 from physicslab.state.account import Energy, Momentum
 from physicslab.state.run import Run
 from physicslab.state.state import State
@@ -46,6 +48,13 @@ class Facade(State):
         return cast(
             dict[str, NDArray[Any]], _measuring("impact_table").impact_table(self, self.contacts.impacts)
         )
+
+    if not TYPE_CHECKING:  # type checkers know the attributes
+
+        def __getattr__(self, name: str) -> object:
+            if name[:1] == "_" or hasattr(type(self), name):
+                return super().__getattribute__(name)
+            raise AttributeError(no_such(type(self).__name__, "attribute", name, _SHOWN), name=None)
 
     def describe(self, language: str = "en") -> str:
         """Return in words what there is, where it is and how it moves, a sentence a line.
@@ -96,3 +105,18 @@ _SHOWN = (
     "entities", "entity", "has", "impacts", "label", "mark", "momentum", "name", "physics", "plan", "record",
     "remove", "reset", "run", "schedule", "simulation", "spawn", "step", "stepping", "steps", "time", "title",
 )  # fmt: skip
+
+
+def _measured(name: str) -> Callable[[Facade, object], Never]:
+    """Return what refuses to write a figure that is measured."""
+
+    def refuse(world: Facade, value: object) -> Never:
+        raise AttributeError(
+            f"world.{name} is measured and cannot be set; the bodies have it, by Transform, Velocity and Mass"
+        )
+
+    return refuse
+
+
+for _name in ("energy", "momentum", "impacts"):
+    setattr(Facade, _name, vars(Facade)[_name].setter(_measured(_name)))

@@ -24,6 +24,7 @@ from physicslab.kernels.rigid.point_records import write_points
 from physicslab.kernels.wide import slots
 from physicslab.ode.system import OdeSystem
 from physicslab.state.chain_links import segment_of_link
+from physicslab.state.contacts import Contacts
 from physicslab.state.masses import check_finite
 from physicslab.state.samples import Samples
 from physicslab.state.state import State
@@ -307,7 +308,8 @@ class RigidRecords:
             made.points, made.measures, made.forces, number, contacts.impulse_dt,
             state.table(Transform)["position"], contacts.manifolds, contacts.points, contacts.touching,
         )  # fmt: skip
-        self._write_impacts(state, made.impacts)
+        if made.impacts:
+            write_impacts(state, made.impacts, numbers_of_pairs(contacts))
         contacts.stale = True  # for the contact step, should it have to go on
 
     def _key(self, state: State, made: MadeStep, i: int) -> tuple[int, ...]:
@@ -343,28 +345,41 @@ class RigidRecords:
         number = np.array([place[keys[i]] if i in keys else -1 for i in range(made.closed)], np.int64)
         return np.array(listed, np.int64).reshape(-1, 3), number
 
-    def _write_impacts(self, state: State, impacts: int) -> None:
-        """Write the impacts of the last step into their pairs' records, at their first point."""
-        contacts = state.contacts
-        if not impacts:
-            return
-        records, position = contacts.manifolds[: contacts.recorded], state.table(Transform)["position"]
-        log = contacts.impacts_since(contacts.logged - impacts)
-        number = {key: p for p, key in enumerate(_pairs_of(records))}
-        pairs = np.array([number[key] for key in _pairs_of(log)])
-        np.add.at(records["impact_count"], pairs, 1)
-        points = contacts.points[: 2 * len(records) : 2]
-        np.maximum.at(points["approach_speed"], pairs, log["approach_speed"])
-        np.add.at(points["impact_normal"], pairs, log["normal_impulse"])
-        np.add.at(points["impact_tangent"], pairs, log["tangent_impulse"])
-        latest = dict(zip(pairs.tolist(), range(len(log)), strict=True))
-        for p, n in latest.items():
-            record, point, impact = records[p], points[p], log[n]
-            if not record["count"]:
-                record["normal_x"], record["normal_y"] = impact["normal_x"], impact["normal_y"]
-                place = np.array((impact["x"], impact["y"]))
-                point["arm_ax"], point["arm_ay"] = place - position[record["a"]]
-                point["arm_bx"], point["arm_by"] = place - position[record["b"]]
+
+def write_impacts(state: State, impacts: int, numbers: dict[tuple[int, int, int], int]) -> None:
+    """Write the last impacts of a step into the records of their pairs, at the first point of each.
+
+    Parameters
+    ----------
+    state : State
+        The records, which have no impacts yet, and the log.
+    impacts : int
+        How many there were in the step.
+    numbers : dict
+        The number of the record of each pair (:func:`numbers_of_pairs`).
+    """
+    contacts = state.contacts
+    records, position = contacts.manifolds[: contacts.recorded], state.table(Transform)["position"]
+    log = contacts.impacts_since(contacts.logged - impacts)
+    pairs = np.array([numbers[key] for key in _pairs_of(log)])
+    np.add.at(records["impact_count"], pairs, 1)
+    points = contacts.points[: 2 * len(records) : 2]
+    np.maximum.at(points["approach_speed"], pairs, log["approach_speed"])
+    np.add.at(points["impact_normal"], pairs, log["normal_impulse"])
+    np.add.at(points["impact_tangent"], pairs, log["tangent_impulse"])
+    latest = dict(zip(pairs.tolist(), range(len(log)), strict=True))
+    for p, n in latest.items():
+        record, point, impact = records[p], points[p], log[n]
+        if not record["count"]:
+            record["normal_x"], record["normal_y"] = impact["normal_x"], impact["normal_y"]
+            place = np.array((impact["x"], impact["y"]))
+            point["arm_ax"], point["arm_ay"] = place - position[record["a"]]
+            point["arm_bx"], point["arm_by"] = place - position[record["b"]]
+
+
+def numbers_of_pairs(contacts: Contacts) -> dict[tuple[int, int, int], int]:
+    """Return the number of each record by the entities and the wall of its pair."""
+    return {key: p for p, key in enumerate(_pairs_of(contacts.manifolds[: contacts.recorded]))}
 
 
 def _pairs_of(records: NDArray[Any]) -> Iterator[tuple[int, int, int]]:

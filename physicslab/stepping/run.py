@@ -3,7 +3,7 @@
 import math
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Protocol
@@ -158,15 +158,18 @@ def strides(
 ) -> Iterator[int]:
     """Return what advances by a time or a number of steps, and yields as :meth:`World.stepping` says."""
     run_length(world, seconds, steps)
-    return _strides(world, seconds, steps, _STRIDE.check(stride), patience)
+    checked = _STRIDE.check(stride)
+    return strides_as_it_goes(world, seconds, steps, lambda: checked, patience)
 
 
-def _strides(
-    world: Stepped, seconds: float | None, steps: int | None, stride: int, patience: float
+def strides_as_it_goes(
+    world: Stepped, seconds: float | None, steps: int | None, stride: Callable[[], int], patience: float
 ) -> Iterator[int]:
+    """Return the same; ``stride`` gives, for the world as it is, the steps between two yields."""
     assert isinstance(world, State)
     first = begin_run(lambda: is_small(world))
-    due, at_once = time.monotonic() + patience, 1 if first is not None or patience < math.inf else stride
+    due, divided = time.monotonic() + patience, first is not None or patience < math.inf
+    at_once = 1 if divided else sys.maxsize
     length, start, done = run_length(world, seconds, steps), world.time, 0
     if not length.steps:
         world.time += length.seconds  # which is nothing, or too short for anything to move
@@ -183,16 +186,18 @@ def _strides(
             first.foresee(done / length.steps)
         taken = time.monotonic() - began
         if taken < 0.25 * patience:
-            at_once = min(2 * at_once, stride)
+            at_once = min(2 * at_once, stride())
         elif taken > patience:
             at_once = max(at_once // 2, 1)
-        if done % stride == 0 or done == length.steps or time.monotonic() >= due:
+        if done % stride() == 0 or done == length.steps or time.monotonic() >= due:
             yield done
             due = time.monotonic() + patience
 
 
 @quiet
-def _go_on(world: Stepped, length: RunLength, done: int, stride: int, at_once: int, is_patient: bool) -> int:
+def _go_on(
+    world: Stepped, length: RunLength, done: int, stride: Callable[[], int], at_once: int, is_patient: bool
+) -> int:
     """Go on with a run of which ``done`` steps are made, as far as one call goes; return how many it made.
 
     A stepper that goes step by step makes ``at_once`` at most where the run has patience, or where its
@@ -202,7 +207,7 @@ def _go_on(world: Stepped, length: RunLength, done: int, stride: int, at_once: i
     h = length.dt if done < length.whole else length.rest
     if world.schedule.observer is not None:
         return world.advance(h, 1)
-    wanted = stride - done % stride
+    wanted = stride() - done % stride()
     best = world.stepper_for(h)
     count = max(1, min(wanted, length.whole - done, world.steps_ahead(h)))
     if not best.leaps:

@@ -264,7 +264,7 @@ def meeting_of(
         for j in range(shapes.vertices[b]):
             x, y = _between(shapes, a, i, b, j, (course.dx, course.dy, c, s))
             way = Course(x, y, course.ux, course.uy, course.wx, course.wy)
-            t = meeting.meet_circle(way, rounding, min(best, span), min_speed)
+            t = meeting.meet_circle(way, rounding, min(best, span), min_speed, 1.0)
             if t < best:
                 x, y = meeting.place_at(way, t)
                 if _is_between(shapes, a, i, b, j, x, y, c, s, seam):

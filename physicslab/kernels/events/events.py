@@ -53,8 +53,8 @@ class Flight(NamedTuple):
     """State of ballistic motion: the pairs, the bodies, and when each pair meets.
 
     Records and points of the pairs, and how many there are; paths, modes and motions of the bodies; of each
-    pair the face, the first step in which it may meet, when it meets in this one, and where B was at its last
-    impact; then shapes, masses and bounds, and the account that impacts and gravity add to.
+    pair the face, the first step in which it may meet, and when it meets in this one; then shapes, masses and
+    bounds, and the account that impacts and gravity add to.
     """
 
     manifolds: Manifolds
@@ -66,7 +66,6 @@ class Flight(NamedTuple):
     face: Rows
     apart: Rows
     due: Vectors
-    impact_position: Vectors
     shapes: Shapes
     inverse: Inverse
     bounds: Bounds
@@ -141,7 +140,7 @@ def _bounce(flight: Flight, p: int, log: Impacts, number: int, time: float, appr
     paths, angle, angular = flight.paths, flight.motion.angle, flight.motion.angular
     a, b = manifold.a, manifold.b
     mass, before = inverse_mass_of(flight.inverse, a, b), path_velocity(paths, angular, a, b)
-    impulses, law = resolve_ballistic_impacts(manifold, point, paths, angular, mass)
+    impulses, law = resolve_ballistic_impacts(manifold, frame_of(manifold, point), paths, angular, mass)
     points = ImpactPoints(frame_of(manifold, point), frame_of(manifold, point), impulses)
     after = path_velocity(paths, angular, a, b)
     pose = Pose(paths[a, 0], paths[a, 2], angle[a], paths[b, 0], paths[b, 2], angle[b])
@@ -206,20 +205,7 @@ def _meet(
         manifold.restitution = 0.0
     _bounce(flight, p, log, number, start + (now + low), approach)
     manifold.restitution, manifold.count, manifold.found = e, 0, 0
-    flight.impact_position[p, 0], flight.impact_position[p, 1] = x, y
     return DONE, 1 if approach > 0.0 else 0
-
-
-@inlined
-def _clear_impacts(flight: Flight) -> None:
-    """Clear the records of the impacts of a step, before the next."""
-    for p in range(flight.pairs):
-        if flight.manifolds[p].impact_count > 0:
-            flight.manifolds[p].impact_count = 0
-            flight.impact_position[p, 0] = flight.impact_position[p, 1] = math.nan
-            for k in range(2):
-                point = flight.points[2 * p + k]
-                point.approach_speed = point.impact_normal = point.impact_tangent = 0.0
 
 
 @always_inlined
@@ -236,11 +222,11 @@ def _end_all(flight: Flight, now: float, low: float) -> None:
 @kernel
 def run_events(
     manifolds: Manifolds, points: Points, count: int, paths: Vectors, mode: Rows, face: Rows, apart: Rows,
-    due: Vectors, impact_position: Vectors, motion: Plain[Motion], shapes: ShapesTuple,
+    due: Vectors, motion: Plain[Motion], shapes: ShapesTuple,
     materials: Plain[Materials], inverse: Plain[Inverse], bounds: Plain[Bounds],
     account: Vectors, log: Impacts, logged: int, start: float, span: float, steps: int,
     sampled: Plain[Sampled],
-) -> tuple[int, int, int, float]:  # fmt: skip
+) -> tuple[int, int, int, int, float]:  # fmt: skip
     """Move bodies from impact to impact for ``steps`` times ``span`` s, or until one rests or meets two.
 
     All paths begin again after ``span`` seconds, so that steps made at once have the bits of single ones.
@@ -256,8 +242,6 @@ def run_events(
         The mode of each row.
     face, apart, due : int64 arrays (pairs,), float64 array (pairs, 5)
         Room.
-    impact_position : float64 array (pairs, 2)
-        Receives where B was at the pair's last impact of the last step [m].
     motion, sizes, materials, inverse, bounds : tuples of arrays
         As :mod:`physicslab.kernels.arguments` has them.
     account : float64 array (CAUSES, 4)
@@ -269,23 +253,22 @@ def run_events(
 
     Returns
     -------
-    made, impacts, why, flown
-        How many whole steps were made, how many impacts there were, why it ended, and how far into the next
-        step [s] all bodies are where it did.
+    made, impacts, latest, why, flown
+        How many whole steps were made, how many impacts there were, and how many in the last of them; why it
+        ended, and how far into the next step [s] all bodies are where it did.
     """
-    now, low, impacts, within, made, why = 0.0, 0.0, 0, 0, 0, DONE
+    now, low, impacts, earlier, made, why = 0.0, 0.0, 0, 0, 0, DONE
     flight = Flight(
         manifolds, points, count, paths, mode, Motion(*motion), face, apart, due,
-        impact_position, named_shapes(shapes), Inverse(*inverse), Bounds(*bounds), account,
+        named_shapes(shapes), Inverse(*inverse), Bounds(*bounds), account,
     )  # fmt: skip
     mixed, samples = Materials(*materials), Sampled(*sampled)
     apart[:count] = 0
     while made < steps:
-        if within > 0:
-            _clear_impacts(flight)
+        earlier = impacts
         why, min_speed, rounding = _begin_all(flight, made, span, steps - made)
         if why == OVERLAP:
-            return made, impacts, why, 0.0
+            return made, impacts, 0, why, 0.0
         now, low, within, first, second = 0.0, 0.0, 0, -1, -1
         while why == DONE:
             _predict_pairs(flight, first, second, now, low, span, min_speed, made, steps - made, rounding)
@@ -305,10 +288,10 @@ def run_events(
             why, now, low = DONE, span, 0.0
         _end_all(flight, now, low)
         if why != DONE:
-            return made, impacts, why, now
+            return made, impacts, 0, why, now
         made += 1
         take_sample(flight.motion, samples, made)
-    return made, impacts, why, 0.0
+    return made, impacts, impacts - earlier, why, 0.0
 
 
 @endless

@@ -153,10 +153,8 @@ def meet_link(
     for j in range(shapes.vertices[i] if radius + link.size > 0.0 else 0):
         vx, vy = _corner(shapes, i, j, turn)
         way = Course(dx + vx - link.x, dy + vy - link.y, ux, uy, wx, wy)
-        if link.bend > 0.0:
-            t = meeting.meet_circle(way, link.size + radius, min(best, span), min_speed)
-        else:
-            t = meeting.leave_circle(way, link.size - radius, min(best, span), min_speed)
+        reach = link.size + link.bend * radius
+        t = meeting.meet_circle(way, reach, min(best, span), min_speed, link.bend)
         if t < best:
             x, y = meeting.place_at(way, t)
             if _is_on_arc(shapes, i, j, link, x, y, turn, seam):

@@ -152,44 +152,29 @@ def _first_crossing(course: Course, reach: float, span: float, height: float, si
 
 
 @inlined
-def meet_circle(course: Course, reach: float, span: float, min_speed: float) -> float:
-    """Return when the centres of two circles come within ``reach``, up to ``span``, or infinity.
+def meet_circle(course: Course, reach: float, span: float, min_speed: float, side: float) -> float:
+    """Return when a point comes to a circle about the origin, up to ``span``, or infinity.
 
-    Here and below, approaches no faster than ``min_speed`` [m/s] are ignored.
+    From outside where ``side`` is 1, from within where it is -1; where it is on the other side, or on the
+    circle, at once if it goes on there, or is driven there. Approaches no faster than ``min_speed`` [m/s] are
+    ignored.
     """
     dx, dy, ux, uy, wx, wy = course
     height, rate = _height(course, reach, 0.0)
-    distance = math.sqrt(dx * dx + dy * dy)
-    min_rate = distance * (ROUNDING * (abs(ux) + abs(uy)) + min_speed)
-    if height <= 0.0 and rate < -min_rate:
+    min_rate = math.sqrt(dx * dx + dy * dy) * (ROUNDING * (abs(ux) + abs(uy)) + min_speed)
+    if side * height <= 0.0 and side * rate < -min_rate:
         return 0.0
-    if wx == 0.0 and wy == 0.0:
+    if side > 0.0 and wx == 0.0 and wy == 0.0:
         # The chord, not |d|^2 |u|^2: it loses nothing when the speeds are large.
         cross, u2 = dx * uy - dy * ux, ux * ux + uy * uy
         square = reach * reach * u2 - cross * cross
         if rate >= -min_rate or square < 0.0:
             return math.inf
         return 2.0 * height / (math.sqrt(square) - rate)
-    if height <= 0.0 and rate <= 0.0 and ux * ux + uy * uy + dx * wx + dy * wy < 0.0:
-        return 0.0  # at rest on each other, and pressed together
-    return _first_crossing(course, reach, span, height, 1.0)
-
-
-@inlined
-def leave_circle(course: Course, reach: float, span: float, min_speed: float) -> float:
-    """Return when a point within a circle comes to it from the centre, up to ``span``, or infinity.
-
-    A point beyond it, or on it, comes to it at once where it goes on outwards, or is driven there.
-    """
-    dx, dy, ux, uy, wx, wy = course
-    height, rate = _height(course, reach, 0.0)
-    min_rate = math.sqrt(dx * dx + dy * dy) * (ROUNDING * (abs(ux) + abs(uy)) + min_speed)
-    if height >= 0.0:
-        if rate > min_rate:
-            return 0.0
-        if rate >= 0.0 and ux * ux + uy * uy + dx * wx + dy * wy > 0.0:
-            return 0.0
-    return _first_crossing(course, reach, span, height, -1.0)
+    bend = ux * ux + uy * uy + dx * wx + dy * wy
+    if side * height <= 0.0 and side * rate <= 0.0 and side * bend < 0.0:
+        return 0.0  # at rest there, and pressed on
+    return _first_crossing(course, reach, span, height, side)
 
 
 @inlined

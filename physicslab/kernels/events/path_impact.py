@@ -6,7 +6,7 @@ from physicslab.kernels.constraint.impact_law import NEWTON, ImpactImpulses, poi
 from physicslab.kernels.constraint.pair import ContactFrame, PairInverseMass, PairVelocity, PointState
 from physicslab.kernels.events.path import push
 from physicslab.kernels.ode.compensated import add_pair, multiply
-from physicslab.kernels.records import Manifold, Point
+from physicslab.kernels.records import Manifold
 
 
 @inlined
@@ -31,35 +31,31 @@ def _state(
 
 @inlined
 def _push_pair(
-    paths: Vectors, angular: Numbers, a: int, b: int, mass: PairInverseMass[float], point: Point,
-    at: ContactFrame[float], v: float, normal: float, tangent: float,
+    paths: Vectors, angular: Numbers, a: int, b: int, mass: PairInverseMass[float],
+    at: ContactFrame[float], normal: float, tangent: float,
 ) -> None:  # fmt: skip
-    """Apply impulses at a point to the paths of A and B, and note them and the approach ``v`` there."""
+    """Apply impulses at a point to the paths of A and B."""
     px, py = pair.impulse_at(at.nx, at.ny, normal, tangent)
     moment_a, moment_b = pair.moments_of(at, px, py)
     push(paths, a, -mass.a, px, py)
     push(paths, b, mass.b, px, py)
     angular[a] -= mass.inertia_a * moment_a
     angular[b] += mass.inertia_b * moment_b
-    point.approach_speed = max(point.approach_speed, -v)
-    point.impact_normal += normal
-    point.impact_tangent += tangent
 
 
 @inlined
 def resolve_ballistic_impacts(
-    manifold: Manifold, point: Point, paths: Vectors, angular: Numbers, mass: PairInverseMass[float]
-) -> tuple[ImpactImpulses, int]:
-    """Bounce a pair whose paths begin now and whose point is filled; return the impulses, and their law."""
+    manifold: Manifold, at: ContactFrame[float], paths: Vectors, angular: Numbers,
+    mass: PairInverseMass[float],
+) -> tuple[ImpactImpulses, int]:  # fmt: skip
+    """Bounce a pair whose paths begin now, and which meets there; return the impulses, and their law."""
     a, b, e = manifold.a, manifold.b, manifold.restitution
-    at = pair.frame_of(manifold, point)
     state, low = _state(paths, angular, a, b, at)
-    manifold.impact_count += 1
     if state.v >= 0.0:
         return ImpactImpulses(0.0, 0.0, 0.0, 0.0), NEWTON
     response, left = point_response(state, mass), 0.0
     normal, tangent, law = solve_impact(response, e, manifold.friction)
-    _push_pair(paths, angular, a, b, mass, point, at, state.v, normal, tangent)
+    _push_pair(paths, angular, a, b, mass, at, normal, tangent)
     if law == NEWTON:
         # The rounding of the impulse is the same at every impact of a pair and would add up: it is corrected.
         after, after_low = _state(paths, angular, a, b, at)
