@@ -101,6 +101,20 @@ def test_a_mark_is_gone_back_to_as_often_as_wanted() -> None:
     assert after(world) == expected
 
 
+def test_a_world_that_grew_between_is_gone_back_in_as_often_as_wanted() -> None:
+    world = load_scene("drop")
+    expected = after(world)
+    for count in (0, 100, 0, 1000):  # its columns are elsewhere in memory then
+        more = [world.spawn(Transform((50.0 + k, 0.0)), Velocity(), Mass(1.0)) for k in range(count)]
+        world.run(steps=2)
+        for entity in more[::2]:
+            world.remove(entity)
+        world.reset()
+        assert after(world) == expected
+        world.reset()
+        assert after(world) == expected
+
+
 def test_a_world_that_was_not_stepped_is_where_it_was() -> None:
     world = load_scene("drop")
     before = bits(world)

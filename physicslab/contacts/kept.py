@@ -209,14 +209,13 @@ class KeptSleep:
         return (*self.columns.values(), self.gone)
 
     def restore(self, state: State, rows: NDArray[np.int64] | None) -> None:
-        """Give them back to a state in which nothing sleeps.
+        """Give them back to a state in which nothing sleeps or has rested.
 
         ``rows`` (rows then,) are those of now; -1 for what is blank, ``None`` where all are the same.
         """
         sleep = state.sleep
         for name, column in self.columns.items():
             now = getattr(sleep, name)
-            now[:] = 0
             if rows is None:
                 now[1 : len(column)] = column[1:]
             else:

@@ -265,8 +265,9 @@ class Islands:
     def _survey(self, state: State) -> Rows:
         """Find whether a world that is one may be divided; return the rows of its bodies."""
         self._apart_until, rows = -math.inf, np.flatnonzero(partition.movable_in(state))
-        self.why_one = partition.why_whole(state, self._schedule) or ""
-        self._comes_apart = not self.why_one and len(rows) > 1 and self._schedule.runs(Stage.CONTACT)
+        few = len(rows) < 2
+        self.why_one = sentence("one_body") if few else partition.why_whole(state, self._schedule) or ""
+        self._comes_apart = not self.why_one and self._schedule.runs(Stage.CONTACT)
         self._bodies = len(rows)
         return rows
 

@@ -136,7 +136,7 @@ class Keyframe:
 
     __slots__ = (
         "_account", "_columns", "_contacts", "_counts", "_forces", "_islands", "_joints", "_laws", "_own",
-        "_plan", "_rates", "_remade", "_remainders", "_sleep", "_structure", "_texts",
+        "_paired", "_plan", "_rates", "_remade", "_remainders", "_sleep", "_structure", "_texts",
     )  # fmt: skip
 
     def __init__(self, world: Kept, last: Keyframe | None = None) -> None:
@@ -152,6 +152,7 @@ class Keyframe:
         self._columns: dict[type[Any], _Columns] = {
             kind: shared(tables[kind].columns, known.get(kind)) for kind in self._structure.present
         }
+        self._paired: tuple[_Array | None, list[tuple[_Array, _Array]]] = None, []
         self._counts = {name: getattr(world, name) for name in _COUNTS}
         self._laws: tuple[PhysicsConfig, SimulationConfig] = world.physics, world.simulation
         self._texts = {key: getattr(world, key) for key in SCENE_TEXTS}
@@ -214,12 +215,7 @@ class Keyframe:
                 structure.restore(world)
                 world.stale |= index.synchronise()
                 structure.world, structure.changes = weakref.ref(world), index.changes
-            there = None  # where rows are numbered as they were then, which is seen at once
-            if structure.entities.tobytes() != index.entities.tobytes():
-                there = np.where(structure.entities > 0, index.rows_of(structure.entities), -1)
-            for kind, columns in self._columns.items():
-                for now, then in zip(world.table(kind).columns, columns, strict=True):
-                    _put(then, now, there)
+            there = self._put_columns(world)
             if (world.physics, world.simulation) != self._laws:
                 world.physics, world.simulation = self._laws
             for name, value in (*self._counts.items(), *self._texts.items()):
@@ -240,6 +236,23 @@ class Keyframe:
         world.account.restore(self._account)
         world.fastest_rates.update(self._rates)
         self._restore_islands(world, before)
+
+    def _put_columns(self, world: State) -> NDArray[np.int64] | None:
+        """Write every column; return where the rows of then are, -1 for blank ones, ``None`` for the same."""
+        index, entities = world.entity_index, self._structure.entities
+        followed, paired = self._paired
+        if followed is not index.entities:  # numbered again: columns may be in other memory as well
+            tables = ((world.table(kind).columns, then) for kind, then in self._columns.items())
+            paired = [pair for now, then in tables for pair in zip(now, then, strict=True)]
+            if entities.tobytes() != index.entities.tobytes():
+                there = np.where(entities > 0, index.rows_of(entities), -1)
+                for now, then in paired:
+                    _put(then, now, there)
+                return there
+            self._paired = index.entities, paired
+        for now, then in paired:
+            now[:] = then
+        return None
 
     def _restore_islands(self, world: Kept, before: Sequence[Island]) -> None:
         """Let the islands go on from that moment, in the worlds that the same ones had ``before``."""
