@@ -22,8 +22,9 @@ SUNK = 0.1
 """Share of the smaller body by which a load may press it in: half of what there is a warning from."""
 UNLIMITED = 1e30
 """Share of its size by which a body may be pressed in where that has no limit."""
-_HARDER = 0.01
-"""Share of the contacts of a crowd that may be pressed harder than its substeps would hold."""
+_HARDER, _STIFFER = 0.01, 8.0
+"""Share of the contacts of a crowd that may be pressed harder than its substeps would hold, and how many
+times as hard."""
 _LIGHT_LOAD, _HARDLY_SUNK = 12.0, 1e-3
 """Multiple of its own load that a body carries where few contacts are swept most often, and the share of its
 size by which the load may press it in whatever that multiple is, as where its own load is next to nothing."""
@@ -224,15 +225,15 @@ def _fastest_whip(joints: Joints, angular: Numbers, inverse_mass: Numbers) -> fl
 def _times_too_hard(near: Near, inverse_mass: Numbers, allowed: float, sweeps: int) -> float:
     """Return how many times as hard as ``allowed`` [1/s] contacts are pressed.
 
-    It is the hardest of a few; in a crowd that is swept once, all but :data:`_HARDER` of them: these have
-    springs as stiff as their load needs.
+    It is the hardest of a few; in a crowd that is swept once, all but :data:`_HARDER` of them: their springs
+    are as stiff as their load needs, up to :data:`_STIFFER` times.
     """
     number, over, hardest = near.counts[ACTIVE] + near.counts[WIDE_COUNT], 0.5, 0.0
     left, count = _HARDER * number if sweeps == 1 else 0.0, number
     while count > left and over < MAX_SUBSTEP_FACTOR * MAX_SUBSTEP_FACTOR:
         over *= 2.0
         count, hardest = _pressed(near, inverse_mass, over * allowed)
-    return min(over, hardest / allowed)
+    return max(min(over, hardest / allowed), hardest / allowed / _STIFFER)
 
 
 @inlined
