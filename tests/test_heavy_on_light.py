@@ -10,6 +10,7 @@ from physicslab import World
 from physicslab.components import Material, Transform
 from physicslab.ecs.config import SimulationConfig
 from physicslab.kernels.accounts import ENERGY, OVERLAP
+from physicslab.kernels.solver.finer import SUNK
 from physicslab.prefabs import box, circle
 from physicslab.stepping.rigid import Rigid
 from physicslab.systems.standard import standard_systems
@@ -100,3 +101,17 @@ def test_what_slides_under_a_load_slides_as_one_body(order: str) -> None:
         place = world.component(body, Transform).position
         assert place.x == pytest.approx(-math.sin(0.02) * y - way * math.cos(0.02), abs=1e-12)
         assert place.y == pytest.approx(math.cos(0.02) * y - way * math.sin(0.02), abs=1e-12)
+
+
+def test_one_load_on_a_crowd_presses_a_light_body_in_no_farther_than_its_spring_allows() -> None:
+    world = World(*standard_systems(), simulation=SimulationConfig(contacts="soft"))
+    box(world, (0, -0.5), width=60, height=1, static=True, friction=0.5)
+    for row in range(10):
+        for column in range(30 - row):
+            place = (column + 0.5 * row - 15, 0.25 + 0.5 * row)
+            box(world, place, width=1, height=0.5, mass=10, friction=0.5)
+    box(world, (-0.5, 5.2), width=1, height=0.4, mass=0.1, friction=0.5)
+    box(world, (-0.5, 5.65), width=1, height=0.5, mass=20, friction=0.5)
+    world.run(steps=120)
+    assert world.contacts.max_penetration < SUNK * 0.4  # .27 m where the spring knew no load
+    assert world.substeps == world.simulation.substeps  # of the world, not of one contact
