@@ -387,7 +387,7 @@ def lone_sweeps() -> None:
     assert contacts[-1] > 10
     for backward, booked in ((False, True), (True, False)):
         motion[2][...] += 0.1
-        sweep_contacts(contacts, motion, inverse, (240.0, 1.0, 0.9, 0.1, 10.0, 0.5), backward, booked)
+        sweep_contacts(contacts, motion, inverse, (240.0, 1.0, 0.9, 0.1, 10.0, 0.5, 0.1), backward, booked)
 
 
 def recorded() -> None:
