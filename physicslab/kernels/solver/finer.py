@@ -16,7 +16,14 @@ from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents
 from physicslab.kernels.joints.blocks import ENDS, FIRST, TERM, TERMS, Joints
 from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, RECORDED, WIDE_COUNT
 from physicslab.kernels.records import Manifold
-from physicslab.kernels.solver.impulse import HEAVY_RATIO, MAX_SUBSTEP_FACTOR, MAX_SWEEPS, sweeps_of
+from physicslab.kernels.solver.impulse import (
+    HEAVY_RATIO,
+    LOADED_SWEEPS,
+    MAX_SUBSTEP_FACTOR,
+    MAX_SWEEPS,
+    stiffened,
+    sweeps_of,
+)
 
 SUNK = 0.1
 """Share of the smaller body by which a load may press it in: half of what there is a warning from."""
@@ -222,14 +229,14 @@ def _fastest_whip(joints: Joints, angular: Numbers, inverse_mass: Numbers) -> fl
 
 
 @inlined
-def _times_too_hard(near: Near, inverse_mass: Numbers, allowed: float, sweeps: int) -> float:
+def _times_too_hard(near: Near, inverse_mass: Numbers, allowed: float, crowd: bool) -> float:
     """Return how many times as hard as ``allowed`` [1/s] contacts are pressed.
 
-    It is the hardest of a few; in a crowd that is swept once, all but :data:`_HARDER` of them: their springs
+    It is the hardest of a few; in a ``crowd``, all but :data:`_HARDER` of them: their springs
     are as stiff as their load needs, up to :data:`_STIFFER` times.
     """
     number, over, hardest = near.counts[ACTIVE] + near.counts[WIDE_COUNT], 0.5, 0.0
-    left, count = _HARDER * number if sweeps == 1 else 0.0, number
+    left, count = _HARDER * number if crowd else 0.0, number
     while count > left and over < MAX_SUBSTEP_FACTOR * MAX_SUBSTEP_FACTOR:
         over *= 2.0
         count, hardest = _pressed(near, inverse_mass, over * allowed)
@@ -246,10 +253,12 @@ def factor_for(
     It is 1, 2, 3, 4, 6, 8 or the largest, which is for loads that longer substeps would not carry at all.
     """
     h, rows, over = plan.own_h, len(joints.impulse), 0.0
-    sweeps, sunk = sweeps_of(near, rows, plan.iterations), h * h / (softness.push * softness.stiffness)
+    sweeps, sunk = sweeps_of(near, rows, plan.iterations, True), h * h / (softness.push * softness.stiffness)
     if impulse_dt > 0.0:
-        over = _times_too_hard(near, inverse.mass, impulse_dt * SUNK / sunk, sweeps)
-    if sweeps > 1:
+        crowd = sweeps <= LOADED_SWEEPS
+        allowed = impulse_dt * SUNK / sunk * (stiffened(sweeps) if crowd else 1.0)
+        over = _times_too_hard(near, inverse.mass, allowed, crowd)
+    if sweeps > LOADED_SWEEPS:
         settled = sweeps / MAX_SWEEPS
         load = _heaviest_load(near, inverse.mass, force, sunk)
         if rows > 0:

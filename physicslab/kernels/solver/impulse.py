@@ -36,6 +36,8 @@ _STIFFENED = 8
 """Sweeps up to which contacts become stiffer faster than sweeps become more."""
 _CONTACT_SWEEPS = 512
 """Contacts times sweeps of a substep, where the number of sweeps is not set."""
+LOADED_SWEEPS = 4
+"""Sweeps of a crowd some of whose bodies are far heavier than others."""
 _GIVE = 0.5
 """Share of an impulse beyond that of all forces that a deep overlap gives up in a sweep."""
 HEAVY_RATIO = 10.0
@@ -65,17 +67,28 @@ def _warm_start(contacts: Contacts, motion: Motion, inverse: Inverse, warm_start
 
 
 @inlined
-def sweeps_of(near: Near, rows: int, iterations: int) -> int:
+def sweeps_of(near: Near, rows: int, iterations: int, loaded: bool) -> int:
     """Return how many sweeps a substep makes at most: ``iterations``, or by the number of contacts if 0.
 
     So many ``rows`` of joints are solved with them. A few are solved nearly to the end, for little more time;
-    a crowd is swept once.
+    a crowd is swept once, or some times where bodies may be ``loaded`` with far heavier ones.
     """
     if iterations > 0:
         return iterations
     number = near.counts[ACTIVE] + near.counts[WIDE_COUNT] + rows
-    sweeps: int = max(1, min(MAX_SWEEPS, _CONTACT_SWEEPS // max(number, 1)))
+    least = LOADED_SWEEPS if loaded else 1
+    sweeps: int = max(least, min(MAX_SWEEPS, _CONTACT_SWEEPS // max(number, 1)))
     return sweeps
+
+
+@inlined
+def stiffened(sweeps: int) -> float:
+    """Return how many times as stiff a contact spring so many sweeps carry as a single one does.
+
+    Their number to the power of 5/4; beyond :data:`_STIFFENED` in proportion, as a stiffer one would feed the
+    swaying of towers.
+    """
+    return sweeps * math.sqrt(math.sqrt(min(sweeps, _STIFFENED)))
 
 
 @always_inlined
@@ -84,16 +97,14 @@ def _soft_constraint(
 ) -> SoftConstraint:
     """Return the contact spring of :class:`Softness`, integrated implicitly over h.
 
-    (Catto, Soft Constraints, GDC 2011.) More ``sweeps`` carry a stiffer spring, by their number to the power
-    of 5/4; beyond :data:`_STIFFENED` in proportion, as a stiffer one would feed the swaying of towers.
+    (Catto, Soft Constraints, GDC 2011.) More ``sweeps`` carry a stiffer spring (:func:`stiffened`).
     """
     force_cap = 0.0
     if acting.any:
         force = acting.force
         for i in range(len(force)):
             force_cap += h * math.sqrt(force[i, 0] * force[i, 0] + force[i, 1] * force[i, 1])
-    few = min(sweeps, _STIFFENED)
-    stiffness = softness.stiffness * sweeps * math.sqrt(math.sqrt(few))
+    stiffness = softness.stiffness * stiffened(sweeps)
     return SoftConstraint(
         1.0 / h,
         softness.push / h,

@@ -322,7 +322,10 @@ def _advance(
                     for i in range(len(angle)):
                         packed.state[2, 2 * i], packed.state[2, 2 * i + 1] = position[i, 0], position[i, 1]
                 half = 0.5 * impulse_dt
-                relax(near, joints, motion, shapes, inverse, acting, softness, span, half, plan.iterations)
+                relax(
+                    near, joints, motion, shapes, inverse, acting, softness, span, half, plan.iterations,
+                    plan.finer > 0,
+                )  # fmt: skip
                 weighed = False
                 now = charge(cost, RESOLVE, now)
             elif what == HOOK or _moved(motion, packed.state[2]):

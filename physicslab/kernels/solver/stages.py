@@ -153,10 +153,10 @@ def press(
         return impulse_dt
     # Limited: the impulses of a very short time are mostly rounding, which must not be magnified.
     scale = h / max(impulse_dt, h / impulse.MAX_SUBSTEP_FACTOR) if impulse_dt > 0.0 else 1.0
-    sweeps = impulse.sweeps_of(near, len(joints.impulse), iterations)
+    sweeps = impulse.sweeps_of(near, len(joints.impulse), iterations, loaded)
     contacts = _solved(near)
     note_velocities(contacts, near, motion, inverse, acting, h)
-    sunk = SUNK if loaded and sweeps == 1 else UNLIMITED
+    sunk = SUNK if loaded and sweeps <= impulse.LOADED_SWEEPS else UNLIMITED
     impulse.solve(contacts, near, joints, motion, inverse, acting, softness, h, scale, sweeps, sunk)
     if near.counts[WIDE_COUNT] > 0:
         book_slots(near, motion, inverse, acting, 0.0, True)
@@ -166,7 +166,7 @@ def press(
 @always_inlined
 def relax(
     near: Near, joints: Joints, motion: Motion, shapes: Shapes, inverse: Inverse, acting: Acting,
-    softness: Softness, h: float, half: float, iterations: int,
+    softness: Softness, h: float, half: float, iterations: int, loaded: bool,
 ) -> None:  # fmt: skip
     """Remove the velocity that came from correcting errors, ``h`` seconds after :func:`press`.
 
@@ -175,7 +175,7 @@ def relax(
     if near.counts[LEFT] + near.counts[WIDE_COUNT] + len(joints.impulse) == 0:
         return
     contacts = _solved(near)
-    sweeps = impulse.sweeps_of(near, len(joints.impulse), iterations)
+    sweeps = impulse.sweeps_of(near, len(joints.impulse), iterations, loaded)
     pressed, friction_work = impulse.relax(contacts, near, joints, motion, inverse, acting, h, half, sweeps)
     if near.counts[WIDE_COUNT] > 0:
         push, rub = book_slots(near, motion, inverse, acting, half, False)
