@@ -4,6 +4,7 @@ import math
 
 from physicslab.kernels import Numbers, Rows, Vectors, inlined, kernel
 from physicslab.kernels.disjoint_sets import join_sets, root_of
+from physicslab.kernels.length import length_of
 
 _SAFETY = 2.0
 """Factor by which bodies may become faster while no meeting is looked for."""
@@ -49,7 +50,7 @@ def steps_apart(
                     dx, dy, both = abs(x - position[i, 0]), abs(y - position[i, 1]), radius[i] + r
                     if max(dx, dy) - both > enough:
                         continue
-                    gap = math.hypot(dx, dy) - both
+                    gap = length_of(dx, dy) - both
                     nearest = min(nearest, gap)
                     if gap <= (speed[i] + speed[j]) * soon + fall:
                         join_sets(labels, one, other)

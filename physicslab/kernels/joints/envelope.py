@@ -72,7 +72,8 @@ def _factor(numbers: Any, whole: Any, even: bool, yielding: bool) -> float:
                 numbers[states + L.STATE * i + L.SHARE] = share
             elif yielding:
                 share = numbers[states + L.STATE * i + L.SHARE]
-                left *= 1.0 + (_FLAT / share) ** 2 if share > _DEPENDENT else 0.0
+                flat = _FLAT / share if share > _DEPENDENT else 0.0
+                left *= 1.0 + flat * flat if flat > 0.0 else 0.0
             if share > _DEPENDENT and left > 0.0:
                 numbers[factor + row + i] = math.sqrt(left)
                 rank += 1

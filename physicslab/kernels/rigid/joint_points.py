@@ -14,6 +14,7 @@ import math
 
 from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.joints.terms import ALONG_A, ANGLE, MeasuredTerm, TermEnd, measure_term
+from physicslab.kernels.length import length_of
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.features import Points, RigidScene, measure_contact, rate_along
 
@@ -121,15 +122,13 @@ def fastest_change(rows: int, own: Vectors, p: int, q: Numbers, rates: Numbers) 
         spin_a, spin_b = rates[2 * rows + a], rates[2 * rows + b]
         change = abs(spin_b - spin_a)
         if own[p, term + MEASURE] != ANGLE:
-            arm_a, arm_b = _length(own[p, arm], own[p, arm + 1]), _length(own[p, arm + 2], own[p, arm + 3])
+            arm_a, arm_b = (
+                length_of(own[p, arm], own[p, arm + 1]),
+                length_of(own[p, arm + 2], own[p, arm + 3]),
+            )
             if own[p, term + MEASURE] == ALONG_A:  # the axis turns about A
-                arm_a = arm_b + _length(q[2 * b] - q[2 * a], q[2 * b + 1] - q[2 * a + 1])
-            change = _length(rates[2 * b] - rates[2 * a], rates[2 * b + 1] - rates[2 * a + 1])
+                arm_a = arm_b + length_of(q[2 * b] - q[2 * a], q[2 * b + 1] - q[2 * a + 1])
+            change = length_of(rates[2 * b] - rates[2 * a], rates[2 * b + 1] - rates[2 * a + 1])
             change += abs(spin_a) * arm_a + abs(spin_b) * arm_b
         total += abs(own[p, term + SCALE]) * change
     return own[p, LEVER] * total  # type: ignore[no-any-return]
-
-
-@inlined
-def _length(x: float, y: float) -> float:
-    return math.sqrt(x * x + y * y)

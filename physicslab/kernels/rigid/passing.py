@@ -3,11 +3,12 @@
 import math
 
 from physicslab.kernels import Numbers, inlined
+from physicslab.kernels.length import length_of
 from physicslab.kernels.ode.dop853_tableau import LAST
 from physicslab.kernels.rigid.features import FIRST_ROW, JOINT, WALL, RigidScene
 from physicslab.kernels.rigid.joint_points import fastest_change, gap_of_row
 from physicslab.kernels.rigid.smooth_segment import METHODS, SHORT_LAST, Stages
-from physicslab.kernels.rigid.touching import far_apart, length_of
+from physicslab.kernels.rigid.touching import far_apart
 
 _NODES = METHODS.sum(axis=2)
 """When the stages of both methods are, as shares of a step."""

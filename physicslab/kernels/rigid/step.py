@@ -17,6 +17,7 @@ from physicslab.kernels import (
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, ENERGY, OVERLAP, PX, PY
 from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.joints.layout import ROWS
+from physicslab.kernels.length import length_of
 from physicslab.kernels.records import Impacts
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid import motion
@@ -25,7 +26,6 @@ from physicslab.kernels.rigid.features import Points, RigidScene, SceneTuple, na
 from physicslab.kernels.rigid.impacts import resolve_simultaneous_impacts
 from physicslab.kernels.rigid.smooth_segment import Stages
 from physicslab.kernels.rigid.time_stepping import drive, kick, move, separate, take_work
-from physicslab.kernels.rigid.touching import length_of
 
 STALLED, NOT_FINITE, SQUARES_NOT_FINITE, TOO_FAST, OVERLAPS = range(motion.TOO_MANY + 1, motion.TOO_MANY + 6)
 """Why else a step ends: events follow each other without time; a segment, or squares of speeds are not

@@ -13,6 +13,7 @@ from physicslab.kernels import Numbers, Vectors, always_inlined, inlined
 from physicslab.kernels.accounts import HAND, MOTORS
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.joints.layout import ENDS, FIRST, PLACES, ROWS
+from physicslab.kernels.length import length_of
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.budget import book_row
 from physicslab.kernels.rigid.complementarity import NOT_FOUND, solve_complementarity
@@ -22,7 +23,6 @@ from physicslab.kernels.rigid.equations import FREE, SLIDES_ON, UNKNOWN, Equatio
 from physicslab.kernels.rigid.features import RigidScene
 from physicslab.kernels.rigid.joined import book_impulses
 from physicslab.kernels.rigid.smooth_segment import Stages
-from physicslab.kernels.rigid.touching import length_of
 
 _SEPARATIONS = 2
 """How often bodies that overlap are moved apart: gaps are not linear in angles."""

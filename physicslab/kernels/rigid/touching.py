@@ -6,6 +6,7 @@ from physicslab.kernels import Numbers, always_inlined, inlined
 from physicslab.kernels.forces.force_calls import accelerate
 from physicslab.kernels.geometry.shapes import is_chain
 from physicslab.kernels.joints.layout import ROWS
+from physicslab.kernels.length import length_of
 from physicslab.kernels.rigid import features as F
 from physicslab.kernels.rigid.budget import book_speeds
 from physicslab.kernels.rigid.chain_points import distance_to_chain, is_closed_on_chain
@@ -33,12 +34,6 @@ NO_PUSH = 1e-12
 """Share of the largest acceleration that is rounding."""
 NO_SPEED = 1e-8
 """Share of that speed that is rounding."""
-
-
-@inlined
-def length_of(x: float, y: float) -> float:
-    """Return the length of a vector, rounded alike compiled and as Python, which hypot is not."""
-    return math.sqrt(x * x + y * y)
 
 
 @inlined

@@ -14,6 +14,7 @@ from physicslab.kernels import wide_layout as L
 from physicslab.kernels.arguments import Inverse, Motion, Near, Plan, Softness, named_near
 from physicslab.kernels.geometry.shapes import Shapes, ShapesTuple, half_extents, named_shapes
 from physicslab.kernels.joints.blocks import ENDS, FIRST, TERM, TERMS, Joints
+from physicslab.kernels.length import length_of
 from physicslab.kernels.near_counts import ACTIVE, DISC_BLOCKS, RECORDED, WIDE_COUNT
 from physicslab.kernels.records import Manifold
 from physicslab.kernels.solver.impulse import (
@@ -133,8 +134,8 @@ def _heaviest_load(near: Near, inverse_mass: Numbers, force: Vectors, sunk: floa
             elif press > 0.0 and inverse_mass[light] > HEAVY_RATIO * inverse_mass[heavy] > 0.0:
                 press *= press / weak / held[heavy, 0]
                 if press * weak * sunk > _HARDLY_SUNK * manifold.size:
-                    own = math.hypot(force[light, 0], force[light, 1])
-                    own = max(own, math.hypot(x, y) * inverse_mass[heavy] / inverse_mass[light])
+                    own = length_of(force[light, 0], force[light, 1])
+                    own = max(own, length_of(x, y) * inverse_mass[heavy] / inverse_mass[light])
                     largest = max(largest, press / own)
     return largest
 
@@ -190,9 +191,9 @@ def _carried_load(
     for light in range(len(heaviest)):
         heavy = int(heaviest[light])
         if heavy >= 0 and shapes.vertices[light] != 0:
-            press = math.hypot(force[heavy, 0], force[heavy, 1])
+            press = length_of(force[heavy, 0], force[heavy, 1])
             if press * inverse_mass[light] * sunk > _HARDLY_SUNK * 2.0 * shapes.thin[light]:
-                own = math.hypot(force[light, 0], force[light, 1])
+                own = length_of(force[light, 0], force[light, 1])
                 own = max(own, press * inverse_mass[heavy] / inverse_mass[light])
                 load = _THROUGH_ONE * press / own
                 if load > largest and _is_near_another(light, motion, shapes, label, dt):
@@ -220,8 +221,8 @@ def _fastest_whip(joints: Joints, angular: Numbers, inverse_mass: Numbers) -> fl
         for t in range(nodes[first, TERMS], nodes[end, TERMS]):
             n = terms[t, TERM]
             a, b = angular[joints.a[n]], angular[joints.b[n]]
-            arm_a = math.hypot(joints.anchor_a[n, 0], joints.anchor_a[n, 1])
-            arm_b = math.hypot(joints.anchor_b[n, 0], joints.anchor_b[n, 1])
+            arm_a = length_of(joints.anchor_a[n, 0], joints.anchor_a[n, 1])
+            arm_b = length_of(joints.anchor_b[n, 0], joints.anchor_b[n, 1])
             arm = max(arm_a, arm_b)
             if arm > 0.0:
                 largest = max(largest, (arm_a * a * a + arm_b * b * b) / arm)
