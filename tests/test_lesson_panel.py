@@ -16,8 +16,8 @@ from physicslab.components import Mass, Transform
 from physicslab.files.scene import load_scene
 from physicslab.lessons.answers import grade, read_answers
 from physicslab.lessons.catalogue import find_lesson
+from physicslab.lessons.lesson import Lesson
 from physicslab.prefabs import circle
-from physicslab.view.controls import lesson_actions
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.lesson_actions import choose_language, open_lesson
 from physicslab.view.window.lesson import OpenLesson
@@ -398,11 +398,13 @@ def test_an_earlier_lesson_is_read_once_and_not_in_each_frame(
         opening + "## Level 1: Again\n\n```recall\nask: pendulum/factor\n```\n"
     )
     read: list[str] = []
-    find = lesson_actions.find_lesson
-    monkeypatch.setattr(
-        lesson_actions, "find_lesson", lambda name, language: (read.append(name), find(name, language))[1]
-    )
+
+    def reads(name: str, language: str) -> Lesson:
+        read.append(name)
+        return find_lesson(name, language)
+
+    monkeypatch.setattr("physicslab.view.controls.lesson_actions.find_lesson", reads)
     lesson = opened(desk, "again.md")
     lesson.go_to(len(lesson.lesson.steps) - 1)
     desk.frames(SETTLED)
-    assert find("pendulum").title in desk.ui.words and read == ["again.md", "pendulum"]
+    assert find_lesson("pendulum").title in desk.ui.words and read == ["again.md", "pendulum"]
