@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -15,12 +16,13 @@ from recording import RecordingCanvas
 
 from physicslab import cli
 from physicslab.components import Transform, Velocity
-from physicslab.desktop import app, compiling
+from physicslab.desktop import app
 from physicslab.desktop.app import open_window
 from physicslab.desktop.progress import draw_loading
 from physicslab.desktop.sandbox import Sandbox
 from physicslab.ecs.config import WindowConfig
 from physicslab.files.scene import SceneError, load_scene
+from physicslab.kernels import warm
 from physicslab.prefabs import box, circle
 from physicslab.systems.system import Stage, System, at
 from physicslab.theme import DARK, Theme
@@ -158,7 +160,7 @@ def each_frame(
     monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Callable[[Callable[[Display, int], None]], None]]:
     """Have something done whenever a frame is shown of a real window that nobody has opened before."""
-    monkeypatch.setattr(compiling, "is_warm", lambda: True)
+    monkeypatch.setattr(warm, "is_warm", lambda: True)
     for name in ("XDG_STATE_HOME", "LOCALAPPDATA"):
         monkeypatch.setenv(name, str(tmp_path_factory.mktemp("state")))
     show, shown = Display.show, [0]
@@ -322,9 +324,9 @@ def test_what_is_said_while_it_loads_is_in_the_chosen_language(
 
     monkeypatch.setattr("physicslab.desktop.appearance.preferences_path", lambda: path)
     monkeypatch.setattr(app, "draw_loading", load)
-    monkeypatch.setattr(app, "_import", lambda module: time.sleep(0.1))
+    monkeypatch.setattr(app, "_import", lambda *_: time.sleep(0.1))
     with Display.open(WindowConfig(), "test") as display:
-        assert app._load(display, "physicslab.desktop.session_window")
+        assert app._load(display, "physicslab.desktop.session_window", app._Workers(ExitStack()))
     chosen = content.endswith("}")
     words = "Wird geladen, 3 s" if chosen else "Loading, 3 s"
     assert set(said) == {("projector" if chosen else DARK.name, words)}

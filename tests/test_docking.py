@@ -9,10 +9,12 @@ import pytest
 from desk import SETTLED, Desk, Place, button_down, button_up, click_at, point, sized, tap
 from imgui_bundle import imgui
 
+from physicslab import load_scene
 from physicslab.components import Transform
 from physicslab.desktop.preferences import load_preferences, save_preferences
 from physicslab.view.canvas.canvas import Rect
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
+from physicslab.view.controls.impact_actions import close_up
 
 SIZE = (1280, 720)
 GRAPH = "###graph"
@@ -87,6 +89,43 @@ def test_windows_stand_beside_the_world_at_first_and_the_world_makes_room() -> N
     windows = [window_of(desk, title) for title in titles]
     assert all(window.dock_id for window in windows) and world.w > 0.3 * usual[2] and world.h > 0.3 * usual[3]
     assert not any(world.colliderect(pygame.Rect(rect)) for rect in interface.covered)
+
+
+@pytest.mark.parametrize(
+    ("keys", "size", "text"), [
+        ("zmc", SIZE, 1.0), ("mmzuc", SIZE, 1.0), ("mmzuc", (1920, 1080), 1.0), ("cmz", (800, 600), 1.5),
+        ("mzu", (640, 480), 1.0),
+    ],
+)  # fmt: skip
+def test_docked_windows_leave_the_world_half_of_the_width_and_of_the_height(
+    keys: str, size: tuple[int, int], text: float
+) -> None:
+    """The microscope stood in a column of its own: the world had 240 of 920 px."""
+    desk = sized(size, load_scene("newtons_cradle"), text)
+    desk.frames(60)
+    tap(desk, "space")
+    interface = desk.sandbox.interface
+    _, _, width, height = interface.layout.visible
+    for key in keys:
+        tap(desk, key)
+    desk.frames(SETTLED)
+    close_up(desk.world, desk.window, desk.window.impacts.records[0].copy())
+    desk.frames(SETTLED)
+    _, _, across, down = interface.visible
+    assert across >= 0.5 * width - 2 and down >= 0.5 * height - 2
+    assert not window_of(desk, "Collision microscope").hidden, "what opens is in front of the tabs"
+
+
+def test_a_tip_lies_beside_the_docked_window_that_it_is_for() -> None:
+    """It covered the first rows of the table of impacts."""
+    desk = sized(SIZE, load_scene("newtons_cradle"))
+    tap(desk, "z")
+    desk.frames(SETTLED)
+    left, top, width, height = desk.ui.places["Pause at the next"]
+    point(desk, (left + width // 2, top + height // 2))
+    desk.frames(60)
+    tip = window_of(desk, "##Tooltip")
+    assert not tip.hidden and tip.pos.y + tip.size.y <= rect_of(desk, "Impacts").top
 
 
 @pytest.mark.parametrize(("size", "text"), [((800, 600), 1.75), ((640, 480), 1.0), ((1280, 720), 1.75)])

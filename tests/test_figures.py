@@ -17,6 +17,7 @@ from physicslab.prefabs import circle, pendulum
 from physicslab.systems.integrate import IntegrateSystem
 from physicslab.systems.spring import SpringSystem
 from physicslab.theme import DARK
+from physicslab.view.canvas.canvas import overlap
 from physicslab.view.canvas.quantities import percentage, quantity, round_quantity, vector_quantity
 from physicslab.view.overlay.edges import draw_scale_bar
 from physicslab.view.toolkit.ui import Ui
@@ -412,6 +413,22 @@ def test_bodies_out_of_sight_are_pointed_at_and_counted() -> None:
     desk.key("f")
     frame(desk, canvas)
     assert not arrows()
+
+
+@pytest.mark.parametrize("level", [0.0, 2.0, -2.0, 1.0])
+def test_no_arrow_to_bodies_out_of_sight_covers_a_number_of_an_axis(level: float) -> None:
+    """At the left edge it lay over the numbers of heights."""
+    world = empty_world(gravity=(0, 0))
+    for place in ((-60, 10.0 * level), (60, level), (0, 50), (0, -50)):
+        circle(world, place)
+    desk, canvas = recorded(world)
+    desk.window.camera.look_at((0.0, 0.0, 0.0, 0.0), 40.0)
+    frame(desk, canvas)
+    texts = [t for t in canvas.called("text") if t["style"].colour == desk.window.theme.coordinate]
+    numbers = [(*t["at"], *canvas.text_size(t["words"], t["style"])) for t in texts]
+    arrows = [call["rect"] for call in canvas.called("panel") if call["outline"] == desk.window.theme.accent]
+    assert len(arrows) == 4
+    assert not any(overlap(arrow, number) for arrow in arrows for number in numbers)
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from desk import SETTLED, Desk, click, empty_world, sized, tap, write
 from physicslab.components import Mass, Shape, Spring, Transform, Velocity
 from physicslab.desktop.preferences import load_preferences, save_preferences
 from physicslab.languages.language import language
+from physicslab.scenes import SCENES
 from physicslab.view.controls import commands
 from physicslab.view.controls.file_actions import open_from_list
 from physicslab.view.controls.saving import scene_words
@@ -215,6 +216,19 @@ def test_words_of_the_language_that_is_shown_find_a_command(text: str, best: str
     every = list(commands.commands())
     assert commands.find(text, every, language("de"))[0].words == best
     assert best not in [one.words for one in commands.find(text, every, language("en"))]
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_scene_is_found_by_its_own_name(name: str) -> None:
+    """By ``drop`` the ball on a floor was not found."""
+    found = commands.find(name, list(commands.commands()), language("en"))
+    assert SCENES[name].title in [one.words for one in found[:3]]
+
+
+@pytest.mark.parametrize(("text", "code"), [("free fall", "en"), ("freier fall", "de"), ("free fall", "de")])
+def test_a_scene_is_found_by_other_words_for_what_it_shows(text: str, code: str) -> None:
+    found = commands.find(text, list(commands.commands()), language(code))
+    assert "A ball on a floor" in [one.words for one in found]
 
 
 def test_a_sharp_s_is_found_by_two() -> None:

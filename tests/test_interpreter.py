@@ -672,10 +672,9 @@ def test_a_scene_that_turns_out_to_be_slow_is_waited_for() -> None:
 
 def test_the_window_hands_over_what_is_small_and_hurries_it(monkeypatch: pytest.MonkeyPatch) -> None:
     hurried: list[str] = []
-    monkeypatch.setattr(compiling, "is_warm", lambda: False)
-    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, (sys.executable, "-c", "input()")))
+    workers = Warmup(1, (sys.executable, "-c", "input()"))
     monkeypatch.setattr(Warmup, "hurry", lambda _, spent: hurried.extend(spent))
-    with Display.open(WindowConfig(), "test") as display, compiling.Compiling(display) as started:
+    with Display.open(WindowConfig(), "test") as display, compiling.Compiling(display, workers) as started:
         started.scenes.follow(load_scene("drop"))
         assert started._ask([motion.drift]) == [motion.drift]
         assert hurried == ["physicslab.kernels.motion.drift"]

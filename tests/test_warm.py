@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterable
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -132,8 +133,8 @@ def test_what_is_kept_is_not_compiled_again(mark: Path) -> None:
     names = load_all()
     plant(mark.parent, names[2:])
     with Warmup(3, ECHO) as warmup:
-        assert len(warmup._processes) == 2
         progress = wait_for(warmup)
+        assert len(warmup._processes) <= 2
     assert progress.done == progress.total == len(names)
 
 
@@ -143,44 +144,20 @@ needs_priorities = pytest.mark.skipif(
 
 
 @needs_priorities
-def test_workers_have_low_priority_only_while_nothing_waits(
+def test_the_first_kernel_is_compiled_alone_then_all_yield(
     mark: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """On two processors a second compiler would take half of one from the first, or from the window."""
     given: list[tuple[int, int]] = []
     monkeypatch.setattr(os, "setpriority", lambda kind, process, value: given.append((process, value)))
-    own = os.getpriority(os.PRIO_PROCESS, 0)
-    with Warmup(2, ASLEEP) as warmup:
-        workers = [process.pid for process in warmup._processes]
-        warmup.yield_to_others(False)
+    with Warmup(3, ECHO) as warmup:
+        (first,) = list(warmup._processes)
         assert not given
-        warmup.yield_to_others(True)
-        warmup.yield_to_others(True)
-        assert given == [(worker, own + warm._YIELDING) for worker in workers]
-        given.clear()
-        warmup.yield_to_others(False)
-        assert given == [(worker, own) for worker in workers]
-
-
-@needs_priorities
-def test_workers_that_may_not_come_forward_again_are_replaced(
-    mark: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    own = os.getpriority(os.PRIO_PROCESS, 0)
-
-    def only_back(kind: int, process: int, value: int) -> None:
-        if value <= own:
-            raise PermissionError
-
-    monkeypatch.setattr(os, "setpriority", only_back)
-    with Warmup(2, SLOW) as warmup:
-        first = list(warmup._processes)
-        warmup.yield_to_others(True)
-        assert warmup._processes == first
-        warmup.yield_to_others(False)
-        assert len(warmup._processes) == 4 and warmup._retired == set(first)
-        assert all(process.wait(30.0) is not None for process in first)
-        progress = wait_for(warmup)
-    assert progress.done == progress.total
+        wait_for(warmup)
+        assert len(warmup._processes) == 3 and warmup._processes[0] is first
+        own = os.getpriority(os.PRIO_PROCESS, 0)
+        lowered = {(process.pid, own + warm._NICENESS) for process in warmup._processes}
+        assert set(given) == lowered
 
 
 class CountingDisplay:
@@ -196,11 +173,11 @@ class CountingDisplay:
 
 def test_the_bar_is_drawn_where_it_changes(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """To draw it 60 times a second took as much of the processor as the compilers."""
-    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, SLOWER))
+    workers = Warmup(1, SLOWER)
     monkeypatch.setattr(compiling, "wants_to_leave", lambda: False)
     display: Any = CountingDisplay()
     names = load_all()
-    with Compiling(display) as waiting:
+    with workers, Compiling(display, workers) as waiting:
         start = time.monotonic()
         waiting._wait([Waiting(names[0].rpartition(".")[2], names[0].rpartition(".")[0])])
         seconds = time.monotonic() - start
@@ -209,13 +186,32 @@ def test_the_bar_is_drawn_where_it_changes(mark: Path, monkeypatch: pytest.Monke
 
 
 def test_a_window_that_loads_is_drawn_where_it_changes(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(app, "_import", lambda module: time.sleep(0.4))
+    monkeypatch.setattr(app, "_import", lambda *_: time.sleep(0.4))
     monkeypatch.setattr(app, "wants_to_leave", lambda: False)
     display: Any = CountingDisplay()
-    assert app._load(display, "nothing")
+    workers: Any = None
+    assert app._load(display, "nothing", workers)
     assert 1 <= display.shown <= 3
     monkeypatch.setattr(app, "wants_to_leave", lambda: True)
-    assert not app._load(display, "nothing")
+    assert not app._load(display, "nothing", workers)
+
+
+@pytest.mark.parametrize("complete", [False, True])
+def test_the_first_worker_starts_before_the_rest_is_imported(
+    mark: Path, monkeypatch: pytest.MonkeyPatch, complete: bool
+) -> None:
+    if complete:
+        mark.touch()
+    imported: list[bool] = []
+    monkeypatch.setattr(warm, "own_command", lambda *_: ASLEEP)
+    monkeypatch.setattr(app, "import_module", lambda name: imported.append(workers.warmup is not None))
+    with ExitStack() as at_end:
+        workers: app._Workers = app._Workers(at_end)
+        app._import("nothing", workers)
+        assert imported[0] == (not complete)
+        processes = [] if workers.warmup is None else list(workers.warmup._processes)
+        assert len(processes) == (0 if complete else 1)
+    assert all(process.poll() is not None for process in processes), "they end with the window"
 
 
 def test_a_worker_compiles_what_it_is_given() -> None:
@@ -228,9 +224,9 @@ def test_a_worker_compiles_what_it_is_given() -> None:
 
 
 def test_the_window_shows_progress_and_stays_awake(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, SLOW))
+    workers = Warmup(1, SLOW)
     asleep = [Waiting("no kernel that is there")]
-    with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
+    with Display.open(WindowConfig(), "test") as display, workers, Compiling(display, workers) as waiting:
         waiting._wait(asleep)
         assert DARK.accent in {tuple(display.canvas.surface.get_at((x, 367)))[:3] for x in range(300, 980)}
 
@@ -239,8 +235,8 @@ def test_the_window_shows_progress_and_stays_awake(mark: Path, monkeypatch: pyte
 def test_the_user_may_leave_while_it_compiles(
     mark: Path, monkeypatch: pytest.MonkeyPatch, event: str
 ) -> None:
-    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, ASLEEP))
-    with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
+    workers = Warmup(1, ASLEEP)
+    with Display.open(WindowConfig(), "test") as display, workers, Compiling(display, workers) as waiting:
         if event == "escape":
             pygame.event.post(pygame.Event(pygame.KEYDOWN, key=pygame.K_ESCAPE, mod=0))
         else:
@@ -272,40 +268,24 @@ def test_while_it_waits_nothing_that_the_user_does_is_forgotten() -> None:
 def test_what_is_needed_is_compiled_first(mark: Path) -> None:
     with Warmup(1, ECHO) as warmup:
         pass
-    process = warmup._processes[0]
     *_, cheap, last = sorted(warmup._jobs, key=lambda name: -warmup._costs[name])
     dear, waited = max(warmup._jobs, key=warmup._costs.__getitem__), list(warmup._jobs)[-3]
     spent = {dear: 1.0, cheap: 1.0, last: 0.0, "no such kernel": 1.0}
     warmup.hurry(spent)
     warmup.hurry({waited: math.inf})
-    assert [warmup._next(process) for _ in range(4)] == [waited, cheap, dear, last]
+    assert [warmup._next() for _ in range(4)] == [waited, cheap, dear, last]
     assert sorted(set(warmup._jobs)) == sorted(warmup._jobs)
 
 
 def test_what_is_waited_for_is_there_before_the_rest(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The window goes on as soon as it has what it asked for, and says in a corner how far the rest is."""
-    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, SLOW))
-    with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
+    workers = Warmup(1, SLOW)
+    with Display.open(WindowConfig(), "test") as display, workers, Compiling(display, workers) as waiting:
         waiting._wait([motion.clear])
         assert not waiting.finished
         waiting.advance(DARK)
         corner = {tuple(display.canvas.surface.get_at((x, 690)))[:3] for x in range(1000, 1270)}
         assert DARK.panel in corner
-
-
-@needs_priorities
-def test_workers_have_usual_priority_until_what_moves_the_scene_is_compiled(
-    mark: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, ASLEEP))
-    given: list[bool] = []
-    monkeypatch.setattr(Warmup, "yield_to_others", lambda self, yields: given.append(yields))
-    with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
-        waiting._start()
-        for pending in ([motion.clear], []):
-            monkeypatch.setattr(waiting.scenes, "pending", lambda pending=pending: pending)
-            waiting.advance(DARK)
-    assert given == [False, True]
 
 
 def test_a_worker_that_ends_before_it_is_given_anything_is_no_error(mark: Path) -> None:
@@ -318,23 +298,11 @@ def test_a_worker_that_ends_before_it_is_given_anything_is_no_error(mark: Path) 
     assert process.stdin is not None and process.stdin.closed
 
 
-def test_nothing_is_compiled_before_the_first_frames(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """On two processors two compilers would make the first picture that moves half as fast again."""
-    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, ASLEEP))
-    with Display.open(WindowConfig(), "test") as display, Compiling(display) as started:
-        assert started._warmup is not None
-        for _ in range(3):
-            started.advance(DARK)
-            assert not started._warmup._processes
-        started.advance(DARK)
-        assert len(started._warmup._processes) == 1
-
-
 def test_a_frame_that_loads_a_kernel_makes_fewer_steps(mark: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiling, "Warmup", lambda: Warmup(1, ASLEEP))
+    workers = Warmup(1, ASLEEP)
     monkeypatch.setattr(Compiling, "_is_kept", lambda *_: True)
     monkeypatch.setattr(Display, "left", property(lambda self: 0.0))
-    with Display.open(WindowConfig(), "test") as display, Compiling(display) as started:
+    with Display.open(WindowConfig(), "test") as display, workers, Compiling(display, workers) as started:
         waiting: list[Any] = [Waiting("a"), Waiting("b")]
         started.scenes.kernels = list(waiting)
         usual = started.time_for_steps(0.1)
@@ -355,7 +323,7 @@ def test_kernels_are_loaded_in_frames_that_have_time_left(
     mark.touch()
     asleep = [Waiting(name) for name in "abc"]
     monkeypatch.setattr(compiling, "KERNELS", asleep)
-    with Display.open(WindowConfig(), "test") as display, Compiling(display) as waiting:
+    with Display.open(WindowConfig(), "test") as display, Compiling(display, None) as waiting:
         monkeypatch.setattr(Display, "left", property(lambda self: 0.012))
         waiting.advance(DARK)
         assert [kernel.compiled for kernel in asleep] == [True, False, False]

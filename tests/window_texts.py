@@ -89,7 +89,9 @@ def tables() -> dict[str, list[str]]:
     found = {
         "controls": [text for one in CONTROLS for text in (one.title, one.tip, one.label) if text],
         "tools": [text for texts in tools for text in texts],
-        "scenes": [text for one in SCENES.values() for text in (one.title, one.description)],
+        "scenes": [
+            text for one in SCENES.values() for text in (one.title, one.description, one.also) if text
+        ],
         "player": player_texts(), "quantities": [*QUANTITIES, *KIND_OF_UNIT.values()],
         "levels": [*LEVELS, *LEVELS.values()],
         "methods": [one.title for one in (*INTEGRATORS.values(), *SPLIT_METHODS.values())],

@@ -2,7 +2,7 @@
 
 import threading
 import time
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from physicslab.languages.language import language
 from physicslab.view.canvas.display import Display, NoScreen, wants_to_leave
 
 if TYPE_CHECKING:
+    from physicslab.kernels.warm import Warmup
     from physicslab.world import World
 
 __all__ = ["NoScreen", "open_window"]
@@ -38,21 +39,50 @@ def open_window(scene: "str | World | None") -> int:
         If there is no screen to open a window on.
     """
     config = WindowConfig()
-    with Display.open(config, "PhysicsLab") as display:
-        if not _load(display, "physicslab.desktop.session_window"):
+    with Display.open(config, "PhysicsLab") as display, ExitStack() as at_end:
+        workers = _Workers(at_end)
+        if not _load(display, "physicslab.desktop.session_window", workers):
             return 0
         from physicslab.desktop.session_window import FIRST_SCENE, run_window
 
-        return run_window(display, config, FIRST_SCENE if scene is None else scene, welcomes=scene is None)
+        shown = FIRST_SCENE if scene is None else scene
+        return run_window(display, config, shown, workers.warmup, scene is None)
 
 
-def _load(display: Display, module: str) -> bool:
+class _Workers:
+    """Starts the processes that compile kernels while all else is still being imported.
+
+    Parameters
+    ----------
+    at_end : ExitStack
+        Has them stopped.
+
+    Attributes
+    ----------
+    warmup : Warmup or None
+        Their work; ``None`` where there is nothing to compile.
+    """
+
+    def __init__(self, at_end: ExitStack) -> None:
+        self.warmup: Warmup | None = None
+        self._at_end = at_end
+
+    def start(self) -> None:
+        """Start them, if the cache lacks kernels."""
+        from physicslab.kernels import interpreter
+        from physicslab.kernels.warm import Warmup, is_warm
+
+        if not (interpreter.is_forced() or is_warm()):
+            self.warmup = self._at_end.enter_context(Warmup())
+
+
+def _load(display: Display, module: str, workers: _Workers) -> bool:
     """Import a module in a thread while the window stays awake; return whether the user stayed.
 
     The first time takes seconds, as Python has not kept the bytecode of numba yet. The thread holds frames up
     for some milliseconds each, which an empty window does not show. The window is drawn where it changes.
     """
-    thread = threading.Thread(target=_import, args=(module,), daemon=True)
+    thread = threading.Thread(target=_import, args=(module, workers), daemon=True)
     found: dict[str, Any] = {}
     with suppress(*appearance.UNREADABLE):  # it is said where the window can say it
         found = appearance.read_preferences(appearance.preferences_path())
@@ -62,20 +92,21 @@ def _load(display: Display, module: str) -> bool:
         seconds = time.perf_counter() - start
         remark = f"Loading, {int(seconds)} s" if seconds > _PATIENCE else ""
         if drawn != (remark, display.canvas.size):
-            if drawn is None:
-                thread.start()
-            drawn = remark, display.canvas.size
+            first, drawn = drawn is None, (remark, display.canvas.size)
             draw_loading(display.canvas, theme, remark)
             display.show()
+            if first:
+                thread.start()
         if wants_to_leave():
             return False
         thread.join(PAUSE)
     return True
 
 
-def _import(module: str) -> None:
+def _import(module: str, workers: _Workers) -> None:
     try:
         with loading():
+            workers.start()
             import_module(module)
             import_module("physicslab.kernels.warm").load_all()
             import_module("physicslab.kernels").prepare()

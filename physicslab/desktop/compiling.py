@@ -12,7 +12,7 @@ from physicslab.kernels import KERNELS, ask_before_compiling, interpreter, load
 from physicslab.kernels.python_fallback import natives
 from physicslab.kernels.solver import soft
 from physicslab.kernels.tiers import natives_within
-from physicslab.kernels.warm import Progress, Warmup, is_warm, name_of
+from physicslab.kernels.warm import Progress, Warmup, name_of
 from physicslab.stepping.small import is_small
 from physicslab.theme import DARK, Theme
 from physicslab.view.canvas.display import Display, wants_to_leave
@@ -103,8 +103,6 @@ def _seconds_saved(jitted: Any) -> float:
 
 _ROOM = 0.008
 """Time [s] that must be left of a frame to load a kernel in it; most take 2 to 4 ms, few more than 8."""
-_UNDISTURBED = 4
-"""So many frames are made before other processes start to compile: the first that moves is among them."""
 _LOAD_EVERY = 30
 """One frame in so many loads a kernel, whatever is left of it: a busy scene would never load any."""
 
@@ -114,7 +112,7 @@ class Left(Exception):
 
 
 class Compiling:
-    """Lets other processes compile kernels, in a ``with`` block of the window, which stays awake.
+    """Loads what other processes compile, in a ``with`` block of the window, which stays awake.
 
     On the first launch they compile all, first those that the scene is about to call. A small scene is
     interpreted until these are there; in a large one they are waited for. The rest comes while it runs. A
@@ -124,6 +122,8 @@ class Compiling:
     ----------
     display : Display
         Where it is shown how far it is.
+    warmup : Warmup, optional
+        The processes that compile; none where all are in the cache, or all are to be interpreted.
     theme : Theme
         The colours of that.
 
@@ -133,12 +133,11 @@ class Compiling:
         The object that finds whether the scene that is shown may be interpreted.
     """
 
-    def __init__(self, display: Display, theme: Theme = DARK) -> None:
+    def __init__(self, display: Display, warmup: Warmup | None, theme: Theme = DARK) -> None:
         self.scenes = SmallScenes()
         self._display = display
-        self._warmup = None if is_warm() or interpreter.is_forced() else Warmup()
+        self._warmup = warmup
         self._progress = Progress(0, 1)
-        self._started = False
         self._coming: Any = None
         self._frames = 0
         self._theme = theme
@@ -156,16 +155,6 @@ class Compiling:
     def __exit__(self, *raised: Any) -> None:
         ask_before_compiling(None)
         interpreter.unlimited()
-        if self._warmup is not None:
-            self._warmup.__exit__(*raised)
-
-    def _start(self) -> Warmup:
-        """Start the processes that compile, if they have not been started."""
-        assert self._warmup is not None
-        if not self._started:
-            self._started = True
-            self._warmup.__enter__()
-        return self._warmup
 
     @property
     def finished(self) -> bool:
@@ -199,14 +188,14 @@ class Compiling:
         Left
             If the user closes the window meanwhile.
         """
-        warmup = self._start()
+        warmup = self._warmup
+        assert warmup is not None
         names = [name_of(jitted) for jitted in missing]
         warmup.hurry(dict.fromkeys(names, math.inf))
         start, waits = time.perf_counter(), False
         self._progress, self._drawn = warmup.poll(), None
         while not (warmup.finished or warmup.has(names)):
             waits = True
-            warmup.yield_to_others(False)
             if wants_to_leave():
                 raise Left
             self._show_waiting(int(time.perf_counter() - start))
@@ -240,11 +229,9 @@ class Compiling:
         """
         self._frames += 1
         self._theme = theme
-        compiles = self._started or self._frames >= _UNDISTURBED
         pending = self.scenes.pending()
-        if self._warmup is not None and compiles and not self._warmup.finished:
-            self._progress = self._start().poll()
-            self._warmup.yield_to_others(not pending)  # slow motion ends sooner, on a busy computer too
+        if self._warmup is not None and not self._warmup.finished:
+            self._progress = self._warmup.poll()
             canvas = self._display.canvas
             draw_corner(canvas, theme, self._progress.share, canvas.size[1] if bottom is None else bottom)
         if interpreter.is_forced():

@@ -23,6 +23,7 @@ from physicslab.ecs.config import WindowConfig
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.scene import load_scene
 from physicslab.kernels import working_ns
+from physicslab.kernels.warm import Warmup
 from physicslab.scenes import SCENES
 from physicslab.view.canvas.display import Display, ask_to_leave, forget_clicks
 from physicslab.view.controls.lesson_actions import open_lesson
@@ -96,11 +97,14 @@ _TITLE_LIMIT = 200
 """Characters of the window's title that come from the scene."""
 
 
-def run_window(display: Display, config: WindowConfig, scene: str | World, *, welcomes: bool = False) -> int:
+def run_window(
+    display: Display, config: WindowConfig, scene: str | World, workers: Warmup | None, welcomes: bool
+) -> int:
     """Show a scene, a lesson or a world, until the window is closed; return the exit status.
 
-    Where it ``welcomes``, the cards of the first minute are shown, unless they were used before.
-    Where a signal ends the program (a logout, ``kill``), the state is saved and offered at the next start.
+    Kernels that the cache lacks come from ``workers``. Where it ``welcomes``, the cards of the first minute
+    are shown, unless they were used before. Where a signal ends the program (a logout, ``kill``), the state
+    is saved and offered at the next start.
 
     Raises
     ------
@@ -127,7 +131,7 @@ def run_window(display: Display, config: WindowConfig, scene: str | World, *, we
     try:
         with Termination(ask_to_leave) as termination:
             try:
-                with Compiling(display, window.theme) as compiling:
+                with Compiling(display, workers, window.theme) as compiling:
                     window.has_kernels = partial(getattr, compiling, "finished")
                     with loading():
                         # Time spent waiting for a kernel is no time that steps took.

@@ -34,7 +34,7 @@ _FIRST = (
 """Modules whose kernels almost every scene needs, compiled first: what moves it, then its picture."""
 WORKER = "--worker"
 """The option of the command ``kernels`` that runs :func:`work`."""
-_YIELDING = 15
+_NICENESS = 10
 """How much higher the priority of a running scene is than that of the workers, as a Unix nice value."""
 
 
@@ -112,6 +112,9 @@ class Warmup:
     ``with`` block, at the end of which the processes are stopped if they still run. If one fails, nothing is
     lost: a missing kernel is compiled when it is first needed, and fails then with its reason.
 
+    The first process has the machine to itself until its first kernel is done, which is what a small scene
+    spends most of its time in; the others start then. All yield to what runs beside them.
+
     Parameters
     ----------
     workers : int, optional
@@ -134,9 +137,7 @@ class Warmup:
         self._answers: queue.SimpleQueue[str] = queue.SimpleQueue()
         self._workers = min(workers or min(os.cpu_count() or 1, _WORKERS_LIMIT), len(self._jobs))
         self._processes: list[subprocess.Popen[str]] = []
-        self._retired: set[subprocess.Popen[str]] = set()
         self._threads: list[threading.Thread] = []
-        self._yields = False
         self._costs = {name_of(jitted): compile_seconds(jitted) for jitted in _own()}
         self._urgent: dict[str, tuple[float, float]] = {}
         self._begun: dict[str, float] = {}
@@ -145,17 +146,29 @@ class Warmup:
         self.finished = False
 
     def __enter__(self) -> Warmup:
-        for _ in range(self._workers):
+        if self._workers:
             self._start_worker()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        with self._lock:
+            self._workers = 0
         for process in self._processes:
             process.terminate()
         for thread in self._threads:
             thread.join()
+
+    def _start_others(self) -> None:
+        """Start the other processes, and let all yield to what runs beside them."""
+        with self._lock:
+            while len(self._processes) < self._workers:
+                self._start_worker()
+            for process in self._processes if hasattr(os, "setpriority") else ():
+                with suppress(OSError):  # it has ended
+                    niceness = os.getpriority(os.PRIO_PROCESS, 0) + _NICENESS
+                    os.setpriority(os.PRIO_PROCESS, process.pid, niceness)
 
     def _start_worker(self) -> None:
         environment = {**os.environ, **processor_variables(), cache.VARIABLE: str(cache.cache_directory())}
@@ -176,7 +189,7 @@ class Warmup:
         ):  # at the end it is closed, which fails like writing where it has ended
             assert process.stdin is not None
             assert process.stdout is not None
-            while job := self._next(process):
+            while job := self._next():
                 process.stdin.write(f"{job}\n")
                 name = process.stdout.readline().strip()
                 if not name:
@@ -184,12 +197,13 @@ class Warmup:
                 self._took += time.monotonic() - self._begun[name]
                 self._foreseen += self._costs[name]
                 self._answers.put(name)
+                self._start_others()
             process.stdin.close()
 
-    def _next(self, process: subprocess.Popen[str]) -> str:
+    def _next(self) -> str:
         with self._lock:
             name = ""
-            if self._jobs and process not in self._retired:
+            if self._jobs:
                 urgent = [name for name in self._jobs if name in self._urgent]
                 name = max(urgent, key=self._urgent.__getitem__) if urgent else self._jobs[0]
                 self._jobs.remove(name)
@@ -208,28 +222,6 @@ class Warmup:
         with self._lock:
             for name in spent.keys() & self._costs.keys():
                 self._urgent[name] = spent[name] / self._costs[name], self._costs[name]
-
-    def yield_to_others(self, yields: bool) -> None:
-        """Lower the priority of the workers, or restore it; it is normal while something waits for a kernel.
-
-        Where the system does not let a process raise its priority again, new workers replace the old ones
-        once these are done with what they compile.
-        """
-        if yields == self._yields or not hasattr(os, "setpriority"):
-            return
-        self._yields = yields
-        niceness = os.getpriority(os.PRIO_PROCESS, 0) + (_YIELDING if yields else 0)
-        for process in list(self._processes):
-            if process in self._retired or process.poll() is not None:
-                continue
-            try:
-                os.setpriority(os.PRIO_PROCESS, process.pid, niceness)
-            except PermissionError:
-                with self._lock:
-                    self._retired.add(process)
-                self._start_worker()
-            except ProcessLookupError:
-                continue
 
     def has(self, names: Iterable[str]) -> bool:
         """Whether these kernels were in the cache at the last :meth:`poll`."""

@@ -18,6 +18,7 @@ _BALL: BodyOptions = {"mass": 0.17, "restitution": 0.95, "friction": 0.05}
     moment=1.0,
     teaches=("momentum", "collisions", "energy"),
     tags=("solid bodies",),
+    also="snooker, pool, cue",
     physics=PhysicsConfig(
         gravity_mode="none",
         bounds=(-5.0, -2.5, 5.0, 2.5),

@@ -12,6 +12,7 @@ from physicslab.state.contents import Contents
     moment=1.2,
     teaches=("energy", "collisions"),
     tags=("solid bodies",),
+    also="free fall, jump, bouncing ball",
 )
 def bounces(world: Contents) -> None:
     box(world, (0, -0.5), width=14, height=1, static=True, restitution=1, name="floor")

@@ -20,6 +20,7 @@ _PLANKS, _LENGTH, _THICKNESS, _RADIUS = 20, 0.4, 0.12, 12.0
     view=(-4.6, -2.0, 4.6, 3.4),
     teaches=("forces", "equilibrium"),
     tags=("joints", "solid bodies"),
+    also="rope",
 )
 def bridge(world: Contents) -> None:
     one = 2.0 * math.asin(0.5 * _LENGTH / _RADIUS)  # the angle that one plank takes of the arc

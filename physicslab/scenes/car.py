@@ -26,6 +26,7 @@ def _height(x: float) -> float:
     moment=3.0,
     teaches=("machines", "forces", "friction"),
     tags=("joints", "solid bodies"),
+    also="motor, wheels",
 )
 def car(world: Contents) -> None:
     along = [_RIGHT - k * _STEP for k in range(round((_RIGHT - _LEFT) / _STEP) + 1)]

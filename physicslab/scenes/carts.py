@@ -17,6 +17,7 @@ _TRACK = 4.5
     moment=2.2,
     teaches=("momentum", "collisions", "energy"),
     tags=("solid bodies",),
+    also="crash, elastic, inelastic, train",
 )
 def carts(world: Contents) -> None:
     wall: BodyOptions = {"static": True, "friction": 0.0, "restitution": 1.0}

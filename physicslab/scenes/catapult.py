@@ -21,6 +21,7 @@ _WOOD: BodyOptions = {"material": "wood", "restitution": 0.0}
     moment=1.0,
     teaches=("lever", "energy", "machines"),
     tags=("joints", "solid bodies"),
+    also="throw, projectile",
 )
 def catapult(world: Contents) -> None:
     (x, y), along = _AXLE, (math.cos(_FROM), math.sin(_FROM))

@@ -14,6 +14,7 @@ from physicslab.state.contents import Contents
     moment=3.0,
     teaches=("electricity",),
     tags=("charges",),
+    also="magnet, Hall effect",
     physics=PhysicsConfig(gravity_mode="none", electric_field=Vector2(0.0, -1.2), magnetic_field=-2.0),
 )
 def crossed_fields(world: Contents) -> None:

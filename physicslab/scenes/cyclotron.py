@@ -18,6 +18,7 @@ _FIELD = 4.0
     moment=3.0,
     teaches=("electricity", "circular motion", "energy"),
     tags=("charges",),
+    also="magnet, accelerator",
     physics=PhysicsConfig(gravity_mode="none", magnetic_field=_FIELD),
 )
 def cyclotron(world: Contents) -> None:

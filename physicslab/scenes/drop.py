@@ -12,6 +12,7 @@ from physicslab.state.contents import Contents
     moment=1.3,
     teaches=("energy", "collisions"),
     tags=("solid bodies",),
+    also="free fall, bouncing ball",
 )
 def drop(world: Contents) -> None:
     box(world, (0, -0.5), width=20, height=1, static=True, restitution=0.8, friction=0.6, name="floor")

@@ -28,6 +28,7 @@ def _crystal(world: Contents, x: float, y: float, speed: float, turn: float) -> 
     view=(-4.0, -2.4, 4.0, 2.4),
     teaches=("heat", "energy"),
     tags=("many bodies",),
+    also="melting, drop of water",
     physics=PhysicsConfig(gravity_mode="none"),
 )
 def droplets(world: Contents) -> None:

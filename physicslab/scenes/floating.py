@@ -15,6 +15,7 @@ _WATER = 1000.0
     view=(-4.6, -3.5, 4.6, 2.6),
     teaches=("buoyancy", "equilibrium"),
     tags=("liquids", "solid bodies"),
+    also="boat, ship, swim, Archimedes",
 )
 def floating(world: Contents) -> None:
     world.spawn(Transform((0.0, -1.5)), Shape.box(8.0, 3.0), Medium(_WATER, viscosity=60.0), name="water")

@@ -15,6 +15,7 @@ _WALLS = (-12.0, -7.5, 12.0, 7.5)
     moment=0.0,
     teaches=("heat", "collisions"),
     tags=("solid bodies", "many bodies"),
+    also="temperature, pressure",
     physics=PhysicsConfig(gravity_mode="none", bounds=_WALLS, bounds_restitution=1.0, bounds_friction=0.0),
 )
 def gas(world: Contents) -> None:

@@ -17,6 +17,7 @@ _RADIUS, _BALL, _RUN = 1.0, 0.1, 2.5
     moment=1.2,
     teaches=("circular motion", "energy"),
     tags=("solid bodies",),
+    also="roller coaster",
 )
 def loop_the_loop(world: Contents) -> None:
     least = math.sqrt(5.0 * 9.81 * (_RADIUS - _BALL))

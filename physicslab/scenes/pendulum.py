@@ -13,6 +13,7 @@ from physicslab.state.contents import Contents
     moment=0.9,
     teaches=("oscillations", "energy"),
     tags=("joints",),
+    also="swing, clock",
 )
 def pendulum(world: Contents) -> None:
     prefabs.pendulum(world, (0.0, 3.0), length=2.0, angle=0.5, name="bob")

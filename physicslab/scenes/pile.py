@@ -11,6 +11,7 @@ from physicslab.state.contents import Contents
     view=(-6.5, -1.0, 6.5, 8.0),
     teaches=("equilibrium", "friction"),
     tags=("solid bodies", "many bodies"),
+    also="sand, marbles",
 )
 def pile(world: Contents) -> None:
     prefabs.container(world, width=11, height=8)

@@ -17,6 +17,7 @@ _CRANK, _ROD, _SPEED, _START = 0.5, 1.4, math.pi, math.radians(60.0)
     view=(-1.2, -1.4, 3.2, 1.4),
     teaches=("machines", "circular motion"),
     tags=("joints", "solid bodies"),
+    also="engine",
 )
 def piston(world: Contents) -> None:
     x, y = _CRANK * math.cos(_START), _CRANK * math.sin(_START)

@@ -14,6 +14,7 @@ from physicslab.state.contents import Contents
     moment=0.0,
     teaches=("equilibrium",),
     tags=("solid bodies", "many bodies"),
+    also="wall, building blocks",
     physics=PhysicsConfig(gravity=Vector2(0.0, -10.0)),
 )
 def pyramid(world: Contents) -> None:

@@ -17,6 +17,7 @@ _STEPS, _WIDE, _HIGH = 6, 0.6, 0.35
     moment=0.9,
     teaches=("energy", "friction", "collisions"),
     tags=("joints", "solid bodies"),
+    also="doll",
     simulation=SimulationConfig(contacts="soft", substeps=12),
 )
 def ragdoll(world: Contents) -> None:

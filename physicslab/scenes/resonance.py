@@ -17,6 +17,7 @@ _DRIVE = 1.0
     moment=3.0,
     teaches=("oscillations", "energy"),
     tags=("springs", "solid bodies"),
+    also="vibration, oscillator",
 )
 def resonance(world: Contents) -> None:
     for n, frequency in enumerate((0.6, 0.75, 0.9, 1.0, 1.1, 1.25, 1.4)):

@@ -13,6 +13,7 @@ from physicslab.state.contents import Contents
     moment=2.0,
     teaches=("electricity", "energy"),
     tags=("charges",),
+    also="atom, nucleus, scattering",
     physics=PhysicsConfig(gravity_mode="none", coulomb_constant=1.0),
 )
 def rutherford(world: Contents) -> None:

@@ -34,6 +34,8 @@ class Scene:
         Subjects that it is an example of, by which it is found too.
     tags : tuple of str
         Its contents, by which it is found: as :func:`physicslab.view.workbench.thumbnails.tags_of` finds.
+    also : str
+        Further words by which it is searched.
     physics, simulation : PhysicsConfig, SimulationConfig
         The laws, and how they are stepped.
     fill : callable
@@ -46,6 +48,7 @@ class Scene:
     moment: float = 0.6
     teaches: tuple[str, ...] = ()
     tags: tuple[str, ...] = ()
+    also: str = ""
     physics: PhysicsConfig = field(default_factory=PhysicsConfig)
     simulation: SimulationConfig = field(default_factory=SimulationConfig)
     fill: Callable[[Contents], None] = _nothing
@@ -58,6 +61,11 @@ class Scene:
     def name(self) -> str:
         """The name for the command line: that of the function."""
         return self.fill.__name__
+
+    @property
+    def search_words(self) -> tuple[str, ...]:
+        """Words that find it beside its title and description."""
+        return self.name, *self.teaches, *self.tags, self.also
 
     def contents(self) -> Contents:
         """Return what a new world of this scene holds, without all that steps it."""

@@ -17,6 +17,7 @@ _WOOD: BodyOptions = {"material": "wood", "restitution": 0.0, "friction": 0.8}
     view=(-6.5, -0.5, 6.5, 2.6),
     teaches=("lever", "equilibrium"),
     tags=("joints", "solid bodies"),
+    also="balance",
     simulation=SimulationConfig(contacts="soft"),
 )
 def seesaw(world: Contents) -> None:

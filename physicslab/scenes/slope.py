@@ -16,6 +16,7 @@ _ANGLE = math.radians(20.0)
     view=(-7.8, -3.4, 7.8, 3.4),
     teaches=("friction", "forces"),
     tags=("solid bodies",),
+    also="ramp, inclined plane",
 )
 def slope(world: Contents) -> None:
     along = Vector2.from_angle(_ANGLE)

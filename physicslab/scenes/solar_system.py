@@ -22,6 +22,7 @@ _PLANETS = (
     moment=12.0,
     teaches=("gravity", "circular motion"),
     tags=("planets",),
+    also="sun, orbits, planets",
     physics=PhysicsConfig(gravity_mode="planet"),
 )
 def solar_system(world: Contents) -> None:

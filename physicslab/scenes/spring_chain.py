@@ -11,6 +11,7 @@ from physicslab.state.contents import Contents
     view=(-4.2, 0.2, 4.2, 3.6),
     teaches=("waves", "oscillations"),
     tags=("springs", "solid bodies"),
+    also="rope",
 )
 def spring_chain(world: Contents) -> None:
     chain(world, 20, (-4.0, 3.0), (4.0, 3.0), hold_end=True)

@@ -12,6 +12,7 @@ from physicslab.state.contents import Contents
     moment=0.0,
     teaches=("equilibrium",),
     tags=("solid bodies",),
+    also="building blocks",
 )
 def stack(world: Contents) -> None:
     prefabs.box(world, (0, -0.5), width=20, height=1, static=True, friction=0.6, name="floor")

@@ -13,6 +13,7 @@ from physicslab.state.contents import Contents
     moment=4.0,
     teaches=("gravity", "momentum"),
     tags=("planets",),
+    also="orbits, moon",
     physics=PhysicsConfig(gravity_mode="planet"),
 )
 def two_planets(world: Contents) -> None:

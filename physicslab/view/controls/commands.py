@@ -30,6 +30,8 @@ _LEAST = 1.5
 """The least average score of letters of a match."""
 _SPREAD = 0.3
 """Cost of a letter between them."""
+_OF_ALSO = 0.9
+"""A match in further words has this share of the score of one in a name."""
 _OF_TIP = 0.3
 """A match in a tip has this share of the score of one in a name."""
 
@@ -44,12 +46,15 @@ class Command:
         Its name, its keys or its kind, and its effect in words.
     action : callable
         The action on choice.
+    also : tuple of str
+        Further words that find it.
     """
 
     words: str
     keys: str
     tip: str
     action: Action
+    also: tuple[str, ...] = ()
 
 
 def commands(window: Window | None = None) -> Iterator[Command]:
@@ -73,9 +78,10 @@ def commands(window: Window | None = None) -> Iterator[Command]:
         name, tip = LANGUAGES.get(code, code), "The language of the window and of lessons"
         yield Command(name, "language", tip, partial(choose_language, code=code))
     for name, scene in SCENES.items():
-        yield Command(scene.title, "scene", scene.description, partial(open_from_list, source=name))
+        opens = partial(open_from_list, source=name)
+        yield Command(scene.title, "scene", scene.description, opens, scene.search_words)
     for name, title in titles("" if window is None else window.language).items():
-        yield Command(title, "lesson", "predict, run, compare, explain", opener(name))
+        yield Command(title, "lesson", "predict, run, compare, explain", opener(name), (name,))
     for path in scenes_here():
         yield Command(printable(path.name), "file", str(path), partial(open_from_list, source=path))
     for name, quantity in QUANTITIES.items():
@@ -93,12 +99,14 @@ def find(text: str, among: list[Command], said: Language) -> list[Command]:
     The letters of a word stand there in this order, with others between them. Names and tips are searched as
     they are said in a language, and as the program has them.
     """
-    wanted = _plain(text).split()
+    wanted = plain(text).split()
     rated = []
     for command in among:
-        names, tips = _spellings(command.words, said), _spellings(command.tip, said)
+        names, tips = spellings(command.words, said), spellings(command.tip, said)
+        texts = [(_OF_TIP, tip) for tip in tips]
+        texts += [(_OF_ALSO, one) for words in command.also for one in spellings(words, said)]
         parts = [
-            max(*(rate(word, name) for name in names), *(_OF_TIP * _rate_whole(word, tip) for tip in tips))
+            max(*(rate(word, name) for name in names), *(k * _rate_whole(word, one) for k, one in texts))
             for word in wanted
         ]
         if all(parts):
@@ -110,16 +118,16 @@ def find(text: str, among: list[Command], said: Language) -> list[Command]:
 _UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue"})
 
 
-def _spellings(text: str, said: Language) -> set[str]:
+def spellings(text: str, said: Language) -> set[str]:
     """Return how people may write a text, in English and as it is said: an umlaut by one letter or two."""
     shown = said.reword(text).casefold()
-    return {_plain(text), _plain(shown), shown.translate(_UMLAUTS)}
+    return {plain(text), plain(shown), shown.translate(_UMLAUTS)}
 
 
-def _plain(text: str) -> str:
+def plain(text: str) -> str:
     """Return a text in small letters, without the marks above them.
 
-    >>> _plain("Löschen"), _plain("Größe")
+    >>> plain("Löschen"), plain("Größe")
     ('loschen', 'grosse')
     """
     return "".join(

@@ -57,22 +57,24 @@ _MAX_LINES = 400
 """In a picture with more lines than that, which would be a speck, none has."""
 
 
-def draw_axis_numbers(on: Drawing, room: Rect, right: int, windows: Sequence[Rect]) -> int:
+def draw_axis_numbers(on: Drawing, room: Rect, right: int, windows: Sequence[Rect]) -> tuple[int, list[Rect]]:
     """Write the coordinates [m] of lines of the grid at the lower and the left edge of a room [px].
 
     Those at the lower edge end before ``right`` [px], where the scale bar begins; none is partly under one of
-    the ``windows``. Return how high they are there [px].
+    the ``windows``. Return how high they are there, and where each is [px].
     """
     left, top, width, height = room
     step = _EVERY * grid_spacing(on.camera.scale)
     low, high = on.camera.to_world((left, top + height)), on.camera.to_world((left + width, top))
     style = TextStyle(max(on.size - 3, 9), on.theme.coordinate)
     text_height = on.canvas.text_size("0", style)[1]
+    written: list[Rect] = []
 
     def write(words: str, x: int, y: int) -> None:
         extent = on.canvas.text_size(words, style)
         if not any(overlap(window, (x, y, *extent)) for window in windows):
             on.canvas.text(words, (x, y), style)
+            written.append((x, y, *extent))
 
     for x in _multiples(low.x, high.x, step):
         place = round(on.camera.to_screen(Vector2(x, on.camera.centre.y))[0])
@@ -83,7 +85,7 @@ def draw_axis_numbers(on: Drawing, room: Rect, right: int, windows: Sequence[Rec
         place = round(on.camera.to_screen(Vector2(on.camera.centre.x, y))[1])
         if top + 2 * text_height < place < top + height - 2 * text_height:
             write(_words(y, step), left + 4, place - text_height - 1)
-    return text_height + 2
+    return text_height + 2, written
 
 
 def _multiples(low: float, high: float, step: float) -> list[float]:

@@ -14,7 +14,8 @@ from physicslab.view.toolkit.style import packed
 from physicslab.view.toolkit.windows import Spoken, Windows, widget_label
 
 _TIP_FLAGS = imgui.HoveredFlags_.delay_short | imgui.HoveredFlags_.allow_when_disabled
-
+_TIP_WIDTH = 23.5
+"""Width of a tip at most, in heights of the text."""
 _BEFORE_A_UNIT = re.compile(r"(?<=[\d⁰¹²³⁴-⁹]) (?=[%°]|[A-Za-z]{1,3}\b)")
 
 
@@ -143,7 +144,7 @@ class Ui(Windows):
             words = self.written(words)
             self._place_tip()
             if imgui.begin_tooltip():
-                imgui.push_text_wrap_pos(22 * self.size)
+                imgui.push_text_wrap_pos((_TIP_WIDTH - 1.5) * self.size)
                 imgui.text_unformatted(words)
                 imgui.pop_text_wrap_pos()
                 imgui.end_tooltip()
@@ -151,18 +152,16 @@ class Ui(Windows):
     def _place_tip(self) -> None:
         """Have the tip beside the panel that it is for: it covers nothing of what was gone to."""
         panel = imgui.internal.get_current_window_read().root_window
-        if panel is None or not panel.flags & imgui.WindowFlags_.no_move:
+        if panel is None or not (panel.flags & imgui.WindowFlags_.no_move or panel.dock_node):
             return
-        low, high, room = imgui.get_item_rect_min(), imgui.get_item_rect_max(), imgui.get_io().display_size
-        left, top, right = panel.pos.x, panel.pos.y, panel.pos.x + panel.size.x
-        if left > 0.5 * room.x:
-            imgui.set_next_window_pos(ImVec2(left, low.y), imgui.Cond_.always, ImVec2(1.0, 0.0))
-        elif right < 0.5 * room.x:
-            imgui.set_next_window_pos(ImVec2(right, low.y), imgui.Cond_.always)
-        elif top > 0.5 * room.y:
-            imgui.set_next_window_pos(ImVec2(low.x, top), imgui.Cond_.always, ImVec2(0.0, 1.0))
-        else:
-            imgui.set_next_window_pos(ImVec2(low.x, high.y), imgui.Cond_.always)
+        low, room, (left, top) = imgui.get_item_rect_min(), imgui.get_io().display_size, panel.pos
+        right, foot = left + panel.size.x, top + panel.size.y
+        across = max(min(low.x, room.x - _TIP_WIDTH * self.size), 0.0)
+        _, place, pivot = max(
+            (left, (left, low.y), (1.0, 0.0)), (room.x - right, (right, low.y), (0.0, 0.0)),
+            (top, (across, top), (0.0, 1.0)), (room.y - foot, (across, foot), (0.0, 0.0)),
+        )  # fmt: skip
+        imgui.set_next_window_pos(ImVec2(*place), imgui.Cond_.always, ImVec2(*pivot))
 
     # ---- what is clicked -----------------------------------------------------------------------------------
 

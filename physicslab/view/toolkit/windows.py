@@ -29,9 +29,11 @@ _BESIDE = _FLAGS.no_focus_on_appearing
 _APART = _FLAGS.no_saved_settings | _FLAGS.no_docking
 _DIRECTIONS = {"right": imgui.Dir.right, "left": imgui.Dir.left, "below": imgui.Dir.down}
 LEAST_WORLD = 17.0
-"""Width, and height, that windows leave to the world if they can lie over each other instead."""
+"""Width that windows leave to the world where text or window have another size."""
 _MAX_SHARE = 0.5
-"""Share of the world's room that a window takes at most because it needs so much."""
+"""Share of the width, and of the height, that docked windows take at most of the room without them."""
+_WORTHWHILE = 0.25
+"""Share of it that is enough for a window of its own; where there is less, it is one more tab of another."""
 NARROW = 6.0
 """Padding of panels that hold buttons alone [px]."""
 _TITLE = 6.0
@@ -192,8 +194,8 @@ class Windows:
         return round(node.pos.x), round(node.pos.y), round(node.size.x), round(node.size.y)
 
     def stand_beside(
-        self, name: str, side: str, share: float, least: float, *, stacks: bool = True, again: bool = False,
-        keeps_side: bool = False,
+        self, name: str, side: str, share: float, least: float, *,
+        again: bool = False, keeps_side: bool = False,
     ) -> None:  # fmt: skip
         """Have the window that is begun next docked at a side of the world, if it never was elsewhere.
 
@@ -204,12 +206,10 @@ class Windows:
         side : str
             ``"right"``, ``"left"`` or ``"below"``; where the world is narrow it is below all the same.
         share : float
-            How much of the world's room it takes; up to half of it where ``least`` is more.
+            How much of the world's room it takes, as long as half of the width and of the height is left.
         least : float
             The least height of a window above or below it, or width of one beside it, in heights of the text:
-            where there is less, both are in the same place, as tabs.
-        stacks : bool
-            Whether it shares its side with others that stand there, above and below each other.
+            where there is less, both are in the same place, as tabs. At a side it is its own width, too.
         again : bool
             Whether it is docked there though it was elsewhere.
         keeps_side : bool
@@ -226,11 +226,11 @@ class Windows:
         if known is not None and when != imgui.Cond_.always:
             if before is None or before.was_active or not before.dock_id or self._side_of(before) != side:
                 return
-            last = self._last_at(side, stacks=stacks)
+            last = self._last_at(side)
             if last is None or last.id_ == before.dock_id:
                 return
             when = imgui.Cond_.always  # it comes back where others stand by now: as one more of them
-        imgui.set_next_window_dock_id(self._node(side, share, least * self.size, stacks=stacks), when)
+        imgui.set_next_window_dock_id(self._node(side, share, least * self.size), when)
         self._put.add(name)
 
     def _side_of(self, thing: imgui.internal.Window | imgui.internal.DockNode) -> str:
@@ -240,31 +240,36 @@ class Windows:
             return "below"
         return "right" if thing.pos.x > world.pos.x + 0.5 * world.size.x else "left"
 
-    def _last_at(self, side: str, *, stacks: bool) -> imgui.internal.DockNode | None:
-        """Return the place at a side that one more window shares; none where no window stands there."""
+    def _last_at(self, side: str = "") -> imgui.internal.DockNode | None:
+        """Return the place that one more window shares at a side, or at any side; none without windows."""
         last = None
         for window in imgui.get_current_context().windows:
             node = imgui.internal.dock_builder_get_node(window.dock_id) if window.dock_id else None
-            if node is None or not (window.active or window.was_active) or self._side_of(node) != side:
+            if node is None or not (window.active or window.was_active):
                 continue
-            if last is None or _rank(node, stacks=stacks) >= _rank(last, stacks=stacks):
+            if self._side_of(node) == (side or self._side_of(node)) and (
+                last is None or (node.pos.y, node.pos.x) >= (last.pos.y, last.pos.x)
+            ):
                 last = node
         return last
 
-    def _node(self, side: str, share: float, least: float, *, stacks: bool) -> int:
+    def _node(self, side: str, share: float, least: float) -> int:
         """Return the place at a side for one more window; ``least`` is in pixels."""
         internal, is_below = imgui.internal, side == "below"
-        world, last = internal.dock_builder_get_central_node(self._sides), self._last_at(side, stacks=stacks)
-        if last is not None and stacks:
+        world, last = internal.dock_builder_get_central_node(self._sides), self._last_at(side)
+        if last is not None:
             if (last.size.x if is_below else last.size.y) < 2.0 * least:
                 return last.id_
             across = imgui.Dir.right if is_below else imgui.Dir.down
             return int(internal.dock_builder_split_node_py(last.id_, across, 0.5)[0])
-        room = world.size.y if is_below else world.size.x
-        share = max(share, min(least / max(room, 1.0), _MAX_SHARE))
-        left_over = (1.0 - share) * room
-        if last is not None and left_over < LEAST_WORLD * self.size:
+        whole = internal.dock_builder_get_node(self._sides).size
+        room, all_of_it = (world.size.y, whole.y) if is_below else (world.size.x, whole.x)
+        wanted = max(share * room, 0.0 if is_below else least)
+        taken = min(wanted, room - (1.0 - _MAX_SHARE) * all_of_it)
+        last = self._last_at()
+        if last is not None and taken < min(wanted, _WORTHWHILE * all_of_it):
             return last.id_
+        share = taken / max(room, 1.0)
         return int(internal.dock_builder_split_node_py(world.id_, _DIRECTIONS[side], share)[0])
 
     def raise_tab(self, shows: object = None) -> None:
@@ -346,8 +351,3 @@ class Windows:
     def held(self, label: str) -> str:
         """Return a label without words for what is written or dragged in, which ends with the scene."""
         return widget_label("", f"{label} of scene {self.scenes}")
-
-
-def _rank(node: imgui.internal.DockNode, *, stacks: bool) -> tuple[float, float]:
-    """Return what is largest for the place that a window shares: the last of a stack, or the largest."""
-    return (node.pos.y, node.pos.x) if stacks else (node.size.x * node.size.y, 0.0)

@@ -11,6 +11,7 @@ from physicslab.ecs.text import printable
 from physicslab.files.listing import scenes_here
 from physicslab.lessons.catalogue import LESSONS
 from physicslab.scenes import SCENES
+from physicslab.view.controls.commands import plain, spellings
 from physicslab.view.controls.file_actions import open_from_list
 from physicslab.view.controls.lesson_actions import open_lesson
 from physicslab.view.toolkit.ui import Ui
@@ -91,12 +92,12 @@ class Gallery:
                 ui.same_line_if_room(tag, end)
             if ui.button(f"Tag: {tag or 'all'}", shown=tag or "all", on=tag == self._tag):
                 self._tag = tag
-        wanted = _plain(self._words).split()
+        wanted = _parted(plain(self._words)).split()
         found = [
             (source, known)
             for source, known in every
             if (not self._tag or self._tag in known.tags)
-            and all(f" {word}" in _text(source, known) for word in wanted)
+            and (not wanted or all(f" {word}" in _text(ui, source, known) for word in wanted))
         ]
         self._keeps_focus = entered and not (found and wanted)  # the next letters are for the search, too
         if entered and found and wanted:
@@ -167,14 +168,16 @@ def _build_words(ui: Ui, source: Source, known: Known) -> None:
     ui.faint(words[:150], wrapped=False)
 
 
-def _text(source: Source, known: Known) -> str:
+def _text(ui: Ui, source: Source, known: Known) -> str:
+    """Return all words by which a scene is found, in English and in the language of the window."""
     name = source.name if isinstance(source, Path) else source
-    return f" {_plain(' '.join((known.title, known.words, name, *known.tags)))}"
+    texts = known.title, known.words, name, *known.tags, *known.also
+    return f" {_parted(' '.join(one for text in texts for one in spellings(text, ui.language)))}"
 
 
-def _plain(text: str) -> str:
-    """Return the words of a text in small letters, with single blanks between them."""
-    return " ".join(re.split(r"[\W_]+", text.lower()))
+def _parted(text: str) -> str:
+    """Return the words of a text, with single blanks between them."""
+    return " ".join(re.split(r"[\W_]+", text))
 
 
 def _visible() -> pygame.Rect:

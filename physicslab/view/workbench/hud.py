@@ -149,7 +149,7 @@ class Hud:
         (left, top, width, height), size = room, on.size
         margin = round(0.6 * size)
         bar = draw_scale_bar(on, left + width, top + height - margin)
-        numbers = draw_axis_numbers(on, room, bar[0], self._windows) if window.grid else 0
+        numbers, written = draw_axis_numbers(on, room, bar[0], self._windows) if window.grid else (0, [])
         taken = [bar, *self._draw_messages(world, bar, numbers)]
         bottom = min(rect[1] for rect in taken) - margin
         begin, wide, edge = self._free_strip(at_top=True)
@@ -161,7 +161,7 @@ class Hud:
         legends = legends_of(window.overlays, (width - 2 * margin, height), on)
         taken += self._draw_legend(world, legends, room, margin, taken)
         inner = left, top, width, max(height - numbers, 1)
-        draw_edge_arrows(world, on, inner, [*taken, *self._windows])
+        draw_edge_arrows(world, on, inner, [*taken, *written, *self._windows])
         return taken
 
     def _draw_legend(

@@ -32,7 +32,7 @@ _FLAT = 0.6
 
 def build_microscope(ui: Ui, world: World, window: Window) -> None:
     """Build it in a window of its own: what happened, both bodies, momenta, energies, and the rest below."""
-    ui.stand_beside("Collision microscope", "right", 0.5, 0.0, stacks=False)
+    ui.stand_beside("Collision microscope", "right", 0.5, 26.0)
     middle, close = window.framing.middle, window.closing_of("microscope.record")
     with ui.floating("Collision microscope", middle, close, docks=True):
         ui.raise_tab(window.microscope.number)

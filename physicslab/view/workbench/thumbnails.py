@@ -44,12 +44,15 @@ class Known:
         Its subjects and contents.
     failure : str
         Why it cannot be read.
+    also : tuple of str
+        Further words that find it.
     """
 
     title: str
     words: str
     tags: tuple[str, ...] = ()
     failure: str = ""
+    also: tuple[str, ...] = ()
 
 
 @dataclass(slots=True)
@@ -100,7 +103,8 @@ class Thumbnails:
         if source not in self._known:
             if source in SCENES:
                 scene = SCENES[str(source)]
-                self._known[source] = Known(scene.title, scene.description, (*scene.teaches, *scene.tags))
+                tags = *scene.teaches, *scene.tags
+                self._known[source] = Known(scene.title, scene.description, tags, also=scene.search_words)
             elif isinstance(source, str):
                 title = titles(self._language)[source.removeprefix(OF_LESSON)]
                 self._known[source] = Known(title, "Predict, run, compare, explain", (LESSON_TAG,))
