@@ -5,6 +5,7 @@ from __future__ import annotations
 import atexit
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -23,6 +24,9 @@ atexit.register(shutil.rmtree, _STATE, ignore_errors=True)
 os.environ["XDG_STATE_HOME"] = os.environ["LOCALAPPDATA"] = _STATE
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
 os.environ.setdefault("PHYSICSLAB_INTERPRET", "0")  # what is not compiled yet is, before it runs
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    # In the background of a script: programs that tests interrupt would go on until the time limit.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 if sys.dont_write_bytecode:
     # As in many containers: no bytecode beside the sources. Tests start a hundred processes, and each would
     # parse all of numba: 1.2 s of processor time instead of 0.35. It is kept with pytest's own cache.

@@ -3,7 +3,7 @@
 import dataclasses
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -12,6 +12,7 @@ import pytest
 
 from physicslab.cli import main
 from physicslab.integrators import INTEGRATORS
+from physicslab.lab.accuracy import measure as measuring
 from physicslab.lab.accuracy.catalogue import LEFT_OUT, PROBLEMS
 from physicslab.lab.accuracy.document import document
 from physicslab.lab.accuracy.figures import digits, number, record
@@ -30,10 +31,21 @@ type Figures = dict[tuple[str, ...], mpmath.mpf]
 FIXED = [method for method in INTEGRATORS.values() if method.evaluations and not method.chooses_steps]
 
 
+@pytest.fixture(scope="module", autouse=True)
+def made_once() -> Iterator[None]:
+    """Make short runs once: their times, for which they are repeated, are not what is tested."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(measuring, "_REPEATED_BELOW_S", 0.0)
+        yield
+
+
 @cache
 def studied(name: str) -> Study:
-    """Return the whole study of a problem."""
-    return result_of(study(PROBLEMS[name]))
+    """Return the whole study of a problem; what is conserved on the way is looked at now and then."""
+    with pytest.MonkeyPatch.context() as patched:
+        if not PROBLEMS[name].chaotic:  # there the fastest rate lasts for moments
+            patched.setattr(measuring, "_SAMPLES", 6)
+        return result_of(study(PROBLEMS[name]))
 
 
 # ---- references --------------------------------------------------------------------------------------------

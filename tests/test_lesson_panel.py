@@ -16,6 +16,7 @@ from physicslab.components import Mass, Transform
 from physicslab.files.scene import load_scene
 from physicslab.lessons.answers import grade, read_answers
 from physicslab.lessons.catalogue import find_lesson
+from physicslab.lessons.lesson import Lesson
 from physicslab.prefabs import circle
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.lesson_actions import choose_language, open_lesson
@@ -387,3 +388,23 @@ def test_graphs_of_a_lesson_have_decimal_commas_in_german(desk: Desk) -> None:
     assert lesson.trial is not None and lesson.trial.ended
     numbers = [one for one in desk.ui.words if re.fullmatch(r"-?\d+[.,]\d+", one)]
     assert numbers and not [one for one in numbers if "." in one]
+
+
+def test_an_earlier_lesson_is_read_once_and_not_in_each_frame(
+    desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opening = FALL.partition("## Level")[0]
+    (tmp_path / "again.md").write_text(
+        opening + "## Level 1: Again\n\n```recall\nask: pendulum/factor\n```\n"
+    )
+    read: list[str] = []
+
+    def reads(name: str, language: str) -> Lesson:
+        read.append(name)
+        return find_lesson(name, language)
+
+    monkeypatch.setattr("physicslab.view.controls.lesson_actions.find_lesson", reads)
+    lesson = opened(desk, "again.md")
+    lesson.go_to(len(lesson.lesson.steps) - 1)
+    desk.frames(SETTLED)
+    assert find_lesson("pendulum").title in desk.ui.words and read == ["again.md", "pendulum"]

@@ -33,10 +33,12 @@ def answer(desk: Desk, part: Question, name: str) -> None:
 
 
 def wait_for_run(desk: Desk, name: str) -> None:
+    desk.window.pace.choose(desk.window.pace.MAX_SPEED)  # pictures are few, steps are those of each run
     for _ in range(4000):
-        desk.frames(2, elapsed=desk.window.pace.max_dt)  # pictures are few, steps are those of each run
+        desk.frames(2, elapsed=desk.window.pace.max_dt)
         if not now(desk).running:
             break
+    desk.window.pace.return_to_life()
     trial = now(desk).trial
     assert trial is not None and trial.ended and not trial.failure, name
     desk.frames(SETTLED)

@@ -46,6 +46,7 @@ def test_lagrange_s_triangle_turns_a_hundred_times(light: tuple[float, float], s
         place = corner - middle
         world.spawn(Transform(place), Velocity((-rate * place.y, rate * place.x)), Mass(mass))
     go(world, 200.0 * math.pi / rate, stepped=stepped)
+    assert world.plan.integrator.name == "dop853"
     ends = [Vector2(*place) for place in world.table(Transform)["position"][1:]]
     off = max((end - (corner - middle)).magnitude for end, corner in zip(ends, corners, strict=True))
     assert off < 6e-12

@@ -5,9 +5,8 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from functools import partial
 
-from physicslab.commands.output import Output
+from physicslab.commands.output import JsonOutput
 from physicslab.ecs.text import printable
-from physicslab.files.json_text import json_bytes
 from physicslab.kernels.tiers import Tiers
 from physicslab.languages.language import language
 from physicslab.lessons.answers import Answers, Graded, grade, read_answers
@@ -18,20 +17,17 @@ from physicslab.lessons.words import kind_words, sureness_words
 
 def execute(arguments: Namespace) -> int:
     """Print the report."""
-    output = None if arguments.json is None else Output("--json", arguments.json)
-    if output is not None:
-        output.refuse_same(arguments.answers, "the answers")
+    output = JsonOutput(arguments.json, arguments.answers, "the answers")
     lesson = lesson_in(arguments.lesson, arguments.language)
     find = partial(find_lesson, language=lesson.language)
     answers = read_answers(arguments.answers, lesson, find)
     with Tiers(True):
         rows = list(grade(lesson, answers, find))
-    if output is not None:
-        output.write(json_bytes({
-            "format": "physicslab-grade/1", "lesson": lesson.name, "learner": answers.learner,
-            "other_text": answers.other_text, **_counts(rows), "answers": [*map(asdict, rows)],
-        }))  # fmt: skip
-    if output is None or not output.to_stdout:
+    output.write({
+        "format": "physicslab-grade/1", "lesson": lesson.name, "learner": answers.learner,
+        "other_text": answers.other_text, **_counts(rows), "answers": [*map(asdict, rows)],
+    })  # fmt: skip
+    if output.leaves_stdout:
         print(_report(lesson, answers, rows))
     return 0
 

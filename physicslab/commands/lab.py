@@ -6,11 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TextIO
 
 from physicslab.commands import CommandError
-from physicslab.commands.output import Output, picture_directory
+from physicslab.commands.output import JsonOutput, Output, picture_directory
 from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable, suggestion
 from physicslab.files.checks import shown
-from physicslab.files.json_text import json_bytes
 from physicslab.lab.case import Case, Catalogue
 from physicslab.lab.jobs import Job, run_jobs
 from physicslab.lab.table import table
@@ -67,15 +66,15 @@ class LabRun:
 
     def __init__(self, label: str, arguments: Namespace, example: str = "") -> None:
         self._label = label
-        self._json = None if arguments.json is None else Output("--json", arguments.json)
+        self._json = JsonOutput(arguments.json)
+        self.write = self._json.write
         self._progress: bool = arguments.progress
-        self._quiet = self._json is not None and self._json.to_stdout
         plot = getattr(arguments, "plot", None)
         self._pictures = None if plot is None else picture_directory(plot, f"{example}.png")
 
     def show(self, text: str, stream: TextIO | None = None) -> None:
         """Print a text to stdout or another stream, unless stdout is for the document alone."""
-        if not self._quiet:
+        if self._json.leaves_stdout:
             print("\n".join(map(printable, text.split("\n"))), file=stream, flush=True)
 
     def results[Result](self, jobs: Sequence[tuple[float, Job[Result]]]) -> Iterator[Result]:
@@ -96,8 +95,3 @@ class LabRun:
         """Write a plot, if ``--plot`` was given; only then is ``picture`` called."""
         if self._pictures is not None:
             Output("--plot", str(self._pictures / f"{name}.png")).write(picture())
-
-    def write(self, document: dict[str, object]) -> None:
-        """Write the document, if ``--json`` was given."""
-        if self._json is not None:
-            self._json.write(json_bytes(document))

@@ -8,10 +8,9 @@ from functools import partial
 from math import isfinite
 
 from physicslab.commands import FAILED, CommandError
-from physicslab.commands.output import Output
+from physicslab.commands.output import JsonOutput, Output
 from physicslab.commands.progress import Progress
 from physicslab.ecs.text import printable
-from physicslab.files.json_text import json_bytes
 from physicslab.kernels.tiers import Tiers
 from physicslab.languages.language import Language, language
 from physicslab.lessons.answers import asked
@@ -24,12 +23,12 @@ from physicslab.lessons.worksheet import worksheet
 
 def execute(arguments: Namespace) -> int:
     """Print what was asked for; exit 1 where a theory does not hold, or holds where it must not."""
-    output = None if arguments.json is None else Output("--json", arguments.json)
+    output = JsonOutput(arguments.json)
     option = "--worksheet" if arguments.page is None else "--page"
     path = arguments.worksheet if arguments.page is None else arguments.page
     sheet = None if path is None else Output(option, path)
     both = arguments.worksheet is not None and arguments.page is not None
-    if sheet is not None and (arguments.lesson is None or arguments.check or output is not None or both):
+    if sheet is not None and (arguments.lesson is None or arguments.check or output.is_given or both):
         others = "--check and --json" if not both else "--worksheet, --check and --json"
         raise CommandError(f"{option}: must stand beside one lesson, and without {others}")
     names = LESSONS if arguments.lesson is None else (arguments.lesson,)
@@ -50,28 +49,25 @@ def execute(arguments: Namespace) -> int:
         return 0
     if arguments.check:
         return _check(lessons, output)
-    if output is not None:
-        output.write(json_bytes({"format": "physicslab-lessons/1", "lessons": [*map(_summary, lessons)]}))
-    if output is None or not output.to_stdout:
+    output.write({"format": "physicslab-lessons/1", "lessons": [*map(_summary, lessons)]})
+    if output.leaves_stdout:
         print("\n".join(_line(one) for one in lessons) if arguments.lesson is None else _about(lessons[0]))
     return 0
 
 
-def _check(lessons: list[Lesson], output: Output | None) -> int:
-    told = output is None or not output.to_stdout
+def _check(lessons: list[Lesson], output: JsonOutput) -> int:
     own = language(lessons[0].language)
     rows: list[Row] = []
-    if told:
+    if output.leaves_stdout:
         print(f"| {' | '.join(_heads(own))} |\n|---|---|---|--:|--:|--:|--:|---|")
     with Tiers(True):
         for lesson in lessons:
             list(asked(lesson, find_lesson))  # each question that it recalls is there
             for row in check_lesson(lesson):
                 rows.append(row)
-                if told and row.measured == row.measured:
+                if output.leaves_stdout and row.measured == row.measured:
                     print(f"| {' | '.join(_cells(row, own))} |", flush=True)
-    if output is not None:
-        output.write(json_bytes({"format": "physicslab-lesson-check/1", "rows": [*map(_object, rows)]}))
+    output.write({"format": "physicslab-lesson-check/1", "rows": [*map(_object, rows)]})
     wrong = [row for row in rows if not row.passed]
     if wrong:
         said = "; ".join(f"{one.lesson}, line {one.line}, {one.block}: {one.case}" for one in wrong)

@@ -3,7 +3,7 @@
 import io
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO, TextIO
@@ -11,6 +11,7 @@ from typing import BinaryIO, TextIO
 from physicslab.commands import FAILED, CommandError, require
 from physicslab.ecs.text import printable, shortened
 from physicslab.files.checks import shown
+from physicslab.files.json_text import json_bytes
 from physicslab.files.replace import check_writable, reason_of, replace_file, replacing
 
 
@@ -116,6 +117,41 @@ class Output:
             raise CommandError(f"{self.label}: cannot be written: {reason_of(error)}", FAILED) from error
         if ended is not None:
             raise ended
+
+
+class JsonOutput:
+    """The document of ``--json``, of a command that prints a text where stdout is not for the document.
+
+    Parameters
+    ----------
+    path : str, optional
+        The path given with it; ``None`` where there is none, and nothing is written.
+    source, what : str
+        The file that is read, and what it is, where there is one: it cannot be written over.
+
+    Attributes
+    ----------
+    is_given : bool
+        Whether there is a document to write.
+    leaves_stdout : bool
+        Whether a text may be printed.
+
+    Raises
+    ------
+    CommandError
+        If it cannot be written, or is the file that is read.
+    """
+
+    def __init__(self, path: str | None, source: str = "", what: str = "") -> None:
+        self._output = None if path is None else Output("--json", path)
+        self.is_given, self.leaves_stdout = path is not None, path != "-"
+        if self._output is not None and source:
+            self._output.refuse_same(source, what)
+
+    def write(self, document: Mapping[str, object]) -> None:
+        """Write the document, if the option was given."""
+        if self._output is not None:
+            self._output.write(json_bytes(document))
 
 
 def picture_directory(path: str, example: str) -> Path:

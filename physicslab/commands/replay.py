@@ -6,9 +6,8 @@ from typing import Any
 
 from physicslab.commands import FAILED, CommandError
 from physicslab.commands.opening import stopped_at
-from physicslab.commands.output import Output
+from physicslab.commands.output import JsonOutput
 from physicslab.ecs.text import printable, shortened
-from physicslab.files.json_text import json_bytes
 from physicslab.history.recording import load
 from physicslab.history.replay import Played, play
 from physicslab.kernels.tiers import Tiers
@@ -20,9 +19,7 @@ from physicslab.world import World
 def execute(arguments: Namespace) -> int:
     """Play the recording to its end; exit 1 where a column of a step has other bits than in the recording."""
     label = shortened(printable(arguments.file), 200)
-    output = None if arguments.json is None else Output("--json", arguments.json)
-    if output is not None:
-        output.refuse_same(arguments.file, "the recording")
+    output = JsonOutput(arguments.json, arguments.file, "the recording")
     world, line = load(arguments.file)
     first: Played | None = None
     stopped, began = "", time.perf_counter() - world.compile_s
@@ -41,15 +38,14 @@ def execute(arguments: Namespace) -> int:
                     break
         except Diverged as error:
             raise CommandError(f"{label}: {error}", FAILED) from error
-    if output is not None:
-        output.write(json_bytes(_report(world, line.steps, len(line.entries), first, stopped)))
+    output.write(_report(world, line.steps, len(line.entries), first, stopped))
     if first is not None:
         columns = " and ".join(first.columns)
         where = f"step {first.step} of {line.steps}, t = {first.time:.9g} s"
         raise CommandError(f"{label}: bits differ from {where} on, first in {columns}", FAILED)
     if stopped:
         raise CommandError(f"{label}: {stopped}, all bits as recorded so far", FAILED)
-    if output is None or not output.to_stdout:
+    if output.leaves_stdout:
         print(f"{label}: {line.steps} steps, t = {world.time:.9g} s, all bits as recorded")
     return 0
 

@@ -2,15 +2,14 @@
 
 from argparse import Namespace
 
-from physicslab.commands.output import Output
+from physicslab.commands.output import JsonOutput
 from physicslab.components import Transform
-from physicslab.files.json_text import json_bytes
 from physicslab.scenes import SCENES
 
 
 def execute(arguments: Namespace) -> int:
     """Print a line for each scene, or write them as JSON."""
-    output = None if arguments.json is None else Output("--json", arguments.json)
+    output = JsonOutput(arguments.json)
     rows = [
         {
             "name": scene.name,
@@ -20,9 +19,8 @@ def execute(arguments: Namespace) -> int:
         }
         for scene in SCENES.values()
     ]
-    if output is not None:
-        output.write(json_bytes({"scenes": rows}))
-    if output is None or not output.to_stdout:
+    output.write({"scenes": rows})
+    if output.leaves_stdout:
         width = max(len(name) for name in SCENES)
         for row in rows:
             print(f"{row['name']:<{width}}  {row['bodies']:>5}  {row['description']}")

@@ -15,18 +15,11 @@ from physicslab.systems.uniform_field import field_energy, packed_field
 
 
 class _ChargeForce(ForceSystem):
-    """A force on each charge by itself."""
+    """A force on each charge by itself, in a field that is the same everywhere."""
 
     needs = (Charge, Transform, Velocity, Mass)
     columns = ((Charge, "charge"),)
-
-    def needs_origin(self, state: State) -> bool:
-        """Return False: the field is the same everywhere."""
-        return False
-
-    def couples(self, state: State) -> NDArray[np.int64]:
-        """Return no pairs: a field couples nothing."""
-        return np.zeros((0, 2), np.int64)
+    couples_nothing = is_everywhere = True
 
 
 class ElectricFieldSystem(_ChargeForce):

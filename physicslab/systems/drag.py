@@ -22,6 +22,7 @@ class DragSystem(ForceSystem):
     columns = ((Drag, "linear"), (Drag, "quadratic"))
     account = DAMPING
     kernels = (packed_forces.drag,)
+    couples_nothing = is_everywhere = True
 
     def packed(self, state: State, layout: StateLayout) -> PackedForce:
         """Return the drag for compiled integrators."""
@@ -39,10 +40,6 @@ class DragSystem(ForceSystem):
             packed_forces.drag, parameters, indices, drag_resistance, work_slots=books, dissipation_slot=keeps
         )
 
-    def needs_origin(self, state: State) -> bool:
-        """Drag depends on velocities alone."""
-        return False
-
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row the rate at which it slows down at its present speed [1/s]."""
         table, rows = state.table(Drag), state.batch(*self.needs).rows
@@ -52,10 +49,6 @@ class DragSystem(ForceSystem):
             slowed = (table["linear"][rows] + 2.0 * table["quadratic"][rows] * speed) * inverse
         rates[rows] = np.where(inverse > 0.0, slowed, 0.0)
         return rates
-
-    def couples(self, state: State) -> NDArray[np.int64]:
-        """Drag couples nothing."""
-        return np.zeros((0, 2), np.int64)
 
     def depends_on_velocity(self, state: State) -> bool:
         """Drag is nothing else."""

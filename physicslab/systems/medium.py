@@ -28,8 +28,7 @@ class MediumSystem(ForceSystem):
     kernels = (medium,)
     potential = "medium"
     rounding = 1e-13
-    turns = True
-    bends = True
+    turns = bends = couples_nothing = True
 
     def attach(self, state: State) -> None:
         """Check that each medium has a Shape and stays where it is.
@@ -143,10 +142,6 @@ class MediumSystem(ForceSystem):
     def why_singular(self, state: State) -> str | None:
         """Return that forces bend where the outline of a body comes into a medium."""
         return sentence("into_medium")
-
-    def couples(self, state: State) -> NDArray[np.int64]:
-        """Return no pairs: a medium stays where it is."""
-        return np.zeros((0, 2), np.int64)
 
     def potential_energy(self, state: State) -> float:
         """Return the sum of density times the integral of g . x - level over what is displaced [J]."""

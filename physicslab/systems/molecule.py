@@ -53,10 +53,6 @@ class MoleculeSystem(ForceSystem):
             molecules, parameters, indices, work_slots=work_slots, cause=FIELDS, anchors=anchors
         )  # fmt: skip
 
-    def needs_origin(self, state: State) -> bool:
-        """Return True: neighbours are found by cells about it."""
-        return True
-
     def rates(self, state: State) -> NDArray[np.float64]:
         """Return for each row how fast it bounces where its speed brings it near another like it [rad/s]."""
         table, rows, rates = state.table(Molecule), self._acting, np.zeros(len(state.entity_index))

@@ -194,6 +194,10 @@ class ForceSystem(System):
     """Whether it is continuous where it is not smooth (:meth:`why_singular`): fixed steps miss little."""
     turns: ClassVar[bool] = False
     """Whether a compiled force adds torques, at ``layout.turn``; one in Python may add them in any case."""
+    couples_nothing: ClassVar[bool] = False
+    """Whether each body feels it by itself, so that it couples no motions (:meth:`couples`)."""
+    is_everywhere: ClassVar[bool] = False
+    """Whether it is the same where everything that moves is moved by the same distance."""
 
     def potential_energy(self, state: State) -> float:
         """Return the energy stored [J]; zero for a force that stores none."""
@@ -281,7 +285,7 @@ class ForceSystem(System):
 
     def couples(self, state: State) -> NDArray[np.int64] | None:
         """Return the pairs of rows (n, 2) whose motions the force couples; ``None``: any with any."""
-        return None
+        return np.zeros((0, 2), np.int64) if self.couples_nothing else None
 
     def turned(self, state: State) -> NDArray[np.int64]:
         """Return the rows of the bodies that a compiled force turns: their angles are then followed.
@@ -305,7 +309,7 @@ class ForceSystem(System):
 
     def needs_origin(self, state: State) -> bool:
         """Whether the force is another where everything that moves is moved by the same distance."""
-        return True
+        return not self.is_everywhere
 
     def inputs(self, state: State, layout: StateLayout) -> bytes | None:
         """Return, bit by bit, all that :meth:`packed` depends on besides the layout, the laws and masses.

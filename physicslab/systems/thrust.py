@@ -22,7 +22,7 @@ class ThrustSystem(ForceSystem):
     columns = tuple((Thrust, spec.name) for spec in Thrust.FIELDS)
     account = THRUST
     kernels = (thrust,)
-    turns = True
+    turns = couples_nothing = is_everywhere = True
 
     def turned(self, state: State) -> NDArray[np.int64]:
         """Return the rows whose angle a thrust changes, or goes by."""
@@ -61,14 +61,6 @@ class ThrustSystem(ForceSystem):
     def depends_on_time(self, state: State) -> bool:
         """Whether any swings."""
         return bool((state.table(Thrust)["frequency"][state.batch(*self.needs).rows] > 0.0).any())
-
-    def needs_origin(self, state: State) -> bool:
-        """Return False: it is the same everywhere."""
-        return False
-
-    def couples(self, state: State) -> NDArray[np.int64]:
-        """Thrust couples nothing."""
-        return np.zeros((0, 2), np.int64)
 
     def why_singular(self, state: State) -> str | None:
         """Return that a body may turn fast, where its force turns with it."""

@@ -1,6 +1,6 @@
 """Actions of lessons: opened, gone through, run and left."""
 
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 from physicslab.ecs.quantity_text import InvalidText
@@ -32,7 +32,7 @@ def open_lesson(world: World, window: Window, name: str) -> str:
         window.edits.keep()
         desk = desk_of(window) if window.lesson is None else window.lesson.desk
         tool = window.tool if window.lesson is None else window.lesson.tool
-        find = partial(find_lesson, language=window.language)
+        find = cache(partial(find_lesson, language=window.language))  # its panel is built in each frame
         list(asked(lesson, find))  # each question that it recalls is there
         opened = OpenLesson(lesson, name, Path.cwd(), window.own, desk, tool, find)
     except (SceneError, InvalidText, OSError) as error:
