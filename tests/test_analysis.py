@@ -210,3 +210,10 @@ def test_a_map_needs_two_lists() -> None:
     result = ensemble(load_scene("drop"), {VX: [0, 1]}, measure="ball.x", seconds=0.1, executor="serial")
     with pytest.raises(SceneError, match="two lists of numbers"):
         result.map()
+
+
+@pytest.mark.peers
+def test_fields_that_the_data_leave_open_have_an_infinite_error() -> None:
+    measured = {"time": [0.1, 0.2, 0.3], "ball.y": [3.951, 3.804, 3.559]}
+    alone = fit("drop", {"ball.Mass.mass": 1.0, "physics.gravity.y": -9.0}, measured)
+    assert alone.errors["ball.Mass.mass"] == np.inf and 0.0 < alone.errors["physics.gravity.y"] < 0.1

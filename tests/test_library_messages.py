@@ -60,7 +60,9 @@ def change(path: str, value: object) -> Callable[[World], None]:
 WRONG: dict[str, tuple[Callable[[World], object], type[Exception], str]] = {
     "gravity": (change("gravity", (0, -1)), AttributeError, "world.physics = dataclasses.replace("),
     "dt": (change("dt", 0.1), AttributeError, "world.simulation = dataclasses.replace("),
-    "misspelt": (change("gravty", 1.0), AttributeError, "no attribute 'gravty'"),
+    "misspelt": (change("gravty", 1.0), AttributeError, 'did you mean "gravity"?'),
+    "misspelt, written": (change("titel", "a"), AttributeError, "World has no attribute 'titel'; it has add"),
+    "misspelt law, read": (lambda world: world.gravty, AttributeError, 'did you mean "gravity"?'),  # type: ignore[attr-defined]
     "misspelt figure": (lambda world: world.enrgy, AttributeError, 'did you mean "energy"?'),  # type: ignore[attr-defined]
     "figure that is measured": (change("energy", 3.0), AttributeError, "world.energy is measured and cannot"),
     "clock": (change("time", "now"), InvalidValue, "world.time = 'now': must be a finite number s"),
@@ -97,6 +99,9 @@ WRONG: dict[str, tuple[Callable[[World], object], type[Exception], str]] = {
     "coordinates apart": (
         lambda world: circle(world, 0, 0), TypeError,  # type: ignore[arg-type, call-arg]
         "circle(world, 0, 0): a position is one pair, as (0, 5); name all else",
+    ),
+    "misspelt size": (
+        lambda world: circle(world, (0, 0), raduis=1), TypeError, 'did you mean "radius"?'  # type: ignore[call-arg]
     ),
     "law": (change("physics.gravity", (0, 1)), dataclasses.FrozenInstanceError, "dataclasses.replace("),
     "setting": (change("simulation.dt", 1), dataclasses.FrozenInstanceError, "dataclasses.replace("),

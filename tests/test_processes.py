@@ -4,10 +4,11 @@ import os
 import signal
 import threading
 from multiprocessing.connection import Connection
+from pathlib import Path
 
 import pytest
 
-from physicslab.lab.processes import ProcessEnded, Processes
+from physicslab.lab.processes import NoProcess, ProcessEnded, Processes
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs signals that end a process")
 
@@ -48,6 +49,20 @@ def test_errors_of_a_call_are_raised_here_and_say_where_they_were_raised_there()
         with pytest.raises(RuntimeError, match="cannot pickle"):
             pool.submit(threading.Lock).result(60)
         assert pool.submit(identity, 3).result(60) == 3
+
+
+def test_a_process_that_cannot_be_started_fails_its_call_and_the_next_is_tried_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    there, gone = Path.cwd(), tmp_path / "gone"
+    gone.mkdir()
+    with Processes(1) as pool:
+        monkeypatch.chdir(gone)
+        gone.rmdir()
+        with pytest.raises(NoProcess, match="no process can be started: No such file or directory"):
+            pool.submit(identity, 1).result(60)
+        os.chdir(there)
+        assert pool.submit(identity, 2).result(60) == 2
 
 
 def test_processes_that_are_abandoned_end_in_the_midst_of_their_work() -> None:

@@ -19,8 +19,9 @@ from physicslab.ensembles.cluster import Dask
 from physicslab.ensembles.map_picture import map_grids
 from physicslab.ensembles.result import EnsembleResult
 from physicslab.ensembles.runs import run_task, task_of
+from physicslab.ensembles.space import check_whole
 from physicslab.ensembles.task import Task
-from physicslab.ensembles.workers import Workers
+from physicslab.ensembles.workers import MOST_WORKERS, Workers
 from physicslab.files.checks import shown
 from physicslab.scenes import SCENES
 from physicslab.world import World
@@ -124,6 +125,8 @@ def _measures(arguments: Namespace) -> dict[str, str]:
 def _workers(arguments: Namespace) -> Iterator[Workers]:
     """Give who makes the runs: processes of this machine, or a cluster."""
     if arguments.dask is None:
+        if arguments.workers is not None:
+            check_whole("--workers", arguments.workers, 1, MOST_WORKERS)
         yield Workers("processes", arguments.workers)
         return
     with Dask(arguments.dask) as cluster:

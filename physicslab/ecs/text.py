@@ -69,15 +69,15 @@ def suggestion(word: str, known: Iterable[str]) -> str:
     return f'; did you mean "{shortened(printable(likely[0]))}"?' if likely else ""
 
 
-def no_such(owner: str, sort: str, name: str, known: Iterable[str]) -> str:
-    """Return the refusal of a name: which there are, and the likeliest.
+def no_such(owner: str, sort: str, name: str, known: Iterable[str], others: Iterable[str] = ()) -> str:
+    """Return the refusal of a name: which there are, and the likeliest of these and of some ``others``.
 
     >>> print(no_such("Velocity", "field", "liner", ["linear", "angular"]))
     Velocity has no field 'liner'; it has linear, angular; did you mean "linear"?
     """
     words = list(known)
     listed = shortened(printable(", ".join(words)), _LISTED) or "none"
-    return f"{owner} has no {sort} {shortened(name)!r}; it has {listed}{suggestion(name, words)}"
+    return f"{owner} has no {sort} {shortened(name)!r}; it has {listed}{suggestion(name, [*words, *others])}"
 
 
 def table_cell(text: str) -> str:

@@ -121,12 +121,21 @@ def fit(
         xtol=1e-12, ftol=1e-12, gtol=1e-12,
     )  # fmt: skip
     covariance = covariance_of(found.jac, found.fun) * np.outer(model.scale, model.scale)
+    unfixed = _unfixed(found.jac)
+    covariance[unfixed, unfixed] = math.inf
     values = found.x * model.scale
     return FieldFit(
         dict(zip(model.places, values.tolist(), strict=True)),
         dict(zip(model.places, np.sqrt(np.diag(covariance)).tolist(), strict=True)),
         covariance, math.sqrt(float(np.mean(found.fun**2))), model.runs, model.columns_of(found.x),
     )  # fmt: skip
+
+
+def _unfixed(jacobian: Numbers) -> NDArray[np.bool_]:
+    """Return which fields (n,) the data leave open, alone or together with others, by derivatives (m, n)."""
+    _, sizes, directions = np.linalg.svd(jacobian)
+    kept = int((sizes > max(jacobian.shape) * _STEP**2 * sizes[0]).sum())
+    return (np.abs(directions[kept:]) > _STEP).any(axis=0)
 
 
 class _Model:

@@ -17,7 +17,7 @@ from physicslab.ensembles.result import EnsembleResult, check_format
 from physicslab.ensembles.sink import Sink, parts_folder
 from physicslab.ensembles.space import Given, check_whole, space_of
 from physicslab.ensembles.task import Task
-from physicslab.ensembles.workers import KINDS, Workers
+from physicslab.ensembles.workers import KINDS, MOST_WORKERS, Workers
 from physicslab.files.checks import SceneError, shown
 from physicslab.files.json_text import json_bytes
 from physicslab.files.replace import check_writable, reason_of
@@ -104,7 +104,7 @@ def ensemble(
         replicas=replicas, jitter=jitter,
     )  # fmt: skip
     if workers is not None:
-        workers = check_whole("workers", workers, 1)
+        workers = check_whole("workers", workers, 1, MOST_WORKERS)
     if executor not in KINDS and not isinstance(executor, Executor):
         raise SceneError(f"executor {shown(executor)}: must be one of {', '.join(KINDS)}, or an Executor")
     with _told(progress, len(task.space)) as tell:
@@ -136,7 +136,7 @@ def task_of(
     document = json_bytes(write_scene(world))
     measures = measure if isinstance(measure, Mapping) else {_name_of(measure): measure}
     takes = all(isinstance(one, str) or callable(one) for one in measures.values())
-    if not (measures and takes and all(isinstance(name, str) for name in measures)):
+    if not (measures and takes and all(isinstance(name, str) and name for name in measures)):
         words = "must be an expression, a function of the world, or a dict of them by their names"
         raise SceneError(f"measure {shown(measure)}: {words}")
     trial = load_scene(write_scene(world))

@@ -146,13 +146,15 @@ def space_of(
         raise SceneError(f"space {shown(space)}: must be a dict of fields and their values")
     names, axes = entity_names(world), []
     for path, given in space.items():
+        if not isinstance(path, str):
+            raise SceneError(f"space: {shown(path)}: must be ID.Component.field")
         place = find_place(world, "space", path, "", names)
         axes.append(_axis(world, place, path.strip(), given))
     paths = [axis.path for axis in axes]
     for path in paths:
         if paths.count(path) > 1:
             raise SceneError(f"space: {path}: is given twice; a field must be given once")
-    seed, replicas = check_whole("seed", seed, 0), check_whole("replicas", replicas, 1)
+    seed, replicas = check_whole("seed", seed, 0), check_whole("replicas", replicas, 1, MOST_ROWS)
     axes = _with_jitter(world, names, axes, replicas, jitter)
     if sum(axis.law == "sobol" for axis in axes) > DIMENSIONS:
         raise SceneError(f"space: a sobol sequence must have at most {DIMENSIONS} fields")
@@ -231,7 +233,7 @@ def number_of(place: Place, value: Any) -> float:
     """Return a number or a text with a unit in the unit of a field, or refuse it by name."""
     try:
         number = evaluate(value, place.spec.unit) if isinstance(value, str) else float(value)
-    except (InvalidText, TypeError, ValueError) as error:
+    except (InvalidText, OverflowError, TypeError, ValueError) as error:
         raise SceneError(f"{place.words} = {shown(value)}: {error}; must be {place.spec.allowed}") from error
     if not math.isfinite(number):
         raise SceneError(f"{place.words} = {number}: must be a finite number")
@@ -274,7 +276,7 @@ def _samples(axes: Sequence[Axis], samples: int | None) -> int:
         raise SceneError(f'space: ("rows", ...) must all have as many values: {words}')
     drawn = any(axis.law in _LAWS for axis in axes)
     if samples is not None:
-        samples = check_whole("samples", samples, 1)
+        samples = check_whole("samples", samples, 1, MOST_ROWS)
     if lengths:
         length = next(iter(lengths.values()))
         if samples not in (None, length):
@@ -288,8 +290,9 @@ def _samples(axes: Sequence[Axis], samples: int | None) -> int:
     return samples or 1
 
 
-def check_whole(name: str, value: object, least: int) -> int:
-    """Return a whole number, of numpy's or not; refuse what is none, or one below the least."""
-    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or value < least:
-        raise SceneError(f"{name} = {shown(value)}: must be a whole number >= {least}")
+def check_whole(name: str, value: object, least: int, most: float = math.inf) -> int:
+    """Return a whole number, of numpy's or not; refuse what is none, or one that is out of the range."""
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or not least <= value <= most:
+        limit = f", at most {most:,}" if most < math.inf else ""
+        raise SceneError(f"{name} = {shown(value)}: must be a whole number >= {least}{limit}")
     return int(value)

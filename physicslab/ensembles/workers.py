@@ -21,6 +21,8 @@ KINDS = ("processes", "threads", "serial")
 """Workers that are started here."""
 AIM_S = 0.5
 """About how long a piece of work takes [s]: long beside handing it over, short beside what a crash costs."""
+MOST_WORKERS = 1000
+"""How many may be started here: each process takes some 170 MB."""
 MOST_ROWS = 1000
 """Rows of a piece of work."""
 _AHEAD = 3

@@ -34,6 +34,10 @@ class ProcessEnded(BrokenExecutor):
         self.status = status
 
 
+class NoProcess(BrokenExecutor, OSError):
+    """No process can be started: the system has none left, or no memory, or this folder is gone."""
+
+
 class Processes(Executor):
     """Processes that end without a word with the one that began them, killed as it may be, or by Ctrl+C.
 
@@ -95,17 +99,19 @@ class Processes(Executor):
 
     def _lead(self) -> None:
         """Hand calls over to a process, one after the other; to another one where it ends."""
-        worker = self._started()
+        worker = None
         while (call := self._calls.get()) is not None:
             future, *what = call
             if not future.set_running_or_notify_cancel():
                 continue
-            worker = worker or self._started()
             try:
+                worker = worker or self._started()
                 if worker is None:
                     raise EOFError
                 worker[1].send(what)
                 done, answer = worker[1].recv()
+            except NoProcess as error:
+                future.set_exception(error)
             except (EOFError, OSError):
                 future.set_exception(ProcessEnded(worker and self._ended(*worker)))
                 worker = None
@@ -117,21 +123,36 @@ class Processes(Executor):
             self._ended(*worker)
 
     def _started(self) -> tuple[SpawnProcess, Connection] | None:
-        """Return a process and the pipe to it; none once all are given up."""
+        """Return a process and the pipe to it; none once all are given up.
+
+        Raises
+        ------
+        NoProcess
+            If none can be started.
+        """
         with self._lock:
             if self._abandoned:
                 return None
-            here, there = multiprocessing.Pipe()
-            process = multiprocessing.get_context("spawn").Process(target=_work, args=(there,), daemon=True)
-            if _HAS_MASKS:
-                from multiprocessing import resource_tracker  # Windows has none
-
-                resource_tracker.ensure_running()  # which lets signals through
-                signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))  # the process inherits it
-            process.start()
+            try:
+                process, here, there = self._start()
+            except OSError as error:
+                raise NoProcess(f"no process can be started: {error.strerror or error}") from error
             self._processes.add(process)
         there.close()
         return process, here
+
+    @staticmethod
+    def _start() -> tuple[SpawnProcess, Connection, Connection]:
+        """Return a new process, and both ends of a pipe to it."""
+        here, there = multiprocessing.Pipe()
+        process = multiprocessing.get_context("spawn").Process(target=_work, args=(there,), daemon=True)
+        if _HAS_MASKS:
+            from multiprocessing import resource_tracker  # Windows has none
+
+            resource_tracker.ensure_running()  # which lets signals through
+            signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT,))  # the process inherits it
+        process.start()
+        return process, here, there
 
     def _ended(self, process: SpawnProcess, connection: Connection) -> int | None:
         """Have a process end, and return its exit status."""

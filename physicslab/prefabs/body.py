@@ -66,7 +66,9 @@ def body(world: Contents, shape: Shape, position: Pair, **options: Unpack[BodyOp
     known = BodyOptions.__annotations__
     unknown = options.keys() - known.keys()
     if unknown:
-        raise TypeError(no_such("a body", "option", min(unknown), known))
+        raise TypeError(
+            no_such("a body", "option", min(unknown), known, (spec.name for spec in Shape.FIELDS))
+        )
     made = SUBSTANCES.get(options.get("material", ""))
     restitution, friction = (0.0, 0.5) if made is None else (made.restitution, made.friction)
     colour = options.get("colour", "" if made is None else made.colour)

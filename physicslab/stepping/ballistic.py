@@ -76,7 +76,9 @@ def _why_not_ballistic(state: State, schedule: Schedule) -> str | None:
 def turning_rows(state: State) -> NDArray[np.int64]:
     """Return the rows (n,) that turn, or would after an impact off their centre, and are no discs."""
     moving = state.batch(Shape, Transform, Velocity).rows
-    cores = moving[state.bodies.shapes.vertices[moving] > 1]
+    cores: NDArray[np.int64] = moving[state.bodies.shapes.vertices[moving] > 1]
+    if not len(cores):
+        return cores
     turns = (state.bodies.inverse_inertia[cores] > 0.0) | (state.table(Velocity)["angular"][cores] != 0.0)
     turning: NDArray[np.int64] = cores[turns]
     return turning
