@@ -3,13 +3,14 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pygame
 import pytest
 from desk import SETTLED, Desk, empty_world
 from recording import RecordingCanvas
 from test_hud import frame, recorded, row
 
-from physicslab.components import Drag, Mass, Spring, Trail, Transform, Velocity
+from physicslab.components import Drag, Mass, Shape, Spring, Trail, Transform, Velocity
 from physicslab.diagnostics.energy import measure_account, measure_energy, measure_momentum
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
@@ -20,6 +21,7 @@ from physicslab.theme import DARK
 from physicslab.view.canvas.canvas import overlap
 from physicslab.view.canvas.quantities import percentage, quantity, round_quantity, vector_quantity
 from physicslab.view.overlay.edges import draw_scale_bar
+from physicslab.view.overlay.marks import draw_selection
 from physicslab.view.toolkit.ui import Ui
 from physicslab.view.workbench.figures import EnergyWatch, WorldFigures
 from physicslab.view.workbench.world_panel import parts_of
@@ -413,6 +415,17 @@ def test_bodies_out_of_sight_are_pointed_at_and_counted() -> None:
     desk.key("f")
     frame(desk, canvas)
     assert not arrows()
+
+
+def test_the_line_around_a_chain_goes_along_it() -> None:
+    """It went straight from one end of the hills to the other."""
+    desk, canvas = recorded(load_scene("car"))
+    bodies = desk.world.batch(Shape).entities.tolist()
+    chain = next(body for body in bodies if desk.world.component(body, Shape).kind == "chain")
+    canvas.calls.clear()
+    draw_selection(desk.world, [chain], desk.window.drawing)
+    spans = [np.hypot(*(call["end"] - call["start"]).T).max() for call in canvas.called("lines")]
+    assert max(spans) < 2.0 * desk.window.camera.scale
 
 
 @pytest.mark.parametrize("level", [0.0, 2.0, -2.0, 1.0])

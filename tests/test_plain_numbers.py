@@ -80,6 +80,9 @@ def test_a_throw_has_speed_and_direction() -> None:
     assert tuple(world.component(ball, Velocity).linear) == pytest.approx((5.0, 5.0 * math.sqrt(3.0)))
     fill(desk, "Throw.direction", "180")
     assert tuple(world.component(ball, Velocity).linear) == (-10.0, 0.0), "without a rest of rounding"
+    world.component(ball, Velocity).linear = Vector2(0.2, -1e-17)
+    desk.frames(60)
+    assert desk.ui.spoken["Throw.direction"].value == "0", "it was -2.9e-15"
     pygame.display.quit()
 
 

@@ -42,6 +42,26 @@ def picture(toolkit: Toolkit) -> NDArray[np.uint8]:
     return pygame.surfarray.array3d(surface)
 
 
+def test_words_with_a_power_are_broken_within_the_width_that_is_set() -> None:
+    """What came after the power stood in a column of single letters."""
+    toolkit, sizes = Toolkit(), {}
+    ui = Ui(toolkit.fonts, DARK)
+
+    def build() -> None:
+        ui.begin(DARK)
+        with ui.panel("panel", (0, 0, 320, 200)), ui.wrapping(150.0):
+            for power in ("\N{SUPERSCRIPT TWO}", ""):
+                words = f"every jump reaches e{power} of the height before"
+                ui.text(words)
+                size = imgui.get_item_rect_size()
+                sizes[words] = size.x, size.y
+
+    for _ in range(3):
+        toolkit.frame(SIZE, DARK, 15.0, 1 / 60, build)
+    (wide, high), (_, plain) = sizes.values()
+    assert wide <= 150.0 and high <= 1.3 * plain
+
+
 def test_an_idle_toolkit_builds_and_paints_nothing() -> None:
     toolkit = Toolkit()
     built(toolkit, "idle", 10)

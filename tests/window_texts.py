@@ -28,7 +28,10 @@ from physicslab.state.joint_rows import KINDS as JOINTS
 from physicslab.theme import THEMES
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.controls.tools import TOOLS
+from physicslab.view.window.copying import Copying
 from physicslab.view.window.desk import LEVELS
+from physicslab.view.workbench.copies_panel import shown_name
+from physicslab.view.workbench.impact_panel import HEADS
 
 PACKAGE = Path(physicslab.__file__).parent
 WRITING = {
@@ -92,6 +95,9 @@ def tables() -> dict[str, list[str]]:
         "scenes": [
             text for one in SCENES.values() for text in (one.title, one.description, one.also) if text
         ],
+        "tags": ["all", *{tag for one in SCENES.values() for tag in (*one.teaches, *one.tags)}],
+        "copies": [shown_name(name) for name in Copying.FIELDS],
+        "impacts": [one for one in HEADS if len(one) > 2],
         "player": player_texts(), "quantities": [*QUANTITIES, *KIND_OF_UNIT.values()],
         "levels": [*LEVELS, *LEVELS.values()],
         "methods": [one.title for one in (*INTEGRATORS.values(), *SPLIT_METHODS.values())],

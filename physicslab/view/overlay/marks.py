@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from physicslab.components import Shape, Transform
-from physicslab.components.shape import CIRCLE
+from physicslab.components.shape import CHAIN, CIRCLE
 from physicslab.contacts.outlines import Outlines
 from physicslab.diagnostics.period import spring_state
 from physicslab.ecs.vector import Vector2
@@ -120,12 +120,13 @@ def draw_band(corner: tuple[float, float], pointer: tuple[float, float], on: Dra
 
 def _outline(world: World, entity: int, scale: float) -> Points:
     """Return the corners of the line around a body (n, 2) [m], at a scale [px/m]."""
-    transform, core = world.component(entity, Transform), np.zeros((1, 2))
+    transform, core, is_chain = world.component(entity, Transform), np.zeros((1, 2)), False
     radius = point_radius(world, entity) / scale
     if world.has(entity, Shape):
         shape = world.component(entity, Shape)
         core, radius = np.array([tuple(corner) for corner in shape.core]), shape.rounding
-    corners = rim_of(core, radius + _GAP / scale, _CORNERS)
+        is_chain = world.table(Shape)["kind"][world.entity_index.rows_of(np.array([entity]))[0]] == CHAIN
+    corners = core if is_chain else rim_of(core, radius + _GAP / scale, _CORNERS)
     return _placed(corners, transform.angle, np.array((transform.position.x, transform.position.y)))
 
 

@@ -48,14 +48,16 @@ class Ui(Windows):
         """
         words = self.written(words)
         imgui.push_style_color(imgui.Col_.text, packed(colour or self.theme.text))
+        end = imgui.internal.get_current_window_read().dc.text_wrap_pos  # below 0 where none is set
+        wrapped = wrapped or end > 0.0
         if wrapped and not any(raised for _, raised in raised_parts(words)):
-            imgui.push_text_wrap_pos(0.0)
+            imgui.push_text_wrap_pos(max(end, 0.0))
             imgui.text_unformatted(_with_units(words))
             imgui.pop_text_wrap_pos()
         else:
             imgui.begin_group()
             imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0.0, 0.0))
-            for line in self._broken(_with_units(words)) if wrapped else [words]:
+            for line in self._broken(_with_units(words), end) if wrapped else [words]:
                 self._line(line)
             imgui.pop_style_var()
             imgui.end_group()
@@ -69,9 +71,11 @@ class Ui(Windows):
             imgui.text_unformatted(part)
             imgui.pop_font()
 
-    def _broken(self, words: str) -> list[str]:
-        """Return words in lines as wide as the panel, in which powers are small figures."""
+    def _broken(self, words: str, end: float) -> list[str]:
+        """Return words in lines that end there [px], or with the panel, in which powers are small figures."""
         room, lines = imgui.get_content_region_avail().x, [""]
+        if end > 0.0:
+            room = min(room, end - imgui.get_cursor_pos_x())
         for part in re.split("([ \n])", words):
             if part == "\n" or (part.strip() and self._figure_width(lines[-1] + part) > room):
                 lines.append("")

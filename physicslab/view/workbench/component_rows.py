@@ -261,7 +261,7 @@ class ComponentRows:
         """Build speed and direction of a body."""
         velocity = self.world.component(body, Velocity).linear
         speed = without_rounding(velocity.magnitude, scales_of(self.world)["m/s"])
-        degrees = math.degrees(velocity.angle) if speed else 0.0
+        degrees = without_rounding(math.degrees(velocity.angle), 360.0) if speed else 0.0
 
         def commit(speed: float, degrees: float) -> None:
             _SPEED.check(speed)

@@ -14,6 +14,11 @@ _WIDTH, _FROM_BELOW = 15.0, 7.5
 """Its width, and how far its middle is from the lower edge of the world's room, in heights of the text."""
 
 
+def shown_name(name: str) -> str:
+    """Return the words of a field."""
+    return _WORDS.get(name, name.capitalize())
+
+
 class CopiesPanel:
     """The panel of copies; text half written is kept from frame to frame."""
 
@@ -49,5 +54,4 @@ class CopiesPanel:
             changed = replace(copying, **{name: value})  # type: ignore[arg-type]
             window.do_first(lambda _, window: window.put("copying", changed))
 
-        words = _WORDS.get(name, name.capitalize())
-        self._numbers.row(ui, f"copies {name}", words, spec, float(getattr(copying, name)), commit)
+        self._numbers.row(ui, f"copies {name}", shown_name(name), spec, float(getattr(copying, name)), commit)

@@ -17,7 +17,7 @@ from physicslab.view.window.window import Window
 from physicslab.view.workbench.collision_words import body_name
 from physicslab.world import World
 
-_HEADS = ("Time", "A", "B", "Approach", "Normal", "Friction", "Contact", "mu", "e", "e found", "Energy lost")
+HEADS = ("Time", "A", "B", "Approach", "Normal", "Friction", "Contact", "mu", "e", "e found", "Energy lost")
 _WIDTHS = (4.6, 5.2, 5.2, 4.8, 5.0, 5.0, 3.6, 2.4, 2.2, 3.8, 5.0)
 """Widths of the columns, in heights of the text."""
 _TIPS = (
@@ -37,7 +37,7 @@ _LEAST = 24.0
 def build_impacts(ui: Ui, world: World, window: Window) -> None:
     """Build the table in a window of its own."""
     left, top, width, _ = window.framing.room()
-    wide = sum(_WIDTHS) * ui.size + len(_WIDTHS) * 2.0 * imgui.get_style().cell_padding.x + _SLACK * ui.size
+    wide = sum(_widths(ui)) + len(_WIDTHS) * 2.0 * imgui.get_style().cell_padding.x + _SLACK * ui.size
     wide = min(wide, max(width, 0.6 * window.canvas.size[0]) - 2.0 * ui.size)
     place = left + 0.5 * width, top + 0.5 * (_HEIGHT + 7.5) * ui.size
     ui.stand_beside("Impacts", "below", 0.36, _LEAST)
@@ -52,6 +52,11 @@ def build_impacts(ui: Ui, world: World, window: Window) -> None:
             with ui.wrapping(size.x):
                 ui.faint(_nothing(window), wrapped=False)
             imgui.dummy(ImVec2(size.x, max(size.y - 3.0 * ui.size, 1.0)))
+
+
+def _widths(ui: Ui) -> list[float]:
+    """Return how wide the columns are [px]: their heads are whole in any language."""
+    return [max(width * ui.size, ui.width(head)) for head, width in zip(HEADS, _WIDTHS, strict=True)]
 
 
 def _nothing(window: Window) -> str:
@@ -83,13 +88,13 @@ def _build_table(ui: Ui, world: World, window: Window, rows: Any, size: ImVec2) 
     """Build the headings, and the rows that are in sight."""
     flags = imgui.TableFlags_
     style = flags.scroll_y | flags.scroll_x | flags.row_bg | flags.sizing_fixed_fit | flags.no_saved_settings
-    if not imgui.begin_table("impacts", len(_HEADS), style, size):
+    if not imgui.begin_table("impacts", len(HEADS), style, size):
         return
     imgui.table_setup_scroll_freeze(0, 1)
-    for head, width in zip(_HEADS, _WIDTHS, strict=True):
-        imgui.table_setup_column(head, imgui.TableColumnFlags_.width_fixed, width * ui.size)
+    for head, width in zip(HEADS, _widths(ui), strict=True):
+        imgui.table_setup_column(head, imgui.TableColumnFlags_.width_fixed, width)
     imgui.table_next_row(imgui.TableRowFlags_.headers)
-    for n in range(len(_HEADS)):
+    for n in range(len(HEADS)):
         imgui.table_next_column()
         _build_heading(ui, window, n)
     clipper = imgui.ListClipper()
@@ -105,10 +110,10 @@ def _build_heading(ui: Ui, window: Window, n: int) -> None:
     """Build a heading; a click sorts by it, and a second one the other way round."""
     impacts, name = window.impacts, COLUMNS[n]
     mark = "" if impacts.sorted_by != name else " (falling)" if impacts.falling else " (rising)"
-    head = ui.said(_HEADS[n])
+    head = ui.said(HEADS[n])
     ui.words.append(head + ui.said(mark))
-    clicked, _ = imgui.selectable(f"{head}###{_HEADS[n]} heading", impacts.sorted_by == name)
-    ui.note(f"Sort by {_HEADS[n].lower()}")
+    clicked, _ = imgui.selectable(f"{head}###{HEADS[n]} heading", impacts.sorted_by == name)
+    ui.note(f"Sort by {HEADS[n].lower()}")
     if impacts.sorted_by == name:
         _draw_arrow(ui, upwards=not impacts.falling)
     ui.tip(f"{_TIPS[n]}. Click to sort{mark}")

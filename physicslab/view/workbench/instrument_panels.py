@@ -46,7 +46,7 @@ def build_stopwatch(ui: Ui, world: World, window: Window) -> None:
     every = laps(system.crossings, gates) if system is not None else []
     left, top, width, _ = ui.room
     place = left + 0.5 * width, top + 10.0 * ui.size
-    ui.stand_beside("Stopwatch", "right", 0.34, 9.0)
+    ui.stand_beside("Stopwatch", "right", 0.34, 12.0)
     with ui.floating("Stopwatch", place, window.closing_of("shows_stopwatch"), docks=True):
         _build_times(ui, world, every, gates)
         across = imgui.get_content_region_avail().x if imgui.is_window_docked() else width
