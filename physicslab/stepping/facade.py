@@ -13,8 +13,6 @@ from physicslab.state.account import Energy, Momentum
 from physicslab.state.run import Run
 from physicslab.state.state import State
 
-_set = object.__setattr__
-
 
 def _measuring(part: str) -> Any:
     """Return a module of what measures worlds, which stands above them."""
@@ -57,20 +55,8 @@ class Facade(State):
         def __getattr__(self, name: str) -> object:
             if name[:1] == "_" or hasattr(type(self), name):
                 return super().__getattribute__(name)
-            raise AttributeError(self._no_such(name), name=None)
-
-        def __setattr__(self, name: str, value: object) -> None:
-            try:
-                _set(self, name, value)
-            except AttributeError:
-                if hasattr(type(self), name):
-                    raise
-                raise AttributeError(self._no_such(name), name=None) from None
-
-    @classmethod
-    def _no_such(cls, name: str) -> str:
-        parts = (*field_names(PhysicsConfig), *field_names(SimulationConfig))
-        return no_such(cls.__name__, "attribute", name, _SHOWN, parts)
+            parts = (*field_names(PhysicsConfig), *field_names(SimulationConfig))
+            raise AttributeError(no_such(type(self).__name__, "attribute", name, _SHOWN, parts), name=None)
 
     def describe(self, language: str = "en") -> str:
         """Return in words what there is, where it is and how it moves, a sentence a line.
