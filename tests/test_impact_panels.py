@@ -240,7 +240,8 @@ def test_words_of_its_drawings_lie_on_no_arrow_and_on_no_other_word(
     for sketch in drawn:
         for n, rect in enumerate(map(pygame.FRect, sketch.taken)):
             assert not any(rect.colliderect(other) for other in sketch.taken[:n])
-            assert not any(rect.clipline(*start, *end) for start, end in sketch.arrows)
+            around = rect.inflate(10.0, 10.0)  # heads are 11 px wide
+            assert not any(around.clipline(*start, *end) for start, end in sketch.arrows)
 
 
 def test_time_stands_still_at_the_next_impact_of_what_is_selected() -> None:

@@ -141,7 +141,8 @@ class Sketch:
         """Whether neither words nor arrows are in a rectangle."""
         if any(overlap(one, rect) for one in self.taken):
             return False
-        return not any(pygame.FRect(rect).clipline(*start, *end) for start, end in self.arrows)
+        around = pygame.FRect(rect).inflate(_HEAD[1], _HEAD[1])  # heads are wider than the line
+        return not any(around.clipline(*start, *end) for start, end in self.arrows)
 
 
 @contextmanager
