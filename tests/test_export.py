@@ -125,6 +125,18 @@ def test_many_runs_have_thirty_instants_a_second(tmp_path: Path) -> None:
         assert np.abs(times - np.arange(31) / 30.0).max() < 1e-6
 
 
+def test_the_view_of_a_page_holds_the_runs_of_all_its_values(tmp_path: Path) -> None:
+    """A longer pendulum swung below the picture, which showed the window's view of the first one."""
+    world = load_scene("pendulum")
+    world.view = (-1.6, 0.5, 1.6, 3.3)
+    save_scene(world, tmp_path / "scene.json")
+    scene, seconds = str(tmp_path / "scene.json"), ("--seconds", "1")
+    one = all_of(exported(tmp_path / "page.html", scene, *seconds))
+    assert one["view"] == [*world.view]
+    many = all_of(exported(tmp_path / "page.html", scene, *seconds, "--vary", "bob.Rod.length=1:3:3"))["view"]
+    assert many[1] < 0.0 < world.view[3] <= many[3]
+
+
 def test_a_page_goes_on_from_the_time_of_its_scene(tmp_path: Path) -> None:
     world = load_scene("pendulum")
     world.run(seconds=2.0)

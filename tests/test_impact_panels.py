@@ -16,6 +16,7 @@ from physicslab.diagnostics.collision import read_collision
 from physicslab.view.canvas.pygame_canvas import PygameCanvas
 from physicslab.view.controls.controls import CONTROLS
 from physicslab.view.window.impacts import FRAMES, LIMIT, ImpactList
+from physicslab.view.workbench.collision_drawing import Sketch
 from physicslab.view.workbench.collision_words import AGREES, law_steps, story
 
 SHIFT = pygame.KMOD_SHIFT
@@ -204,6 +205,43 @@ def looking(desk: Desk) -> Any:
     desk.frames(200)
     assert desk.window.microscope.is_open
     return desk.window.microscope
+
+
+@pytest.mark.parametrize("text", [1.0, 1.5])
+@pytest.mark.parametrize("way", [(2.0, 0.0), (0.0, 2.0), (1.5, 1.2)], ids=["level", "upright", "aslant"])
+def test_words_of_its_drawings_lie_on_no_arrow_and_on_no_other_word(
+    way: tuple[float, float], text: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[Sketch] = []
+    write = Sketch.write
+
+    def note(sketch: Sketch) -> None:
+        write(sketch)
+        drawn.append(sketch)
+
+    monkeypatch.setattr(Sketch, "write", note)
+    world = empty_world(gravity=(0, 0))
+    for name, at, speed, mass in (("A", 0.0, 1.0, 1.0), ("B", 1.0, 0.0, 2.0)):
+        velocity = (speed * way[0], speed * way[1])
+        place = (at * way[0], at * way[1] + 0.1 * at)
+        world.spawn(
+            Name(name),
+            Transform(place),
+            Velocity(velocity),
+            Mass(mass),
+            Shape.circle(0.3),
+            Material(0.3, 0.3),
+        )
+    desk = sized((1280, 720), world, text)
+    looking(desk)
+    drawn.clear()
+    tap(desk, "f")  # panels are built again
+    assert any(sketch.arrows for sketch in drawn)
+    for sketch in drawn:
+        for n, rect in enumerate(map(pygame.FRect, sketch.taken)):
+            assert not any(rect.colliderect(other) for other in sketch.taken[:n])
+            around = rect.inflate(10.0, 10.0)  # heads are 11 px wide
+            assert not any(around.clipline(*start, *end) for start, end in sketch.arrows)
 
 
 def test_time_stands_still_at_the_next_impact_of_what_is_selected() -> None:

@@ -49,6 +49,24 @@ def test_a_scene_is_opened_from_the_menus(desk: Desk, opener: str) -> None:
     assert desk.window.pace.paused != paused
 
 
+def test_a_menu_that_the_mouse_opened_goes_on_to_the_next_by_the_arrows(desk: Desk) -> None:
+    """The first arrow closed it, and those after it moved the selected body."""
+    ball = circle(desk.world, (0, 0))
+    desk.window.selection.take(ball)
+    click(desk, "File")
+    for key, line in (
+        ("right", "Sandbox"),
+        ("right", "Make a lesson"),
+        ("left", "Sandbox"),
+        ("left", "Save"),
+    ):
+        keys(desk, key)
+        assert line in desk.ui.places and has_keys(desk)
+    keys(desk, "escape")
+    assert not has_keys(desk)
+    assert tuple(desk.world.component(ball, Transform).position) == (0.0, 0.0)
+
+
 def test_escape_closes_the_menus_and_changes_nothing(desk: Desk) -> None:
     ball = circle(desk.world, (0, 0))
     desk.window.selection.take(ball)

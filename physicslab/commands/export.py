@@ -142,6 +142,7 @@ def make_page(arguments: Namespace) -> None:
     tasks = [{"set": [*arguments.set, *texts]} for texts in combinations(varied)]
     _check_size(world, len(tasks), arguments)
     shared = {key: getattr(arguments, key) for key in ("scene", "seconds", "every", "at_most")}
+    shared["is_one_of_many"] = len(tasks) > 1
     shared["progress"] = arguments.progress and len(tasks) == 1  # of many it is said how many are made
     label = shortened(printable(name_of(world, arguments)))
     names = [json.dumps(shared | task) for task in tasks]
@@ -207,7 +208,11 @@ def make_run(task: str) -> dict[str, Any]:
             run.go(arguments.seconds, None)
     except (Diverged, NotShown, CommandError, SceneError, InvalidValue) as error:
         return {"failure": str(error)}
-    return {"document": run_document(world, recorder, _notes(world, run)), "stopped": run.stopped}
+    notes, many = _notes(world, run), arguments.is_one_of_many
+    return {
+        "document": run_document(world, recorder, notes, is_one_of_many=many),
+        "stopped": run.stopped,
+    }
 
 
 def _check_size(world: World, runs: int, arguments: Namespace) -> None:

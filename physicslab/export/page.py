@@ -61,7 +61,7 @@ def page(world: World, name: str, runs: Sequence[Mapping[str, Any]], varied: Seq
     varied : sequence of Varied
         Fields that differ between the runs.
     """
-    views = [run["view"] for run in runs if "view" in run]
+    views = [*([world.view] if world.view else []), *(run["view"] for run in runs if "view" in run)]
     low, high = (
         [best(view[k] for view in views) for k in ends] for best, ends in ((min, (0, 1)), (max, (2, 3)))
     )
@@ -116,10 +116,13 @@ def player_texts() -> list[str]:
     return list(dict.fromkeys(one or other for source in sources for one, other in _SAID.findall(source)))
 
 
-def run_document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> dict[str, Any]:
+def run_document(
+    world: World, recorder: RunRecorder, notes: Sequence[str], *, is_one_of_many: bool = False
+) -> dict[str, Any]:
     """Return what the player is given of a run; ``world`` is at the end of it.
 
     ``notes`` are lines for the foot of the page: how it was computed, and what is not to be trusted.
+    The view of the scene holds the run that was seen; one of many may leave it.
     """
     physics = world.physics
     uniform = physics.gravity_mode == "linear" and "gravity" in recorder.energies
@@ -144,7 +147,7 @@ def run_document(world: World, recorder: RunRecorder, notes: Sequence[str]) -> d
         "gravity": list(physics.gravity) if uniform else None,
         "bounds": None if physics.bounds is None else list(physics.bounds),
         "notes": notes,
-        "view": world.view or extent_of_run(world, recorder),
+        "view": (None if is_one_of_many else world.view) or extent_of_run(world, recorder),
         "data": pack(recorder.columns),
     }
 

@@ -317,6 +317,7 @@ def _feed(io: imgui.IO, event: pygame.Event) -> None:
 _MENUS = "##MainMenuBar"
 """The window that Dear ImGui has the menus in; the mark of the keys is put on a menu where they are built."""
 _FLAGS = imgui.WindowFlags_
+_ARROWS = (pygame.K_LEFT, pygame.K_RIGHT, pygame.K_UP, pygame.K_DOWN)
 _ENTER = (pygame.K_RETURN, pygame.K_KP_ENTER)
 _INERT = _FLAGS.no_nav_inputs | _FLAGS.tooltip | _FLAGS.popup
 
@@ -333,7 +334,7 @@ class Walk:
     def __init__(self, toolkit: Toolkit) -> None:
         self._toolkit = toolkit
         self._panel = ""
-        self._begins = self._ends = self._from_field = False
+        self._begins = self._ends = self._from_field = self._goes_on = False
         self._without_mark = 0
 
     def begin(self, keys_go_to: str) -> None:
@@ -361,7 +362,12 @@ class Walk:
         """
         toolkit, key = self._toolkit, getattr(event, "key", 0)
         if event.type == pygame.MOUSEBUTTONDOWN:
-            toolkit.walked = False
+            toolkit.walked = self._goes_on = False
+        elif event.type == pygame.KEYDOWN and key in _ARROWS and toolkit.has_popup():
+            window = imgui.get_current_context().nav_window
+            if window is not None and window.root_window_popup_tree.name == _MENUS:
+                self._panel, toolkit.walked = _MENUS, True  # of a menu that the mouse opened, too
+                self._goes_on = key in _ARROWS[:2]
         elif event.type == pygame.KEYDOWN and key == pygame.K_TAB and toolkit.typing:
             window = imgui.get_current_context().nav_window
             if window is not None:  # None where a press in the world has just ended the writing
@@ -390,6 +396,11 @@ class Walk:
         Where the world ``is_alone`` in front and has them, their mark goes, and the tip of what it was on.
         """
         toolkit, context = self._toolkit, imgui.get_current_context()
+        if self._goes_on and not toolkit.has_popup() and not context.nav_move_forward_to_next_frame:
+            self._goes_on = False  # the mark is on the title of the next menu
+            for is_down in (True, False):
+                imgui.get_io().add_key_event(imgui.Key.down_arrow, is_down)
+            toolkit.wake()
         panel, in_menus = context.nav_window, toolkit.walked and self._panel == _MENUS
         left = in_menus and not toolkit.has_popup() and panel is not None and panel.name != _MENUS
         has_mark = not toolkit.walked or in_menus or context.nav_id_is_alive or toolkit.has_popup()

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+import pygame
 from imgui_bundle import ImVec2, imgui
 
 from physicslab.components import Shape
@@ -31,18 +32,32 @@ THIN, THICK = 1.4, 3.4
 _DASH, _GAP = 6.0, 4.0
 _HEAD = (7.0, 11.0)
 """Lengths of the heads of thin and of thick arrows [px]."""
+_WAYS = [
+    0.25 * n * Vector2.from_angle(0.25 * math.pi * turn) for n in range(17) for turn in range(8 if n else 1)
+]
+"""Where words may go that have no room at their place, the nearest first, in sizes of the text."""
 _DOT = 3.0
 """Arrows shorter than that are a dot [px]."""
 
 
 class Sketch:
-    """The surface; ``width`` and ``height`` are its size [px]."""
+    """The surface; ``width`` and ``height`` are its size [px].
+
+    Attributes
+    ----------
+    arrows : list of two places
+        Where each begins and ends.
+    taken : list of four floats
+        Left, top, width and height of the words that were written.
+    """
 
     def __init__(self, ui: Ui, corner: Place, width: float, height: float) -> None:
         self.ui, self.width, self.height = ui, width, height
         self._corner = corner
         self._paper = imgui.get_window_draw_list()
-        self._words: list[tuple[float, float, float, float]] = []
+        self.arrows: list[tuple[Place, Place]] = []
+        self.taken: list[tuple[float, float, float, float]] = []
+        self._words: list[tuple[Place, str, Colour, Colour | None]] = []
 
     def _at(self, place: Place) -> ImVec2:
         return ImVec2(*(self._corner + place))
@@ -63,6 +78,7 @@ class Sketch:
 
     def arrow(self, start: Place, end: Place, colour: Colour, *, before: bool) -> None:
         """Draw an arrow: thin and dashed for what was before, thick for what is after."""
+        self.arrows.append((start, end))
         length = (end - start).magnitude
         if length < _DOT:
             self._paper.add_circle_filled(self._at(start), _DOT, packed(colour))
@@ -97,27 +113,36 @@ class Sketch:
             x += 6.0
 
     def words(self, place: Place, words: str, colour: Colour, on: Colour | None = None) -> None:
-        """Write words with their middle at a place, or near it where others are; all within the sketch.
+        """Write words with their middle at a place, or near it where arrows and others are, in the sketch.
 
         ``on`` is a colour laid under them.
         """
-        words = self.ui.said(words)
-        size = imgui.calc_text_size(words)
-        x = min(max(place.x - 0.5 * size.x, 0.0), max(self.width - size.x, 0.0))
-        y = min(max(place.y - 0.5 * size.y, 0.0), max(self.height - size.y, 0.0))
-        for _ in range(4):
-            taken = next((one for one in self._words if overlap(one, (x, y, size.x, size.y))), None)
-            if taken is None:
-                break
-            below = taken[1] + taken[3]
-            y = below if below + size.y <= self.height else max(taken[1] - size.y, 0.0)
-        self._words.append((x, y, size.x, size.y))
-        if on is not None:
-            self._paper.add_rect_filled(
-                self._at(Vector2(x, y)), self._at(Vector2(x, y) + Vector2(*size)), packed(on)
-            )
-        self._paper.add_text(self._at(Vector2(x, y)), packed(colour), words)
-        self.ui.words.append(words)
+        self._words.append((place, self.ui.said(words), colour, on))
+
+    def write(self) -> None:
+        """Write all words, once all arrows are known."""
+        for place, words, colour, on in self._words:
+            size = Vector2(*imgui.calc_text_size(words))
+            corners = (self._inside(place + way * self.ui.size - 0.5 * size, size) for way in _WAYS)
+            rects = [(corner.x, corner.y, size.x, size.y) for corner in corners]
+            rect = next(filter(self._is_free, rects), rects[0])
+            self.taken.append(rect)
+            corner = Vector2(rect[0], rect[1])
+            if on is not None:
+                self._paper.add_rect_filled(self._at(corner), self._at(corner + size), packed(on))
+            self._paper.add_text(self._at(corner), packed(colour), words)
+            self.ui.words.append(words)
+
+    def _inside(self, corner: Place, size: Vector2) -> Place:
+        right, low = max(self.width - size.x, 0.0), max(self.height - size.y, 0.0)
+        return Vector2(min(max(corner.x, 0.0), right), min(max(corner.y, 0.0), low))
+
+    def _is_free(self, rect: tuple[float, float, float, float]) -> bool:
+        """Whether neither words nor arrows are in a rectangle."""
+        if any(overlap(one, rect) for one in self.taken):
+            return False
+        around = pygame.FRect(rect).inflate(_HEAD[1], _HEAD[1])  # heads are wider than the line
+        return not any(around.clipline(*start, *end) for start, end in self.arrows)
 
 
 @contextmanager
@@ -128,7 +153,9 @@ def sketch(ui: Ui, width: float, height: float) -> Iterator[Sketch]:
     paper.add_rect_filled(corner, end, packed(ui.theme.background), 4.0)
     paper.push_clip_rect(corner, end, True)
     try:
-        yield Sketch(ui, Vector2(corner.x, corner.y), width, height)
+        drawn = Sketch(ui, Vector2(corner.x, corner.y), width, height)
+        yield drawn
+        drawn.write()
     finally:
         paper.pop_clip_rect()
         imgui.dummy(ImVec2(width, height))
