@@ -203,6 +203,8 @@ def test_scenes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 MASS = "ball.Mass.mass"
+VARIED = ["--vary", f"{MASS}=1:2:2"]
+OPENED = ["sweep", "drop", *VARIED, "--open", "1"]
 USAGE = [
     (["run"], "the following arguments are required: SCENE"),
     (["run", "drop", "--dt", "0"], "argument --dt: '0': must be a finite number > 0 s"),
@@ -243,6 +245,21 @@ USAGE = [
     (
         ["sweep", "drop", "--vary", f"{MASS}=1:2:2", "--set", f"{MASS}=3", "--measure", "time"],
         '--set: entity "ball": Mass.mass: is varied too; a field must be set or varied',
+    ),
+    *(
+        ([*OPENED, *option], f"{option[0]}: must go without --open, which makes no run")
+        for option in (
+            ("--out", "x.npz"),
+            ("--map", "x.png"),
+            ("--measure", "time"),
+            ("--workers", "2"),
+            ("--dask", "tcp://x:1"),
+            ("--until", "time > 1"),
+        )
+    ),
+    *(
+        (["sweep", "drop", *VARIED, "--measure", "time", "--map", name], f"--map {name}: must end in .png")
+        for name in ("x.jpg", "png", "-")
     ),
     (
         ["export", "drop", "--html", "x", "--vary", f"{MASS}=1:2:2", "--set", f"{MASS}=3"],

@@ -315,6 +315,17 @@ def test_a_finished_file_is_read_in_place_of_another_run(
     assert edited.found == 0, "the file is not as it was written"
 
 
+def test_strange_files_in_the_folder_of_parts_are_kept(tmp_path: Path) -> None:
+    folder = tmp_path / "a.npz.parts"
+    (folder / "mine").mkdir(parents=True)
+    strange = {"notes.txt", "part-000000.npz.bak", ".part-000000.npz.tmp", "part-1.npz"}
+    for name in strange:
+        (folder / name).touch()
+    (folder / f".part-000000.npz.{'0a' * 8}.physicslab-tmp").touch()
+    ensemble("drop", {M: [1.0]}, measure="ball.y", steps=1, executor="serial", out=tmp_path / "a.npz")
+    assert {path.name for path in folder.iterdir()} == {*strange, "mine"}, "ours are gone, theirs are not"
+
+
 def test_parts_of_another_sweep_are_not_taken(tmp_path: Path) -> None:
     arguments: dict[str, Any] = dict(samples=50, steps=2, executor="serial", out=tmp_path / "a.npz")
 
@@ -407,6 +418,12 @@ REFUSED: tuple[tuple[Any, dict[str, Any], str], ...] = (
     ({M: [1]}, {"out": "there/is/none.csv"}, "cannot be written"),
     ({M: [1]}, {"out": "x.txt"}, "must end in .npz, .csv, .parquet"),
     ({M: [1]}, {"measure": {3: "ball.y"}}, "a dict of them by their names"),
+    ({M: [True]}, {}, "Mass.mass = true: must be a finite number > 0 kg"),
+    ({M: np.array([True])}, {}, "Mass.mass = "),
+    ({M: [b"1"]}, {}, "must be a finite number > 0 kg"),
+    ({M: ("uniform", False, b"1")}, {}, "Mass.mass = false: must be a finite number > 0 kg"),
+    ({M: ("normal", 2, True)}, {"samples": 3}, "Mass.mass = true: must be a finite number > 0 kg"),
+    ({M: [1]}, {"replicas": 2, "jitter": {M: b"1"}}, "must be a finite number > 0 kg"),
     ({M: [1]}, {"executor": 3}, "executor 3: must be one of processes, threads, serial, or an Executor"),
     ({M: ("uniform", 1, 2)}, {"samples": np.int64(0)}, "must be a whole number >= 1"),
     ({M: [1]}, {"executor": "process"}, "must be one of processes, threads, serial, or an Executor"),

@@ -32,6 +32,7 @@ _SHOWN_FAILURES = 3
 
 def execute(arguments: Namespace) -> int:
     """Make the runs that are missing, and write the rows."""
+    _refuse_contradictions(arguments)
     if not arguments.measure and arguments.open is None:
         raise CommandError("--measure: must be given: what is kept of each run")
     if arguments.seed is not None and not arguments.sample:
@@ -58,6 +59,16 @@ def execute(arguments: Namespace) -> int:
         picture.write(result.map())
     _tell(result, label, output)
     return 0
+
+
+def _refuse_contradictions(arguments: Namespace) -> None:
+    """Refuse what ``--open`` does not use, and a picture whose name does not say what it is."""
+    if arguments.open is not None:
+        for name in ("out", "map", "measure", "workers", "dask", "until"):
+            if getattr(arguments, name) not in (None, []):
+                raise CommandError(f"--{name}: must go without --open, which makes no run")
+    if arguments.map is not None and Path(arguments.map).suffix != ".png":
+        raise CommandError(f"--map {shortened(printable(arguments.map))}: must end in .png")
 
 
 def _map(arguments: Namespace, task: Task) -> Output | None:

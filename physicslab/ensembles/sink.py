@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import io
 import json
-import shutil
+import re
 import time
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -17,12 +18,14 @@ from numpy.typing import NDArray
 from physicslab.ensembles.result import read_result, write_result
 from physicslab.ensembles.space import Values
 from physicslab.ensembles.task import Block, Task
-from physicslab.files.replace import replace_file
+from physicslab.files.replace import ENDING, replace_file
 
 PART = 1000
 """Rows of a part."""
 _PARTS, _KEY = ".parts", ".key"
 """Suffixes beside the file of results: the folder of its parts, and the key by which it is known."""
+_OWN = re.compile(rf"part-\d{{6,}}\.npz|\.part-\d{{6,}}\.npz\.[0-9a-f]{{16}}{re.escape(ENDING)}")
+"""How files of that folder are named, and the remains of a process that was killed while it wrote one."""
 _WRITE_S = 10.0
 """So long [s] results of a part that is not whole yet may be in memory alone."""
 
@@ -139,7 +142,7 @@ class Sink:
             return
         write_result(self._out, columns, failures)
         replace_file(self._key_path(self._out), self._file_key(self._out))
-        shutil.rmtree(self._folder, ignore_errors=True)
+        _remove_parts(self._folder)
 
     def _holds_all(self) -> bool:
         """Whether the file holds the results of this task, as they were written."""
@@ -216,6 +219,15 @@ class Sink:
 def parts_folder(out: Path) -> Path:
     """Return the folder that holds the parts of a file until it is whole."""
     return out.with_name(out.name + _PARTS)
+
+
+def _remove_parts(folder: Path) -> None:
+    """Remove a folder of parts, and its own files alone: it stays where anything else is in it."""
+    with contextlib.suppress(OSError):
+        for path in [*folder.iterdir()]:
+            if _OWN.fullmatch(path.name):
+                path.unlink()
+        folder.rmdir()
 
 
 def _read(path: Path) -> dict[str, NDArray[Any]] | None:

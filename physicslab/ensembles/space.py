@@ -231,6 +231,8 @@ def _checked(world: World, place: Place, value: Any) -> Any:
 
 def number_of(place: Place, value: Any) -> float:
     """Return a number or a text with a unit in the unit of a field, or refuse it by name."""
+    if isinstance(value, (bool, np.bool_, bytes, bytearray)):
+        raise SceneError(f"{place.words} = {shown(value)}: must be {place.spec.allowed}")
     try:
         number = evaluate(value, place.spec.unit) if isinstance(value, str) else float(value)
     except (InvalidText, OverflowError, TypeError, ValueError) as error:

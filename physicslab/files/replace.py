@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-_ENDING = ".physicslab-tmp"
+ENDING = ".physicslab-tmp"
 """How files end that are being written; one that is there for long was left by a process that was killed."""
 _CAN_BE_HELD = os.name == "nt"
 """Whether a file that another program holds open cannot be replaced: on Windows, while a scanner reads it."""
@@ -125,7 +125,7 @@ def create_file(path: Path, content: bytes) -> None:
 @contextmanager
 def _beside(target: Path) -> Iterator[Path]:
     """Give the name of a new file beside another; what has it after the ``with`` block is removed."""
-    fresh = target.with_name(f"{_beginning(target)}{secrets.token_hex(8)}{_ENDING}")
+    fresh = target.with_name(f"{_beginning(target)}{secrets.token_hex(8)}{ENDING}")
     try:
         yield fresh
     finally:
@@ -139,7 +139,7 @@ def remove_leftovers(path: Path) -> None:
 
 def _remove(folder: Path, beginning: str, age: float) -> None:
     """Remove what was being written in a folder, if its name begins so and it is ``age`` seconds old."""
-    for left in folder.glob(f"{beginning}{'[0-9a-f]' * 16}{_ENDING}"):
+    for left in folder.glob(f"{beginning}{'[0-9a-f]' * 16}{ENDING}"):
         with contextlib.suppress(OSError):
             if time.time() - left.stat().st_mtime >= age:
                 left.unlink()
