@@ -226,7 +226,7 @@ def test_a_state_that_cannot_be_read_is_reported_and_kept(tmp_path: Path) -> Non
 
 
 def test_a_window_that_closes_leaves_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr("physicslab.desktop.compiling.is_warm", lambda: True)
+    monkeypatch.setattr("physicslab.kernels.warm.is_warm", lambda: True)
     monkeypatch.setattr("physicslab.desktop.session_window.session_folder", lambda: tmp_path / "state")
     pygame.init()
     pygame.event.clear()
@@ -248,7 +248,7 @@ def test_a_window_that_closes_leaves_nothing(monkeypatch: pytest.MonkeyPatch, tm
 
 def test_a_folder_that_cannot_be_made_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "state").write_text("a file, no folder")
-    monkeypatch.setattr("physicslab.desktop.compiling.is_warm", lambda: True)
+    monkeypatch.setattr("physicslab.kernels.warm.is_warm", lambda: True)
     monkeypatch.setattr("physicslab.desktop.session_window.session_folder", lambda: tmp_path / "state")
     said: list[str] = []
     usual = Sandbox.frame

@@ -240,6 +240,26 @@ def test_kernels_for_a_kind_of_processors_give_the_same_bits_on_this_one(tmp_pat
     old = run("pack", NUMBA_CPU_NAME="x86-64-v2", NUMBA_CPU_FEATURES="", **one)
     assert old[0] == digest and int(old[1]) > 3 and old[2] == "x86-64-v2"
     assert run("unpack", **other) == [digest, "0", "x86-64-v2"]
+    assert run("neither", **other) == [digest, "0", "x86-64-v2"], "so does each later start"
+
+
+TARGET = """
+import physicslab.kernels.motion
+from numba.core.registry import cpu_target
+print(*cpu_target.target_context.codegen().magic_tuple()[1:])
+"""
+
+
+@pytest.mark.skipif("x86-64-v2" not in keys.supported_levels(), reason="this processor has no levels")
+def test_kernels_that_were_imported_are_loaded_for_their_kind_alone(tmp_path: Path) -> None:
+    """The features of the processor were noted before its kind was: all was compiled again."""
+    folder = tmp_path / "kernels"
+    folder.mkdir(mode=0o700)
+    (folder / cache._mark_name("x86-64-v2")).touch()
+    command = [sys.executable, "-c", TARGET]
+    environment = os.environ | {cache.VARIABLE: str(folder)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["x86-64-v2"]
 
 
 # ---- the command -------------------------------------------------------------------------------------------

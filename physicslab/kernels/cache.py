@@ -330,3 +330,6 @@ def prune() -> None:
 def _remove(path: Path) -> None:
     with contextlib.suppress(OSError):
         path.unlink() if path.is_file() else shutil.rmtree(path, ignore_errors=True)
+
+
+cache_directory()  # it determines for which processor is compiled, which numba notes at the first function
