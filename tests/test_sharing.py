@@ -71,6 +71,7 @@ def test_it_is_said_how_far_the_only_run_of_a_page_is(
     monkeypatch.setattr(progress, "_DELAY_S", 0.0)
     monkeypatch.setattr(progress, "_INTERVAL_S", 0.0)
     task = {"scene": "drop", "set": [], "seconds": 1.0, "every": 0.1, "at_most": None}
+    task["is_one_of_many"] = False
     for is_read in (True, False):
         export.make_run(json.dumps(task | {"progress": is_read}))
         shares = {int(share) for share in re.findall(r"drop: (\d+) %", capsys.readouterr().err)}

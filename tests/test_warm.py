@@ -338,8 +338,10 @@ def test_kernels_are_loaded_in_frames_that_have_time_left(
 def test_the_window_lists_every_kernel_from_the_start() -> None:
     """What is in no imported module could not be loaded while there is time for it."""
     code = """
+from contextlib import ExitStack
 from physicslab.desktop import app
-app._import("physicslab.desktop.session_window")
+with ExitStack() as at_end:
+    app._import("physicslab.desktop.session_window", app._Workers(at_end))
 from physicslab.kernels import KERNELS
 before = len(KERNELS)
 from physicslab.kernels.warm import load_all
