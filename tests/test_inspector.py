@@ -78,14 +78,10 @@ WRITTEN: dict[str, tuple[str, float]] = {
 }
 """What is written into each field, and the number in SI that it stands for."""
 OUT_OF_RANGE = {
-    "Transform.position.x": "1e301", "Mass.mass": "-1", "Mass.inertia": "0", "Shape.radius": "0",
-    "Shape.width": "0 m", "Shape.height": "-3", "Shape.length": "0",
-    "Material.restitution": "1.01", "Material.friction": "-0.1",
-    "Drag.linear": "-1 kg/s", "Drag.quadratic": "-1", "Spring.anchor_a.x": "1e151",
-    "Spring.anchor_b.y": "-1e151", "Spring.rest_length": "-1 cm", "Spring.stiffness": "-5",
-    "Spring.damping": "-1", "Trail.length": "0 s", "Pin.anchor_a.y": "1e151",
-    "Pin.breaks": "-1 N", "Pin.max_torque": "-1",
+    "Transform.position.x": "1e301", "Mass.mass": "-1", "Shape.width": "0 m", "Material.restitution": "1.01",
+    "Drag.quadratic": "-1", "Spring.rest_length": "-1 cm", "Pin.anchor_a.y": "1e151", "Pin.max_torque": "-1",
 }  # fmt: skip
+"""Fields of each kind of number, and one that a field does not take."""
 KINDS: tuple[type[Component], ...] = (Transform, Velocity, Mass, Shape, Material, Drag, Spring, Pin, Trail)
 
 
@@ -174,24 +170,21 @@ def test_a_field_takes_a_number_with_a_unit(key: str, end: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "text"), list(zip(WRITTEN, cycle(("north", "1 +", "3 kg^7", "1/0")), strict=False))
+    ("key", "text"), list(zip(OUT_OF_RANGE, cycle(("north", "1 +", "3 kg^7", "1/0")), strict=False))
 )
 def test_what_is_no_number_has_another_unit_or_is_out_of_range_is_refused_at_the_field(
     key: str, text: str
 ) -> None:
     desk, _ = bench(key)
     before, edits, shown = state(desk), desk.world.motion_edits, field_text(desk, key)
-    wrong = [text]
-    if key in OUT_OF_RANGE:
-        wrong.append(OUT_OF_RANGE[key])
     bring_into_sight(desk, key)
-    for text in wrong:
+    for wrong in (text, OUT_OF_RANGE[key]):
         written = set(desk.ui.words)
-        fill(desk, key, text)
+        fill(desk, key, wrong)
         sentences = [words for words in set(desk.ui.words) - written if len(words) > 12]
-        assert sentences, f"{text!r} is refused with a sentence"
+        assert sentences, f"{wrong!r} is refused with a sentence"
         assert state(desk) == before and desk.world.motion_edits == edits
-        assert field_text(desk, key) == text, "it stays, to be mended"
+        assert field_text(desk, key) == wrong, "it stays, to be mended"
         click(desk, key)
         tap(desk, "escape")
         assert field_text(desk, key) == shown, "Escape restores the number"
@@ -326,8 +319,8 @@ def test_a_drag_ends_where_the_range_ends() -> None:
     assert not desk.window.notice_failed
 
 
-@pytest.mark.parametrize("key", [key for key in WRITTEN if not key.endswith((".x", ".y"))])
-def test_every_label_of_a_number_can_be_dragged(key: str) -> None:
+@pytest.mark.parametrize("key", [key for key in OUT_OF_RANGE if not key.endswith((".x", ".y"))])
+def test_a_label_of_any_kind_of_number_can_be_dragged(key: str) -> None:
     desk, body = bench(key)
     before = held(desk, body, key)
     drag(desk, f"label {key}", 12)

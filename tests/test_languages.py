@@ -3,6 +3,7 @@
 import ast
 import re
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,7 @@ SAYING = {"say": 1, "say_count": 2}
 GAP = re.compile(r"\{[a-z_]+\}")
 
 
+@cache
 def said() -> dict[tuple[str, ...], str]:
     """Return all texts that the program says, each with where it is."""
     found: dict[tuple[str, ...], str] = {}

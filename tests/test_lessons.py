@@ -7,6 +7,7 @@ import json
 import math
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -32,9 +33,12 @@ _ROUNDING = 1e-9
 
 
 @pytest.mark.parametrize("name", LESSONS)
-def test_every_theory_holds_where_it_says_and_fails_where_it_says(name: str) -> None:
-    lesson = find_lesson(name)
-    rows = list(check_lesson(lesson))
+def test_every_theory_holds_where_it_says_and_fails_where_it_says(name: str, tmp_path: Path) -> None:
+    path, lesson = tmp_path / "check.json", find_lesson(name)
+    assert main(["lesson", name, "--check", "--json", str(path)]) == 0
+    found = json.loads(path.read_text(encoding="utf-8"), parse_constant=pytest.fail)["rows"]
+    # No number stands for a share of zero, and for the gap of a curve that is drawn.
+    rows = [SimpleNamespace(**{key: math.inf if x is None else x for key, x in row.items()}) for row in found]
     assert not [row for row in rows if not row.passed]
     for compare in lesson.compares():
         own = [row for row in rows if row.block == compare.name]
@@ -215,17 +219,6 @@ def test_the_command_lists_and_describes(capsys: pytest.CaptureFixture[str], tmp
     assert json.loads((tmp_path / "a.json").read_text())["lessons"][0]["checks"] == ["seconds", "factor"]
     assert main(["lesson", "pendulm"]) == 2
     assert 'did you mean "pendulum"?' in capsys.readouterr().err
-
-
-def test_a_check_as_json_has_null_where_there_is_no_number(tmp_path: Path) -> None:
-    assert main(["lesson", "terminal_velocity", "--check", "--json", str(tmp_path / "a.json")]) == 0
-    rows = json.loads((tmp_path / "a.json").read_text())["rows"]
-    drawn = [row for row in rows if row["block"] == "course_drawn"]
-    assert len(drawn) == 4 and all(row["passed"] and row["gap"] is None for row in drawn)
-    assert main(["lesson", "incline", "--check", "--json", str(tmp_path / "b.json")]) == 0
-    rows = json.loads((tmp_path / "b.json").read_text())["rows"]
-    (topples,) = [row for row in rows if row["block"] == "stands" and not row["holds"]]
-    assert topples["gap"] is None and topples["measured"] > 0.1, "a share of zero"
 
 
 def test_cases_change_parameters_and_fields() -> None:

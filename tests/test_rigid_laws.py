@@ -227,12 +227,12 @@ def test_bodies_that_hang_together_pay_for_their_move() -> None:
     stepper = rigid_of(world)
     made, ode = stepper._motion, stepper._ode
     ode.gather(world)
-    scene = stepper._scene(world)
+    scene, pay = stepper._scene(world), fallback_of(take_work)
     for by, paid in ((1e-3, True), (1.0, False)):
         before = ode.q.copy()
         ode.q[3:6:2] += by
         energy = 0.5 * 4 * ode.v[2] ** 2
-        left, change = take_work(
+        left, change = pay(
             scene, made._room, before, ode.q, ode.v, world.entity_index.entities, world.contacts.log,
             world.account.sums,
         )  # fmt: skip

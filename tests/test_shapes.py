@@ -1,6 +1,7 @@
 """The table of shapes: what follows from vertices and a radius."""
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -24,16 +25,21 @@ def regular(count: int) -> tuple[tuple[float, float], ...]:
     return tuple((math.cos(turn), math.sin(turn)) for turn in turns)
 
 
+@cache
+def register_with(kind: Kind) -> Register:
+    """Return a register of one kind more; it has the lists of points of all tests before, too."""
+    return Register((*KINDS.values(), kind))
+
+
 def row_of(
     kind: Kind, radius: float = 0.0, width: float = 0.0, height: float = 0.0, length: float = 0.0
 ) -> Shapes:
     """Return a table of one shape of a kind, which comes behind the others in the register."""
     columns = np.array([radius]), np.array([width]), np.array([height]), np.array([length])
-    some = (*KINDS.values(), kind)
-    kinds, extents, pool = Register(some).arrays()
+    kinds, extents, pool = register_with(kind).arrays()
     plain: ShapesTuple = np.zeros((2, 1), np.int64), np.zeros((6, 1)), pool
     table, own = with_names(plain), np.zeros(1, np.int64)
-    assert derive_shape(0, np.array([len(some)]), own, columns, kinds, extents, table)
+    assert derive_shape(0, np.array([len(KINDS) + 1]), own, columns, kinds, extents, table)
     return table
 
 

@@ -142,19 +142,24 @@ def without_translation(code: str, texts: Iterable[str]) -> list[str]:
 
 def is_known(source: str) -> bool:
     """Whether the program has a text: as it is, or made of one with gaps."""
-    known = constants() | {text for table in tables().values() for text in table}
-    if {source, source[0].lower() + source[1:]} & known:
+    if {source, source[0].lower() + source[1:]} & _known():
         return True
-    own = re.compile(re.sub(r"\\\{\w+\\\}", ".+", re.escape(source)))
-    return any(
-        own.fullmatch(text) or (len(text) > 8 and "{}" in text and _pattern(text).fullmatch(source))
-        for text in known
-    )
+    if "{" in source:
+        own = re.compile(re.sub(r"\\\{\w+\\\}", ".+", re.escape(source)))
+        if any(own.fullmatch(text) for text in _known()):
+            return True
+    return any(pattern.fullmatch(source) for pattern in _patterns())
 
 
 @cache
-def _pattern(text: str) -> re.Pattern[str]:
-    return re.compile(re.escape(text).replace(r"\{\}", ".*"))
+def _known() -> frozenset[str]:
+    return frozenset(constants()) | {text for table in tables().values() for text in table}
+
+
+@cache
+def _patterns() -> list[re.Pattern[str]]:
+    texts = [text for text in _known() if len(text) > 8 and "{}" in text]
+    return [re.compile(re.escape(text).replace(r"\{\}", ".*")) for text in texts]
 
 
 if __name__ == "__main__":
