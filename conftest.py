@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+import math
 import os
 import shutil
 import signal
@@ -39,8 +40,9 @@ _BEGUN = pytest.StashKey[float]()
 _COSTS: dict[str, float] = {}
 # No deadline: the first example of a test may load kernels.
 settings.register_profile("physicslab", deadline=None, max_examples=40)
-# All that is fuzzed, as .ci/run does it: pytest -m "" tests/test_fuzz_*.py --hypothesis-profile=thorough
+# What is fuzzed, by .ci/run and by hand: pytest -m "" tests/test_fuzz_*.py --hypothesis-profile=thorough
 settings.register_profile("thorough", deadline=None, max_examples=600)
+settings.register_profile("medium", deadline=None, max_examples=150)
 settings.load_profile("physicslab")
 
 
@@ -49,9 +51,9 @@ _COSTLY = Path(__file__).parent / "tests" / "costly.txt"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Declare how long the longest test of the time machine is, and that costs are measured."""
-    words = "random commands that a slow test of tests/test_history.py makes and takes back (10,000)"
-    parser.addoption("--commands", metavar="N", type=int, default=10_000, help=words)
+    """Declare how many random cases are made, and that costs are measured."""
+    words = "share of the random cases that slow tests make, of those that they make by themselves (1)"
+    parser.addoption("--effort", metavar="SHARE", type=float, default=1.0, help=words)
     words = f"list tests that take longer than this [s of processor time] in {_COSTLY.name}: they are slow"
     parser.addoption("--costs", metavar="SECONDS", type=float, help=words)
     words = "folder to keep a picture of each stage in when tests/test_lessons_played.py plays the lessons"
@@ -116,12 +118,23 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark what is costly as slow, and begin with what mostly waits for a window: it fills no processor."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark what is costly as slow, and begin with what mostly waits for a window: it fills no processor.
+
+    Of a test with many seeds the first ones stay, as many as the effort says.
+    """
     costly = set(_COSTLY.read_text(encoding="utf-8").splitlines())
     for item in items:
         if item.nodeid in costly:
             item.add_marker(pytest.mark.slow)
+    seeded = [item for item in items if item.get_closest_marker("seeds") is not None]
+    families: dict[str, list[pytest.Item]] = {}
+    for item in seeded:
+        families.setdefault(item.nodeid.split("[")[0], []).append(item)
+    effort = config.getoption("--effort")
+    left_out = {item for family in families.values() for item in family[math.ceil(len(family) * effort) :]}
+    items[:] = [item for item in items if item not in left_out]
+    config.hook.pytest_deselected(items=list(left_out))
     items.sort(key=lambda item: "screen" not in getattr(item, "fixturenames", ()))
 
 

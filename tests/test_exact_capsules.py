@@ -172,6 +172,7 @@ def test_thrown_ones_keep_all_laws(seed: int) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.seeds
 @pytest.mark.parametrize("seed", range(3, 43))
 def test_many_thrown_ones_keep_all_laws(seed: int) -> None:
     check_thrown(seed, 180)

@@ -2,7 +2,7 @@
 
 The large numbers of the design are tried with
 
-    pytest tests/test_history.py -m slow --commands 100000
+    pytest tests/test_history.py -m slow --effort 10
 """
 
 from __future__ import annotations
@@ -474,11 +474,11 @@ def test_key_frames_keep_to_their_budget() -> None:
     assert sum(held.values()) <= history.size
 
 
-def test_what_key_frames_take_is_counted_right_after_thousands_of_commands() -> None:
+def test_what_key_frames_take_is_counted_right_after_many_commands(pytestconfig: pytest.Config) -> None:
     """A count that only grew would leave fewer and fewer of them; how many there are depends on the clock."""
     driver = Driver(box_of_discs(9, 4), 9, budget=2**20)
     for _ in range(4):
-        for _ in range(500):
+        for _ in range(round(500 * pytestconfig.getoption("effort"))):
             driver.anything()
         for frames in (driver.history._places._frames._along, driver.history._places._frames._nearby):
             arrays = {id(a): a.nbytes for frame in frames.by_place.values() for a in frame.arrays()}
@@ -538,14 +538,14 @@ TestRandomCommands.settings = settings(max_examples=10, stateful_step_count=30, 
 @pytest.mark.slow
 def test_thousands_of_random_commands_are_taken_back(pytestconfig: pytest.Config) -> None:
     driver = Driver(box_of_discs(10, 4), 10, budget=64 * 2**20)
-    for _ in range(pytestconfig.getoption("commands")):
+    for _ in range(round(10_000 * pytestconfig.getoption("effort"))):
         driver.anything()
     assert driver.history.size <= 64 * 2**20
     driver.back_to_the_start()
 
 
 @pytest.mark.slow
-def test_ten_thousand_random_seeks_give_the_bits_of_a_fresh_run() -> None:
+def test_ten_thousand_random_seeks_give_the_bits_of_a_fresh_run(pytestconfig: pytest.Config) -> None:
     document = crowd(77)
     document["simulation"]["contacts"] = "soft"
     history, fresh, expected = History(read_scene(document)), read_scene(document), []
@@ -554,7 +554,7 @@ def test_ten_thousand_random_seeks_give_the_bits_of_a_fresh_run() -> None:
         fresh.step()
     history.step(steps=2999)
     rng = random.Random(12)
-    for _ in range(10_000):
+    for _ in range(round(10_000 * pytestconfig.getoption("effort"))):
         step = rng.randrange(3000)
         history.seek(step)
         assert bits(history.world) == expected[step]

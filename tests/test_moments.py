@@ -55,8 +55,8 @@ def test_any_scene_that_is_reset_has_the_bits_of_a_fresh_one(seed: int, steps: i
 
 
 @pytest.mark.slow
-def test_a_thousand_scenes_that_are_reset_have_the_bits_of_fresh_ones() -> None:
-    for seed in range(1000):
+def test_a_thousand_scenes_that_are_reset_have_the_bits_of_fresh_ones(pytestconfig: pytest.Config) -> None:
+    for seed in range(round(1000 * pytestconfig.getoption("effort"))):
         check_reset(seed, 5 + seed % 40, seed % 2 == 1)
 
 

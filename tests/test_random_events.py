@@ -62,7 +62,10 @@ def click_pixel(desk: Desk, place: tuple[int, int]) -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="names that are not UTF-8, and pipes")
 @pytest.mark.parametrize(
     ("seed", "count"),
-    [(4, 45), *(pytest.param(seed, 250, marks=pytest.mark.slow) for seed in range(100, 110))],
+    [
+        (4, 45),
+        *(pytest.param(seed, 250, marks=(pytest.mark.slow, pytest.mark.seeds)) for seed in range(100, 110)),
+    ],
 )
 def test_random_events_end_nothing(
     seed: int, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -223,7 +223,8 @@ def aimed(random: np.random.Generator, number: int) -> tuple[World, list[int], f
 
 
 @pytest.mark.parametrize(
-    "seed", [20260723, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(4))]
+    "seed",
+    [20260723, *(pytest.param(seed, marks=(pytest.mark.slow, pytest.mark.seeds)) for seed in range(4))],
 )
 def test_random_impacts_keep_all_laws(seed: int) -> None:
     """4,000 of all pairs of shapes, in four parts; 100 for every run of the tests."""

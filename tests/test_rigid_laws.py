@@ -262,6 +262,7 @@ def test_the_short_method_has_order_five() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.seeds
 @pytest.mark.parametrize("part", range(10))
 def test_a_thousand_scenes_keep_the_laws(part: int) -> None:
     """Two to twelve bodies: gaps, forces in their cones, energy; no step is left to soft contacts."""
