@@ -117,6 +117,14 @@ class Table:
             handle._row = row_of[entity]
 
 
+def as_slice(rows: NDArray[np.int64]) -> Any:
+    """Return rows (n,) as a slice where they follow one another: numpy takes a tenth of the time for one."""
+    if not len(rows):
+        return slice(0, 0)
+    first, end = int(rows[0]), int(rows[-1]) + 1
+    return slice(first, end) if end - first == len(rows) and (np.diff(rows) == 1).all() else rows
+
+
 def _grown(column: NDArray[Any], capacity: int) -> NDArray[Any]:
     larger = np.zeros((capacity, *column.shape[1:]), column.dtype)
     larger[: len(column)] = column

@@ -4,6 +4,7 @@ import math
 
 from physicslab.ecs.sentences import sentence
 from physicslab.integrators.integrator import Exhausted, Integrator, StepTooSmall
+from physicslab.kernels import direct_entry
 from physicslab.kernels.ode.dop853 import EXHAUSTED, NOT_FINITE, dop853
 from physicslab.ode.system import OdeSystem
 from physicslab.state.state import State
@@ -26,7 +27,7 @@ def _floor(state: State, ode: OdeSystem) -> float:
 def _flow(state: State, ode: OdeSystem, h: float, steps: int) -> int:
     q_low, v_low = ode.remainders(state)
     tolerance = ode.tolerance
-    made = dop853(
+    made: int = direct_entry(dop853)(
         ode.q, ode.v, q_low, v_low, ode.inverse_mass, ode.damping, ode.damped_calls, ode.places,
         steps * h, tolerance, state.simulation.dt, _most(ode), ode.free_bodies, ode.steepness,
         _floor(state, ode), *ode.wanted,

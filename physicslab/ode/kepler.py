@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from physicslab.components import Mass, Transform, Velocity
 from physicslab.ecs.sentences import sentence
+from physicslab.kernels import direct_entry
 from physicslab.kernels.accounts import ANGULAR_MOMENTUM, GRAVITY, PX, PY
 from physicslab.kernels.forces.budget import ACCOUNTS
 from physicslab.kernels.ode.kepler import move_two
@@ -64,7 +65,7 @@ class TwoBodies:
         Return positions [m] and velocities [m/s] of what moves after each (k, n, 2).
         """
         q, v = np.zeros((len(spans), 4)), np.zeros((len(spans), 4))
-        move_two(*motion, self.weight, self.constant, spans, q, v)
+        direct_entry(move_two)(*motion, self.weight, self.constant, spans, q, v)
         return q.reshape(-1, 2, 2)[:, self.moves], v.reshape(-1, 2, 2)[:, self.moves]
 
     def after(self, start: Motion, t: float) -> Motion:

@@ -147,7 +147,7 @@ def check_finite(state: State, time: float) -> None:
         (transform, "position", "angle", motion.FARTHEST),
         (velocity, "linear", "angular", motion.LARGEST),
     ):
-        row = motion.find_beyond(table[vectors], table[numbers], limit)
+        row = direct_entry(motion.find_beyond)(table[vectors], table[numbers], limit)
         if row >= 0:
             finite = np.isfinite(table[vectors]).all(axis=1) & np.isfinite(table[numbers])
             lost = ~(finite & (np.abs(table[vectors]) <= limit).all(axis=1))

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from physicslab.components import Transform
+from physicslab.kernels import direct_entry
 from physicslab.kernels.forces import inverse_square as law
 from physicslab.kernels.forces import packed_forces
 from physicslab.kernels.forces.tree_pull import MAX_ERROR, RMS_ERROR, THETA
@@ -80,10 +81,11 @@ class InverseSquare(NamedTuple):
         """Return the energy of all pairs [J], zero at infinite distance."""
         state.compile((law.pair_potential,))
         position, physics = state.table(Transform)["position"], state.physics
-        return law.pair_potential(
+        stored: float = direct_entry(law.pair_potential)(
             position, self.weight, self.rows, self.constant, physics.softening,
             physics.softening_law == "plummer",
         )  # fmt: skip
+        return stored
 
     def summation(self) -> str:
         """Return how pairs are summed, as :mod:`physicslab.kernels.forces.inverse_square` decides."""

@@ -1,5 +1,7 @@
 """The forces of joints in smooth motion, packed for compiled integrators."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,6 +32,7 @@ class JointForces(ForceSystem):
 
     def __init__(self, name: str) -> None:
         self._name = name
+        self._steady: tuple[Any, Any, Any] = None, None, None
 
     @property
     def name(self) -> str:
@@ -77,10 +80,12 @@ class JointForces(ForceSystem):
 
     def inputs(self, state: State, layout: StateLayout) -> bytes:
         """Return the numbers of all joints, and the angles of bodies that no force turns."""
-        joints, steady = state.joints, []
-        for end in (joints.a, joints.b):
-            steady.append(state.table(Transform)["angle"][end[layout.turn[end] < 0]].tobytes())
-        return joints.settings + b"".join(steady)
+        joints = state.joints
+        if self._steady[0] is not layout or self._steady[1] is not joints.a:
+            ends = np.concatenate((joints.a, joints.b))
+            self._steady = layout, joints.a, ends[layout.turn[ends] < 0]
+        angles: bytes = state.table(Transform)["angle"][self._steady[2]].tobytes()
+        return joints.settings + angles
 
     def settings(self, state: State) -> bytes:
         """Return the numbers of all joints."""
@@ -99,15 +104,14 @@ class JointForces(ForceSystem):
         return True
 
 
-def dependent_rows(numbers: NDArray[np.float64], whole: NDArray[np.int64], count: int) -> NDArray[np.bool_]:
-    """Return which rows of joints (count,) depend on others, as found last: they get no force."""
-    n, found = int(whole[packing.ROWS]), np.zeros(count, np.bool_)
+def pivots_of(whole: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return rows of joints (n,), and where their pivots are (n,): zero of one that depends on others."""
+    n = int(whole[packing.ROWS])
     places = whole[packing.FIRST : packing.FIRST + packing.PLACES * n].reshape(n, packing.PLACES)
     factor = (packing.GIVEN + packing.STATE) * n + 2 * int(whole[packing.COORDINATES])
     factor += int(whole[packing.ENTRIES])
     pivots = factor + places[:, packing.AT] + np.arange(n) - places[:, packing.BEGIN]
-    found[places[:, packing.NUMBER]] = numbers[pivots] == 0.0
-    return found
+    return places[:, packing.NUMBER], pivots
 
 
 def _envelope(
