@@ -51,8 +51,9 @@ def test_the_estimate_of_a_random_scene_is_honest(family: str, seed: int) -> Non
 
 
 @pytest.mark.slow
-def test_estimates_of_random_scenes_are_honest_in_99_of_100() -> None:
-    rows = [drawn(family, seed) for family in FAMILIES for seed in range(20)]
+def test_estimates_of_random_scenes_are_honest_in_99_of_100(pytestconfig: pytest.Config) -> None:
+    seeds = round(20 * pytestconfig.getoption("effort"))
+    rows = [drawn(family, seed) for family in FAMILIES for seed in range(seeds)]
     found = share_of(rows)
     print(honest_text(rows))
     assert found.known == len(rows) and found.holds

@@ -383,5 +383,6 @@ def test_rigid_impacts_give_no_energy_and_are_booked_to_rounding() -> None:
 
 
 @pytest.mark.slow
-def test_a_hundred_thousand_rigid_impacts_give_no_energy() -> None:
-    assert _check_rigid(250_000) > 150_000
+def test_a_hundred_thousand_rigid_impacts_give_no_energy(pytestconfig: pytest.Config) -> None:
+    count = round(250_000 * pytestconfig.getoption("effort"))
+    assert _check_rigid(count) > 0.6 * count

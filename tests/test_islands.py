@@ -519,8 +519,10 @@ def orbits(world: World) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("far", [lambda world: crowd(world, count=500), thirteen, orbits])
-def test_random_scenes_have_the_bits_that_they_have_alone(far: Callable[[World], object]) -> None:
-    for seed in range(200):
+def test_random_scenes_have_the_bits_that_they_have_alone(
+    far: Callable[[World], object], pytestconfig: pytest.Config
+) -> None:
+    for seed in range(round(200 * pytestconfig.getoption("effort"))):
         alone, beside = World(), World()
         for world in (alone, beside):
             floor(world)
