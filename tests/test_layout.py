@@ -127,5 +127,5 @@ def test_a_small_window_with_large_text_leaves_half_to_the_world_and_cuts_no_lab
     assert layout.visible[2] >= 400 and ui.places["Rope"][2] < 2.0 * ui.size
     for key, words in (("Velocity.linear", "Geschwindigkeit"), ("Mass.inertia", "Trägheitsmoment")):
         assert ui.places[f"label {key}"][2] >= ui.width(words)
-    desk = sized((1280, 720), world, 1.5)
+    desk = sized((1280, 720), text_scale=1.5)
     assert desk.ui.places["Rope"][2] > 5.0 * desk.ui.size
