@@ -23,7 +23,7 @@ _VALUES = 9
 _MOST = 200
 """How many entities are offered."""
 _GRAVITY = "physics.gravity.y"
-"""What a slider for gravity changes in a page."""
+"""The number that a slider for gravity changes in a page."""
 _LIMIT = 600.0
 """The longest run that the panel takes [s]."""
 
