@@ -22,6 +22,8 @@ _VALUES = 9
 """How many values a slider of the scene gets in the page."""
 _MOST = 200
 """How many entities are offered."""
+_GRAVITY = "physics.gravity.y"
+"""The number that a slider for gravity changes in a page."""
 _LIMIT = 600.0
 """The longest run that the panel takes [s]."""
 
@@ -46,12 +48,13 @@ def _take_sliders(world: World, window: Window) -> None:
     """Let the page have the sliders of the scene; those of another scene are dropped."""
     names = _names(world)
     found = [
+        Slid(_GRAVITY, f"{0.0 - one.low:g}:{0.0 - one.high:g}:{_VALUES}") if one.changes == GRAVITY else
         Slid(f"{names[one.entity]}.{one.changes}", f"{one.low:g}:{one.high:g}:{_VALUES}")
         for entity in sorted(world.batch(Slider).entities.tolist())
         for one in (world.component(entity, Slider),)
-        if one.changes != GRAVITY and one.entity in names
-    ]
-    known = varying(world)
+        if one.changes == GRAVITY or one.entity in names
+    ]  # fmt: skip
+    known = varied_by_pages(world)
     for n, slid in enumerate(window.sharing.slid):
         if n < len(found):
             slid.path, slid.span = found[n].path, found[n].span
@@ -65,6 +68,12 @@ def _names(world: World) -> dict[int | None, str]:
     for entity in world.entities()[:_MOST]:
         names[unique_name(world.label(entity), names)] = entity
     return {entity: name for name, entity in names.items()}
+
+
+def varied_by_pages(world: World) -> dict[str, str]:
+    """Return the words of each number that a slider of a page may vary: gravity, too."""
+    nothing, *fields = varying(world).items()
+    return dict((nothing, (_GRAVITY, words_of(_GRAVITY)), *fields))
 
 
 def varying(world: World) -> dict[str, str]:
@@ -97,6 +106,8 @@ def words_of(path: str) -> str:
     """
     if not path:
         return "nothing"
+    if path == _GRAVITY:
+        return "gravity y"
     name, _, spec, part = parse_path(path)
     return f"{printable(name)}: {field_words(spec.name, part)}"
 
@@ -104,7 +115,9 @@ def words_of(path: str) -> str:
 def choose_slid(world: World, window: Window, slid: Slid, path: str) -> None:
     """Let a slider of the page change another quantity, at first around the value with which it begins."""
     slid.path, slid.refused = path, ""
-    if not path:
+    if path == _GRAVITY:
+        slid.span = f"0:-20:{_VALUES}"
+    if path in ("", _GRAVITY):
         return
     low, high, _ = span_around(world, window, window.sharing.begins, path)
     slid.span = f"{low:.3g}:{high:.3g}:{_VALUES}"
