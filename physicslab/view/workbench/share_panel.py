@@ -46,7 +46,7 @@ def _build_run(ui: Ui, world: World, window: Window) -> None:
     for n, slid in enumerate(sharing.slid, start=1):
         tip = "The run is made for each value, and the slider chooses between them"
         path = ui.choice(
-            f"Slider {n} of the page", slid.path, partial(share_actions.varied_by_pages, world), tip,
+            f"Slider {n} of the page", slid.path, partial(share_actions.varying, world), tip,
             width=_QUANTITY * size, shown=share_actions.words_of(slid.path),
         )  # fmt: skip
         if path != slid.path:
