@@ -25,8 +25,7 @@ from physicslab.files.json_text import json_text
 from physicslab.files.scene import save_scene
 from physicslab.lab.bench.catalogue import SCENES, by_default
 from physicslab.lab.bench.scene import BenchScene
-from physicslab.lab.document import lab_document, machine_text
-from physicslab.lab.table import cell, table
+from physicslab.lab.report import cell, lab_document, machine_text, table
 
 DT = 1.0 / 60.0
 BEGIN_S = 2.0

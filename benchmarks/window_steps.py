@@ -21,8 +21,7 @@ from physicslab.lab.bench.catalogue import SCENES
 from physicslab.lab.bench.engine import Engine
 from physicslab.lab.bench.result import take_turns
 from physicslab.lab.bench.scene import BenchScene
-from physicslab.lab.document import lab_document, machine_text
-from physicslab.lab.table import table
+from physicslab.lab.report import lab_document, machine_text, table
 
 DEFAULT = ("circles_10", "pyramid_30", "pyramid_60", "pile_1000", "pile_4000", "gas_2000")
 TURN_MS = 8.0

@@ -56,24 +56,26 @@ _HOMES = {
 }
 
 
-def __getattr__(name: str) -> object:
-    """Import a public name when it is first asked for.
+if not TYPE_CHECKING:  # type checkers know the names above, and which there are not
 
-    A world brings numba with it, which takes as long to import as all else together; on the first launch,
-    before Python has kept its bytecode, seconds. The window must not wait for that.
-    """
-    if name == "__version__":
-        return version(__name__)
-    if name not in _HOMES:
-        if name[:1] == "_":
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-        words = import_module(f"{__name__}.ecs.text").no_such(__name__, "name", name, __all__)
-        raise AttributeError(words, name=None)
-    try:
-        value = globals()[name] = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
-    except AttributeError as error:  # of which Python would say that there is no such name
-        raise ImportError(f"{__name__}.{name} cannot be imported: {error}") from error
-    return value
+    def __getattr__(name: str) -> object:
+        """Import a public name when it is first asked for.
+
+        A world brings numba with it, which takes as long to import as all else together; on the first launch,
+        before Python has kept its bytecode, seconds. The window must not wait for that.
+        """
+        if name == "__version__":
+            return version(__name__)
+        if name not in _HOMES:
+            if name[:1] == "_":
+                raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            words = import_module(f"{__name__}.ecs.text").no_such(__name__, "name", name, __all__)
+            raise AttributeError(words, name=None)
+        try:
+            value = globals()[name] = getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+        except AttributeError as error:  # of which Python would say that there is no such name
+            raise ImportError(f"{__name__}.{name} cannot be imported: {error}") from error
+        return value
 
 
 def __dir__() -> list[str]:

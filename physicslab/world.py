@@ -51,8 +51,10 @@ class World(Facade):
         velocities; velocities move bodies where :class:`IntegrateSystem` is one of them.
     systems : iterable of System, optional
         The same; an empty one is a world without systems.
-    physics, simulation : PhysicsConfig, SimulationConfig, optional
-        The laws, and how they are stepped. Assign new ones at any time.
+    physics : PhysicsConfig, optional
+        The laws. Assign new ones at any time.
+    simulation : SimulationConfig, optional
+        How they are stepped, likewise.
 
     Attributes
     ----------

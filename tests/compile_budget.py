@@ -21,7 +21,7 @@ from physicslab.kernels.interpreter import compile_all_the_same
 from physicslab.kernels.keys import platform_key
 from physicslab.kernels.loading import load, prepare
 from physicslab.kernels.warm import load_all, mark_warm, name_of, rank_of
-from physicslab.lab.document import machine
+from physicslab.lab.report import machine
 
 LIMIT_TOTAL_S = 60.0
 LIMIT_EACH_S = 6.0

@@ -14,13 +14,12 @@ from physicslab.cli import main
 from physicslab.integrators import INTEGRATORS
 from physicslab.lab.accuracy import measure as measuring
 from physicslab.lab.accuracy.catalogue import LEFT_OUT, PROBLEMS
-from physicslab.lab.accuracy.document import document
-from physicslab.lab.accuracy.figures import digits, number, record
 from physicslab.lab.accuracy.forces import crowd
 from physicslab.lab.accuracy.measure import measure, rounding_floor
 from physicslab.lab.accuracy.plot import method_styles
-from physicslab.lab.accuracy.problem import Setting, ladder, refusal
+from physicslab.lab.accuracy.problem import Setting, digits, ladder, number, record, refusal
 from physicslab.lab.accuracy.study import Study, study
+from physicslab.lab.accuracy.tables import document
 from physicslab.lab.accuracy.verdict import measured_order, verdict
 from physicslab.lab.case import Verdict
 from physicslab.lab.jobs import result_of

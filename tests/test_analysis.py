@@ -198,7 +198,7 @@ def test_data_that_cannot_be_fitted_are_refused(data: Any, message: str) -> None
 
 @pytest.mark.plot
 def test_a_map_is_written_by_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "map.png"
+    path = tmp_path / "map.PNG"
     vary = ["--vary", f"{VX}=0:3:4", "--vary", f"{VY}=0:3:3"]
     command = ["sweep", "drop", "--measure", "x=ball.x", "--seconds", "0.5", "--map", str(path)]
     assert main([*command, *vary, "--workers", "1"]) == 0 and path.read_bytes().startswith(b"\x89PNG")

@@ -22,10 +22,10 @@ from physicslab.lab.bench.result import TURN, SceneResult, exponent, growths, ta
 from physicslab.lab.bench.scene import BenchScene, Quality
 from physicslab.lab.bench.targets import Check
 from physicslab.lab.case import Catalogue
-from physicslab.lab.document import machine_text
 from physicslab.lab.jobs import result_of
 from physicslab.lab.peers.mirrors import PymunkMirror
 from physicslab.lab.peers.peer import find_contacts
+from physicslab.lab.report import machine_text
 from physicslab.state.masses import Diverged
 from physicslab.world import World
 

@@ -233,6 +233,7 @@ USAGE = [
     ),
     (["run", "drop", "--csv", "/"], "--csv /: cannot be written: / is a directory"),
     (["run", "drop", "--png", "a\0b"], "--png a\\x00b: cannot be written"),
+    *((["run", "drop", "--png", name], f"--png {name}: must end in .png") for name in ("x.jpg", "x.PDF")),
     (["run", "drp"], 'drp: no such file, and no built-in scene; did you mean "drop"?'),
     (["run", "a\nb"], "a\\nb: no such file"),
     (["run", "."], ".: is a directory, not a scene file"),

@@ -36,6 +36,8 @@ def test_there_is_a_completion_for_each_shell(shell: str, capsys: pytest.Capture
     ("words", "last", "found"),
     [
         ("physicslab", "exp", "export"),
+        ("physicslab", "newt", "newtons_cradle"),
+        ("physicslab accuracy", "newt", "newtons_cradle"),
         ("physicslab run", "newt", "newtons_cradle"),
         ("physicslab run drop", "--subs", "--substeps"),
     ],

@@ -28,7 +28,7 @@ from physicslab.lab.accuracy.contacts.study import (
     measure_row,
     study_case,
 )  # fmt: skip
-from physicslab.lab.accuracy.figures import digits
+from physicslab.lab.accuracy.problem import digits
 from physicslab.lab.accuracy.tables import contact_summary, contact_text, order_text
 from physicslab.lab.case import Verdict
 from physicslab.lab.closed_forms import corner_impact, rolled, slid, stopped_by_friction

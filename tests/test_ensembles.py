@@ -381,6 +381,7 @@ REFUSED: tuple[tuple[Any, dict[str, Any], str], ...] = (
     ({"ball.Mass.mass": []}, {}, "must be at least one value"),
     ({"ball.Velocity.linear": [1]}, {}, "must be a part of it, .x or .y"),
     ({"ball.Velocity.linear.z": [1]}, {}, "Velocity.linear: must be a part of it, .x or .y; it has no .z"),
+    ({"physics.gravity.q": [1]}, {}, "physics.gravity: must be a part of it, .x or .y; it has no .q"),
     ({"ball.Velocity.linear[2]": [1]}, {}, "Velocity.linear: must be a part of it, .x or .y; it has no .2"),
     ({"ball.Mass.mass": ("uniform", 2, 1)}, {"samples": 3}, "must have two numbers a < b"),
     ({"ball.Mass.mass": ("uniform", 1, 2)}, {}, "samples: must be given"),

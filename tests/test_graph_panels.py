@@ -10,10 +10,12 @@ import pytest
 from desk import SETTLED, Desk, click, empty_world, sized, tap
 from plotting import ball_of, drawn_lines, graph_of, pause
 
-from physicslab.components import Graph, GraphLine
+from physicslab import load_scene
+from physicslab.components import Graph, GraphLine, Velocity
 from physicslab.history import Spawn
 from physicslab.view.controls import dashboard_actions, saving
 from physicslab.view.controls.lesson_actions import choose_language
+from physicslab.view.toolkit.ui import Ui
 from physicslab.view.window.record import line_to_show
 
 
@@ -115,3 +117,26 @@ def test_no_more_points_are_drawn_than_can_be_seen(desk: Desk, monkeypatch: pyte
         desk.sandbox.interface.toolkit.wake()
         desk.frames(SETTLED)
     assert len(reduced) == made  # what does not change is not made again
+
+
+def test_in_a_small_window_a_plot_beside_the_stopwatch_is_readable_and_its_hint_whole(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A plot of three lines was 40 px high there, and the German hint ran out of the window."""
+    wide: dict[str, bool] = {}
+    text = Ui.text
+
+    def note(ui: Ui, words: str, *given: Any, wrapped: bool = False) -> None:
+        wide[words] = not wrapped
+        text(ui, words, *given, wrapped=wrapped)
+
+    monkeypatch.setattr(Ui, "text", note)
+    world = load_scene("newtons_cradle")
+    graph = world.spawn(Graph())
+    for body in world.batch(Velocity).entities[:3].tolist():
+        world.spawn(GraphLine(graph, "velocity x", body))
+    desk = sized((800, 600), world, 1.5)
+    desk.window.shows_stopwatch = True
+    desk.frames(SETTLED)
+    assert desk.ui.places["Plot of graph 1"][3] >= 5 * desk.sandbox.interface.text
+    assert not wide["Draw a gate for bodies to cross"]

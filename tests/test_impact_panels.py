@@ -242,6 +242,7 @@ def test_words_of_its_drawings_lie_on_no_arrow_and_on_no_other_word(
             assert not any(rect.colliderect(other) for other in sketch.taken[:n])
             around = rect.inflate(10.0, 10.0)  # heads are 11 px wide
             assert not any(around.clipline(*start, *end) for start, end in sketch.arrows)
+            assert not any(rect.clipline(*start, *end) for start, end in sketch.axes)
 
 
 def test_time_stands_still_at_the_next_impact_of_what_is_selected() -> None:

@@ -19,11 +19,10 @@ from physicslab.lab.bench.measure import measure_scene
 from physicslab.lab.bench.moving import FUNNELS, MOVING, chains, funnel, heap, tumbler
 from physicslab.lab.bench.scene import BenchScene
 from physicslab.lab.case import Case, Catalogue, attempt
-from physicslab.lab.document import lab_document, machine
 from physicslab.lab.jobs import Job, result_of, run_jobs
 from physicslab.lab.peers.peer import find_contacts
+from physicslab.lab.report import Columns, lab_document, machine, table
 from physicslab.lab.stability.catalogue import CASES
-from physicslab.lab.table import Columns, table
 from physicslab.state.masses import Diverged
 from physicslab.world import World
 

@@ -16,6 +16,7 @@ from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
 from physicslab.prefabs import box, circle
 from physicslab.view.canvas.canvas import Rect
+from physicslab.view.controls.lesson_actions import choose_language
 from physicslab.view.overlay import banners
 
 SIZES = [(800, 600), (1280, 720), (1920, 1080)]
@@ -113,3 +114,18 @@ def test_more_sky_than_ground_is_shown_where_bodies_fall_down() -> None:
         above = camera.to_screen(Vector2(0.0, 6.0))[1] - top
         below = top + height - camera.to_screen(Vector2(0.0, 0.0))[1]
         assert below > 20.0 and (above > 2.0 * below if down < 0.0 else above == pytest.approx(below))
+
+
+def test_a_small_window_with_large_text_leaves_half_to_the_world_and_cuts_no_label() -> None:
+    world = load_scene("pendulum")
+    desk = sized((800, 600), world, 1.5)
+    choose_language(desk.world, desk.window, "de")
+    desk.window.selection.take(world["bob"])
+    desk.window.level = "Measure"
+    desk.frames(SETTLED)
+    layout, ui = desk.sandbox.interface.layout, desk.ui
+    assert layout.visible[2] >= 400 and ui.places["Rope"][2] < 2.0 * ui.size
+    for key, words in (("Velocity.linear", "Geschwindigkeit"), ("Mass.inertia", "Trägheitsmoment")):
+        assert ui.places[f"label {key}"][2] >= ui.width(words)
+    desk = sized((1280, 720), text_scale=1.5)
+    assert desk.ui.places["Rope"][2] > 5.0 * desk.ui.size

@@ -27,14 +27,23 @@ from physicslab import (
     cli,
     load_scene,
     save_scene,
+    systems,
 )
 from physicslab.components import Drag, GraphLine, Mass, Rod, Spring, Transform, Velocity
 from physicslab.files.scene import parse_json
+from physicslab.systems.standard import PHYSICS_SYSTEMS
 
 
 @pytest.mark.parametrize("name", physicslab.__all__)
 def test_every_public_name_can_be_imported(name: str) -> None:
     assert getattr(physicslab, name) is not None and name in dir(physicslab)
+
+
+def test_systems_are_imported_from_one_place() -> None:
+    named = {name for name in systems.__all__ if getattr(systems, name) in PHYSICS_SYSTEMS}
+    assert named == {system.__name__ for system in PHYSICS_SYSTEMS}
+    with pytest.raises(AttributeError, match='did you mean "GravitySystem"'):
+        _ = systems.GravitySytem  # type: ignore[attr-defined]
 
 
 def test_numbers_are_given_with_their_units() -> None:
@@ -153,7 +162,7 @@ def test_the_slowest_throw_is_found_by_scipy() -> None:
         assert height(best.fun, angle) < 1.0, "no other angle reaches it at this speed"
 
 
-PUBLIC = [import_module(name) for name in ("physicslab", "physicslab.ensembles", "physicslab.prefabs")]
+PUBLIC = [import_module(f"physicslab{name}") for name in ("", ".ensembles", ".prefabs", ".systems")]
 """What the reference has whole; the fields of components are in the documents of what they do."""
 
 
@@ -177,6 +186,7 @@ MISTAKES = {
     'world.record("3 s", every=[1])': 'Argument "every" to "record" of "Facade" has incompatible type',
     'world.record(3.0).column["ball.x"]': '"Run" has no attribute "column"; maybe "columns"?',
     "world.energy.totl": '"Energy" has no attribute "totl"; maybe "total"?',
+    "from physicslab import Wrld": 'Module "physicslab" has no attribute "Wrld"; maybe "World"?',
     "load_scene(3)": 'Argument 1 to "load_scene" has incompatible type "int"',
 }
 """Lines of a user's file, and what mypy says of them."""

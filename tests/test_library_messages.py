@@ -85,7 +85,7 @@ WRONG: dict[str, tuple[Callable[[World], object], type[Exception], str]] = {
         change("transform.positon", (1, 2)), AttributeError,
         "Transform has no field 'positon'; it has position, angle; did you mean \"position\"?",
     ),
-    "misspelt name": (lambda world: physicslab.Wrld, AttributeError, 'did you mean "World"?'),
+    "misspelt name": (lambda world: physicslab.Wrld, AttributeError, 'did you mean "World"?'),  # type: ignore[attr-defined]
     "column": (
         lambda world: world.copy().record(0.1).columns["ball.z"], KeyError,
         "has no column 'ball.z'; it has time, ball.x, ball.y, ",

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from physicslab.lab.processes import NoProcess, ProcessEnded, Processes
+from physicslab.lab.jobs import NoProcess, ProcessEnded, Processes
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="needs signals that end a process")
 

@@ -12,6 +12,7 @@ import pytest
 from desk import SETTLED, Desk, bits, click, fill, tap
 
 from physicslab.commands import export, progress
+from physicslab.commands.variations import variations
 from physicslab.components import Shape, Slider
 from physicslab.files.scene import load_scene
 from physicslab.view.controls import share_actions
@@ -175,15 +176,22 @@ def test_what_values_of_a_slider_cannot_be_is_said_beside_them(desk: Desk, tmp_p
 def test_sliders_of_the_scene_become_those_of_the_page(desk: Desk) -> None:
     ball = desk.world.entity("ball")
     desk.world.spawn(Slider("Mass.mass", ball, 1.0, 9.0))
+    desk.world.spawn(Slider("gravity", low=0.0, high=20.0))
     share_actions.toggle_sharing(desk.world, desk.window)
     first, second = desk.window.sharing.slid
-    assert (first.path, first.span, second.path) == ("ball.Mass.mass", "1:9:9", "")
+    gravity = "physics.gravity.y"
+    assert (first.path, first.span) == ("ball.Mass.mass", "1:9:9")
+    assert (second.path, second.span) == (gravity, "0:-20:9"), "downwards"
+    (slid,) = variations(desk.world, [f"{gravity}={second.span}"], [])
+    assert (slid.values[0], slid.values[-1]) == (0.0, -20.0), "as the export takes it"
     offered = share_actions.varying(desk.world)
-    assert offered["ball.Velocity.linear.x"] == "ball: velocity x"
+    assert offered["ball.Velocity.linear.x"] == "ball: velocity x" and offered[gravity] == "gravity y"
     assert "ball.Shape.radius" in offered and "ball.Shape.width" not in offered
     assert desk.world.component(ball, Shape).kind == "circle"
     share_actions.choose_slid(desk.world, desk.window, second, "ball.Velocity.linear.x")
     assert second.span == "0.5:1.5:9", "around the 1 m/s that it has"
+    share_actions.choose_slid(desk.world, desk.window, second, gravity)
+    assert second.span == "-14.7:-4.91:9"
 
 
 @pytest.mark.slow

@@ -11,8 +11,7 @@ import pytest
 
 from physicslab import cli
 from physicslab.lab.case import Verdict
-from physicslab.lab.jobs import in_processes
-from physicslab.lab.processes import ProcessEnded
+from physicslab.lab.jobs import ProcessEnded, in_processes
 from physicslab.lab.stability.case import StabilityCase, run_case
 from physicslab.lab.stability.catalogue import CASES, runs_of
 from physicslab.state.masses import Diverged

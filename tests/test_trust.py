@@ -21,8 +21,15 @@ from physicslab.lab.accuracy.contacts.catalogue import CONTACTS
 from physicslab.lab.accuracy.contacts.study import OWN, ContactEngine
 from physicslab.lab.accuracy.estimate import estimate_error
 from physicslab.lab.accuracy.paths import find_horizon
-from physicslab.lab.accuracy.trust import Trust, assess, moments_of
-from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem, summarise
+from physicslab.lab.accuracy.trust import (
+    Trust,
+    TrustRow,
+    assess,
+    assess_contacts,
+    assess_problem,
+    moments_of,
+    summarise,
+)
 from physicslab.lab.accuracy.variants import nudged, with_ids
 from physicslab.lab.jobs import result_of
 from physicslab.prefabs import box, circle

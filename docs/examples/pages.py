@@ -1,4 +1,4 @@
-"""Notebooks as pages of the site (a hook of MkDocs): what is kept in them, with its pictures and players."""
+"""Hooks of MkDocs: notebooks as pages, with their pictures and players, and links within docstrings."""
 
 import base64
 import html
@@ -29,6 +29,19 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
     if page.file.src_uri.startswith("examples/"):
         return markdown
     return re.sub(r"\((examples/\w+)\.ipynb\)", r"(\1.md)", markdown)
+
+
+def on_page_content(content: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Let names that docstrings give with their roles (:class:`World`) lead to where the page has them."""
+    ids = set(re.findall('id="(physicslab[.\\w]*)"', content))
+
+    def linked(found: re.Match[str]) -> str:
+        name = found[1].rpartition(".")[2] if found[0].count("~") else found[1]
+        there = sorted(each for each in ids if each.endswith(f".{found[1].removeprefix('physicslab.')}"))
+        code = f"<code>{name}</code>"
+        return f'<a href="#{there[0]}">{code}</a>' if there else code
+
+    return re.sub(r":\w+:<code>~?([.\w]+)</code>", linked, content)
 
 
 def _written(notebook: Any, stem: str) -> tuple[str, dict[str, bytes]]:

@@ -11,17 +11,15 @@ from physicslab.ecs.text import printable
 from physicslab.files.scene import load_scene
 from physicslab.lab.accuracy import tables
 from physicslab.lab.accuracy.catalogue import PROBLEMS
-from physicslab.lab.accuracy.contacts.case import ContactCase
 from physicslab.lab.accuracy.contacts.catalogue import CONTACTS, CONVERGENCE
-from physicslab.lab.accuracy.contacts.study import OWN, ContactStudy, study_case
-from physicslab.lab.accuracy.document import document, trust_document
+from physicslab.lab.accuracy.contacts.study import OWN, ContactCase, ContactStudy, study_case
 from physicslab.lab.accuracy.honesty.study import FAMILIES, HonestRow, assess_known
 from physicslab.lab.accuracy.plot import case_plot, overview, work_precision
 from physicslab.lab.accuracy.problem import Problem
 from physicslab.lab.accuracy.scene_study import SceneStudy, study_scene
 from physicslab.lab.accuracy.study import Study, study
-from physicslab.lab.accuracy.trust import Trust, assess, moments_of
-from physicslab.lab.accuracy.trust_rows import TrustRow, assess_contacts, assess_problem
+from physicslab.lab.accuracy.tables import document, trust_document
+from physicslab.lab.accuracy.trust import Trust, TrustRow, assess, assess_contacts, assess_problem, moments_of
 from physicslab.lab.jobs import Job
 from physicslab.scenes import SCENES
 

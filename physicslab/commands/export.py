@@ -22,8 +22,7 @@ from physicslab.export.recording import Box, NotShown, RunRecorder, extent_of_ru
 from physicslab.files.replace import reason_of
 from physicslab.files.scene import SceneError
 from physicslab.kernels.tiers import Tiers
-from physicslab.lab.jobs import in_processes
-from physicslab.lab.processes import ProcessEnded
+from physicslab.lab.jobs import ProcessEnded, in_processes
 from physicslab.state.masses import Diverged
 from physicslab.stepping.small import is_small
 from physicslab.world import World

@@ -12,7 +12,7 @@ from physicslab.ecs.text import printable, suggestion
 from physicslab.files.checks import shown
 from physicslab.lab.case import Case, Catalogue
 from physicslab.lab.jobs import Job, run_jobs
-from physicslab.lab.table import table
+from physicslab.lab.report import table
 
 
 def list_cases[AnyCase: Case](catalogue: Catalogue[AnyCase]) -> int:

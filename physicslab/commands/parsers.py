@@ -13,11 +13,12 @@ SHELLS = ("bash", "zsh", "tcsh")
 """Shells for which a completion can be written."""
 _DESCRIPTION = "Open the desktop sandbox, or do one of the commands."
 _SCENES = {
-    "bash": f"""_physicslab_scene() {{ compgen -W "{" ".join(SCENES)}" -- "$1"; compgen -f -- "$1"; }}""",
+    "bash": f"""_physicslab_scene() {{ compgen -W "{" ".join(SCENES)}" -- "$1"; compgen -f -- "$1"; }}
+_shtab_physicslab_pos_0_COMPGEN=_physicslab_scene""",
     "zsh": f"""_physicslab_scene() {{ compadd {" ".join(SCENES)}; _files }}""",
     "tcsh": "",
 }
-"""How each shell completes a scene: a built-in name, or a file."""
+"""How each shell completes a scene: a built-in name, or a file; in bash also in the place of a command."""
 
 
 class Parser(ArgumentParser):
@@ -82,7 +83,7 @@ def completion(shell: str) -> str:
         part = parts.add_parser(name, help=summary_of(name))
         COMMANDS[name](part)
         for action in part._actions:
-            if action.dest == "scene":
+            if not action.option_strings and action.metavar in ("SCENE", "PROBLEM"):
                 action.complete = {"bash": "_physicslab_scene", "zsh": "_physicslab_scene", "tcsh": "f"}  # type: ignore[attr-defined]
             elif action.metavar in ("FILE", "DIR"):
                 action.complete = shtab.FILE if action.metavar == "FILE" else shtab.DIRECTORY  # type: ignore[attr-defined]

@@ -7,6 +7,7 @@ import sys
 from argparse import Namespace
 from collections.abc import Mapping
 from contextlib import AbstractContextManager, nullcontext
+from mimetypes import guess_type
 from pathlib import Path
 from typing import TextIO
 
@@ -119,6 +120,8 @@ def _outputs(arguments: Namespace) -> dict[str, Output]:
     wanted = {kind: getattr(arguments, kind) for kind in ("json", "csv", "ledger", "png")}
     outputs = {kind: Output(f"--{kind}", path) for kind, path in wanted.items() if path is not None}
     if "png" in outputs:
+        if guess_type(outputs["png"].path)[0] not in (None, "image/png"):
+            raise CommandError(f"{outputs['png'].label}: must end in .png")
         require_window("--png")
     for kind, output in outputs.items():
         check_output(output, arguments)

@@ -4,8 +4,7 @@ from argparse import Namespace
 
 from physicslab.commands import FAILED, CommandError
 from physicslab.commands.lab import LabRun, chosen_cases, list_cases, unknown_name
-from physicslab.lab.jobs import in_processes
-from physicslab.lab.processes import ProcessEnded
+from physicslab.lab.jobs import ProcessEnded, in_processes
 from physicslab.lab.stability import case
 from physicslab.lab.stability.catalogue import CASES, run_named, runs_of
 

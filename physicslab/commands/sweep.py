@@ -67,7 +67,7 @@ def _refuse_contradictions(arguments: Namespace) -> None:
         for name in ("out", "map", "measure", "workers", "dask", "until"):
             if getattr(arguments, name) not in (None, []):
                 raise CommandError(f"--{name}: must go without --open, which makes no run")
-    if arguments.map is not None and Path(arguments.map).suffix != ".png":
+    if arguments.map is not None and Path(arguments.map).suffix.lower() != ".png":
         raise CommandError(f"--map {shortened(printable(arguments.map))}: must end in .png")
 
 

@@ -13,7 +13,7 @@ from physicslab.ecs.quantity_text import InvalidText, evaluate
 from physicslab.ecs.vector import Vector2
 from physicslab.export.page import Varied, field_words
 from physicslab.files.checks import SceneError, shown
-from physicslab.files.places import Place, entity_names, find_place, read_path
+from physicslab.files.places import SECTIONS, Place, entity_names, find_place, read_path
 from physicslab.world import World
 
 
@@ -29,7 +29,8 @@ class Variation:
     def varied(self) -> Varied:
         """The text of a slider."""
         words = field_words(self.place.spec.name, self.place.part)
-        return Varied(f"{self.place.name}: {words}", self.place.spec.unit, self.values)
+        label = words if self.place.name in SECTIONS else f"{self.place.name}: {words}"
+        return Varied(label, self.place.spec.unit, self.values)
 
     def assignment(self, value: float) -> str:
         """Return the text that sets the field to a value, as ``--set`` takes it."""

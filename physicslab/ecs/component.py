@@ -281,26 +281,6 @@ def _described(cls: type) -> tuple[Field, ...]:
     return tuple(specs)
 
 
-def parse_path(path: str) -> tuple[str, str, Field, str]:
-    """Return the id, the component, the field and the part of a vector that a path of a scene names.
-
-    Raises
-    ------
-    KeyError
-        If there is no such component; StopIteration if it has no such field.
-
-    Examples
-    --------
-    >>> import physicslab.components
-    >>> body, kind, spec, part = parse_path("ball.Velocity.linear.x")
-    >>> body, kind, spec.name, part
-    ('ball', 'Velocity', 'linear', 'x')
-    """
-    part = path[-1] if path[-2:] in (".x", ".y") else ""
-    body, kind, name = (path[:-2] if part else path).rsplit(".", 2)
-    return body, kind, next(spec for spec in COMPONENTS[kind].FIELDS if spec.name == name), part
-
-
 def _signature(specs: tuple[Field, ...]) -> Signature:
     """Return what ``help`` and notebooks show of the arguments."""
     kind = Parameter.POSITIONAL_OR_KEYWORD

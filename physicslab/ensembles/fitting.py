@@ -82,10 +82,12 @@ def fit(
     data : path or mapping of str to array
         A CSV file with a head, or its columns: ``time`` [s] after the start, ascending, and quantities in SI
         as ``ball.x``. A value that is NaN or empty was not measured.
-    until, seconds : str, float, optional
+    until : str, optional
         A condition, as of :meth:`World.record`: the rows of the data are then the moments at which it begins
-        to hold after the start, one after the other, all within so many seconds; and ``time`` is measured as
-        all else is, by a stopwatch or a light gate.
+        to hold after the start, one after the other; and ``time`` is measured as all else is, by a stopwatch
+        or a light gate.
+    seconds : float, optional
+        With ``until``: within which time all of them are.
 
     Raises
     ------

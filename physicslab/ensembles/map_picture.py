@@ -8,7 +8,7 @@ import numpy as np
 
 from physicslab.ensembles.space import Axis, Space, Values
 from physicslab.files.checks import SceneError
-from physicslab.lab.plot import new_figure, png
+from physicslab.lab.report import new_figure, png
 
 
 def map_picture(space: Space, name: str, column: Values, units: Mapping[str, str]) -> bytes:

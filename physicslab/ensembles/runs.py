@@ -65,12 +65,15 @@ def ensemble(
         How long a run is: one of the two.
     until : str, optional
         A condition with which a run ends, as of :meth:`World.record`; within ``seconds``, or it failed.
-    samples, seed : int
-        How many are drawn, for each combination of the grids, and by which seed. A row's numbers depend on
-        the seed and on its place alone.
-    replicas, jitter : int, float or mapping of str to float
-        How many runs of each row there are, and by which deviation [SI] the numbers of all but the first
-        differ: one for all that is varied, or one for each field.
+    samples : int, optional
+        How many are drawn, for each combination of the grids.
+    seed : int
+        The seed of what is drawn. A row's numbers depend on it and on the row's place alone.
+    replicas : int
+        How many runs of each row there are.
+    jitter : float, str, or mapping of str to either
+        By which deviation [SI] the numbers of all but the first differ: one for all that is varied, or one
+        for each field.
     executor : str or concurrent.futures.Executor
         ``"processes"``, ``"threads"``, ``"serial"``, or one of your own.
     workers : int, optional

@@ -163,7 +163,7 @@ class Runner:
         kinds = {place.kind for place in self._places.values()}
         self._in_place = all(map(_is_plain, self._places.values()))
         self._handles = self._found_handles() if self._in_place else []
-        self._changes = world.entity_index.changes
+        self._note_rows()
         self._plan = world.plan
         self._alone = is_one(world, world.schedule)
         laws = PhysicsConfig in kinds
@@ -242,7 +242,7 @@ class Runner:
         world.reset()
         if self._changes != world.entity_index.changes:
             self._handles = self._found_handles()
-            self._changes = world.entity_index.changes
+            self._note_rows()
         for place, handle, value in zip(self._places.values(), self._handles, row, strict=True):
             try:
                 if handle is None:
@@ -275,6 +275,13 @@ class Runner:
             for place in self._places.values()
         ]
 
+    def _note_rows(self) -> None:
+        """Note which rows have a velocity, and which a shape, until entities come or go."""
+        world = self._world
+        self._changes = world.entity_index.changes
+        self._moving = np.flatnonzero(world.table(Velocity).present).tolist()
+        self._shaped = np.flatnonzero(world.table(Shape).present)
+
     def _chooses_the_same(self) -> bool:
         """Whether the same systems and the same method would be chosen for the values of now."""
         world = self._world
@@ -288,12 +295,11 @@ class Runner:
     def _bounces(self) -> bool:
         """Whether the flight of one body from impact to impact, which was chosen, is chosen again."""
         world, plan = self._world, self._plan
-        velocity = world.table(Velocity)
-        if self._asked or plan.collisions != "exact" or np.count_nonzero(velocity.present) != 1:
+        if self._asked or plan.collisions != "exact" or len(self._moving) != 1:
             return False
-        x, y = velocity["linear"][velocity.present][0]
-        shaped, physics = world.table(Shape).present, world.physics
-        bounces = bool((world.table(Material)["restitution"][shaped] > 0.0).all())
+        x, y = world.table(Velocity)["linear"][self._moving[0]].tolist()
+        physics = world.physics
+        bounces = min(world.table(Material)["restitution"][self._shaped].tolist(), default=1.0) > 0.0
         is_slow = math.hypot(x, y) <= physics.gravity.magnitude * world.simulation.dt
         return bounces and not is_slow and (physics.bounds is None or physics.bounds_restitution > 0.0)
 

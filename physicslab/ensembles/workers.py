@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from physicslab.ensembles.task import Block, Task, ready, work
-from physicslab.lab.processes import ProcessEnded, Processes
+from physicslab.lab.jobs import ProcessEnded, Processes
 
 KINDS = ("processes", "threads", "serial")
 """Workers that are started here."""

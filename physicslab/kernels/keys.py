@@ -72,14 +72,16 @@ def _loaders(folders: Iterable[str], prefix: str) -> Iterator[tuple[str, Any]]:
             yield from _loaders(spec.submodule_search_locations, f"{name}.")
 
 
-def _imports(source: str) -> Iterator[str]:
-    """Yield all that a source may import, as full names; some are names within modules."""
-    for module, names, modules in _IMPORT.findall(source):
-        if module:
-            yield module
-            yield from (f"{module}.{name}" for name in re.findall(r"\w+", names))
+@cache
+def _imports(source: str) -> frozenset[str]:
+    """Return the modules of this package that a source may import."""
+    found: set[str] = set()
+    for origin, names, modules in _IMPORT.findall(source):
+        if origin:
+            found |= {origin, *(f"{origin}.{name}" for name in re.findall(r"\w+", names))}
         else:
-            yield from re.findall(r"[\w.]+", modules)
+            found.update(re.findall(r"[\w.]+", modules))
+    return frozenset(found & _sources().keys())
 
 
 @cache
@@ -90,7 +92,7 @@ def depends_on(module: str) -> frozenset[str]:
     while waiting:
         name = waiting.pop()
         found.add(name)
-        waiting += {part for part in _imports(sources[name]) if part in sources} - found - _WITHOUT_CODE
+        waiting += _imports(sources[name]) - found - _WITHOUT_CODE
     return frozenset(found)
 
 

@@ -7,10 +7,10 @@ from typing import Any
 
 from physicslab.components import Name, Velocity
 from physicslab.diagnostics.figures import FUNCTIONS
-from physicslab.ecs.component import COMPONENTS, parse_path
 from physicslab.ecs.quantity_text import Expression, InvalidText, is_known
 from physicslab.ecs.text import printable
 from physicslab.files.json_text import json_text
+from physicslab.files.places import find_place
 from physicslab.files.reader import read_scene
 from physicslab.files.scene import write_scene
 from physicslab.lessons.reader import FORMAT
@@ -196,9 +196,13 @@ def _opened(world: World, document: dict[str, Any], opened: Iterable[Opened]) ->
     for one in opened:
         if not one.path:
             continue
-        body, kind, spec, part = parse_path(one.path)
-        value = getattr(world.component(world.entity(body), COMPONENTS[kind]), spec.name)
-        values = entities[body].setdefault(kind, {})
+        place = find_place(world, "", one.path, "")
+        value, spec, part, words = place.read(world), place.spec, place.part, place.spec.name
+        if place.entity:
+            values = entities[place.name].setdefault(place.kind.__name__, {})
+            words = f"{printable(place.name)}: {words}"
+        else:
+            values = document.setdefault(place.name, {})
         if part:
             held = list(values.get(spec.name, [value.x, value.y]))
             held["xy".index(part)] = one.name
@@ -206,7 +210,7 @@ def _opened(world: World, document: dict[str, Any], opened: Iterable[Opened]) ->
         else:
             values[spec.name] = one.name
         unit = "" if spec.unit == "1" else f" {spec.unit}"
-        yield "let", f"{one.name} = {value!r}{unit} | {printable(body)}: {spec.name.replace('_', ' ')} {part}"
+        yield "let", f"{one.name} = {value!r}{unit} | {words.replace('_', ' ')} {part}"
         yield "open", f"{one.name} = {one.low} to {one.high}"
 
 

@@ -221,7 +221,8 @@ class Keyframe:
             for name, value in (*self._counts.items(), *self._texts.items()):
                 setattr(world, name, value)
             forget_sleep(world.sleep)
-            world.contacts.clear()
+            if world.stale:  # rows of pairs are followed; else they are dropped where others are given back
+                world.contacts.clear()
             world.synchronise()
             world.adopt(self._plan, self._remade)
         self._contacts.restore(world)

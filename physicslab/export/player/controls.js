@@ -130,7 +130,7 @@ function showChosen() {
   let place = 0;
   sliders.forEach(({ values, unit, input, output }, n) => {
     place = place * values.length + chosen[n];
-    const written = `${short(values[chosen[n]], 5)} ${unit === "1" ? "" : unit}`.trim();
+    const written = `${short(values[chosen[n]], 5)} ${raised(unit)}`.trim();
     output.textContent = written;
     input.setAttribute("aria-valuetext", written);
   });

@@ -47,8 +47,8 @@ loaders.push(() => {
     const across = graph.across === null ? null : quantities[graph.across];
     const part = document.createElement("section"), canvas = document.createElement("canvas");
     const title = Object.assign(document.createElement("h2"), { id: `graph-${n}` });
-    const units = [...new Set(shown.map(line => line.unit))].join(", ");
-    title.textContent = `${say("Graph")} ${n + 1} (${units})${across ? ` ${say("against")} ${across.name} (${across.unit})` : ""}`;
+    const units = [...new Set(shown.map(line => raised(line.unit)))].join(", ");
+    title.textContent = `${say("Graph")} ${n + 1} (${units})${across ? ` ${say("against")} ${across.name} (${raised(across.unit)})` : ""}`;
     canvas.className = "chart";
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-labelledby", title.id);
@@ -80,7 +80,7 @@ function drawChart(one, frame) {
     line([LEFT, y(k * tick)], [width - RIGHT, y(k * tick)]);
     ink.fillText(short(k * tick, 2), LEFT - 6, y(k * tick) + 4);
   }
-  const scale = one.across ? 0 : run.start, unit = one.across ? one.across.unit : "s";
+  const scale = one.across ? 0 : run.start, unit = one.across ? raised(one.across.unit) : "s";
   ink.fillText(`${short(scale + last, 4)} ${unit}`, width - RIGHT, height - 3);
   ink.textAlign = "left";
   ink.fillText(short(scale + first, 4), LEFT, height - 3);
@@ -129,7 +129,7 @@ function sample(line) {
 
 function showFigures(frame) {
   const digits = playing ? 4 : 7;
-  const value = (amount, unit) => `${number(amount, digits)} ${unit.replace("^2", "\u00b2")}`;
+  const value = (amount, unit) => `${number(amount, digits)} ${raised(unit)}`;
   fill($("legend"), lines.map(line => [say(line.name), value(line.values[frame], "J"), line]));
   fill($("momenta"), quantities.slice(0, 3).map(one => [say(one.name), value(one.values[frame], one.unit)]));
   for (const { table, shown } of charts.slice(1)) {

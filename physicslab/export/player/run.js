@@ -132,6 +132,8 @@ function plain(value, digits) {
   const text = power >= -3 && power <= 6 ? value.toFixed(Math.max(digits - 1 - power, 0)) : value.toExponential(digits - 1);
   return text.replace(/e\+?(-?)(\d+)$/, "\u00b710^$1$2").replaceAll("-", "\u2212");
 }
+// A unit as people write it.
+const raised = unit => unit === "1" ? "" : unit.replace("^2", "\u00b2").replace("^3", "\u00b3");
 function short(value, digits) {
   return marked(plain(value, digits).replace(/(\.\d*?)0+(?=\u00b7|$)/, "$1").replace(/\.(?=\u00b7|$)/, ""));
 }

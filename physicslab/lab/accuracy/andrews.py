@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from physicslab.components import Mass, Pin, Spring, Thrust, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import rotated
-from physicslab.lab.accuracy.figures import number
-from physicslab.lab.accuracy.problem import Ladder, Problem
+from physicslab.lab.accuracy.problem import Ladder, Problem, number
 from physicslab.lab.worlds import empty_world
 from physicslab.world import World
 

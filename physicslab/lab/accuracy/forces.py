@@ -8,8 +8,7 @@ from functools import partial
 from physicslab.components import Charge, Drag, Mass, Molecule, Spring, Thrust, Transform
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.accuracy.figures import number, record
-from physicslab.lab.accuracy.problem import Ladder, Problem, distance, state_error
+from physicslab.lab.accuracy.problem import Ladder, Problem, distance, number, record, state_error
 from physicslab.lab.closed_forms import crossed, driven, molecules_period, repelled
 from physicslab.lab.worlds import PLANETS, empty_world, spawn_point
 from physicslab.world import World

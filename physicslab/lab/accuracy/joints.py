@@ -12,8 +12,7 @@ import numpy as np
 from physicslab.components import Gear, Mass, Pin, Pulley, Rod, Rope, Shape, Slot, Transform, Velocity
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import rotated
-from physicslab.lab.accuracy.figures import number
-from physicslab.lab.accuracy.problem import Ladder, Problem, on_record, state_error
+from physicslab.lab.accuracy.problem import Ladder, Problem, number, on_record, state_error
 from physicslab.lab.worlds import GRAVITY, empty_world, place, spawn_point, velocity
 from physicslab.world import World
 

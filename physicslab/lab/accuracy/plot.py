@@ -10,7 +10,7 @@ from physicslab.lab.accuracy.contacts.study import ContactCurve, ContactRow, Con
 from physicslab.lab.accuracy.measure import Row
 from physicslab.lab.accuracy.study import Study
 from physicslab.lab.accuracy.tables import order_text
-from physicslab.lab.plot import COLOURS, new_figure, png, prepare_axes
+from physicslab.lab.report import COLOURS, new_figure, png, prepare_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,8 +8,7 @@ from functools import partial
 from physicslab.components import Drag, Spring
 from physicslab.ecs.component import Component
 from physicslab.ecs.config import SimulationConfig
-from physicslab.lab.accuracy.figures import number, record
-from physicslab.lab.accuracy.problem import Ladder, Problem, on_record, state_error
+from physicslab.lab.accuracy.problem import Ladder, Problem, number, on_record, record, state_error
 from physicslab.lab.closed_forms import dragged_energy
 from physicslab.lab.worlds import GRAVITY, Surface, empty_world, place, spawn_point, velocity
 from physicslab.prefabs import box, circle

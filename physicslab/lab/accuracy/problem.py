@@ -1,8 +1,14 @@
-"""The record of a problem with a known answer, how it is computed, and the distance of bodies from it."""
+"""Problems with known answers: figures, how they are computed, and the distance of bodies from them.
 
+Figures are decimal digits, as ``problems.json`` keeps them.
+"""
+
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
-from typing import override
+from functools import cache
+from importlib.resources import files
+from typing import Any, override
 
 import numpy as np
 
@@ -10,10 +16,41 @@ from physicslab.diagnostics.step_warnings import fastest_force
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.integrators import Integrator
-from physicslab.lab.accuracy.figures import number
 from physicslab.lab.case import Case
 from physicslab.lab.worlds import place, velocity
 from physicslab.world import World
+
+
+@cache
+def _document() -> dict[str, Any]:
+    text = files("physicslab.lab.accuracy").joinpath("problems.json").read_text(encoding="utf-8")
+    problems: dict[str, Any] = json.loads(text)["problems"]
+    return problems
+
+
+def record(problem: str) -> dict[str, Any]:
+    """Return all that is on record of a problem: what is given, the reference, and how it was found."""
+    found: dict[str, Any] = _document()[problem]
+    return found
+
+
+def digits(problem: str, *keys: str) -> str:
+    """Return a figure of a problem's reference as the digits on record.
+
+    >>> digits("projectile", "T")
+    '3.531194306970188162135'
+    """
+    found: Any = record(problem)["reference"]
+    for key in keys:
+        found = found[key]
+    if not isinstance(found, str):
+        raise KeyError(f"{problem}: {' '.join(keys)} is no figure")
+    return found
+
+
+def number(problem: str, *keys: str) -> float:
+    """Return a figure of a problem's reference, rounded once: the nearest float."""
+    return float(digits(problem, *keys))
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,8 +9,7 @@ from physicslab.components import Mass, Material, Shape, Transform, Velocity
 from physicslab.contacts.report import list_contacts
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.accuracy.figures import number
-from physicslab.lab.accuracy.problem import Ladder, Problem
+from physicslab.lab.accuracy.problem import Ladder, Problem, number
 from physicslab.lab.closed_forms import rolled, slid
 from physicslab.lab.worlds import GRAVITY, Surface, empty_world, place, velocity
 from physicslab.prefabs import box, circle

@@ -9,8 +9,7 @@ from physicslab.components import Mass, Name, Transform, Velocity
 from physicslab.ecs.config import PhysicsConfig, SimulationConfig
 from physicslab.ecs.vector import Vector2
 from physicslab.files.scene import load_scene
-from physicslab.lab.bench.jointed import JOINTED
-from physicslab.lab.bench.moving import FUNNELS, MOVING
+from physicslab.lab.bench.moving import FUNNELS, JOINTED, MOVING, UNTUNED
 from physicslab.lab.bench.scene import (
     BenchScene,
     at_rest,
@@ -21,7 +20,6 @@ from physicslab.lab.bench.scene import (
     sink,
     within,
 )
-from physicslab.lab.bench.untuned import UNTUNED
 from physicslab.lab.case import Catalogue
 from physicslab.lab.worlds import soft_space
 from physicslab.prefabs import box, container, gas, pile, pyramid

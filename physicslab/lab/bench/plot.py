@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from physicslab.lab.bench.engine import OURS
 from physicslab.lab.bench.result import EngineResult
 from physicslab.lab.bench.tables import BenchReport
-from physicslab.lab.plot import COLOURS, new_figure, png, prepare_axes
+from physicslab.lab.report import COLOURS, new_figure, png, prepare_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,8 +9,7 @@ from physicslab.lab.bench.costs import Memory, Unused
 from physicslab.lab.bench.engine import OURS
 from physicslab.lab.bench.result import EngineResult, Growth, SceneResult, Spread, growths
 from physicslab.lab.bench.targets import Check, checks
-from physicslab.lab.document import lab_document, machine_text, pick, plain
-from physicslab.lab.table import cell, table
+from physicslab.lab.report import cell, lab_document, machine_text, pick, plain, table
 
 
 @dataclass(slots=True)

@@ -17,11 +17,10 @@ from physicslab.lab.bench.measure import Judge, build_others, load_kernels, spen
 from physicslab.lab.bench.random_scenes import random_scene
 from physicslab.lab.bench.result import Alike, EngineResult, SceneResult, Spread, Times, take_turns
 from physicslab.lab.bench.scene import BenchScene, largest_overlap, stretched
-from physicslab.lab.document import lab_document, machine_text
 from physicslab.lab.jobs import Job
 from physicslab.lab.peers.mirrors import PymunkMirror
 from physicslab.lab.peers.peer import Peer
-from physicslab.lab.table import cell, table
+from physicslab.lab.report import cell, lab_document, machine_text, table
 from physicslab.state.masses import Diverged
 from physicslab.world import World
 

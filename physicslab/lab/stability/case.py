@@ -7,8 +7,7 @@ from functools import partial
 from typing import Any
 
 from physicslab.lab.case import Case, Verdict, attempt
-from physicslab.lab.document import lab_document
-from physicslab.lab.table import Columns, cell
+from physicslab.lab.report import Columns, cell, lab_document
 from physicslab.lab.worlds import open_space
 
 MODELS = {"soft": "soft contacts", "rigid": "rigid contacts"}

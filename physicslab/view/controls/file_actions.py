@@ -144,6 +144,7 @@ def begin_film(world: World, window: Window) -> None:
         return
     filming.choosing = False
     if filming.what == FROM_NOW:
-        window.notify("Filming: F9 ends it" + (", Space lets time run" if window.pace.paused else ""))
+        waits = window.pace.paused
+        window.notify("Filming: F9 ends it, Space lets time run" if waits else "Filming: F9 ends it")
     else:
         window.pace.paused = True

@@ -5,11 +5,11 @@ from pathlib import Path
 
 from physicslab.components import Velocity
 from physicslab.diagnostics.figures import columns, unit_of
-from physicslab.ecs.component import parse_path
 from physicslab.ecs.quantity_text import InvalidText
 from physicslab.ecs.text import printable
 from physicslab.export.page import field_words
 from physicslab.files.checks import SceneError
+from physicslab.files.places import find_place
 from physicslab.files.replace import create_file, reason_of, replace_file
 from physicslab.files.scene import file_stem
 from physicslab.languages.language import language
@@ -97,10 +97,10 @@ def choose_opened(world: World, window: Window, opened: Opened, path: str) -> No
     opened.path = path
     if not path:
         return
-    body, _, spec, part = parse_path(path)
-    making = window.making
+    place, making = find_place(world, "", path, ""), window.making
     taken = {one.name for one in making.draft.opened if one is not opened}
-    opened.name = identifier(f"{body}_{field_words(spec.name, part)}", taken)
+    words = field_words(place.spec.name, place.part)
+    opened.name = identifier(f"{place.name}_{words}" if place.entity else words, taken)
     low, high, unit = span_around(world, window, making.begins, path)
     ending = "" if unit == "1" else f" {unit}"
     opened.low, opened.high = f"{low:.3g}{ending}", f"{high:.3g}{ending}"

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from physicslab.components import Held, Shape, Slider, Velocity
 from physicslab.components.slider import GRAVITY
-from physicslab.ecs.component import COMPONENTS, Component, parse_path
+from physicslab.ecs.component import Component
 from physicslab.ecs.text import printable, unique_name
 from physicslab.export.page import field_words
+from physicslab.files.places import SECTIONS, find_place
 from physicslab.files.replace import create_file, reason_of, replace_file
 from physicslab.files.scene import SceneError, file_stem, save_scene
 from physicslab.view.controls.saving import name_of
@@ -18,6 +19,8 @@ from physicslab.view.window.sharing import FROM_START, WHOLE_LESSON, Sharing, Sl
 from physicslab.view.window.window import Window
 from physicslab.world import World
 
+_GRAVITY = "physics.gravity.y"
+"""Uniform gravity, upwards, as the command line names it."""
 _VALUES = 9
 """How many values a slider of the scene gets in the page."""
 _MOST = 200
@@ -45,12 +48,13 @@ def toggle_sharing(world: World, window: Window) -> None:
 def _take_sliders(world: World, window: Window) -> None:
     """Let the page have the sliders of the scene; those of another scene are dropped."""
     names = _names(world)
-    found = [
-        Slid(f"{names[one.entity]}.{one.changes}", f"{one.low:g}:{one.high:g}:{_VALUES}")
-        for entity in sorted(world.batch(Slider).entities.tolist())
-        for one in (world.component(entity, Slider),)
-        if one.changes != GRAVITY and one.entity in names
-    ]
+    found = []
+    for entity in sorted(world.batch(Slider).entities.tolist()):
+        one = world.component(entity, Slider)
+        if one.changes == GRAVITY:
+            found.append(Slid(_GRAVITY, f"{0.0 - one.low:g}:{0.0 - one.high:g}:{_VALUES}"))
+        elif one.entity in names:
+            found.append(Slid(f"{names[one.entity]}.{one.changes}", f"{one.low:g}:{one.high:g}:{_VALUES}"))
     known = varying(world)
     for n, slid in enumerate(window.sharing.slid):
         if n < len(found):
@@ -68,10 +72,11 @@ def _names(world: World) -> dict[int | None, str]:
 
 
 def varying(world: World) -> dict[str, str]:
-    """Return the words of each field that may be varied: the numbers of what moves, then of the rest."""
-    found = {"": words_of("")}
+    """Return the words of each field that may be varied: what moves, gravity, then the rest."""
+    found, gravity = {"": words_of("")}, {_GRAVITY: "gravity y"}
     moving = set(world.batch(Velocity).entities.tolist())
     for entity, name in sorted(_names(world).items(), key=lambda named: named[0] not in moving):
+        found |= {} if entity in moving else gravity
         for part in world.components(entity) if entity is not None else ():
             kind = type(part)
             if not isinstance(part, Component) or not kind.physical or kind is Held:
@@ -82,7 +87,7 @@ def varying(world: World) -> dict[str, str]:
                     for end in _ENDS.get(spec.kind, ()):
                         path = f"{name}.{kind.__name__}.{spec.name}{end}"
                         found[path] = words_of(path)
-    return found
+    return found | gravity
 
 
 _ENDS = {"number": ("",), "vector": (".x", ".y")}
@@ -92,13 +97,15 @@ _ENDS = {"number": ("",), "vector": (".x", ".y")}
 def words_of(path: str) -> str:
     """Return a path of a field in words.
 
-    >>> words_of("ball.Velocity.linear.x"), words_of("")
-    ('ball: velocity x', 'nothing')
+    >>> words_of("ball.Velocity.linear.x"), words_of("physics.gravity.y"), words_of("")
+    ('ball: velocity x', 'gravity y', 'nothing')
     """
     if not path:
         return "nothing"
-    name, _, spec, part = parse_path(path)
-    return f"{printable(name)}: {field_words(spec.name, part)}"
+    whole = path.removesuffix(".x").removesuffix(".y")
+    owner, _, field = whole.rpartition(".")
+    words = field_words(field, path[len(whole) + 1 :])
+    return words if owner in SECTIONS else f"{printable(owner.rpartition('.')[0])}: {words}"
 
 
 def choose_slid(world: World, window: Window, slid: Slid, path: str) -> None:
@@ -112,11 +119,10 @@ def choose_slid(world: World, window: Window, slid: Slid, path: str) -> None:
 
 def span_around(world: World, window: Window, begins: str, path: str) -> tuple[float, float, str]:
     """Return half and one and a half of a field's first value, as far as it may be so, and its unit."""
-    name, kind, spec, part = parse_path(path)
-    entity = next(entity for entity, known in _names(world).items() if known == name)
+    place = find_place(world, "", path, "")
     with gone_back(window, begins):
-        value = getattr(world.component(entity or 0, COMPONENTS[kind]), spec.name)
-    now = getattr(value, part) if part else value
+        value = place.read(world)
+    now, spec = getattr(value, place.part) if place.part else value, place.spec
     low, high = sorted((0.5 * now, 1.5 * now)) if now else (0.0, 5.0)
     return max(low, spec.lowest), min(high, spec.highest), spec.unit
 

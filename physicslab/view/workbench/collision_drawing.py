@@ -45,7 +45,7 @@ class Sketch:
 
     Attributes
     ----------
-    arrows : list of two places
+    arrows, axes : list of two places
         Where each begins and ends.
     taken : list of four floats
         Left, top, width and height of the words that were written.
@@ -56,6 +56,7 @@ class Sketch:
         self._corner = corner
         self._paper = imgui.get_window_draw_list()
         self.arrows: list[tuple[Place, Place]] = []
+        self.axes: list[tuple[Place, Place]] = []
         self.taken: list[tuple[float, float, float, float]] = []
         self._words: list[tuple[Place, str, Colour, Colour | None]] = []
 
@@ -138,11 +139,13 @@ class Sketch:
         return Vector2(min(max(corner.x, 0.0), right), min(max(corner.y, 0.0), low))
 
     def _is_free(self, rect: tuple[float, float, float, float]) -> bool:
-        """Whether neither words nor arrows are in a rectangle."""
+        """Whether neither words, arrows nor axes are in a rectangle."""
         if any(overlap(one, rect) for one in self.taken):
             return False
         around = pygame.FRect(rect).inflate(_HEAD[1], _HEAD[1])  # heads are wider than the line
-        return not any(around.clipline(*start, *end) for start, end in self.arrows)
+        if any(around.clipline(*start, *end) for start, end in self.arrows):
+            return False
+        return not any(pygame.FRect(rect).clipline(*start, *end) for start, end in self.axes)
 
 
 @contextmanager
@@ -267,7 +270,8 @@ def _draw_axes(paper: Sketch, seen: Collision, origin: Place) -> None:
     theme, length = paper.ui.theme, 4.4 * paper.ui.size
     for way, name in ((seen.normal, "n"), (seen.tangent, "t")):
         end = origin + length * _down(way)
-        paper.line(2.0 * origin - end, end, theme.faint, dashed=True)
+        paper.axes.append((2.0 * origin - end, end))
+        paper.line(*paper.axes[-1], theme.faint, dashed=True)
         paper.words(_beyond(origin, end, 0.6 * paper.ui.size), name, theme.contact_normal)
 
 

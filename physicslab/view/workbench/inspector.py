@@ -348,12 +348,14 @@ def _check_name(world: World, entity: int, name: str) -> None:
 def _kind(world: World, entity: int) -> str:
     """Return what an entity is, in words."""
     if world.has(entity, Shape):
-        shape = world.component(entity, Shape).kind
+        shape = Sentence(world.component(entity, Shape).kind)
     elif world.has(entity, Transform):
-        shape = "point"
+        shape = Sentence("point")
     else:
         kinds = [type(part) for part in world.components(entity) if isinstance(part, Component)]
         return changing.plain_kind(kinds[0]).lower() if kinds else "nothing that is seen"
     if not world.has(entity, Velocity):
-        return f"{shape}, stays where it is"
-    return f"{shape}, moves" if world.has(entity, Mass) else f"{shape}, moves as it was set, infinitely heavy"
+        return Sentence("{shape}, stays where it is", shape=shape)
+    if world.has(entity, Mass):
+        return Sentence("{shape}, moves", shape=shape)
+    return Sentence("{shape}, moves as it was set, infinitely heavy", shape=shape)

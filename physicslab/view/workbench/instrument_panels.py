@@ -61,7 +61,7 @@ def _build_times(ui: Ui, world: World, every: Sequence[Lap], gates: int) -> None
     last = next((lap for lap in reversed(every) if lap.since is not None), None)
     seconds = None if last is None else last.seconds
     ui.heading("-" if seconds is None else quantity(seconds, "s"))
-    ui.faint(_meaning(world, last, every, gates), wrapped=False)
+    ui.faint(_meaning(world, last, every, gates), wrapped=imgui.is_window_docked())
     alike = [
         lap.seconds
         for lap in every

@@ -43,10 +43,12 @@ from physicslab.world import World
 # ---- the layout: the world first, panels around it ---------------------------------------------------------
 
 
-_PALETTE, _SIDE, _TRANSPORT = 7.3, 16.7, 3.0
-"""Widths of the palette and the side panel, height of the transport, in heights of the text."""
+_PALETTE, _SIDE, _TRANSPORT, _ICONS = 7.3, 16.7, 3.0, 2.5
+"""Widths of palette and side panel, height of the transport, width of icons, in heights of the text."""
 _WIDE = 44.0
 """Width of the world's room from which on windows stand at its sides, not below, in heights of the text."""
+_LEAST_WITH_NAMES = 0.5
+"""Share of the window's width that is left to the world where tools have their names, or they are icons."""
 _MIN_WORLD = 0.34
 """Share of the window's width that is always left to the world: the side panel lies over it if it must."""
 
@@ -58,6 +60,8 @@ class Layout:
     ----------
     menu, palette, transport, side, room : Rect
         The menu bar, the tools, the transport, the panel at the right, and what is left for the world.
+    names : bool
+        Whether there is room for the names of tools.
     width : str
         Whether the world is ``"wide"`` beside the panel at the right, be it shown or not, or ``"narrow"``.
     """
@@ -70,6 +74,9 @@ class Layout:
         width, height = size
         top, foot, left = bar_height(text), round(_TRANSPORT * text), round(max(_PALETTE * text, palette))
         beside = round(_SIDE * text)
+        self.names = width - left - (beside if side else 0) >= _LEAST_WITH_NAMES * width
+        if not self.names:
+            left = round(_ICONS * text)
         right = beside if side else 0
         middle, across = max(height - top - foot, 1), width - left - right
         self.width = "wide" if width - left - beside >= _WIDE * text else "narrow"
@@ -326,7 +333,7 @@ class Interface:
         self._begin_numbers()
         build_menu_bar(ui, world, window)
         self._palette = palette_width(ui)
-        build_palette(ui, layout.palette, window)
+        build_palette(ui, layout.palette, window, names=layout.names)
         build_transport(ui, layout.transport, world, window)
         if window.figures:
             with ui.panel("side", layout.side):

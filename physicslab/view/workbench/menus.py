@@ -254,8 +254,8 @@ def palette_width(ui: Ui) -> float:
     return widest + 2.0 * imgui.get_style().frame_padding.x + 2.0 * NARROW
 
 
-def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
-    """Build a button for each tool, with its icon and its name; the tool in hand is marked."""
+def build_palette(ui: Ui, rect: Rect, window: Window, *, names: bool) -> None:
+    """Build a button for each tool, with its icon and perhaps its name; the tool in hand is marked."""
     with ui.panel("palette", rect, padded=False):
         across = imgui.get_style().frame_padding.x
         imgui.push_style_var(imgui.StyleVar_.button_text_align, ImVec2(0.0, 0.5))
@@ -269,14 +269,14 @@ def build_palette(ui: Ui, rect: Rect, window: Window) -> None:
         size = room.x, height
         for tool in shown:
             ui.button(
-                tool.title, _tip(tool), actions.choose_tool, tool, shown=_words(ui, tool),
-                on=window.tool == tool.name, size=size,
+                tool.title, _tip(tool), actions.choose_tool, tool,
+                shown=_words(ui, tool) if names else ICONS[tool.name], on=window.tool == tool.name, size=size,
             )  # fmt: skip
             if window.tool != tool.name:
                 _colour_icon(ui, tool)
         hidden = next((tool for tool in behind if tool.name == window.tool), None)
         words = f"{ICONS['more']}  {ui.said('More')}" if hidden is None else _words(ui, hidden)
-        tip = "More to put into the world"
+        words, tip = words if names else words.split()[0], "More to put into the world"
         if not behind:
             imgui.pop_style_var(2)
             return

@@ -229,7 +229,8 @@ class NumberFields:
         Dragging the label of a number to the side changes it, Shift finer, Ctrl coarser.
         """
         width, corner = self.share * imgui.get_content_region_avail().x, imgui.get_cursor_screen_pos()
-        width = min(width, imgui.calc_text_size(ui.said(words)).x) if is_short else width
+        written = imgui.calc_text_size(ui.said(words)).x
+        width = min(width, written) if is_short else max(width, written)
         imgui.push_item_flag(_ONLY_MOUSE, True)
         imgui.invisible_button(ui.held(f"drag {key}"), ImVec2(width, imgui.get_frame_height()))
         imgui.pop_item_flag()

@@ -27,7 +27,7 @@ from physicslab.view.workbench.small_panels import MeterPanels, SliderPanels
 from physicslab.world import World
 
 _FLAGS = imgui.WindowFlags_.no_collapse | imgui.WindowFlags_.no_focus_on_appearing
-_LEAST_PLOT = 6.0
+_LEAST_PLOT = 8.5
 """Height of a plot at least, in heights of the text: what is below the rest can be scrolled to."""
 _ROOMY, _PER_LINE = (15.0, 10.0), 1.4
 """Width and height of a graph, and height for each line, with which its readings stand above the plot [text

@@ -7,8 +7,8 @@ from physicslab.components import Mass, Material, Shape, Spring, Transform
 from physicslab.components.vertices import regular
 from physicslab.ecs.config import SimulationConfig
 from physicslab.ecs.vector import Vector2
-from physicslab.lab.accuracy.contacts.case import ContactCase, Pose, pose_case
-from physicslab.lab.accuracy.figures import number
+from physicslab.lab.accuracy.contacts.study import ContactCase, Pose, pose_case
+from physicslab.lab.accuracy.problem import number
 from physicslab.lab.closed_forms import rolled, slid, stopped_by_friction
 from physicslab.lab.worlds import GRAVITY, PLANETS, empty_world, floor
 from physicslab.prefabs import box, circle, ground, polygon

@@ -7,7 +7,7 @@ from functools import partial
 from physicslab.components import Transform
 from physicslab.diagnostics.energy import measure_momentum
 from physicslab.ecs.config import SimulationConfig
-from physicslab.lab.accuracy.contacts.case import ContactCase, Pose, pose_case, state_off
+from physicslab.lab.accuracy.contacts.study import ContactCase, Pose, pose_case, state_off
 from physicslab.lab.closed_forms import corner_impact, slid
 from physicslab.lab.worlds import GRAVITY, Surface, empty_world, floor
 from physicslab.prefabs import box, circle
