@@ -103,7 +103,7 @@ def pytest_runtest_teardown(item: pytest.Item) -> None:
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
     """Keep what each test has cost."""
     if report.when == "teardown":
-        _COSTS[report.nodeid] = float(dict(report.user_properties)["processor_s"])  # type: ignore[arg-type]
+        _COSTS[report.nodeid] = float(dict(report.user_properties).get("processor_s", 0.0))  # type: ignore[arg-type]
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
